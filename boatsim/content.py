@@ -1,0 +1,95 @@
+"""Finds content by name: vessels, controllers and scenarios are files, and a file's name is its name everywhere."""
+
+import importlib
+import importlib.util
+import sys
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from boatsim.errors import BadInput, unknown_name
+
+KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
+
+
+@cache
+def root() -> Path:
+    """Folder that holds models/, controllers/ and scenarios/: inside an installed package, or the repository."""
+    packed = Path(__file__).parent / "_content"
+    return packed if packed.is_dir() else Path(__file__).parents[1]
+
+
+def names(kind: str) -> list[str]:
+    """Every vessel, controller, effect or scenario there is; scenarios are named folder/file."""
+    if kind == "effect":
+        return sorted(p.stem for p in (Path(__file__).parent / "effects").glob("[!_]*.py"))
+    folder = root() / KINDS[kind]
+    if kind == "vessel":
+        return sorted(p.parent.name for p in folder.glob("*/vessel.toml"))
+    if kind == "controller":
+        return sorted(p.stem for p in folder.glob("[!_]*.py"))
+    return sorted(str(p.relative_to(folder).with_suffix("")) for p in folder.glob("*/*.toml"))
+
+
+def find(kind: str, name: str, beside: Path | None = None) -> Path:
+    """Path of a vessel.toml, controller .py or scenario .toml, given by name or by a path of the user's own.
+
+    `beside` is the folder a relative path starts from, after the working directory. Raises BadInput.
+    """
+    suffix = ".py" if kind == "controller" else ".toml"
+    for folder in [Path(), *([beside] if beside else [])]:
+        own = folder / name
+        if own.suffix == suffix and own.is_file():
+            return own.resolve()
+        if kind == "vessel" and (own / "vessel.toml").is_file() and "/" in name:
+            return (own / "vessel.toml").resolve()
+    if name in names(kind):
+        folder = root() / KINDS[kind]
+        return folder / name / "vessel.toml" if kind == "vessel" else folder / f"{name}{suffix}"
+    if name.endswith(suffix):
+        raise BadInput(f"{name}: no such file")
+    raise BadInput(unknown_name(kind, name, names(kind)))
+
+
+def module_at(path: Path, name: str) -> ModuleType:
+    """Import one file under a given module name, once."""
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise BadInput(f"{path}: can not be imported")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception:
+        del sys.modules[name]
+        raise
+    return module
+
+
+def camel_case(name: str) -> str:
+    """fan_wind -> FanWind."""
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
+    """The class of an effect or controller: CamelCase of its file's name. Raises BadInput for a name not found."""
+    if kind == "effect" and name in names("effect"):
+        module = importlib.import_module(f"boatsim.effects.{name}")
+    elif kind == "effect":
+        folder = beside or Path()
+        path = folder / name if name.endswith(".py") else folder / f"{name}.py"
+        if not path.is_file():
+            raise BadInput(unknown_name("effect", name, names("effect")))
+        module = module_at(path.resolve(), f"boatsim_user_effect_{path.stem}")
+        name = path.stem
+    else:
+        path = find("controller", name, beside)
+        name = path.stem
+        module = module_at(path, f"boatsim.controllers.{name}")
+    found = getattr(module, camel_case(name), None)
+    if found is None:
+        raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
+    return found

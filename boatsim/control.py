@@ -1,0 +1,82 @@
+"""What a controller is, and the blocks controllers share.
+
+A controller works in plain floats and knows nothing of the simulator, so it could move to a boat.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import exp, pi
+from typing import ClassVar, NamedTuple
+
+from boatsim.base import Checked, param
+
+
+@dataclass(frozen=True)
+class Sense:
+    """What the sensors say at one control step, SNAME axes; nan where the boat has no such sensor."""
+
+    t: float  # [s] since the start
+    psi: float  # [rad] heading, compass (magnetometer)
+    r: float  # [rad/s] yaw rate, gyro
+    ax: float  # [m/s^2] forward acceleration of the CG
+    ay: float  # [m/s^2] acceleration to starboard
+    u: float  # [m/s] surge velocity
+    v: float  # [m/s] sway velocity
+    x: float  # [m] position in start axes
+    y: float  # [m]
+
+
+class Estimate(NamedTuple):
+    """An adaptive estimate and the bounds that hold it, for the log."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass
+class Controller(Checked):
+    """Base of controllers: `reset` before a run, then `step` once every `period` seconds."""
+
+    words: ClassVar[str] = ""  # one line for `boatsim list`
+    commands: ClassVar[tuple[str, ...]] = ()  # names of the command channels it sets
+
+    period: float = param(0.08, low=0.001, high=10.0, unit="s", words="time between two control steps")
+
+    def reset(self) -> None:
+        """Forget everything; called before each run."""
+
+    def initial_commands(self) -> dict[str, float]:
+        """Commands in force before the first step (servos may be parked at an angle); missing ones are zero."""
+        return {}
+
+    def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
+        """Commands for the next period, name of channel -> value."""
+        raise NotImplementedError
+
+    def estimates(self) -> dict[str, Estimate]:
+        """Adaptive estimates with their bounds, and the reference model's states where there is one, for the log."""
+        return {}
+
+
+def clip(value: float, low: float, high: float) -> float:
+    """Nearest value inside [low, high]."""
+    return low if value < low else high if value > high else value
+
+
+def wrap(angle: float) -> float:
+    """The same direction inside [-pi, pi)."""
+    return (angle + pi) % (2.0 * pi) - pi
+
+
+@dataclass
+class LowPass:
+    """First-order low-pass wc/(s + wc), exact for an input held over each step."""
+
+    cutoff: float  # [rad/s]
+    state: float = 0.0
+
+    def step(self, value: float, dt: float) -> float:
+        """Feed one value held for dt [s]; returns the output at the end of it."""
+        self.state += (1.0 - exp(-self.cutoff * dt)) * (value - self.state)
+        return self.state

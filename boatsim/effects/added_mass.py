@@ -1,0 +1,44 @@
+"""Added mass: the water a hull sets in motion when it accelerates."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.base import Force, Inertia, Mass, Wrench, param
+
+
+@njit(inline="always")
+def inertia(q: Any) -> Mass:
+    """Sway mass acts at its own centre, so it couples into yaw."""
+    return Mass(q.surge, q.sway, q.sway * q.sway_at, q.yaw + q.sway * q.sway_at * q.sway_at, 0.0, q.roll, 0.0)
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    """Coriolis force -C_A(nu_r) nu_r of the added mass, Munk moment included (Fossen 2021, eq. 6.42)."""
+    b = q.sway * q.sway_at
+    along = q.surge * m.ur  # [kg m/s] added momentum in surge
+    across = q.sway * m.vr + b * m.r
+    return Wrench(
+        q.coriolis * across * m.r, -q.coriolis * along * m.r, 0.0, q.coriolis * (across * -m.ur + along * m.vr)
+    )
+
+
+@dataclass(frozen=True)
+class AddedMass(Inertia, Force):
+    """Inertia of the surrounding water about the origin of motion, and its Coriolis force."""
+
+    words: ClassVar[str] = "the water that moves with the hull adds inertia"
+    shown_by: ClassVar[str] = "sharp starts and stops in sway and yaw"
+    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.3"
+    moves_with: ClassVar[str] = "water"
+    inertia: ClassVar = inertia
+    law: ClassVar = law
+
+    surge: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-X_udot")
+    sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-Y_vdot")
+    sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead")
+    yaw: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="-N_rdot about the point where sway acts")
+    roll: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot")
+    coriolis: float = param(1.0, low=0.0, high=1.0, unit="", words="share of the Coriolis force that is modelled")

@@ -1,0 +1,24 @@
+"""The error family: everything a user can get wrong ends in one clear line and exit code 2."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class BoatsimError(Exception):
+    """Base of all errors raised on purpose by boatsim; the command line prints its message as one line."""
+
+
+class BadInput(BoatsimError):
+    """Something a user wrote (a file, a key, a value, a name) can not be used; the message says what would be right."""
+
+
+class BadPhysics(BoatsimError):
+    """A model that can not be stepped: a mass matrix that is not positive definite, a state that is not finite."""
+
+
+def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:
+    """Line for a name that does not exist: the nearest valid one, then all of them."""
+    names = sorted(allowed)
+    near = get_close_matches(found, names, n=1, cutoff=0.5)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    return f"{what} {found!r} does not exist{hint} (there are: {', '.join(names) or 'none'})"

@@ -1,0 +1,58 @@
+"""Reads vessel and scenario files: TOML checked against a pydantic model, each mistake reported as one clear line."""
+
+import tomllib
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from boatsim.errors import BadInput, unknown_name
+
+
+class Table(BaseModel):
+    """A table of a file: unknown keys are refused, numbers must be finite."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+T = TypeVar("T", bound=Table)
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Raw content; raises BadInput with the parser's own line and column."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise BadInput(f"{path}: no such file") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, IsADirectoryError, PermissionError) as error:
+        raise BadInput(f"{path.name}: not a TOML file ({error})".replace("\n", " ")) from None
+
+
+def checked(model: type[T], data: dict[str, Any], file: str) -> T:
+    """`data` as `model`; raises BadInput naming file, key, value found, what is allowed and the nearest valid key."""
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise BadInput(f"{file}: {_line(model, error)}") from None
+
+
+def _line(model: type[BaseModel], error: ValidationError) -> str:
+    """First mistake of a validation in words."""
+    first = error.errors()[0]
+    place = ".".join(str(p) for p in first["loc"])
+    if first["type"] == "extra_forbidden":
+        table = ".".join(str(p) for p in first["loc"][:-1])
+        return unknown_name(f"key{f' in [{table}]' if table else ''}", str(first["loc"][-1]), _keys(model, first["loc"]))
+    if first["type"] == "missing":
+        return f"{place} is missing"
+    return f"{place} = {first['input']!r}; {first['msg'].removeprefix('Value error, ').lower()}"
+
+
+def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
+    """Names allowed in the table a wrong key stands in."""
+    for key in place[:-1]:
+        if not isinstance(key, str) or key not in model.model_fields:
+            continue
+        kinds = [model.model_fields[key].annotation, *getattr(model.model_fields[key].annotation, "__args__", ())]
+        model = next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), model)
+    return list(model.model_fields)

@@ -1,0 +1,32 @@
+"""What is the same for every freedom: a run of many steps under recorded commands."""
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from boatsim.base import Array
+from boatsim.kernels.laws import HELD, actuate
+from boatsim.kernels.planar import NQ, K, constants, step_in_place
+
+
+@njit(error_model="numpy", cache=True)
+def actuate_in_place(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array) -> None:
+    """One step of all channels."""
+    actuate(commands, memory, dt, p, on, act)
+
+
+@njit(error_model="numpy", cache=True)
+def rollout(
+    t0: float, y: Array, commands: Array, memory: Array, dt: float, substeps: int, body: Array, p: Array, on: Any,
+    extra: Array, out: Array,
+) -> None:  # fmt: skip
+    """Free run: row i of commands (N, C) is held for `substeps` steps of dt; states to out (N + 1, 2 NQ)."""
+    k, act = np.zeros(K), np.zeros(HELD)
+    constants(body, p, on, k)
+    out[0] = y
+    for i in range(commands.shape[0]):
+        for j in range(substeps):
+            actuate(commands[i], memory, dt, p, on, act)
+            step_in_place(t0 + (i * substeps + j) * dt, y, dt, act, p, on, k, extra)
+        out[i + 1] = y[: 2 * NQ]

@@ -1,0 +1,40 @@
+"""Signatures of what a vessel's effects compose to. `boatsim.program` replaces the import of this file by the real ones.
+
+p is the flat array of all effects' parameters, on says which optional effects act, act holds the actuators and the
+cosine and sine of those that are angles.
+"""
+
+from typing import Any
+
+from boatsim.base import Array, Wrench
+
+ACTUATORS = 0  # number of actuators
+HELD = 0  # length of act
+
+
+def sees(  # noqa: PLR0913
+    t: float, x: float, y: float, psi: float, phi: float, u: float, v: float, p: float, r: float,
+    ur: float, vr: float, c: float, s: float, act: Array,
+) -> Any:  # fmt: skip
+    """The vessel's own motion tuple."""
+    raise NotImplementedError
+
+
+def wrench(m: Any, p: Array, on: Any) -> Wrench:
+    """Sum of all force laws."""
+    raise NotImplementedError
+
+
+def flow(p: Array, on: Any) -> tuple[float, float]:
+    """Velocity of the water over the ground (north, east) [m/s]."""
+    raise NotImplementedError
+
+
+def inertias(p: Array, on: Any, water: Array, hull: Array) -> None:
+    """Add the `Mass` entries (7,) of effects that move with the water and with the hull."""
+    raise NotImplementedError
+
+
+def actuate(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array) -> None:
+    """One step of all channels: commands (those the vessel takes) to act, the mean over the step that begins now."""
+    raise NotImplementedError

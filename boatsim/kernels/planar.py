@@ -1,0 +1,134 @@
+"""Surge, sway and yaw: the equations of motion in joint coordinates, and what MuJoCo's callback adds to them.
+
+State y = (x, y, psi, x', y', psi') in earth axes, SNAME. The origin of motion is the mass centre. Constants k of one
+pass (see `constants`): rigid mass, inverse of the whole mass matrix, added mass, ballast.
+"""
+
+from math import cos, sin
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from boatsim.base import Array
+from boatsim.kernels.laws import flow, inertias, sees, wrench
+
+NQ = 3  # positions; the state has twice as many
+K = 13  # constants of a pass
+FREEDOMS = (0, 1, 3)  # of (surge, sway, roll, yaw)
+
+
+@njit(error_model="numpy", cache=True)
+def constants(body: Array, p: Array, on: Any, k: Array) -> None:
+    """Fill k (13,): mass; inverse i11 i22 i26 i66; water a11 a22 a26 a66; ballast b11 b22 b26 b66."""
+    water, hull = np.zeros(7), np.zeros(7)
+    inertias(p, on, water, hull)
+    k[0] = body[0]
+    for i in range(4):
+        k[5 + i], k[9 + i] = water[i], hull[i]
+    m22, m26, m66 = body[0] + water[1] + hull[1], water[2] + hull[2], body[2] + water[3] + hull[3]
+    determinant = m22 * m66 - m26 * m26
+    k[1] = 1.0 / (body[0] + water[0] + hull[0])
+    k[2], k[3], k[4] = m66 / determinant, -m26 / determinant, m22 / determinant
+
+
+@njit(inline="always", error_model="numpy")
+def accelerations(t: float, y: Any, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
+    """Earth-axes accelerations (x'', y'', psi''); extra is a further body force (X, Y, N)."""
+    c, s, r = cos(y[2]), sin(y[2]), y[5]
+    u, v = c * y[3] + s * y[4], c * y[4] - s * y[3]
+    north, east = flow(p, on)
+    uc, vc = c * north + s * east, c * east - s * north
+    w = wrench(sees(t, y[0], y[1], y[2], 0.0, u, v, 0.0, r, u - uc, v - vc, c, s, act), p, on)
+    # body-axes equation: the Coriolis force of water and ballast is part of their laws; a hull that turns in a uniform
+    # current sees the water accelerate by (r vc, -r uc)
+    X = w.X + extra[0] + k[0] * v * r + k[5] * r * vc
+    Y = w.Y + extra[1] - k[0] * u * r - k[6] * r * uc
+    N = w.N + extra[2] - k[7] * r * uc
+    along, across = k[1] * X - r * v, k[2] * Y + k[3] * N + r * u
+    return c * along - s * across, s * along + c * across, k[3] * Y + k[4] * N
+
+
+@njit(inline="always", error_model="numpy")
+def step(t: float, y: Any, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
+    """One Runge-Kutta step of fourth order with the actuators held; state tuple in, state tuple out."""
+    h = 0.5 * dt
+    a0, a1, a2 = accelerations(t, y, act, p, on, k, extra)
+    y2 = (y[0] + h * y[3], y[1] + h * y[4], y[2] + h * y[5], y[3] + h * a0, y[4] + h * a1, y[5] + h * a2)
+    b0, b1, b2 = accelerations(t + h, y2, act, p, on, k, extra)
+    y3 = (y[0] + h * y2[3], y[1] + h * y2[4], y[2] + h * y2[5], y[3] + h * b0, y[4] + h * b1, y[5] + h * b2)
+    c0, c1, c2 = accelerations(t + h, y3, act, p, on, k, extra)
+    y4 = (y[0] + dt * y3[3], y[1] + dt * y3[4], y[2] + dt * y3[5], y[3] + dt * c0, y[4] + dt * c1, y[5] + dt * c2)
+    d0, d1, d2 = accelerations(t + dt, y4, act, p, on, k, extra)
+    w = dt / 6.0
+    return (
+        y[0] + w * (y[3] + 2.0 * y2[3] + 2.0 * y3[3] + y4[3]),
+        y[1] + w * (y[4] + 2.0 * y2[4] + 2.0 * y3[4] + y4[4]),
+        y[2] + w * (y[5] + 2.0 * y2[5] + 2.0 * y3[5] + y4[5]),
+        y[3] + w * (a0 + 2.0 * b0 + 2.0 * c0 + d0),
+        y[4] + w * (a1 + 2.0 * b1 + 2.0 * c1 + d1),
+        y[5] + w * (a2 + 2.0 * b2 + 2.0 * c2 + d2),
+    )
+
+
+@njit(error_model="numpy", cache=True)
+def step_in_place(t: float, y: Array, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Array) -> None:
+    """`step` on arrays."""
+    z = step(t, (y[0], y[1], y[2], y[3], y[4], y[5]), dt, act, p, on, k, (extra[0], extra[1], extra[2]))
+    for i in range(6):
+        y[i] = z[i]
+
+
+@njit(error_model="numpy", cache=True)
+def steps(t: float, y: Array, dt: float, n: int, act: Array, p: Array, on: Any, k: Array) -> None:
+    """n steps with the actuators held, in place."""
+    z = (y[0], y[1], y[2], y[3], y[4], y[5])
+    for i in range(n):
+        z = step(t + i * dt, z, dt, act, p, on, k, (0.0, 0.0, 0.0))
+    for i in range(6):
+        y[i] = z[i]
+
+
+@njit(error_model="numpy", cache=True)
+def forces(t: float, y: Array, act: Array, p: Array, on: Any) -> tuple[float, float, float]:
+    """Body-axes wrench (X, Y, N) of all laws at a state."""
+    c, s = cos(y[2]), sin(y[2])
+    u, v = c * y[3] + s * y[4], c * y[4] - s * y[3]
+    north, east = flow(p, on)
+    uc, vc = c * north + s * east, c * east - s * north
+    w = wrench(sees(t, y[0], y[1], y[2], 0.0, u, v, 0.0, y[5], u - uc, v - vc, c, s, act), p, on)
+    return w.X, w.Y, w.N
+
+
+@njit(inline="always", error_model="numpy")
+def slopes(t: float, y: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array) -> None:
+    """Accelerations on arrays, for linearisation."""
+    z = (y[0], y[1], y[2], y[3], y[4], y[5])
+    out[0], out[1], out[2] = accelerations(t, z, act, p, on, k, (extra[0], extra[1], extra[2]))
+
+
+@njit(inline="always", error_model="numpy")
+def add_to_mujoco(t: float, q: Array, qd: Array, act: Array, p: Array, k: Array, f: Array, M: Array) -> None:
+    """Add the passive force (3,) and the lower triangle (6,) of J' M J, MuJoCo's z-up joint coordinates.
+
+    z up means y, psi and their rates change sign on the way in, sway force and yaw moment on the way out. This is the
+    only place where the two conventions meet while stepping; `boatsim.engine` translates poses for people and files.
+    """
+    on = ()
+    c, s, r = cos(-q[2]), sin(-q[2]), -qd[2]
+    u, v = c * qd[0] - s * qd[1], -c * qd[1] - s * qd[0]
+    north, east = flow(p, on)
+    ur, vr = u - (c * north + s * east), v - (c * east - s * north)
+    w = wrench(sees(t, q[0], -q[1], -q[2], 0.0, u, v, 0.0, r, ur, vr, c, s, act), p, on)
+    X = w.X - r * (k[5] * vr + k[9] * v)  # - M (J' q'' without its q'' part)
+    Y = w.Y + r * (k[6] * ur + k[10] * u)
+    f[0] += c * X - s * Y
+    f[1] -= s * X + c * Y
+    f[2] -= w.N + r * (k[7] * ur + k[11] * u)
+    a11, a22, a26 = k[5] + k[9], k[6] + k[10], k[7] + k[11]
+    M[0] += c * c * a11 + s * s * a22
+    M[1] -= c * s * (a11 - a22)
+    M[2] += s * s * a11 + c * c * a22
+    M[3] += s * a26
+    M[4] += c * a26
+    M[5] += k[8] + k[12]

@@ -1,0 +1,247 @@
+"""Composes a vessel's effects into one compiled program that engine, twin and diagnosis share.
+
+The composition is written out as Python source: the vessel's laws unrolled over its flat parameter array, then the
+kernels of its freedoms. The file lies in the user's cache folder under a name made from its content and from the
+content of every law in it, so that numba's cache can never return the number of a law edited since.
+"""
+
+import hashlib
+import os
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from inspect import getsourcefile
+from pathlib import Path
+from types import ModuleType
+
+import numba
+import numpy as np
+
+from boatsim.base import Array, Channel, Effect, Flow, Force, Inertia, angle_fields
+from boatsim.content import module_at
+from boatsim.errors import BadInput
+from boatsim.recording import replacing
+from boatsim.vessel import Vessel
+
+KERNELS = Path(__file__).parent / "kernels"
+
+
+@dataclass(frozen=True)
+class Program:
+    """The effects of a vessel, some of them optional, as compiled functions over one flat parameter array.
+
+    `module` offers `constants, step_in_place, steps, forces, actuate_in_place, rollout` and, for the diagnosis, the
+    filter; see `boatsim/kernels/`.
+    """
+
+    vessel: Vessel
+    suspects: tuple[Effect, ...] = ()  # act only where `on` says so
+    effects: tuple[Effect, ...] = field(init=False)
+    offsets: tuple[int, ...] = field(init=False)  # where each effect's parameters start
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "effects", (*self.vessel.effects, *self.suspects))
+        sizes = [len(type(e).params()) for e in self.effects]
+        object.__setattr__(self, "offsets", tuple(int(n) for n in np.cumsum([0, *sizes])[:-1]))
+
+    def values(self) -> Array:
+        """Parameters of all effects, flat."""
+        return np.array([v for e in self.effects for v in e.values()], dtype=float)
+
+    def switches(self, active: Sequence[str] = ()) -> Array:
+        """`on` with the named suspects acting."""
+        own = len(self.vessel.effects)
+        return np.array([i < own or e.name() in active for i, e in enumerate(self.effects)], dtype=np.float64)
+
+    def index(self, effect: str, parameter: str) -> int:
+        """Position of one parameter in the flat array."""
+        i = next(i for i, e in enumerate(self.effects) if e.name() == effect)
+        return self.offsets[i] + list(type(self.effects[i]).params()).index(parameter)
+
+    @cached_property
+    def body(self) -> Array:
+        """Rigid mass [kg], roll and yaw inertia [kg m^2]."""
+        b = self.vessel.body
+        return np.array([b.mass, b.roll_inertia, b.yaw_inertia])
+
+    @cached_property
+    def memory_size(self) -> int:
+        """Floats that all channels together remember."""
+        return sum(type(e).slots * len(self.targets(e)) for e in self.effects if isinstance(e, Channel)) or 1
+
+    def targets(self, effect: Channel) -> list[str]:
+        """Actuators a channel effect acts on."""
+        return [a for a in self.vessel.actuators if self.vessel.commands[a].family == type(effect).acts_on]
+
+    def command_array(self, commands: Mapping[str, float]) -> Array:
+        """(C,) in the vessel's order; commands not given are zero. Raises BadInput for a name it does not take."""
+        unknown = [n for n in commands if n not in self.vessel.commands]
+        if unknown:
+            raise BadInput(self.vessel.no_command(unknown[0]))
+        return np.array([commands.get(n, 0.0) for n in self.vessel.commands], dtype=float)
+
+    @cached_property
+    def module(self) -> ModuleType:
+        """The compiled program, from the cache if the same one was composed before."""
+        source = _source(self)
+        folder = _cache_folder()
+        stamp = _stamp(self, source)
+        path = folder / f"{self.vessel.name}_{stamp}.py"
+        if not path.exists():
+            with replacing(path) as temporary:
+                temporary.write_text(source)
+        return module_at(path, f"boatsim_program_{stamp}")
+
+
+def _cache_folder() -> Path:
+    """~/.cache/boatsim, or a folder of the user's own under the temporary one where home is not writable."""
+    wanted = Path(os.environ.get("BOATSIM_CACHE") or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")) / "boatsim")
+    for folder in (wanted.expanduser(), Path(tempfile.gettempdir()) / f"boatsim-{os.getuid()}"):
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if os.access(folder, os.W_OK):
+                return folder
+        except OSError:
+            continue
+    raise BadInput(f"{wanted}: no folder to keep compiled programs in; set BOATSIM_CACHE to one that can be written")
+
+
+def _stamp(program: Program, source: str) -> str:
+    """Name of a composition: its source, the source of every law in it, and what compiles it."""
+    files = {getsourcefile(type(e)) for e in program.effects}
+    files |= {str(p) for p in [*(Path(__file__).parent / "effects").glob("*.py"), Path(__file__).parent / "base.py"]}
+    digest = hashlib.sha256(source.encode())
+    for name in sorted(f for f in files if f):
+        digest.update(Path(name).read_bytes())
+    digest.update(f"{numba.__version__} {sys.version}".encode())
+    return digest.hexdigest()[:16]
+
+
+def _kernel(name: str) -> str:
+    """Source of a kernel without its imports of other kernels, whose text stands above it."""
+    lines = (KERNELS / f"{name}.py").read_text().splitlines(keepends=True)
+    return "".join(line for line in lines if not line.startswith("from boatsim.kernels"))
+
+
+def _source(program: Program) -> str:
+    """The whole program as Python source."""
+    planar = "yaw" in program.vessel.freedoms
+    if planar and "roll" in program.vessel.freedoms:
+        raise BadInput(f"{program.vessel.name}: freedoms surge, sway, yaw or roll alone; roll with them is not there yet")
+    kernel = "planar" if planar else "roll"
+    return "\n\n".join([_composition(program), _kernel(kernel), _kernel("common"), _kernel("filter"), _kernel("callback")])
+
+
+def _call(i: int, effect: Effect, offset: int) -> str:
+    """`V3(p[7], p[8])`: an effect's parameters as its law receives them."""
+    return f"V{i}({', '.join(f'p[{offset + j}]' for j in range(len(type(effect).params())))})"
+
+
+def _guarded(program: Program, i: int, lines: list[str]) -> list[str]:
+    """Indented lines, behind the switch of an effect that is optional."""
+    if i < len(program.vessel.effects):
+        return [f"    {line}" for line in lines]
+    return [f"    if on[{i}] != 0.0:", *(f"        {line}" for line in lines)]
+
+
+def _composition(program: Program) -> str:
+    """The vessel's own `sees, wrench, flow, inertias, actuate`."""
+    actuators = program.vessel.actuators
+    angles = angle_fields(actuators)
+    held = [f"act[{i}]" for i in range(len(actuators) + len(angles))]
+    head = [
+        f'"""Effects of {program.vessel.name}, composed by boatsim.program; not meant to be edited."""',
+        "from math import cos, sin",
+        "import numpy as np",
+        "from numba import njit",
+        "from boatsim.base import Wrench, motion_type",
+        "from boatsim.program import classes_of",
+        f"E = classes_of({[_address(e) for e in program.effects]!r})",
+        f"Seen = motion_type({actuators!r})",
+        f"ACTUATORS, HELD = {len(actuators)}, {max(len(held), 1)}",
+    ]
+    wrench = ["    X = Y = K = N = 0.0"]
+    flow = ["    north = east = 0.0"]
+    inertias = ["    pass"]
+    for i, (effect, offset) in enumerate(zip(program.effects, program.offsets, strict=True)):
+        head.append(f"V{i} = E[{i}].values_type()")
+        if isinstance(effect, Force):
+            head.append(f"law{i} = E[{i}].law")
+            lines = [f"w = law{i}(m, {_call(i, effect, offset)})", "X += w.X; Y += w.Y; K += w.K; N += w.N"]
+            wrench += _guarded(program, i, lines)
+        if isinstance(effect, Flow):
+            head.append(f"flow{i} = E[{i}].flow")
+            flow += _guarded(program, i, [f"a, b = flow{i}({_call(i, effect, offset)})", "north += a; east += b"])
+        if isinstance(effect, Inertia):
+            head.append(f"inertia{i} = E[{i}].inertia")
+            into = type(effect).moves_with
+            lines = [f"g = inertia{i}({_call(i, effect, offset)})", f"for j in range(7): {into}[j] += g[j]"]
+            inertias += _guarded(program, i, lines)
+        if isinstance(effect, Channel):
+            head.append(f"channel{i} = E[{i}].channel")
+    return "\n".join(
+        [
+            *head,
+            "",
+            '@njit(inline="always")',
+            "def sees(t, x, y, psi, phi, u, v, p, r, ur, vr, c, s, act):",
+            f"    return Seen({', '.join(['t, x, y, psi, phi, u, v, p, r, ur, vr, c, s', *held])})",
+            "",
+            '@njit(inline="always", error_model="numpy")',
+            "def wrench(m, p, on):",
+            *wrench,
+            "    return Wrench(X, Y, K, N)",
+            "",
+            '@njit(inline="always")',
+            "def flow(p, on):",
+            *flow,
+            "    return north, east",
+            "",
+            '@njit(inline="always")',
+            "def inertias(p, on, water, hull):",
+            *inertias,
+            "",
+            '@njit(inline="always", error_model="numpy")',
+            "def actuate(commands, memory, dt, p, on, act):",
+            *_actuate(program),
+        ]
+    )
+
+
+def _actuate(program: Program) -> list[str]:
+    """Body of `actuate`: every actuator through its channels in the vessel's order, then cosines and sines."""
+    lines, at = ["    pass"], 0
+    order = list(program.vessel.commands)
+    for k, name in enumerate(program.vessel.actuators):
+        command = program.vessel.commands[name]
+        lines.append(f"    x = commands[{order.index(name)}]")
+        for i, effect in enumerate(program.effects):
+            if not isinstance(effect, Channel) or name not in program.targets(effect):
+                continue
+            kind = type(effect)
+            other = program.vessel.beside(name, kind.source_family) if kind.source_family else None
+            source = f"commands[{order.index(other)}]" if other else "0.0"
+            call = _call(i, effect, program.offsets[i])
+            lines += _guarded(program, i, [f"x = channel{i}(x, {command.side}, {source}, memory, {at}, dt, {call})"])
+            at += kind.slots
+        lines.append(f"    act[{k}] = x")
+    for k, name in enumerate(angle_fields(program.vessel.actuators)):
+        part, angle = name.split("_", 1)
+        source = program.vessel.actuators.index(angle)
+        lines.append(f"    act[{len(program.vessel.actuators) + k}] = {part}(act[{source}])")
+    return lines
+
+
+def _address(effect: Effect) -> str:
+    """Name of a shelf effect, path of a user's own."""
+    own = type(effect).__module__.startswith("boatsim.effects.")
+    return effect.name() if own else str(getsourcefile(type(effect)))
+
+
+def classes_of(addresses: Sequence[str]) -> list[type[Effect]]:
+    """Effect classes of a composed program, for the program's own use."""
+    from boatsim.content import load_class
+
+    return [load_class("effect", a) for a in addresses]

@@ -1,0 +1,176 @@
+"""What a `recording.toml` says about the recordings in its folder: vessel, loads, columns, noise, facts."""
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from boatsim.errors import BadInput, unknown_name
+
+NOISE = ("position_sd_m", "heading_sd_rad", "yaw_rate_sd_radps", "roll_sd_rad", "roll_rate_sd_radps")
+AMBIENT = ("axes", "force_rms", "time_constant_s")
+FREEDOMS = ("surge", "sway", "roll", "yaw")
+TABLES = ("columns", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
+KEYS = ("vessel", "load", "scale", "use", *TABLES, "runs")
+HUGE = 1e300  # larger integers do not fit a float
+# endings that say the unit of a column or key, longest first so that `_mps2` is not taken for `_s`
+UNITS = {
+    "Nspm": "N s/m", "radps2": "rad/s^2", "radps": "rad/s", "mps2": "m/s^2", "mps": "m/s", "deg": "deg", "rad": "rad",
+    "rpm": "1/min", "rps": "1/s", "kgm2": "kg m^2", "kg": "kg", "Nm": "N m", "Hz": "Hz", "us": "us", "m2": "m^2",
+    "N": "N", "V": "V", "A": "A", "W": "W", "m": "m", "s": "s",
+}  # fmt: skip
+
+
+def unit_of(name: str) -> str:
+    """Unit a column's or key's ending stands for: `r_radps` -> "rad/s"; "" where the name has no unit."""
+    for bound in ("_low", "_high"):  # of an adaptive estimate: the bound has the estimate's unit
+        name = name.removesuffix(bound)
+    _, separator, ending = name.rpartition("_")
+    return UNITS.get(ending, "") if separator else ""
+
+
+@dataclass(frozen=True)
+class Notes:
+    """What is known about a recording besides its columns; empty where nobody wrote a `recording.toml`."""
+
+    vessel: str | None = None
+    load: tuple[str, ...] = ()
+    settings: dict[str, dict[str, float]] = field(default_factory=dict)  # [set.<effect>]: the vessel's own, this run
+    use: tuple[float, float] | None = None  # [s] the part of the recording that counts
+    scale: float | None = None  # full scale length / model length
+    noise: dict[str, float] = field(default_factory=dict)  # names in NOISE, one standard deviation
+    ambient: dict[str, Any] = field(default_factory=dict)  # axes, force_rms per axis, time_constant_s
+    coefficient_uncertainty: dict[str, float] = field(default_factory=dict)  # relative, one standard deviation
+    facts: dict[str, Any] = field(default_factory=dict)  # forward_speed_mps, walls, fan position, free text
+
+
+@dataclass(frozen=True)
+class NotesFile:
+    """A `recording.toml` as it applies to one run: the notes, the names of columns, and what was not understood."""
+
+    notes: Notes = field(default_factory=Notes)
+    columns: dict[str, str] = field(default_factory=dict)  # our name -> their column, "-" in front flips the sign
+    remarks: tuple[str, ...] = ()
+
+
+def notes_for(recording: Path) -> NotesFile:
+    """Notes of one recording from the `recording.toml` in its folder or the nearest folder above."""
+    for folder in recording.resolve().parents:
+        file = folder / "recording.toml"
+        if file.is_file():
+            return _parse(file, recording.stem)
+    return NotesFile()
+
+
+def _parse(file: Path, stem: str) -> NotesFile:
+    try:
+        table = tomllib.loads(file.read_bytes().decode("utf-8-sig"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError, RecursionError) as error:
+        raise BadInput(f"{file}: can not be read as TOML ({' '.join(str(error).split())})") from error
+    runs = _Reader(file, table).table("runs")
+    merged = _merge({k: v for k, v in table.items() if k != "runs"}, _Reader(file, runs, "runs.").table(stem))
+    return _Reader(file, merged).notes()
+
+
+def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """A run's own entries over those of all runs, table by table."""
+    both = {k for k in base.keys() & over.keys() if isinstance(base[k], dict) and isinstance(over[k], dict)}
+    return {**base, **over, **{k: _merge(base[k], over[k]) for k in both}}
+
+
+class _Reader:
+    """Checked look-ups in one table; each refusal is a line with file, key, value found and what is allowed."""
+
+    def __init__(self, file: Path, table: Mapping[str, Any], prefix: str = "") -> None:
+        self.file, self.content, self.prefix = file, table, prefix
+
+    def bad(self, key: str, allowed: str) -> BadInput:
+        found = " ".join(repr(self.content[key])[:60].split())
+        return BadInput(f"{self.file}: {self.prefix}{key} = {found}; allowed is {allowed}")
+
+    def table(self, key: str) -> dict[str, Any]:
+        value = self.content.get(key, {})
+        if not isinstance(value, dict):
+            raise self.bad(key, "a table")
+        return value
+
+    def inner(self, key: str) -> "_Reader":
+        return _Reader(self.file, self.table(key), f"{self.prefix}{key}.")
+
+    def text(self, key: str) -> str | None:
+        value = self.content.get(key)
+        if value is not None and not (isinstance(value, str) and value):
+            raise self.bad(key, "a text in quotation marks")
+        return value
+
+    def texts(self, key: str) -> tuple[str, ...]:
+        value = self.content.get(key, [])
+        found = [value] if isinstance(value, str) else value
+        if not isinstance(found, list) or not all(isinstance(text, str) for text in found):
+            raise self.bad(key, "a text or a list of texts")
+        return tuple(found)
+
+    def number(self, key: str, *, low: float = -math.inf) -> float:
+        value = self.content[key]
+        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= HUGE:
+            raise self.bad(key, "a number" if low < 0 else f"a number of at least {low:g}")
+        return float(value)
+
+    def numbers(self, *, low: float = -math.inf) -> dict[str, float]:
+        return {key: self.number(key, low=low) for key in self.content}
+
+    def use(self) -> tuple[float, float] | None:
+        if "use" not in self.content:
+            return None
+        ends = self.content["use"]
+        numeric = isinstance(ends, list) and [type(end) in (int, float) for end in ends] == [True, True]
+        if not numeric or not ends[0] < ends[1]:
+            raise self.bad("use", "[from_s, to_s], two numbers of which the second is larger")
+        return float(ends[0]), float(ends[1])
+
+    def columns(self) -> dict[str, str]:
+        inner = self.inner("columns")
+        return {name: column for name in inner.content if (column := inner.text(name)) is not None}
+
+    def ambient(self) -> dict[str, Any]:
+        inner = self.inner("ambient")
+        axes = inner.texts("axes")
+        for axis in axes:
+            if axis not in FREEDOMS:
+                raise BadInput(f"{self.file}: {unknown_name('ambient.axes: axis', axis, FREEDOMS)}")
+        if "time_constant_s" in inner.content:
+            inner.number("time_constant_s", low=0.0)
+        rms = inner.content.get("force_rms", [])
+        each = dict(enumerate(rms)) if isinstance(rms, list) else rms if isinstance(rms, dict) else {0: rms}
+        for value in each.values():
+            if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= HUGE:
+                raise inner.bad("force_rms", "a number of at least 0 for each axis")
+        return inner.content  # type: ignore[return-value]
+
+    def notes(self) -> NotesFile:
+        settings = self.inner("set")
+        known = [key for key in self.content if key in KEYS]
+        # a key that carries a unit, such as a run's own `forward_speed_mps`, is a fact about the run
+        facts = {key: self.content[key] for key in self.content if key not in KEYS and unit_of(key)}
+        notes = Notes(
+            vessel=self.text("vessel"),
+            load=self.texts("load"),
+            settings={effect: settings.inner(effect).numbers() for effect in settings.content},
+            use=self.use(),
+            scale=self.number("scale", low=1e-9) if "scale" in self.content else None,
+            noise={k: v for k, v in self.inner("noise").numbers(low=0.0).items() if k in NOISE},
+            ambient={k: v for k, v in self.ambient().items() if k in AMBIENT},
+            coefficient_uncertainty=self.inner("coefficient_uncertainty").numbers(low=0.0),
+            facts={**facts, **self.table("facts")},
+        )
+        strange = [self.strange(key, KEYS) for key in self.content if key not in known and key not in facts]
+        for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):
+            strange += [self.strange(f"{table}.{k}", allowed) for k in self.table(table) if k not in allowed]
+        return NotesFile(notes, self.columns(), (f"{self.file}: not used: {', '.join(strange)}",) if strange else ())
+
+    def strange(self, key: str, allowed: tuple[str, ...]) -> str:
+        near = get_close_matches(key.rpartition(".")[2], allowed, n=1, cutoff=0.5)
+        return f"{key} (did you mean {near[0]}?)" if near else key

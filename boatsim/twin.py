@@ -1,0 +1,89 @@
+"""The same laws without MuJoCo: integrates the same joint coordinates with the same Runge-Kutta method, in compiled code.
+
+For fits, replays and large batches; must agree with `boatsim.engine` to rounding.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from boatsim.base import Array
+from boatsim.errors import BadInput
+from boatsim.program import Program
+from boatsim.vessel import Vessel
+
+POSE = {"planar": ("x_m", "y_m", "psi_rad"), "roll": ("phi_rad",)}
+RATES = {"planar": ("u_mps", "v_mps", "r_radps"), "roll": ("p_radps",)}
+
+
+def kind(vessel: Vessel) -> str:
+    """"planar" or "roll": which kernel a vessel's freedoms need."""
+    return "planar" if "yaw" in vessel.freedoms else "roll"
+
+
+def body_rates(y: Array) -> Array:
+    """States (..., 6) of planar kernels with earth-axes velocities, as (..., 6) with u, v, r."""
+    out = np.array(y, dtype=float)
+    c, s = np.cos(y[..., 2]), np.sin(y[..., 2])
+    out[..., 3] = c * y[..., 3] + s * y[..., 4]
+    out[..., 4] = c * y[..., 4] - s * y[..., 3]
+    return out
+
+
+def earth_rates(y: Array) -> Array:
+    """The inverse of `body_rates`."""
+    out = np.array(y, dtype=float)
+    c, s = np.cos(y[..., 2]), np.sin(y[..., 2])
+    out[..., 3] = c * y[..., 3] - s * y[..., 4]
+    out[..., 4] = s * y[..., 3] + c * y[..., 4]
+    return out
+
+
+class Twin:
+    """One vessel without walls. States are (x, y, psi, u, v, r) [m, rad, m/s, rad/s] or (phi, p), SNAME."""
+
+    def __init__(self, vessel: Vessel, step: float = 0.02) -> None:
+        """`step` is the integration step in s."""
+        self.vessel, self.step = vessel, step
+        self.program = Program(vessel)
+        self.code = self.program.module
+        self._values, self._on = self.program.values(), self.program.switches()
+        self._none = np.zeros(3)
+
+    def rollout(
+        self, start: Sequence[float], commands: Array, interval: float, values: Array | None = None, t0: float = 0.0
+    ) -> Array:
+        """Free run: row i of commands (N, C), in the vessel's order, is held for `interval` s; states (N + 1, 6 or 2).
+
+        Actuators start settled at the first row. Raises BadInput unless the step divides the interval.
+        """
+        substeps = round(interval / self.step)
+        if substeps < 1 or abs(substeps * self.step - interval) > 1e-9 * interval:
+            raise BadInput(f"step {self.step:g} s does not divide the interval {interval:g} s")
+        p = self._values if values is None else values
+        memory, act = np.zeros(self.program.memory_size), np.zeros(self.code.HELD)
+        commands = np.ascontiguousarray(commands, dtype=float)
+        for _ in range(3):
+            self.code.actuate_in_place(commands[0], memory, 1e4, p, self._on, act)
+        planar = self.code.NQ == 3
+        y = np.array(start, dtype=float)
+        out = np.empty((len(commands) + 1, len(y)))
+        self.code.rollout(
+            t0, earth_rates(y) if planar else y, commands, memory, self.step, substeps, self.program.body, p, self._on,
+            self._none, out,
+        )  # fmt: skip
+        return body_rates(out) if planar else out
+
+    def coast(self, start: Sequence[float], commands: Mapping[str, float], steps: int) -> Array:
+        """State after many steps with constant commands and settled actuators: what benchmarks measure."""
+        act, k = np.zeros(self.code.HELD), np.zeros(self.code.K)
+        memory = np.zeros(self.program.memory_size)
+        for _ in range(3):
+            self.code.actuate_in_place(
+                self.program.command_array(commands), memory, 1e4, self._values, self._on, act
+            )
+        self.code.constants(self.program.body, self._values, self._on, k)
+        y = np.array(start, dtype=float)
+        y = earth_rates(y) if self.code.NQ == 3 else y
+        self.code.steps(0.0, y, self.step, steps, act, self._values, self._on, k)
+        return body_rates(y) if self.code.NQ == 3 else y
