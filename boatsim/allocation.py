@@ -22,6 +22,7 @@ PWM_MAX = 255  # eight bits
 ANGLE_MAX = radians(45.0)  # [rad] inward range of the steering (thesis, Fig. 8)
 HOLD_SHARE = 0.45  # surge correction over differential thrust while the motors give sway (bayless.md section 9)
 TURN_SHARE = 0.8  # the same while they only turn the boat
+SURGE_RESERVE = 0.3  # part of that share which a turn at the motors' limits leaves to surge, or the boat drifts ahead
 
 
 class Stick(NamedTuple):
@@ -148,9 +149,11 @@ class Outboards(Checked):
         return clip(self.neutral_angle() - asin(clip(sine, -1.0, 1.0)), 0.0, ANGLE_MAX), spread
 
     def _powered(self, total: float, spread: float, bound: float, angle: float) -> Drive:
-        """Both thrusts from S and D; S yields where it or a motor would exceed its bound."""
+        """Both thrusts from S and D; where a motor would exceed its bound S yields, all but its reserve, then D."""
         ahead, astern = self.thrust(PWM_MAX), -self.thrust(-PWM_MAX)
         total = clip(total, -bound, bound)
+        kept = clip(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
+        spread = copysign(min(abs(spread), 2.0 * astern + kept, 2.0 * ahead - kept), spread)
         total = clip(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
         return Drive(0.5 * (total + spread), 0.5 * (total - spread), angle)
 

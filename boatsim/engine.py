@@ -131,12 +131,21 @@ class Engine:
     @property
     def actuators(self) -> dict[str, float]:
         """Mean of each actuator over the last step."""
-        return {n: float(a) for n, a in zip(self.vessel.actuators, self._act, strict=False)}
+        return dict(zip(self.vessel.actuators, self._act.tolist(), strict=False))
 
     @property
     def contacts(self) -> int:
         """How many contacts the hull has now."""
         return int(self.data.ncon)
+
+    def wrench(self) -> tuple[float, float, float, float]:
+        """Sum of all force laws (X, Y, K, N) in body axes at the present state [N, N m]."""
+        s = self.state
+        planar = self.code.NQ == 3
+        c, n = np.cos(s.psi), np.sin(s.psi)
+        y = np.array([s.x, s.y, s.psi, c * s.u - n * s.v, n * s.u + c * s.v, s.r] if planar else [s.phi, s.p])
+        w = self.code.forces(s.t, y, self._act, self._values, self._on)
+        return (w[0], w[1], 0.0, w[2]) if planar else (0.0, 0.0, w[0], 0.0)
 
     def acceleration(self) -> tuple[float, float]:
         """Acceleration of the CG over ground along body x and y [m/s^2], as an accelerometer there feels it."""

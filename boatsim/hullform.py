@@ -29,8 +29,8 @@ class DeepV:
     freeboard: float = 0.075  # [m] amidships, by eye; the remaining numbers shape what the particulars leave open
     stem_height: float = 0.125  # [m] tip of the bow above the waterline
     chine_beam: float = 0.25  # [m]
-    rocker: float = 0.03  # [m] rise of the keel from amidships to the transom
-    fullness: float = 2.2  # [-] exponent of the keel's rise to the stem; with rocker: displaces 4.6 kg, about the CG
+    rocker: float = 0.037  # [m] rise of the keel from amidships to the transom
+    fullness: float = 2.4  # [-] exponent of the keel's rise to the stem; with rocker: displaces 4.6 kg, about the CG
     chine_end: float = 0.95  # [-] where the chine runs into the stem
 
     def ahead(self, s: Array) -> Array:
@@ -68,7 +68,7 @@ class Mesh:
     faces: list[tuple[int, int, int]] = field(default_factory=list)
 
     def add(self, grid: Array, *, flip: bool = False) -> None:
-        """Add a surface through a (rows, columns, 3) grid of points, seen from outside with rows right of columns."""
+        """Add a surface through a (rows, columns, 3) grid of points, seen from outside: rows run right, columns up (else `flip`)."""
         rows, columns, _ = grid.shape
         start = sum(len(p) for p in self.points)
         self.points.append(grid.reshape(-1, 3))
@@ -76,7 +76,7 @@ class Mesh:
             for j in range(columns - 1):
                 a, b = start + i * columns + j, start + (i + 1) * columns + j
                 for corners in ((a, b, b + 1), (a, b + 1, a + 1)):
-                    self.faces.append(corners[::-1] if flip else corners)
+                    self.faces.append(corners if flip else corners[::-1])
 
     def both_sides(self, grid: Array) -> None:
         """Add a surface of the port side (y > 0) and its mirror image."""

@@ -148,9 +148,10 @@ def _shape(model: Any, geom: int) -> tuple[Array, Triangles] | None:
 
 
 def _lathe(profile: list[tuple[float, float]], around: int = 32, start: float = 0.0) -> tuple[Array, Triangles]:
-    """Surface of revolution about z of a profile of (radius, z); each strip has its own vertices, so edges stay sharp."""
+    """Surface of revolution about z of a profile of (radius, z), every strip with vertices of its own."""
     angles = start + np.linspace(0.0, 2.0 * np.pi, around, endpoint=False)
-    vertices, triangles = [], []
+    vertices: list[Array] = []
+    triangles: list[NDArray[np.int64]] = []
     for (r0, z0), (r1, z1) in zip(profile[:-1], profile[1:], strict=True):
         base = 2 * around * len(triangles)
         for r, z in ((r0, z0), (r1, z1)):

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -11,9 +11,7 @@ import numpy as np
 from boatsim.base import Array
 from boatsim.content import root
 from boatsim.errors import BadInput, BadPhysics
-
-if TYPE_CHECKING:
-    from boatsim.vessel import Vessel
+from boatsim.vessel import Vessel
 
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
@@ -45,7 +43,7 @@ class Tank:
 
 
 def build(
-    vessel: "Vessel",
+    vessel: Vessel,
     tank: Tank | None = None,
     step: float = 0.02,
     userdata: int = 0,
@@ -79,7 +77,7 @@ def build(
     return model
 
 
-def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: "Vessel") -> None:
+def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
     """Give water, walls, fan and cameras the size and place of the tank."""
     a, b, d = tank.length / 2, tank.width / 2, tank.depth
     middle, high = (RIM - d) / 2, (RIM + d) / 2  # walls stand on the floor and rise above the water
@@ -108,17 +106,16 @@ def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: "Vessel") -> None:
     aim_cameras(spec, tank, vessel)
 
 
-def aim_cameras(spec: mujoco.MjSpec, tank: Tank, vessel: "Vessel") -> None:
+def aim_cameras(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
     """Show the whole tank, or six boat lengths about the start where the tank is larger."""
     most = 6 * vessel.length
     long, wide = min(tank.length, most), min(tank.width, most)
-    target = np.array(
-        [tank.centre[0] if tank.length <= most else 0.0, -tank.centre[1] if tank.width <= most else 0.0, 0.0]
-    )
+    x, y = tank.centre[0] if tank.length <= most else 0.0, -tank.centre[1] if tank.width <= most else 0.0
+    target = np.array([x, y, 0.0])
     above, oblique = spec.camera("above"), spec.camera("oblique")
     half = math.tan(math.radians(above.fovy) / 2)
-    above.pos = target + (0, 0, 1.1 * max(long / 2, wide / 2 * 3 / 4) / half + vessel.draught)
-    eye = target + np.array([-0.75, -0.5, 0.65]) * math.hypot(long, wide) * 0.95
+    above.pos = target + (0, 0, 1.2 * max(long / 2, wide / 2 * 3 / 4) / half + vessel.draught)
+    eye = target + np.array([-0.72, -0.40, 0.62]) * math.hypot(long, wide) * 1.12
     oblique.pos = eye
     oblique.alt.xyaxes = looking_at(eye, target)
 
@@ -131,7 +128,7 @@ def looking_at(eye: Array, target: Array) -> Array:
     return np.concatenate([right, np.cross(right, forward)])
 
 
-def add_hull(spec: mujoco.MjSpec, vessel: "Vessel") -> Any:
+def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> Any:
     """Attach the vessel's hull with its body origin at the CG, at its length and draught, motors and marks in place."""
     drawing = mujoco.MjSpec.from_file(str(Path(vessel.path) / vessel.hull))
     length, _, draught = list(drawing.numeric("drawn_for").data)
@@ -170,7 +167,7 @@ def place_fittings(drawing: mujoco.MjSpec, at: dict[str, float], shift: Array) -
             drawing.delete(ballast)
 
 
-def set_inertia(hull: Any, vessel: "Vessel") -> None:
+def set_inertia(hull: Any, vessel: Vessel) -> None:
     """Mass and inertia of the vessel file, at the CG.
 
     The inertial frame is turned half round about x, which changes no number: MuJoCo keeps only the diagonal of the
@@ -184,13 +181,13 @@ def set_inertia(hull: Any, vessel: "Vessel") -> None:
     hull.inertia = (body.roll_inertia, max(body.roll_inertia, body.yaw_inertia), body.yaw_inertia)  # pitch is held
 
 
-def cg_height(vessel: "Vessel") -> float:
+def cg_height(vessel: Vessel) -> float:
     """Height of the CG above the water surface [m]; 0 where the vessel file does not say."""
     above_keel = vessel.geometry.get("cg_above_keel")
     return 0.0 if above_keel is None else above_keel - vessel.draught
 
 
-def add_joints(hull: Any, vessel: "Vessel") -> None:
+def add_joints(hull: Any, vessel: Vessel) -> None:
     """One joint for each freedom; the roll axis runs through the CG."""
     for freedom, (name, kind, axis) in JOINTS.items():
         if freedom in vessel.freedoms:
@@ -220,7 +217,7 @@ def remove_looks(spec: mujoco.MjSpec) -> None:
         spec.delete(part)
 
 
-def check_mass_matrix(model: mujoco.MjModel, vessel: "Vessel") -> None:
+def check_mass_matrix(model: mujoco.MjModel, vessel: Vessel) -> None:
     """Every lower-triangle entry of M must be stored, or added mass would be lost without a word."""
     rows = list(range(1, model.nv + 1))
     if list(model.M_rownnz) != rows:

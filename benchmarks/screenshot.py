@@ -1,0 +1,71 @@
+"""Picture of a log in rerun's own viewer, without a display: python -m benchmarks.screenshot RUN.rrd OUT.png [SECONDS].
+
+Needs a Vulkan driver; Mesa's software one will do (Debian and Ubuntu: mesa-vulkan-drivers).
+"""
+
+import os
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from glob import glob
+from pathlib import Path
+
+from rerun.experimental import ViewerClient
+
+from boatsim.blueprint import TIMELINE
+from boatsim.recording_files import replacing
+from boatsim.rerun_log import read_rrd
+
+SOFTWARE = "/usr/share/vulkan/icd.d/lvp_icd*.json"  # Mesa's lavapipe
+SIZE = "1600x900"
+
+
+def screenshot(rrd: Path, png: Path, at: float | None = None, settle: float = 4.0) -> None:
+    """Open `rrd` in a viewer without a window and save what it shows at time `at` [s], or at its end.
+
+    `settle` is how long the viewer may take to load and draw [s]. Raises RuntimeError where no viewer starts.
+    """
+    with _viewer() as viewer:
+        viewer.open(str(rrd.resolve()))
+        time.sleep(settle)
+        viewer.set_time(TIMELINE, duration=float(read_rrd(rrd)["t_s"][-1]) if at is None else at, play_state="paused")
+        time.sleep(settle)
+        with replacing(png) as temporary:
+            temporary.write_bytes(viewer.take_screenshot())
+
+
+@contextmanager
+def _viewer(patience: float = 30.0) -> Iterator[ViewerClient]:
+    """A viewer of our own; ViewerClient.spawn would do the same but has no window size."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    environment = {**os.environ, **{"VK_ICD_FILENAMES": icd for icd in glob(SOFTWARE)[:1]}}
+    command = [sys.executable, "-m", "rerun", "--headless", "--window-size", SIZE, "--port", str(port),
+               "--hide-welcome-screen", "--persist-state=false"]  # fmt: skip
+    process = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE)
+    try:
+        yield _connected(process, port, time.monotonic() + patience)
+    finally:
+        process.terminate()
+        process.wait(10)
+
+
+def _connected(process: "subprocess.Popen[bytes]", port: int, until: float) -> ViewerClient:
+    while process.poll() is None and time.monotonic() < until:
+        try:
+            socket.create_connection(("127.0.0.1", port), 1.0).close()
+            return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        except OSError:
+            time.sleep(0.2)
+    said = process.stderr.read().decode(errors="replace") if process.poll() is not None and process.stderr else ""
+    raise RuntimeError(f"no viewer started; is a Vulkan driver installed? {said[-500:]}")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (3, 4):
+        sys.exit(__doc__)
+    screenshot(Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]) if len(sys.argv) == 4 else None)

@@ -1,0 +1,144 @@
+"""How a log opens in rerun's viewer: scene on the left, plots in tabs on the right, colours and names of the curves."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import rerun as rr
+import rerun.blueprint as rrb
+
+from boatsim.recording_notes import unit_of
+from boatsim.rerun_scene import Scene
+
+TIMELINE = "sim_time"
+SIGNALS = "signals"
+WORLD = "world"
+MISSING = {"force_X_N": "surge", "force_Y_N": "sway", "force_K_Nm": "roll", "force_N_Nm": "yaw"}
+Colour = tuple[int, int, int]
+PALETTE: tuple[Colour, ...] = (
+    (31, 119, 180),
+    (214, 39, 40),
+    (44, 160, 44),
+    (148, 103, 189),
+    (140, 86, 75),
+    (23, 190, 207),
+)
+ORANGE, GREY, SKY = (255, 127, 14), (150, 150, 150), (238, 242, 246)
+# the same colour for the same thing in every plot; port red and starboard green as on the water
+FIXED: dict[str, Colour] = {"u_mps": PALETTE[0], "v_mps": PALETTE[3], "r_radps": PALETTE[0], "p_radps": PALETTE[0]}
+
+
+def style(name: str, number: int, boat: str = "", colour: Colour | None = None) -> rr.SeriesLines:
+    """Name, colour and width of a curve."""
+    bound = name.endswith(("_low", "_high"))
+    chosen = colour or _colour(name, number)
+    label = f"{boat} {words(name)}".strip()
+    return rr.SeriesLines(colors=[chosen], widths=[1.0 if bound else 2.0], names=[label])
+
+
+def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
+    """Curve of a missing force, its band, or the part of it that was flagged."""
+    if name.endswith("_flagged"):
+        return rr.SeriesLines(colors=[flagged], widths=[4.0], names=["flagged"])
+    bound = name.endswith(("_low", "_high"))
+    return rr.SeriesLines(colors=[GREY if bound else PALETTE[0]], widths=[1.0 if bound else 2.0], names=[words(name)])
+
+
+def words(name: str) -> str:
+    """Column name as a legend has it: `actual_thrust_port_N` -> "actual thrust port [N]"."""
+    end = next((bound for bound in ("_low", "_high") if name.endswith(bound)), "")
+    plain, unit = name.removesuffix(end), unit_of(name)
+    plain = plain.rpartition("_")[0] if unit else plain
+    return f"{plain.replace('_', ' ')}{end.replace('_', ' ')}" + (f" [{unit}]" if unit else "")
+
+
+def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
+    """Layout of a run: scene, velocities with their reference, and tabs of what else the run has."""
+    speed = [n for n in names if n in ("u_mps", "v_mps", "reference_u_mps", "reference_v_mps")]
+    rate = [n for n in names if n in ("r_radps", "reference_r_radps", "p_radps")]
+    return _layout(
+        rrb.Vertical(_view(scene, ["path", "camera"]), row_shares=[1], name="Scene"),
+        _plot("Surge and sway velocity", speed),
+        _plot("Yaw rate" if "p_radps" not in names else "Yaw and roll rate", rate),
+        rrb.Tabs(*_tabs(names)),
+    )
+
+
+def of_overlay(
+    scene: Scene, boats: Sequence[str], names: Iterable[str], missing: Mapping[str, object]
+) -> rrb.Blueprint:
+    """Layout of a diagnosis: all boats, their motion in tabs, and the missing force per axis."""
+    moved = [n for n in ("x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "r_radps", "p_radps") if n in set(names)]
+    motion = [_plot(words(n), [f"{boat}/{n}" for boat in boats]) for n in moved]
+    forces = [
+        _plot(f"Missing {axis} force", [n for n in (name, f"{name}_low", f"{name}_high", f"{name}_flagged")], "missing")
+        for name, axis in MISSING.items()
+        if name in missing
+    ]
+    return _layout(_view(scene, [f"paths/{boat}" for boat in boats]), rrb.Tabs(*motion), *forces)
+
+
+def _layout(scene: rrb.View | rrb.Container, *plots: rrb.View | rrb.Container) -> rrb.Blueprint:
+    return rrb.Blueprint(
+        rrb.Horizontal(scene, rrb.Vertical(*plots), column_shares=[5, 4]),
+        rrb.SelectionPanel(state="hidden"),
+        rrb.BlueprintPanel(state="hidden"),
+        rrb.TimePanel(state="collapsed", timeline=TIMELINE),
+        auto_layout=False,
+        auto_views=False,
+    )
+
+
+def _view(scene: Scene, trails: Sequence[str]) -> rrb.Spatial3DView:
+    """The scene seen from astern and above; trails show everything up to the time cursor."""
+    length, width, x, y = scene.tank
+    size = max(length, width)
+    so_far = rrb.VisibleTimeRanges(
+        timeline=TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
+    )
+    return rrb.Spatial3DView(
+        origin=WORLD,
+        name=f"{scene.vessel} in its tank",
+        background=SKY,
+        line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            position=(x - 0.75 * size, -y + 0.2 * size, 0.85 * size), look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0)
+        ),
+        overrides={f"{WORLD}/{trail}": so_far for trail in trails},
+    )
+
+
+def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
+    """What a run has beside its velocities, grouped by what one wants to see together."""
+    actual = [n for n in names if n.startswith("actual_")]
+    command = [n.removeprefix("actual_") for n in actual if n.removeprefix("actual_") in names]
+    groups = {
+        "Thrust": [n for n in (*command, *actual) if "thrust" in n],
+        "Steering": [n for n in (*command, *actual) if "thrust" not in n],
+        "PWM": [n for n in names if n.startswith("pwm_")],
+        "Estimates": [n for n in names if n.startswith("estimate_")],
+        "Forces": [n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_N")],
+        "Yaw moments": [n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_Nm")],
+        "Heading": [n for n in names if n.endswith("psi_rad")],
+        "Position": [n for n in names if n in ("x_m", "y_m", "camera_x_m", "camera_y_m")],
+    }
+    plots = [_plot(title, members) for title, members in groups.items() if members]
+    return [*plots, rrb.TextDocumentView(origin="norms", name="Norms")]
+
+
+def _plot(title: str, names: Sequence[str], under: str = SIGNALS) -> rrb.TimeSeriesView:
+    return rrb.TimeSeriesView(
+        origin="/",
+        name=title,
+        contents=[f"/{under}/{name}" for name in names],
+        plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop),
+    )
+
+
+def _colour(name: str, number: int) -> Colour:
+    if name.startswith("reference_"):
+        return ORANGE
+    if name.endswith(("_low", "_high")):
+        return GREY
+    for side, light, dark in (("port", (240, 150, 150), (200, 30, 40)), ("starboard", (140, 210, 140), (20, 130, 50))):
+        if side in name.split("_"):
+            return dark if name.startswith("actual_") else light
+    return FIXED.get(name, PALETTE[number % len(PALETTE)])

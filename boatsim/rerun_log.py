@@ -1,0 +1,352 @@
+"""Runs as rerun logs: streamed to a viewer and a `.rrd` while they run, overlaid for a diagnosis, and read back.
+
+Every column of a recording is logged as float64 scalars under `signals/`, so a log holds what `recording.csv` holds;
+the 3D scene is drawn from the same columns. rerun is imported here and in `blueprint.py` only (0.5 s).
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import rerun as rr
+from rerun.chunk import RrdReader
+
+from boatsim import blueprint
+from boatsim.base import Array
+from boatsim.blueprint import SIGNALS, TIMELINE, WORLD
+from boatsim.errors import BadInput
+from boatsim.recording import Notes, Recording
+from boatsim.rerun_scene import OUTBOARD, Scene
+
+VIEWER = "rerun+http://127.0.0.1:9876/proxy"  # where a viewer listens unless told otherwise
+BUFFER = 1000  # rows kept back before they are written, unless somebody watches: small chunks make large files
+TRAIL_STEP = 0.1  # [s] between points of the path drawn
+ABOVE = 0.02  # [m] arrows and paths lie this far above the water
+COLOURS = {
+    "thrust": (235, 120, 20),
+    "wind": (60, 150, 220),
+    "force": (200, 40, 60),
+    "path": (30, 60, 120),
+    "camera": (240, 190, 30),
+    "wall": (150, 155, 160),
+    "water": (150, 190, 215),
+    "flagged": (230, 0, 40),
+}
+BOATS = {"recording": (30, 60, 120), "nominal": (200, 60, 50), "recalibrated": (235, 150, 20), "patched": (20, 150, 90)}
+
+
+class RunLog:
+    """A run's log: `chunk` takes new rows while it runs, `finish` the norms; leaving the `with` block keeps all of it.
+
+    `path` is the `.rrd` to write (None: none), `live` feeds the viewer that listens on this machine, or a new one.
+    """
+
+    def __init__(self, path: Path | str | None, live: bool, scene: Scene) -> None:
+        self.scene, self.live = scene, live
+        self.stream = rr.RecordingStream("boatsim", send_properties=False)
+        self._waiting: list[Recording] = []
+        self._trail: tuple[float, Array] | None = None  # time and place of the last point of the path
+        _open(self.stream, path, live)
+        _draw_tank(self.stream, scene)
+        _draw_hull(self.stream, scene, "boat")
+        self._known: set[str] = set()
+
+    def chunk(self, rows: Recording) -> None:
+        """Log new rows, which follow those logged before."""
+        if len(rows):
+            self._waiting.append(rows)
+        if self.live or sum(map(len, self._waiting)) >= BUFFER:
+            self._write()
+
+    def finish(self, norms: Mapping[str, Mapping[str, Any]]) -> None:
+        """Add the table of norms: name -> value, unit, published, bar {low, high}, ok."""
+        self._write()
+        self.stream.log("norms", rr.TextDocument(norms_table(norms), media_type="text/markdown"), static=True)
+
+    def close(self) -> None:
+        """Write what is waiting and end the file."""
+        self._write()
+        self.stream.flush()
+        self.stream.disconnect()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+    def _write(self) -> None:
+        if not self._waiting:
+            return
+        rows = _joined(self._waiting)
+        self._waiting = []
+        if new := rows.signals.keys() - self._known:
+            self._known |= new
+            for number, name in enumerate(n for n in rows.signals if n in new):
+                self.stream.log(f"{SIGNALS}/{name}", blueprint.style(name, number), static=True)
+            self.stream.send_blueprint(blueprint.of_run(self.scene, sorted(self._known)))
+        _log_signals(self.stream, rows, SIGNALS)
+        _move(self.stream, rows, self.scene, "boat")
+        _log_arrows(self.stream, rows, self.scene)
+        self._trail = _log_path(self.stream, rows, "path", COLOURS["path"], self._trail)
+        _log_camera(self.stream, rows)
+
+
+def read_rrd(path: Path | str) -> dict[str, Array]:
+    """The columns of a run's `.rrd`, t_s first; rows in which a signal was not logged are nan. Raises BadInput."""
+    series: dict[str, tuple[list[Array], list[Array]]] = {}
+    try:
+        for name, nanoseconds, values in _scalars(Path(path)):
+            times, pieces = series.setdefault(name, ([], []))
+            times.append(nanoseconds)
+            pieces.append(values)
+    except (ValueError, OSError, RuntimeError) as error:
+        raise BadInput(f"{path}: can not be read as .rrd ({' '.join(str(error).split())[:200]})") from error
+    if not series:
+        raise BadInput(f"{path}: is not the log of a boatsim run; it has nothing under /{SIGNALS}")
+    rows = np.unique(np.concatenate([part for times, _ in series.values() for part in times]))
+    columns = {"t_s": rows * 1e-9}
+    for name, (times, pieces) in series.items():
+        columns[name] = np.full(len(rows), math.nan)
+        columns[name][np.searchsorted(rows, np.concatenate(times))] = np.concatenate(pieces)
+    return columns
+
+
+def log_overlay(
+    path: Path | str,
+    boats: Mapping[str, Recording],
+    missing: Recording | None,
+    intervals: Sequence[Mapping[str, Any]],
+    scene: Scene,
+) -> None:
+    """diagnosis.rrd: all boats in one scene on one time line, the missing force per axis with its band.
+
+    `boats` are "recording", "nominal", "recalibrated", "patched". `missing` has `force_X_N` (and `_Y_N`, `_K_Nm`,
+    `_N_Nm`) with `..._low` and `..._high`; `intervals` are `where.intervals` of diagnosis.json (from_s, to_s, axis).
+    """
+    stream = rr.RecordingStream("boatsim_diagnosis", send_properties=False)
+    _open(stream, path, live=False)
+    _draw_tank(stream, scene)
+    for number, (boat, run) in enumerate(boats.items()):
+        colour = BOATS.get(boat, blueprint.PALETTE[number % len(blueprint.PALETTE)])
+        _draw_hull(stream, scene, f"boats/{boat}", colour)
+        _move(stream, run, scene, f"boats/{boat}")
+        _log_path(stream, run, f"paths/{boat}", colour, None)
+        for name in run.signals:
+            stream.log(f"{SIGNALS}/{boat}/{name}", blueprint.style(name, number, boat, colour), static=True)
+        _log_signals(stream, run, f"{SIGNALS}/{boat}")
+    if missing is not None:
+        marked = replace(missing, signals={**missing.signals, **_flagged(missing, intervals)})
+        for name in marked.signals:
+            stream.log(f"missing/{name}", blueprint.band_style(name, COLOURS["flagged"]), static=True)
+        _log_signals(stream, marked, "missing")
+    names = {name for run in boats.values() for name in run.signals}
+    stream.send_blueprint(blueprint.of_overlay(scene, list(boats), names, missing.signals if missing else {}))
+    stream.flush()
+    stream.disconnect()
+
+
+def norms_table(norms: Mapping[str, Mapping[str, Any]]) -> str:
+    """Markdown table norm, value, published, bar, met."""
+    lines = ["| norm | value | published | bar | met |", "|:---|---:|---:|:---:|:---:|"]
+    for name, norm in norms.items():
+        bar, ok = norm.get("bar") or {}, norm.get("ok")
+        ends = [_short(bar.get(end)) for end in ("low", "high")]
+        met = "" if ok is None else "yes" if ok else "**no**"
+        span = " to ".join(ends) if all(ends) else f"at least {ends[0]}" if ends[0] else f"at most {ends[1]}"
+        value = f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
+        lines.append(f"| {name} | {value} | {_short(norm.get('published'))} | {span if any(ends) else ''} | {met} |")
+    return "\n".join(lines) + "\n"
+
+
+def _short(value: float | None) -> str:
+    return "" if value is None else f"{value:.4g}"
+
+
+def _open(stream: rr.RecordingStream, path: Path | str | None, live: bool) -> None:
+    """Point a stream at its file, a viewer, or both."""
+    sinks: list[Any] = []
+    if path is not None:
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        sinks.append(rr.FileSink(str(path)))
+    if live:
+        rr.spawn(connect=False, recording=stream)  # does nothing where a viewer listens already
+        sinks.append(rr.GrpcSink(VIEWER))
+    if sinks:
+        stream.set_sinks(*sinks)
+    stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+
+
+def _joined(parts: Sequence[Recording]) -> Recording:
+    names = list(dict.fromkeys(name for part in parts for name in part.signals))
+    signals = {n: np.concatenate([p.signals.get(n, np.full(len(p), math.nan)) for p in parts]) for n in names}
+    return Recording(parts[0].name, np.concatenate([p.t for p in parts]), signals, Notes())
+
+
+def _when(t: Array) -> list[rr.TimeColumn]:
+    return [rr.TimeColumn(TIMELINE, duration=np.round(t * 1e9).astype("timedelta64[ns]"))]
+
+
+def _log_signals(stream: rr.RecordingStream, rows: Recording, under: str) -> None:
+    when = _when(rows.t)
+    for name, values in rows.signals.items():
+        stream.send_columns(f"{under}/{name}", when, rr.Scalars.columns(scalars=values))
+
+
+def _scalars(path: Path) -> Iterator[tuple[str, Array, Array]]:
+    """Name, times [ns] and values of each chunk of a run's signals."""
+    for chunk in RrdReader(path).stream():
+        under, _, name = chunk.entity_path.strip("/").rpartition("/")
+        if under != SIGNALS or chunk.is_static:
+            continue
+        batch = chunk.to_record_batch()
+        values = batch.column(batch.schema.names.index("Scalars:scalars"))
+        times = batch.column(batch.schema.names.index(TIMELINE)).cast("int64")
+        yield name, times.to_numpy(zero_copy_only=False), values.flatten().to_numpy(zero_copy_only=False)
+
+
+def _flat(x: Array, y: Array, z: float = 0.0) -> Array:
+    """SNAME x, y as points (N, 3) of the picture, whose z points up and y to port."""
+    return np.column_stack([x, -y, np.full(len(x), z)])
+
+
+def _draw_tank(stream: rr.RecordingStream, scene: Scene) -> None:
+    length, width, x, y = scene.tank
+    for solid in scene.solids:
+        if solid.part == "tank":
+            stream.log(f"{WORLD}/tank/{solid.name}", _mesh(solid), static=True)
+    if any(solid.part == "tank" for solid in scene.solids):
+        return
+    corners = [(x + i * length / 2, -y + j * width / 2, ABOVE) for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1), (1, 1))]
+    edge = rr.LineStrips3D([corners], colors=[COLOURS["wall"]], radii=[0.004 * max(length, width)])
+    stream.log(f"{WORLD}/tank/walls", edge, static=True)
+    water = rr.Mesh3D(
+        vertex_positions=[(a, b, -0.01) for a, b, _ in corners[:4]],
+        vertex_normals=[(0, 0, 1)] * 4,
+        triangle_indices=[(0, 2, 1), (0, 3, 2)],
+        albedo_factor=COLOURS["water"],
+    )
+    stream.log(f"{WORLD}/tank/water", water, static=True)
+
+
+def _draw_hull(stream: rr.RecordingStream, scene: Scene, boat: str, tint: tuple[int, int, int] | None = None) -> None:
+    """The hull's shapes under the entity of a boat; outboards hang from entities of their own so that they can turn."""
+    for solid in scene.solids:
+        if solid.part != "tank":
+            part = "hull" if solid.part == "hull" else solid.part
+            stream.log(f"{WORLD}/{boat}/{part}/{solid.name}", _mesh(solid, tint), static=True)
+    for thruster in scene.thrusters:
+        at = rr.Transform3D(translation=(thruster.x, -thruster.y, 0.0))
+        stream.log(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", at, static=True)
+
+
+def _mesh(solid: Any, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
+    """Flat-shaded triangles: rerun lights only meshes with normals."""
+    corners = solid.vertices[solid.triangles]  # (T, 3, 3)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    colour = [round(255 * c) for c in solid.colour] if tint is None else [*tint, 255]
+    return rr.Mesh3D(
+        vertex_positions=corners.reshape(-1, 3), vertex_normals=np.repeat(normals, 3, axis=0), albedo_factor=colour
+    )
+
+
+def _move(stream: rr.RecordingStream, rows: Recording, scene: Scene, boat: str) -> None:
+    """Pose of the hull and angles of the outboards; a boat that only rolls stays at the origin."""
+    zero = np.zeros(len(rows))
+    x, y, psi, phi = (rows.signals.get(name, zero) for name in ("x_m", "y_m", "psi_rad", "phi_rad"))
+    place = rr.Transform3D.columns(translation=_flat(x, y), quaternion=_attitude(psi, phi))
+    stream.send_columns(f"{WORLD}/{boat}", _when(rows.t), place)
+    for thruster in scene.thrusters:
+        if (steer := rows.signals.get(thruster.steer)) is not None:
+            # the force points a to starboard when the leg is turned by a, clockwise seen from above
+            turned = rr.Transform3D.columns(quaternion=_attitude(steer, zero))
+            stream.send_columns(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", _when(rows.t), turned)
+
+
+def _attitude(psi: Array, phi: Array) -> Array:
+    """(N, 4) quaternions x, y, z, w of heading (clockwise) after roll (starboard down) for the picture's axes."""
+    c, s, cr, sr = np.cos(psi / 2), -np.sin(psi / 2), np.cos(phi / 2), np.sin(phi / 2)
+    return np.column_stack([c * sr, s * sr, s * cr, c * cr])
+
+
+def _log_arrows(stream: rr.RecordingStream, rows: Recording, scene: Scene) -> None:
+    zero = np.zeros(len(rows))
+    for thruster in scene.thrusters:
+        if (thrust := rows.signals.get(thruster.thrust)) is not None:
+            steer = rows.signals.get(thruster.steer, zero)
+            vector = _flat(thrust * np.cos(steer), thrust * np.sin(steer))
+            at = _flat(zero + thruster.x, zero + thruster.y, ABOVE)
+            _arrow(stream, rows.t, f"thrust_{thruster.name}", scene, vector, at, COLOURS["thrust"])
+    for what in ("force", "wind"):
+        if f"{what}_X_N" in rows.signals and f"{what}_Y_N" in rows.signals:
+            vector = _flat(rows[f"{what}_X_N"], rows[f"{what}_Y_N"])
+            _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, 5 * ABOVE), COLOURS[what])
+
+
+def _arrow(
+    stream: rr.RecordingStream,
+    t: Array,
+    name: str,
+    scene: Scene,
+    newtons: Array,
+    at: Array,
+    colour: tuple[int, int, int],
+) -> None:
+    """Arrows (N, 3) N in axes of the hull, one a row."""
+    entity = f"{WORLD}/boat/{name}"
+    look = rr.Arrows3D.from_fields(colors=[colour], radii=[0.012 * scene.length], labels=[name.replace("_", " ")])
+    stream.log(entity, look, static=True)
+    stream.send_columns(entity, _when(t), rr.Arrows3D.columns(vectors=scene.reach * newtons, origins=at))
+
+
+def _log_path(
+    stream: rr.RecordingStream,
+    rows: Recording,
+    name: str,
+    colour: tuple[int, int, int],
+    last: tuple[float, Array] | None,
+) -> tuple[float, Array] | None:
+    """One short line for each step; the view shows all up to its time. Returns the last point's time and place."""
+    if not {"x_m", "y_m"} <= rows.signals.keys():
+        return last
+    due = np.unique(np.floor(rows.t / TRAIL_STEP + 1e-6), return_index=True)[1]
+    t, points = rows.t[due], _flat(rows["x_m"][due], rows["y_m"][due], ABOVE)
+    if last is not None:
+        t, points = np.append(last[0], t), np.vstack([last[1], points])
+    entity = f"{WORLD}/{name}"
+    if len(t) > 1:
+        pairs = np.stack([points[:-1], points[1:]], axis=1)
+        stream.log(entity, rr.LineStrips3D.from_fields(colors=[colour], radii=[-1.5]), static=True)
+        stream.send_columns(entity, _when(t[1:]), rr.LineStrips3D.columns(strips=list(pairs)))
+    return float(t[-1]), points[-1]
+
+
+def _log_camera(stream: rr.RecordingStream, rows: Recording) -> None:
+    """What the camera measured, at the rows in which it measured something new."""
+    if not {"camera_x_m", "camera_y_m"} <= rows.signals.keys():
+        return
+    x, y = rows["camera_x_m"], rows["camera_y_m"]
+    fresh = np.isfinite(x) & np.isfinite(y) & (np.append(True, np.diff(x) != 0) | np.append(True, np.diff(y) != 0))
+    if fresh.any():
+        entity = f"{WORLD}/camera"
+        stream.log(entity, rr.Points3D.from_fields(colors=[COLOURS["camera"]], radii=[-2.5]), static=True)
+        points = rr.Points3D.columns(positions=_flat(x[fresh], y[fresh], 1.5 * ABOVE))
+        stream.send_columns(entity, _when(rows.t[fresh]), points)
+
+
+def _flagged(missing: Recording, intervals: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+    """The missing force where it was flagged, nan elsewhere, as signals of their own."""
+    found: dict[str, Array] = {}
+    for name, axis in blueprint.MISSING.items():
+        inside = np.zeros(len(missing), dtype=bool)
+        for flagged in intervals:
+            if flagged["axis"] == axis:
+                inside |= (missing.t >= flagged["from_s"]) & (missing.t <= flagged["to_s"])
+        if name in missing.signals and inside.any():
+            found[f"{name}_flagged"] = np.where(inside, missing[name], math.nan)
+    return found

@@ -1,0 +1,235 @@
+"""Runs a scenario: every period sensors, controller, commands; every step actuators and physics; all of it logged."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import nan
+from typing import Any
+
+import numpy as np
+
+from boatsim.base import Array, motion
+from boatsim.control import Sense
+from boatsim.engine import Engine, State
+from boatsim.recording import Notes, Recording
+from boatsim.scenario import Scenario
+from boatsim.sensors import Frame
+from boatsim.world import Tank
+
+SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
+FIELDS = ("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
+CAMERA = ("led_x_m", "led_y_m", "button_x_m", "button_y_m", "x_m", "y_m", "psi_rad")
+CHUNK = 500  # [rows] handed to a listener at a time
+Listener = Callable[[Recording], None]
+
+
+@dataclass
+class Log:
+    """A table that grows by rows, one float a column."""
+
+    names: list[str]
+    rows: Array = field(init=False)
+    count: int = 0
+
+    def __post_init__(self) -> None:
+        self.rows = np.empty((CHUNK, len(self.names)))
+
+    def add(self, row: list[float]) -> None:
+        """One more row."""
+        if self.count == len(self.rows):
+            self.rows = np.concatenate([self.rows, np.empty_like(self.rows)])
+        self.rows[self.count] = row
+        self.count += 1
+
+    def recording(self, name: str, notes: Notes, start: int = 0) -> Recording:
+        """The rows from `start` on; the first column is time."""
+        part = self.rows[start : self.count]
+        return Recording(name, part[:, 0].copy(), {n: part[:, i + 1].copy() for i, n in enumerate(self.names[1:])}, notes)
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run left: the log at every step, what the camera measured, and whether it ran to its end."""
+
+    scenario: Scenario
+    seed: int
+    recording: Recording
+    camera: Recording
+    complete: bool
+
+
+class Runner:
+    """One run in progress. `listen` gets the new rows about every 500 steps, for a live view."""
+
+    def __init__(self, scenario: Scenario, seed: int | None = None, listen: Listener | None = None) -> None:
+        """Build the engine; raises BadInput or BadPhysics."""
+        file = scenario.file
+        self.scenario, self.listen = scenario, listen
+        self.seed = file.seed if seed is None else seed
+        tank = Tank(**file.tank.model_dump()) if file.tank else None
+        self.engine = Engine(scenario.vessel, tank, file.step)
+        self._imu, self._marks = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
+        self._winds = [e for e in scenario.vessel.effects if e.name() in ("fan_wind", "wind")]
+        self._commands: dict[str, float] = {}
+        self._sense: Sense | None = None
+        self._frame = 0
+        self._due = 0.0
+        self._sent = 0
+
+    def run(self, progress: Callable[[float], None] | None = None) -> Run:
+        """Run to the end, or to an interruption, which keeps what was logged. `progress` gets the time reached [s]."""
+        complete = False
+        try:
+            self._start()
+            while not self._finished():
+                self._advance()
+                if progress and self.log.count % 100 == 0:
+                    progress(self._state.t)
+            self._control()
+            self._write_row([])
+            complete = True
+        except KeyboardInterrupt:
+            pass
+        self._send(0)
+        notes = self._notes()
+        name = self.scenario.name.replace("/", "_")
+        return Run(
+            self.scenario, self.seed, self.log.recording(name, notes), self._film.recording("camera", notes), complete
+        )
+
+    def _start(self) -> None:
+        start = self.scenario.file.start
+        state = State(0.0, start.x, start.y, start.psi, start.phi, start.u, start.v, start.p, start.r)
+        controller = self.scenario.controller
+        controller.reset()
+        self._commands = controller.initial_commands()
+        self.engine.reset(state, self._commands)
+        self._state = state
+        # the log's columns are known once the controller has stepped: which estimates it has
+        self._control()
+        self._estimates = list(controller.estimates())
+        self.log = Log(self._columns())
+        self._film = Log(["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self.scenario.vessel.commands])
+        self._average: list[Array] = []
+        self._write_row(self._shoot(state, state))
+
+    def _columns(self) -> list[str]:
+        vessel = self.scenario.vessel
+        limits = [f"{name}{end}" for name in self._adaptive() for end in ("", "_low", "_high")]
+        references = [n for n in self._estimates if n.startswith("reference_")]
+        return [
+            "t_s", "x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "p_radps", "r_radps", *vessel.commands,
+            *(f"actual_{n}" for n in vessel.actuators), *(f"sensed_{n}" for n in SENSED),
+            *(f"camera_{n}" for n in CAMERA), "force_X_N", "force_Y_N", "force_K_Nm", "force_N_Nm", "wind_X_N",
+            "wind_Y_N", "wind_N_Nm", "contacts", *(f"estimate_{n}" for n in limits), *references,
+        ]  # fmt: skip
+
+    def _adaptive(self) -> list[str]:
+        return [n for n in self._estimates if not n.startswith("reference_")]
+
+    def _advance(self) -> None:
+        """One step of physics from the commands in force, then control at its end if it is due, then a row."""
+        before = self._state
+        self._average.append(self.engine.program.command_array(self._commands))
+        self.engine.command(self._commands)
+        self.engine.advance()
+        self._state = self.engine.state
+        frames = self._shoot(before, self._state)
+        self._control()
+        self._write_row(frames)
+
+    def _control(self) -> None:
+        """Sensors and controller, once a period."""
+        state, controller = self._state, self.scenario.controller
+        if state.t < self._due - 1e-9:
+            return
+        self._due += controller.period
+        self._sense = self.scenario.sensors.feel(
+            state.t, (state.x, state.y, state.psi), (state.u, state.v, state.r), self.engine.acceleration(), self._imu
+        )
+        self._commands = controller.step(self._sense, self.scenario.goal_at(state.t))
+
+    def _shoot(self, before: State, after: State) -> list[Frame]:
+        """Camera frames since the last step. A frame carries the mean command from it to the next one."""
+        frames = list(
+            self.scenario.camera.film(
+                before.t, (before.x, before.y, before.psi), after.t, (after.x, after.y, after.psi), self._frame,
+                self._marks,
+            )  # fmt: skip
+        )
+        for f in frames:
+            self._close_frame()
+            self._film.add([f.t, f.x, f.y, f.psi, *f[1:5], *self.engine.program.command_array(self._commands)])
+        self._frame += len(frames)
+        return frames
+
+    def _close_frame(self) -> None:
+        """Give the last camera row the mean of the commands sent since."""
+        if self._film.count and self._average:
+            self._film.rows[self._film.count - 1, 1 + len(CAMERA) :] = np.mean(self._average, axis=0)
+        self._average.clear()
+
+    def _write_row(self, frames: list[Frame]) -> None:
+        s, engine, sense = self._state, self.engine, self._sense
+        assert sense is not None
+        estimates = self.scenario.controller.estimates()
+        X, Y, K, N = engine.wrench()
+        self.log.add(
+            [
+                *(s.t, s.x, s.y, s.psi, s.phi, s.u, s.v, s.p, s.r),
+                *engine.program.command_array(self._commands),
+                *engine.actuators.values(),
+                *(getattr(sense, f) for f in FIELDS),
+                *((*frames[-1][1:5], *frames[-1][5:]) if frames else [nan] * len(CAMERA)),
+                *(X, Y, K, N, *self._wind(s), engine.contacts),
+                *(value for name in self._adaptive() for value in estimates[name]),
+                *(estimates[n].value for n in self._estimates if n.startswith("reference_")),
+            ]
+        )
+        if self.log.count - self._sent >= CHUNK:
+            self._send(CHUNK)
+
+    def _wind(self, s: State) -> tuple[float, float, float]:
+        """Force of the wind effects in body axes [N, N, N m]."""
+        total = [0.0, 0.0, 0.0]
+        for effect in self._winds:
+            law: Any = type(effect).law.py_func  # type: ignore[attr-defined]  # one call needs no compiling
+            w = law(motion(psi=s.psi, u=s.u, v=s.v, r=s.r), effect.values())
+            total = [total[0] + w.X, total[1] + w.Y, total[2] + w.N]
+        return total[0], total[1], total[2]
+
+    def _send(self, least: int) -> None:
+        """New rows to the listener."""
+        if self.listen and self.log.count > self._sent and self.log.count - self._sent >= least:
+            self.listen(self.log.recording(self.scenario.name, Notes(), self._sent))
+            self._sent = self.log.count
+
+    def _finished(self) -> bool:
+        file, s = self.scenario.file, self._state
+        if s.t >= file.duration - 1e-9:
+            return True
+        c, n = np.cos(file.start.psi), np.sin(file.start.psi)
+        starboard = c * (s.y - file.start.y) - n * (s.x - file.start.x)
+        out = file.until.starboard is not None and starboard >= file.until.starboard
+        return bool(out or (file.until.turned is not None and abs(s.psi - file.start.psi) >= file.until.turned))
+
+    def _notes(self) -> Notes:
+        """What a diagnosis of this run may know: vessel, load, values set, noise of the camera."""
+        file, camera = self.scenario.file, self.scenario.camera
+        per_axis = camera.mark_sd * np.hypot(camera.led_ahead, camera.button_ahead) / camera.baseline
+        noise = {"position_sd_m": float(per_axis), "heading_sd_rad": float(camera.mark_sd * np.sqrt(2) / camera.baseline)}
+        return Notes(vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise)
+
+
+def run(
+    scenario: Scenario,
+    seed: int | None = None,
+    listen: Listener | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Run:
+    """Run a scenario; the same scenario and seed give the same numbers. Raises BadInput or BadPhysics."""
+    return Runner(scenario, seed, listen).run(progress)
+
+
+def commands_of(recording: Recording, names: Mapping[str, Any]) -> Array:
+    """(N, C) commands of a recording in a vessel's order; channels the recording lacks are zero."""
+    return np.column_stack([recording.signals.get(n, np.zeros(len(recording.t))) for n in names])

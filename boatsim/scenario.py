@@ -1,0 +1,175 @@
+"""A scenario is a file: which vessel, where, steered by what, towards what, for how long, and how it is judged."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field
+
+from boatsim import vessel as vessels
+from boatsim.content import find, load_class, root
+from boatsim.control import Controller
+from boatsim.errors import BadInput, unknown_name
+from boatsim.files import Table, checked, read_toml
+from boatsim.sensors import Camera, Sensors
+from boatsim.vessel import Vessel
+
+
+class TankTable(Table):
+    """Water with walls; without this table the water is open."""
+
+    length: float = Field(default=1.5, gt=0)  # [m] along the start heading; the thesis' tank
+    width: float = Field(default=3.0, gt=0)  # [m]
+    depth: float = Field(default=0.1, gt=0)  # [m]
+    centre: tuple[float, float] = (0.0, 0.0)  # [m] from the start, ahead and to starboard
+
+
+class StartTable(Table):
+    """Where the boat starts and how it moves then, SNAME."""
+
+    x: float = 0.0  # [m]
+    y: float = 0.0  # [m]
+    psi: float = 0.0  # [rad]
+    phi: float = 0.0  # [rad]
+    u: float = 0.0  # [m/s]
+    v: float = 0.0  # [m/s]
+    p: float = 0.0  # [rad/s]
+    r: float = 0.0  # [rad/s]
+
+
+class UntilTable(Table):
+    """The run ends early once one of these is reached."""
+
+    starboard: float | None = Field(default=None, gt=0)  # [m] travelled to starboard of the start
+    turned: float | None = Field(default=None, gt=0)  # [rad] turned either way
+
+
+class NormTable(Table):
+    """What a norm is held against: the paper's value, and the band it must lie in."""
+
+    published: float | None = None
+    low: float | None = None
+    high: float | None = None
+
+
+class CheckTable(Table):
+    """A signal that must stay small: norm of `signal` below a limit."""
+
+    signal: str
+    norm: Literal["inf", "rms", "l2", "l1"]
+    below: float = Field(gt=0)
+    source: str = ""
+
+
+class ScenarioFile(Table):
+    """The content of a scenario .toml."""
+
+    about: str
+    vessel: str
+    load: list[str] = []
+    duration: float = Field(gt=0, le=86400)  # [s]
+    step: float = Field(default=0.02, gt=1e-4, le=1.0)  # [s]
+    seed: int = Field(default=0, ge=0)
+    tank: TankTable | None = None
+    start: StartTable = StartTable()
+    until: UntilTable = UntilTable()
+    controller: dict[str, Any]
+    sensors: dict[str, Any] = {}
+    camera: dict[str, Any] = {}
+    goal: list[dict[str, float]] = []
+    set: dict[str, dict[str, Any]] = {}
+    effect: list[dict[str, Any]] = []
+    measure: Literal["sway", "yaw", "berth"] | None = None
+    norms: dict[str, NormTable] = {}
+    noise_widens_bars: bool = False
+    check: list[CheckTable] = []
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A scenario ready to run."""
+
+    name: str
+    file: ScenarioFile
+    vessel: Vessel
+    controller: Controller
+    sensors: Sensors
+    camera: Camera
+
+    def goal_at(self, t: float) -> Mapping[str, float]:
+        """Goals in force at time t [s]: the last [[goal]] that has begun."""
+        begun = [g for g in self.file.goal if g.get("from", 0.0) <= t + 1e-9]
+        return {k: v for k, v in begun[-1].items() if k != "from"} if begun else {}
+
+
+def load(name: str, overrides: Mapping[str, Any] | None = None) -> Scenario:
+    """A scenario by name ("joystick_boat/sway_1") or path; `overrides` replace top-level keys, for tests and studies.
+
+    Raises BadInput, one line naming file, key, value found, what is allowed and the nearest valid name.
+    """
+    path = find("scenario", name)
+    return from_table({**read_toml(path), **(overrides or {})}, path)
+
+
+def from_table(raw: dict[str, Any], path: Path) -> Scenario:
+    """A scenario from the content of a file; `path` names it and is where relative paths start."""
+    label = path.name
+    file = checked(ScenarioFile, raw, label)
+    try:
+        vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent)
+        controller = _made("controller", file.controller, path.parent)
+        sensors, camera = _settings(Sensors, file.sensors, "sensors"), _settings(Camera, file.camera, "camera")
+        _check_goals(file, vessel, controller)
+        _check_shape(file, vessel)
+    except BadInput as error:
+        raise BadInput(f"{label}: {error}") from None
+    return Scenario(_name(path), file, vessel, controller, sensors, camera)
+
+
+def _name(path: Path) -> str:
+    """joystick_boat/sway_1 for shipped scenarios, the file's stem for a user's own."""
+    folder = root() / "scenarios"
+    return str(path.relative_to(folder).with_suffix("")) if path.is_relative_to(folder) else path.stem
+
+
+def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
+    """The controller of a [controller] table."""
+    if not isinstance(table.get("use"), str):
+        raise BadInput(f"[{kind}] needs use = its name")
+    found = load_class(kind, table["use"], folder)
+    return found.from_settings({k: v for k, v in table.items() if k != "use"})
+
+
+def _settings(kind: Any, table: Mapping[str, Any], key: str) -> Any:
+    """Sensors or camera of its table."""
+    try:
+        return kind.from_settings(table)
+    except BadInput as error:
+        raise BadInput(f"[{key}] {error}") from None
+
+
+def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> None:
+    """Goals are named by the controller, or are command channels of the vessel for one that passes them on."""
+    known = getattr(type(controller), "goals", None)
+    allowed = list(vessel.commands) if known is None else list(known)
+    for goal in file.goal:
+        for key in goal:
+            if key != "from" and key not in allowed:
+                raise BadInput(unknown_name("[[goal]] key", key, ["from", *allowed]))
+    starts = [g.get("from", 0.0) for g in file.goal]
+    if starts != sorted(starts):
+        raise BadInput(f"[[goal]] from = {starts}; allowed are times in ascending order")
+    if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
+        raise BadInput(f"controller {file.controller['use']} sets {unknown[0]}; {vessel.no_command(unknown[0])}")
+
+
+def _check_shape(file: ScenarioFile, vessel: Vessel) -> None:
+    """The boat starts inside its tank, and the controller's period holds at least one step."""
+    if file.tank:
+        dx, dy = file.start.x - file.tank.centre[0], file.start.y - file.tank.centre[1]
+        if abs(dx) > file.tank.length / 2 or abs(dy) > file.tank.width / 2:
+            raise BadInput(f"start x, y = {file.start.x:g}, {file.start.y:g} m lies outside the tank")
+
+
+__all__ = ["NormTable", "Scenario", "ScenarioFile", "from_table", "load"]
