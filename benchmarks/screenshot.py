@@ -4,6 +4,7 @@ Needs a Vulkan driver; Mesa's software one will do (Debian and Ubuntu: mesa-vulk
 """
 
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from rerun.experimental import ViewerClient
 
 from boatsim.blueprint import TIMELINE
 from boatsim.recording_files import replacing
-from boatsim.rerun_log import read_rrd
+from boatsim.rerun_log import last_time
 
 SOFTWARE = "/usr/share/vulkan/icd.d/lvp_icd*.json"  # Mesa's lavapipe
 SIZE = "1600x900"
@@ -31,7 +32,7 @@ def screenshot(rrd: Path, png: Path, at: float | None = None, settle: float = 4.
     with _viewer() as viewer:
         viewer.open(str(rrd.resolve()))
         time.sleep(settle)
-        viewer.set_time(TIMELINE, duration=float(read_rrd(rrd)["t_s"][-1]) if at is None else at, play_state="paused")
+        viewer.set_time(TIMELINE, duration=last_time(rrd) if at is None else at, play_state="paused")
         time.sleep(settle)
         with replacing(png) as temporary:
             temporary.write_bytes(viewer.take_screenshot())
@@ -43,14 +44,15 @@ def _viewer(patience: float = 30.0) -> Iterator[ViewerClient]:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    environment = {**os.environ, **{"VK_ICD_FILENAMES": icd for icd in glob(SOFTWARE)[:1]}}
+    drivers = glob(SOFTWARE)
+    environment = {**os.environ, "VK_ICD_FILENAMES": drivers[0]} if drivers else None
     command = [sys.executable, "-m", "rerun", "--headless", "--window-size", SIZE, "--port", str(port),
-               "--hide-welcome-screen", "--persist-state=false"]  # fmt: skip
-    process = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE)
+               "--hide-welcome-screen"]  # fmt: skip
+    process = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, start_new_session=True)
     try:
         yield _connected(process, port, time.monotonic() + patience)
     finally:
-        process.terminate()
+        os.killpg(process.pid, signal.SIGTERM)  # the command is a wrapper; the viewer is its child
         process.wait(10)
 
 

@@ -8,7 +8,7 @@ Axes are SNAME: x forward, y starboard, z down, heading and yaw rate clockwise s
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -109,6 +109,7 @@ class Param:
     axis: str = ""  # freedom it belongs to ("roll", ...); fitted only on vessels that have it
     absent: float = 0.0  # value at which the effect is not there
     calibrates: str = ""  # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
+    follows: str = ""  # "linear_damping.surge" of the vessel, or "vessel.length" where none is given
 
 
 def param(
@@ -123,9 +124,10 @@ def param(
     axis: str = "",
     absent: float = 0.0,
     calibrates: str = "",
+    follows: str = "",
 ) -> Any:
     """Dataclass field of a checked number. `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter."""
-    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates)
+    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows)
     return field(default=nominal, metadata={"param": about})
 
 
@@ -191,8 +193,18 @@ class Effect(Checked):
         return type(self).values_type()(*(float(getattr(self, n)) for n in type(self).params()))
 
     def completed(self, vessel: Any) -> Self:
-        """The effect with what it must know of the vessel it is put on (its nominal damping, its mass) filled in."""
-        return self
+        """The effect with what it must know of the vessel it is put on (`follows`) filled in. Raises BadInput."""
+        taken = {}
+        for name, about in type(self).params().items():
+            owner, _, key = about.follows.partition(".")
+            if owner == "vessel":
+                taken[name] = getattr(self, name) or getattr(vessel, key)
+            elif owner:
+                own = vessel.effect(owner)
+                if own is None:
+                    raise BadInput(f"{vessel.name}: {self.name()} needs a vessel with {owner}")
+                taken[name] = getattr(own, key)
+        return replace(self, **taken)
 
 
 @dataclass(frozen=True)

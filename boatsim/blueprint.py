@@ -23,7 +23,15 @@ PALETTE: tuple[Colour, ...] = (
 )
 ORANGE, GREY, SKY = (255, 127, 14), (150, 150, 150), (238, 242, 246)
 # the same colour for the same thing in every plot; port red and starboard green as on the water
-FIXED: dict[str, Colour] = {"u_mps": PALETTE[0], "v_mps": PALETTE[3], "r_radps": PALETTE[0], "p_radps": PALETTE[0]}
+FIXED: dict[str, Colour] = {
+    "u_mps": PALETTE[0],
+    "v_mps": PALETTE[3],
+    "r_radps": PALETTE[0],
+    "p_radps": PALETTE[3],
+    "reference_u_mps": ORANGE,
+    "reference_v_mps": (227, 119, 194),
+    "reference_r_radps": ORANGE,
+}
 
 
 def style(name: str, number: int, boat: str = "", colour: Colour | None = None) -> rr.SeriesLines:
@@ -55,7 +63,9 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
     speed = [n for n in names if n in ("u_mps", "v_mps", "reference_u_mps", "reference_v_mps")]
     rate = [n for n in names if n in ("r_radps", "reference_r_radps", "p_radps")]
     return _layout(
-        rrb.Vertical(_view(scene, ["path", "camera"]), row_shares=[1], name="Scene"),
+        rrb.Vertical(
+            _view(scene, ["path", "camera"]), rrb.TextDocumentView(origin="norms", name="Norms"), row_shares=[3, 1]
+        ),
         _plot("Surge and sway velocity", speed),
         _plot("Yaw rate" if "p_radps" not in names else "Yaw and roll rate", rate),
         rrb.Tabs(*_tabs(names)),
@@ -100,7 +110,7 @@ def _view(scene: Scene, trails: Sequence[str]) -> rrb.Spatial3DView:
         background=SKY,
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
-            position=(x - 0.75 * size, -y + 0.2 * size, 0.85 * size), look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0)
+            position=(x - 0.8 * size, -y, 0.75 * size), look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0)
         ),
         overrides={f"{WORLD}/{trail}": so_far for trail in trails},
     )
@@ -120,8 +130,7 @@ def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
         "Heading": [n for n in names if n.endswith("psi_rad")],
         "Position": [n for n in names if n in ("x_m", "y_m", "camera_x_m", "camera_y_m")],
     }
-    plots = [_plot(title, members) for title, members in groups.items() if members]
-    return [*plots, rrb.TextDocumentView(origin="norms", name="Norms")]
+    return [_plot(title, members) for title, members in groups.items() if members]
 
 
 def _plot(title: str, names: Sequence[str], under: str = SIGNALS) -> rrb.TimeSeriesView:
@@ -134,8 +143,6 @@ def _plot(title: str, names: Sequence[str], under: str = SIGNALS) -> rrb.TimeSer
 
 
 def _colour(name: str, number: int) -> Colour:
-    if name.startswith("reference_"):
-        return ORANGE
     if name.endswith(("_low", "_high")):
         return GREY
     for side, light, dark in (("port", (240, 150, 150), (200, 30, 40)), ("starboard", (140, 210, 140), (20, 130, 50))):

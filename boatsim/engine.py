@@ -110,9 +110,7 @@ class Engine:
         """Step forward with the commands held. Raises BadPhysics if the state is no longer finite."""
         with installed(self.callback):
             for _ in range(steps):
-                self.code.actuate_in_place(
-                    self._commands, self._memory, self.step, self._values, self._on, self._act
-                )
+                self.code.actuate_in_place(self._commands, self._memory, self.step, self._values, self._on, self._act)
                 self.data.userdata[-self.code.HELD :] = self._act
                 mujoco.mj_step(self.model, self.data)
         if not np.isfinite(self.data.qpos).all():

@@ -42,7 +42,9 @@ def _line(model: type[BaseModel], error: ValidationError) -> str:
     place = ".".join(str(p) for p in first["loc"])
     if first["type"] == "extra_forbidden":
         table = ".".join(str(p) for p in first["loc"][:-1])
-        return unknown_name(f"key{f' in [{table}]' if table else ''}", str(first["loc"][-1]), _keys(model, first["loc"]))
+        return unknown_name(
+            f"key{f' in [{table}]' if table else ''}", str(first["loc"][-1]), _keys(model, first["loc"])
+        )
     if first["type"] == "missing":
         return f"{place} is missing"
     return f"{place} = {first['input']!r}; {first['msg'].removeprefix('Value error, ').lower()}"

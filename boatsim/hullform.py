@@ -1,6 +1,7 @@
-"""Draws the deep-V hull of a small outboard boat from its particulars: `python -m boatsim.hullform models/joystick_boat`.
+"""Draws the deep-V hull of a small outboard boat from its particulars.
 
-Writes OBJ meshes with the origin at the transom on the centreline at the design waterline; x forward, y to port, z up.
+`python -m boatsim.hullform models/joystick_boat` writes OBJ meshes with the origin at the transom on the centreline
+at the design waterline; x forward, y to port, z up.
 """
 
 import math
@@ -68,7 +69,10 @@ class Mesh:
     faces: list[tuple[int, int, int]] = field(default_factory=list)
 
     def add(self, grid: Array, *, flip: bool = False) -> None:
-        """Add a surface through a (rows, columns, 3) grid of points, seen from outside: rows run right, columns up (else `flip`)."""
+        """Add the surface through a (rows, columns, 3) grid of points.
+
+        Looking along the rows the columns rise and outside is to the left; `flip` where outside is to the right.
+        """
         rows, columns, _ = grid.shape
         start = sum(len(p) for p in self.points)
         self.points.append(grid.reshape(-1, 3))
@@ -182,12 +186,15 @@ def outboard_cowl() -> Mesh:
 def outboard_leg() -> Mesh:
     """Leg, plate over the propeller, gear case, skeg and a three-bladed propeller."""
     mesh = Mesh()
-    mesh.body([ring((-0.026, 0, z), (half, 0.35 * half), 2.4) for z, half in ((-0.055, 0.017), (0.0, 0.018), (0.064, 0.026))])
+    strut = ((-0.055, 0.017), (0.0, 0.018), (0.064, 0.026))
+    mesh.body([ring((-0.026, 0, z), (half, 0.35 * half), 2.4) for z, half in strut])
     mesh.body([ring((-0.036, 0, z), (0.032, 0.018), 2.6) for z in (-0.031, -0.028)])
     case = ((-0.062, 0.008), (-0.052, 0.0095), (-0.03, 0.0105), (-0.012, 0.009), (-0.002, 0.005), (0.002, 0.001))
     mesh.body([ring((x, 0, -0.055), (r, r), axis="x") for x, r in case])
-    mesh.body([ring((-0.034 + 0.3 * (z + 0.055), 0, z), (half, 0.0018)) for z, half in ((-0.082, 0.006), (-0.06, 0.016))])
-    mesh.body([ring((x, 0, -0.055), (r, r), axis="x") for x, r in ((-0.078, 0.004), (-0.074, 0.0065), (-0.062, 0.0078))])
+    skeg = ((-0.082, 0.006), (-0.06, 0.016))
+    mesh.body([ring((-0.034 + 0.3 * (z + 0.055), 0, z), (half, 0.0018)) for z, half in skeg])
+    hub = ((-0.078, 0.004), (-0.074, 0.0065), (-0.062, 0.0078))
+    mesh.body([ring((x, 0, -0.055), (r, r), axis="x") for x, r in hub])
     for turn in (0.0, 2 * math.pi / 3, 4 * math.pi / 3):
         mesh.add(blade(turn))
         mesh.add(blade(turn), flip=True)

@@ -129,9 +129,13 @@ def _source(program: Program) -> str:
     """The whole program as Python source."""
     planar = "yaw" in program.vessel.freedoms
     if planar and "roll" in program.vessel.freedoms:
-        raise BadInput(f"{program.vessel.name}: freedoms surge, sway, yaw or roll alone; roll with them is not there yet")
+        raise BadInput(
+            f"{program.vessel.name}: freedoms surge, sway, yaw or roll alone; roll with them is not there yet"
+        )
     kernel = "planar" if planar else "roll"
-    return "\n\n".join([_composition(program), _kernel(kernel), _kernel("common"), _kernel("filter"), _kernel("callback")])
+    return "\n\n".join(
+        [_composition(program), _kernel(kernel), _kernel("common"), _kernel("filter"), _kernel("callback")]
+    )
 
 
 def _call(i: int, effect: Effect, offset: int) -> str:
@@ -160,7 +164,7 @@ def _composition(program: Program) -> str:
         "from boatsim.program import classes_of",
         f"E = classes_of({[_address(e) for e in program.effects]!r})",
         f"Seen = motion_type({actuators!r})",
-        f"ACTUATORS, HELD = {len(actuators)}, {max(len(held), 1)}",
+        f"HELD, MEMORY = {max(len(held), 1)}, {program.memory_size}",
     ]
     wrench = ["    X = Y = K = N = 0.0"]
     flow = ["    north = east = 0.0"]

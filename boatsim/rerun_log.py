@@ -5,6 +5,8 @@ the 3D scene is drawn from the same columns. rerun is imported here and in `blue
 """
 
 import math
+import socket
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,9 +22,10 @@ from boatsim.base import Array
 from boatsim.blueprint import SIGNALS, TIMELINE, WORLD
 from boatsim.errors import BadInput
 from boatsim.recording import Notes, Recording
-from boatsim.rerun_scene import OUTBOARD, Scene
+from boatsim.rerun_scene import OUTBOARD, Scene, Solid
 
-VIEWER = "rerun+http://127.0.0.1:9876/proxy"  # where a viewer listens unless told otherwise
+PORT = 9876  # where a viewer listens unless told otherwise
+PATIENCE = 10.0  # [s] for a viewer to take what is left at the end of a run
 BUFFER = 1000  # rows kept back before they are written, unless somebody watches: small chunks make large files
 TRAIL_STEP = 0.1  # [s] between points of the path drawn
 ABOVE = 0.02  # [m] arrows and paths lie this far above the water
@@ -36,7 +39,12 @@ COLOURS = {
     "water": (150, 190, 215),
     "flagged": (230, 0, 40),
 }
-BOATS = {"recording": (30, 60, 120), "nominal": (200, 60, 50), "recalibrated": (235, 150, 20), "patched": (20, 150, 90)}
+BOATS = {
+    "recording": (50, 100, 230),
+    "nominal": (200, 60, 50),
+    "recalibrated": (235, 150, 20),
+    "patched": (20, 150, 90),
+}
 
 
 class RunLog:
@@ -50,14 +58,16 @@ class RunLog:
         self.stream = rr.RecordingStream("boatsim", send_properties=False)
         self._waiting: list[Recording] = []
         self._trail: tuple[float, Array] | None = None  # time and place of the last point of the path
-        _open(self.stream, path, live)
-        _draw_tank(self.stream, scene)
-        _draw_hull(self.stream, scene, "boat")
         self._known: set[str] = set()
+        self._heard = _open(self.stream, path, live)
+        if self._heard:
+            _draw_tank(self.stream, scene)
+            _draw_hull(self.stream, scene, "boat")
+            self._say("Norms follow when the run is over.")
 
     def chunk(self, rows: Recording) -> None:
         """Log new rows, which follow those logged before."""
-        if len(rows):
+        if len(rows) and self._heard:
             self._waiting.append(rows)
         if self.live or sum(map(len, self._waiting)) >= BUFFER:
             self._write()
@@ -65,19 +75,22 @@ class RunLog:
     def finish(self, norms: Mapping[str, Mapping[str, Any]]) -> None:
         """Add the table of norms: name -> value, unit, published, bar {low, high}, ok."""
         self._write()
-        self.stream.log("norms", rr.TextDocument(norms_table(norms), media_type="text/markdown"), static=True)
+        if self._heard:
+            self._say(norms_table(norms))
 
     def close(self) -> None:
         """Write what is waiting and end the file."""
         self._write()
-        self.stream.flush()
-        self.stream.disconnect()
+        _end(self.stream)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.close()
+
+    def _say(self, text: str) -> None:
+        self.stream.log("norms", rr.TextDocument(text, media_type="text/markdown"), static=True)
 
     def _write(self) -> None:
         if not self._waiting:
@@ -116,6 +129,16 @@ def read_rrd(path: Path | str) -> dict[str, Array]:
     return columns
 
 
+def last_time(path: Path | str) -> float:
+    """Time [s] at which a log of ours ends."""
+    last = 0
+    for chunk in RrdReader(path).stream():
+        batch = chunk.to_record_batch()
+        if TIMELINE in batch.schema.names and len(batch):
+            last = max(last, int(np.max(batch.column(TIMELINE).cast("int64"))))
+    return last * 1e-9
+
+
 def log_overlay(
     path: Path | str,
     boats: Mapping[str, Recording],
@@ -146,8 +169,7 @@ def log_overlay(
         _log_signals(stream, marked, "missing")
     names = {name for run in boats.values() for name in run.signals}
     stream.send_blueprint(blueprint.of_overlay(scene, list(boats), names, missing.signals if missing else {}))
-    stream.flush()
-    stream.disconnect()
+    _end(stream)
 
 
 def norms_table(norms: Mapping[str, Mapping[str, Any]]) -> str:
@@ -167,18 +189,40 @@ def _short(value: float | None) -> str:
     return "" if value is None else f"{value:.4g}"
 
 
-def _open(stream: rr.RecordingStream, path: Path | str | None, live: bool) -> None:
-    """Point a stream at its file, a viewer, or both."""
+def _open(stream: rr.RecordingStream, path: Path | str | None, live: bool) -> bool:
+    """Point a stream at its file, a viewer, or both; False if there is neither."""
     sinks: list[Any] = []
     if path is not None:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         sinks.append(rr.FileSink(str(path)))
     if live:
-        rr.spawn(connect=False, recording=stream)  # does nothing where a viewer listens already
-        sinks.append(rr.GrpcSink(VIEWER))
+        if not _listening():
+            rr.spawn(connect=False, recording=stream)
+        if _listening():
+            sinks.append(rr.GrpcSink(f"rerun+http://127.0.0.1:{PORT}/proxy"))
+        else:
+            warnings.warn("no rerun viewer could be started (is there a display?); the run goes on", stacklevel=3)
     if sinks:
         stream.set_sinks(*sinks)
-    stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+        stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    return bool(sinks)
+
+
+def _end(stream: rr.RecordingStream) -> None:
+    try:
+        stream.flush(timeout_sec=PATIENCE)
+    except (RuntimeError, TimeoutError, ValueError) as error:  # a viewer that was closed while the run went on
+        warnings.warn(f"the viewer did not take all of the log ({error})", stacklevel=3)
+    stream.disconnect()
+
+
+def _listening() -> bool:
+    """Whether somebody listens at the viewer's port."""
+    try:
+        socket.create_connection(("127.0.0.1", PORT), 1.0).close()
+    except OSError:
+        return False
+    return True
 
 
 def _joined(parts: Sequence[Recording]) -> Recording:
@@ -218,7 +262,7 @@ def _draw_tank(stream: rr.RecordingStream, scene: Scene) -> None:
     length, width, x, y = scene.tank
     for solid in scene.solids:
         if solid.part == "tank":
-            stream.log(f"{WORLD}/tank/{solid.name}", _mesh(solid), static=True)
+            stream.log(f"{WORLD}/tank/{solid.name}", _mesh(_surface(solid)), static=True)
     if any(solid.part == "tank" for solid in scene.solids):
         return
     corners = [(x + i * length / 2, -y + j * width / 2, ABOVE) for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1), (1, 1))]
@@ -244,7 +288,16 @@ def _draw_hull(stream: rr.RecordingStream, scene: Scene, boat: str, tint: tuple[
         stream.log(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", at, static=True)
 
 
-def _mesh(solid: Any, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
+def _surface(solid: Solid) -> Solid:
+    """Of something one can see through, such as water, only what faces up: its floor would flicker with the tank's."""
+    if solid.colour[3] >= 1.0:
+        return solid
+    corners = solid.vertices[solid.triangles]
+    upward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 1e-12
+    return solid._replace(triangles=solid.triangles[upward])
+
+
+def _mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
     """Flat-shaded triangles: rerun lights only meshes with normals."""
     corners = solid.vertices[solid.triangles]  # (T, 3, 3)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -285,7 +338,7 @@ def _log_arrows(stream: rr.RecordingStream, rows: Recording, scene: Scene) -> No
     for what in ("force", "wind"):
         if f"{what}_X_N" in rows.signals and f"{what}_Y_N" in rows.signals:
             vector = _flat(rows[f"{what}_X_N"], rows[f"{what}_Y_N"])
-            _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, 5 * ABOVE), COLOURS[what])
+            _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, 0.2 * scene.length), COLOURS[what])
 
 
 def _arrow(
@@ -299,7 +352,10 @@ def _arrow(
 ) -> None:
     """Arrows (N, 3) N in axes of the hull, one a row."""
     entity = f"{WORLD}/boat/{name}"
-    look = rr.Arrows3D.from_fields(colors=[colour], radii=[0.012 * scene.length], labels=[name.replace("_", " ")])
+    words = {"force": "total force"}.get(name, name.replace("_", " "))
+    look = rr.Arrows3D.from_fields(
+        colors=[colour], radii=[0.012 * scene.length], labels=[words], show_labels=not name.startswith("thrust")
+    )
     stream.log(entity, look, static=True)
     stream.send_columns(entity, _when(t), rr.Arrows3D.columns(vectors=scene.reach * newtons, origins=at))
 
@@ -321,7 +377,7 @@ def _log_path(
     entity = f"{WORLD}/{name}"
     if len(t) > 1:
         pairs = np.stack([points[:-1], points[1:]], axis=1)
-        stream.log(entity, rr.LineStrips3D.from_fields(colors=[colour], radii=[-1.5]), static=True)
+        stream.log(entity, rr.LineStrips3D.from_fields(colors=[colour], radii=[-2.0]), static=True)
         stream.send_columns(entity, _when(t[1:]), rr.LineStrips3D.columns(strips=list(pairs)))
     return float(t[-1]), points[-1]
 
@@ -334,7 +390,7 @@ def _log_camera(stream: rr.RecordingStream, rows: Recording) -> None:
     fresh = np.isfinite(x) & np.isfinite(y) & (np.append(True, np.diff(x) != 0) | np.append(True, np.diff(y) != 0))
     if fresh.any():
         entity = f"{WORLD}/camera"
-        stream.log(entity, rr.Points3D.from_fields(colors=[COLOURS["camera"]], radii=[-2.5]), static=True)
+        stream.log(entity, rr.Points3D.from_fields(colors=[COLOURS["camera"]], radii=[-1.2]), static=True)
         points = rr.Points3D.columns(positions=_flat(x[fresh], y[fresh], 1.5 * ABOVE))
         stream.send_columns(entity, _when(rows.t[fresh]), points)
 

@@ -43,7 +43,9 @@ class Log:
     def recording(self, name: str, notes: Notes, start: int = 0) -> Recording:
         """The rows from `start` on; the first column is time."""
         part = self.rows[start : self.count]
-        return Recording(name, part[:, 0].copy(), {n: part[:, i + 1].copy() for i, n in enumerate(self.names[1:])}, notes)
+        return Recording(
+            name, part[:, 0].copy(), {n: part[:, i + 1].copy() for i, n in enumerate(self.names[1:])}, notes
+        )
 
 
 @dataclass(frozen=True)
@@ -152,7 +154,11 @@ class Runner:
         """Camera frames since the last step. A frame carries the mean command from it to the next one."""
         frames = list(
             self.scenario.camera.film(
-                before.t, (before.x, before.y, before.psi), after.t, (after.x, after.y, after.psi), self._frame,
+                before.t,
+                (before.x, before.y, before.psi),
+                after.t,
+                (after.x, after.y, after.psi),
+                self._frame,
                 self._marks,
             )  # fmt: skip
         )
@@ -216,7 +222,10 @@ class Runner:
         """What a diagnosis of this run may know: vessel, load, values set, noise of the camera."""
         file, camera = self.scenario.file, self.scenario.camera
         per_axis = camera.mark_sd * np.hypot(camera.led_ahead, camera.button_ahead) / camera.baseline
-        noise = {"position_sd_m": float(per_axis), "heading_sd_rad": float(camera.mark_sd * np.sqrt(2) / camera.baseline)}
+        noise = {
+            "position_sd_m": float(per_axis),
+            "heading_sd_rad": float(camera.mark_sd * np.sqrt(2) / camera.baseline),
+        }
         return Notes(vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise)
 
 

@@ -17,7 +17,7 @@ RATES = {"planar": ("u_mps", "v_mps", "r_radps"), "roll": ("p_radps",)}
 
 
 def kind(vessel: Vessel) -> str:
-    """"planar" or "roll": which kernel a vessel's freedoms need."""
+    """ "planar" or "roll": which kernel a vessel's freedoms need."""
     return "planar" if "yaw" in vessel.freedoms else "roll"
 
 
@@ -79,9 +79,7 @@ class Twin:
         act, k = np.zeros(self.code.HELD), np.zeros(self.code.K)
         memory = np.zeros(self.program.memory_size)
         for _ in range(3):
-            self.code.actuate_in_place(
-                self.program.command_array(commands), memory, 1e4, self._values, self._on, act
-            )
+            self.code.actuate_in_place(self.program.command_array(commands), memory, 1e4, self._values, self._on, act)
         self.code.constants(self.program.body, self._values, self._on, k)
         y = np.array(start, dtype=float)
         y = earth_rates(y) if self.code.NQ == 3 else y

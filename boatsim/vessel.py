@@ -130,7 +130,9 @@ def load(
     own = [table["use"] for table in file.effect if "use" in table]
     for table in extra:
         if table.get("use") in own:
-            raise BadInput(f"{table['use']} is one of {called}'s own effects; change its values in [set.{table['use']}]")
+            raise BadInput(
+                f"{table['use']} is one of {called}'s own effects; change its values in [set.{table['use']}]"
+            )
     vessel = Vessel(
         called, path.parent, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam, file.draught,
         file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,

@@ -10,7 +10,7 @@ import numpy as np
 
 from boatsim.base import Array
 from boatsim.content import root
-from boatsim.errors import BadInput, BadPhysics
+from boatsim.errors import BadInput, BadPhysics, unknown_name
 from boatsim.vessel import Vessel
 
 WALL = 0.02  # [m] half of a wall's thickness
@@ -52,7 +52,7 @@ def build(
     wall_solref: tuple[float, float] | None = None,
     friction: float = 0.0,
 ) -> mujoco.MjModel:
-    """Compile the vessel in its tank, free of forces: joints x, y, psi, phi as far as its freedoms go, RK4 at `step` [s].
+    """Compile the vessel in its tank, free of forces, with joints x, y, psi, phi for its freedoms; RK4, `step` [s].
 
     No gravity: buoyancy holds heave, pitch and (where roll is free) a restoring effect stands for the rest.
     `show=False` leaves out everything that is only looked at, for speed. `wall_solref` is MuJoCo's contact solref,
@@ -124,15 +124,13 @@ def looking_at(eye: Array, target: Array) -> Array:
     """MuJoCo `xyaxes` (6,) of a camera at `eye` that looks at `target` with the horizon level."""
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, (0, 0, 1))
-    right /= np.linalg.norm(right)
+    right = right / np.linalg.norm(right)
     return np.concatenate([right, np.cross(right, forward)])
 
 
 def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> Any:
     """Attach the vessel's hull with its body origin at the CG, at its length and draught, motors and marks in place."""
-    drawing = mujoco.MjSpec.from_file(str(Path(vessel.path) / vessel.hull))
-    length, _, draught = list(drawing.numeric("drawn_for").data)
-    drawing.delete(drawing.numeric("drawn_for"))
+    drawing, (length, draught) = read_drawing(Path(vessel.path) / vessel.hull, vessel)
     stretch = vessel.length / length
     for mesh in drawing.meshes:
         if not mesh.name.startswith("outboard"):
@@ -146,6 +144,22 @@ def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> Any:
     for part in (*spec.bodies, *spec.geoms, *spec.sites):
         part.name = part.name.removeprefix("boat/")
     return spec.body("hull")
+
+
+def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float, float]]:
+    """The hull's file, and length and draught [m] it was drawn for (the vessel's own where it says nothing)."""
+    try:
+        drawing = mujoco.MjSpec.from_file(str(path))
+    except ValueError as error:
+        raise BadInput(f"{path}: no hull that MuJoCo can read: {' '.join(str(error).split())}") from None
+    if drawing.body("hull") is None:
+        raise BadInput(unknown_name(f"{path}: body", "hull", (b.name for b in drawing.bodies if b.name != "world")))
+    drawn_for = drawing.numeric("drawn_for")
+    if drawn_for is None:
+        return drawing, (vessel.length, vessel.draught)
+    length, _, draught = list(drawn_for.data)
+    drawing.delete(drawn_for)
+    return drawing, (length, draught)
 
 
 def place_fittings(drawing: mujoco.MjSpec, at: dict[str, float], shift: Array) -> None:
@@ -219,6 +233,6 @@ def remove_looks(spec: mujoco.MjSpec) -> None:
 
 def check_mass_matrix(model: mujoco.MjModel, vessel: Vessel) -> None:
     """Every lower-triangle entry of M must be stored, or added mass would be lost without a word."""
-    rows = list(range(1, model.nv + 1))
-    if list(model.M_rownnz) != rows:
-        raise BadPhysics(f"{vessel.name}: mass matrix stores {list(model.M_rownnz)} entries a row; needed {rows}")
+    stored, needed = model.M_rownnz.tolist(), list(range(1, model.nv + 1))
+    if stored != needed:
+        raise BadPhysics(f"{vessel.name}: mass matrix stores {stored} entries a row; needed {needed}")

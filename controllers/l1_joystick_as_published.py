@@ -61,7 +61,7 @@ class L1JoystickAsPublished(Controller):
     r_3: float = param(0.0, low=-5.0, high=5.0, unit="rad/s", words="yaw command of the program")
     h0: float = param(0.159, low=0.0, high=2 * pi, unit="rad", words="compass bearing at the start")
     seeded: bool = False  # item 24: heading[0] is 0 at the first sample; True: it is the first reading
-    integer_division: bool = True  # item 16: 5/7 is 0 and 99/70 is 1; mended: 5.0/7.0, 99.0/70.0
+    integer_division: bool = True  # item 16: 5/7 is 0, 99/70 is 1; mended: 5.0/7.0 (felt only if not seeded)
     surge_history: bool = True  # item 17: U_1[0] = U_1[1]; U_1[1] = U_1[0]; mended: shifted like U_2 and U_3
     sigma_sign: bool = True  # item 18: sigma adapts along +error; mended: along -error
     unscaled_disturbance: bool = True  # item 18: theta x + sigma beside the sampled input; mended: inside it
@@ -108,11 +108,10 @@ class L1JoystickAsPublished(Controller):
         return self._actuate()
 
     def estimates(self) -> dict[str, Estimate]:
-        """The seven adaptive estimates with their bounds, and the three states of the reference model."""
-        model = (self._m_surge[0], self._m_sway[0], self._m_yaw[0])
-        names = ("reference_u_mps", "reference_v_mps", "reference_r_radps")
+        """The seven adaptive estimates with their bounds, and the listing's model states, which are no velocities."""
         logged = {name: Estimate(self.estimate[name], *BOUNDS[name]) for name in BOUNDS}
-        return logged | {name: Estimate(state, nan, nan) for name, state in zip(names, model, strict=True)}
+        model = {"m_surge": self._m_surge[0], "m_sway": self._m_sway[0], "m_yaw": self._m_yaw[0]}
+        return logged | {name: Estimate(state, nan, nan) for name, state in model.items()}
 
     def _read(self, sense: Sense) -> None:
         """Means of the five readings, then surge, sway and yaw as the code takes them."""

@@ -40,18 +40,16 @@ def test_neutral_angles_of_the_four_boats(half_spacing: float, arm: float, publi
 
 @pytest.mark.parametrize("difference", [-0.6, -0.3, 0.0, 0.3, 0.6])
 def test_what_is_asked_inside_the_limits_is_what_is_given(difference: float) -> None:
-    asked = 0
-    for moment in GRID:
+    side = 1.0 if difference >= 0.0 else -1.0
+    reach = [m for m in GRID if not difference or -0.27 < m * side / abs(difference) < 0.235]
+    assert len(reach) > 10
+    for moment in reach:
         spread = difference or moment / OURS.half_spacing
-        if not -0.27 * abs(difference) < moment * (1 if difference > 0 else -1) < 0.23 * abs(difference) and difference:
-            continue  # the angle alone can not give this moment
         for surge in (-0.3 * abs(spread), 0.0, 0.3 * abs(spread)):
-            given_drive = OURS.allocate(surge, difference, moment)
-            push = OURS.push(given_drive)
+            drive = OURS.allocate(surge, difference, moment)
+            push = OURS.push(drive)
             assert (push.X, push.N) == pytest.approx((surge, moment), abs=1e-12)
-            assert given_drive.port - given_drive.starboard == pytest.approx(spread, abs=1e-12)
-            asked += 1
-    assert asked > 20
+            assert drive.port - drive.starboard == pytest.approx(spread, abs=1e-12)
 
 
 def test_sway_alone_is_the_fixed_difference_of_the_published_allocation() -> None:
@@ -93,7 +91,7 @@ def test_a_turn_at_the_limits_keeps_a_reserve_for_surge() -> None:
     assert hard.X == pytest.approx(0.0, abs=1e-12)
     back = weak.push(weak.allocate(-1.0, 0.0, 1.0))
     assert back.X < -0.1
-    assert 0.7 * hard.N < back.N < hard.N
+    assert 0.6 * hard.N < back.N < hard.N
 
 
 DEMANDS = {
@@ -125,12 +123,12 @@ def test_no_demand_exceeds_the_motors_or_the_servos(
 
 
 def test_drive_is_continuous_while_the_sway_keeps_its_side() -> None:
-    step = 0.002
+    step = 0.002  # [N m], [N]; the steepest slope is 1 / half_spacing = 4.3 N per N m
     for surge in (-0.3, 0.0, 0.2):
         for difference in (0.06, 0.3, 0.6):
             line = [OURS.allocate(surge, difference, -0.4 + step * i, 0.1) for i in range(401)]
             for a, b in pairwise(line):
-                assert max(abs(p - q) for p, q in zip(OURS.push(a), OURS.push(b), strict=True)) < 3 * step
+                assert max(abs(p - q) for p, q in zip(OURS.push(a), OURS.push(b), strict=True)) < 5 * step
                 assert max(abs(a.port - b.port), abs(a.starboard - b.starboard)) < 5 * step
         for moment in (-0.2, -0.05, 0.0, 0.1):
             line = [OURS.allocate(surge, 0.06 + step * i, moment, 0.1) for i in range(420)]

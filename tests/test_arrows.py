@@ -13,7 +13,7 @@ LAYERS = (  # a module may import from its own layer and from the lines above it
     "vessel scenario sensors margins",
     "program world native",
     "engine twin",
-    "run metrics rerun_log blueprint env",
+    "run metrics rerun_log rerun_scene blueprint env",
     "diagnose",
     "cli",
 )

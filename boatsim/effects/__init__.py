@@ -1,0 +1,1 @@
+"""The shelf: one effect per file, found by its name."""

@@ -1,8 +1,8 @@
 """Cross-flow drag: every section of the hull resists the water that crosses it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import sqrt
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 from numba import njit
 
@@ -63,11 +63,11 @@ class CrossFlowDrag(Force):
     surge_quadratic: float = param(
         0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="-X_u|u| that goes with it", fit=True, spread=4.0
     )
-    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="waterline length; 0: the vessel's own")
-    draught: float = param(0.0, low=0.0, high=50.0, unit="m", words="draught; 0: the vessel's own")
+    length: float = param(
+        0.0, low=0.0, high=500.0, unit="m", words="waterline length; 0: the vessel's own", follows="vessel.length"
+    )
+    draught: float = param(
+        0.0, low=0.0, high=50.0, unit="m", words="draught; 0: the vessel's own", follows="vessel.draught"
+    )
     centre: float = param(0.0, low=-250.0, high=250.0, unit="m", words="mid-length ahead of the origin of motion")
     linear: float = param(0.0, low=0.0, high=1e9, unit="N s/m^2", words="linear sectional damping, for very slow flow")
-
-    def completed(self, vessel: Any) -> Self:
-        """Length and draught of the vessel where none is given."""
-        return replace(self, length=self.length or vessel.length, draught=self.draught or vessel.draught)

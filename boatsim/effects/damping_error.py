@@ -1,12 +1,11 @@
 """Damping error: the linear damping coefficients are far from their stated values."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.base import Force, Wrench, param
-from boatsim.errors import BadInput
 
 
 @njit(inline="always")
@@ -40,14 +39,7 @@ class DampingError(Force):
     roll_factor: float = param(
         1.0, low=0.1, high=5.0, unit="", words="roll", fit=True, spread=0.4, axis="roll", absent=1.0
     )
-    surge: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="the vessel's; filled in")
-    sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="the vessel's; filled in")
-    yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's; filled in")
-    roll: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's; filled in")
-
-    def completed(self, vessel: Any) -> Self:
-        """Damping of the vessel; raises BadInput if it has no linear damping."""
-        own = vessel.effect("linear_damping")
-        if own is None:
-            raise BadInput(f"{vessel.name}: damping_error needs a vessel with linear_damping")
-        return replace(self, **{n: getattr(own, n) for n in ("surge", "sway", "yaw", "roll")})
+    surge: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.surge")
+    sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.sway")
+    yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
+    roll: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.roll")

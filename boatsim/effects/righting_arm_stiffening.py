@@ -1,12 +1,11 @@
 """Righting arm stiffening: the righting moment is not in proportion to the heel."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.base import Force, Wrench, param
-from boatsim.errors import BadInput
 
 
 @njit(inline="always")
@@ -35,11 +34,6 @@ class RightingArmStiffening(Force):
         spread=3.0,
         axis="roll",
     )
-    stiffness: float = param(0.0, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM; filled in")
-
-    def completed(self, vessel: Any) -> Self:
-        """Stiffness of the vessel's own righting arm; raises BadInput if it has none."""
-        own = vessel.effect("righting_arm")
-        if own is None:
-            raise BadInput(f"{vessel.name}: righting_arm_stiffening needs a vessel with righting_arm")
-        return replace(self, stiffness=own.stiffness)
+    stiffness: float = param(
+        0.0, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM", follows="righting_arm.stiffness"
+    )

@@ -1,13 +1,12 @@
 """Shallow water: a bottom near the keel raises added mass and cross-flow drag in sway and yaw."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.base import Force, Inertia, Mass, Wrench, param
 from boatsim.effects import added_mass, cross_flow_drag
-from boatsim.errors import BadInput
 
 
 @njit(inline="always")
@@ -40,22 +39,17 @@ class ShallowWater(Inertia, Force):
 
     factor: float = param(1.0, low=1.0, high=10.0, unit="", words="k of shallow water; 1 in deep water", absent=1.0)
     surge: float = param(0.0, low=0.0, high=0.0, unit="kg", words="surge added mass is not raised")
-    sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the vessel's -Y_vdot; filled in")
-    sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="where it acts; filled in")
-    yaw: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="the vessel's -N_rdot; filled in")
-    coriolis: float = param(1.0, low=0.0, high=1.0, unit="", words="the vessel's share; filled in")
-    section_drag_coefficient: float = param(0.0, low=0.0, high=10.0, unit="", words="the vessel's; filled in")
+    sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the vessel's -Y_vdot", follows="added_mass.sway")
+    sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="where it acts", follows="added_mass.sway_at")
+    yaw: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="the vessel's -N_rdot", follows="added_mass.yaw")
+    coriolis: float = param(1.0, low=0.0, high=1.0, unit="", words="the vessel's share", follows="added_mass.coriolis")
+    section_drag_coefficient: float = param(
+        0.0, low=0.0, high=10.0, unit="", words="the vessel's", follows="cross_flow_drag.section_drag_coefficient"
+    )
     surge_quadratic: float = param(0.0, low=0.0, high=0.0, unit="N s^2/m^2", words="surge drag is not raised")
-    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="the vessel's; filled in")
-    draught: float = param(0.0, low=0.0, high=50.0, unit="m", words="the vessel's; filled in")
-    centre: float = param(0.0, low=-250.0, high=250.0, unit="m", words="the vessel's; filled in")
-    linear: float = param(0.0, low=0.0, high=1e9, unit="N s/m^2", words="the vessel's; filled in")
-
-    def completed(self, vessel: Any) -> Self:
-        """Added mass and drag of the vessel; raises BadInput if it has neither."""
-        mass, drag = vessel.effect("added_mass"), vessel.effect("cross_flow_drag")
-        if mass is None or drag is None:
-            raise BadInput(f"{vessel.name}: shallow_water needs a vessel with added_mass and cross_flow_drag")
-        taken = {n: getattr(mass, n) for n in ("sway", "sway_at", "yaw", "coriolis")}
-        taken |= {n: getattr(drag, n) for n in ("section_drag_coefficient", "length", "draught", "centre", "linear")}
-        return replace(self, **taken)
+    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="the vessel's", follows="cross_flow_drag.length")
+    draught: float = param(0.0, low=0.0, high=50.0, unit="m", words="the vessel's", follows="cross_flow_drag.draught")
+    centre: float = param(0.0, low=-250.0, high=250.0, unit="m", words="the vessel's", follows="cross_flow_drag.centre")
+    linear: float = param(
+        0.0, low=0.0, high=1e9, unit="N s/m^2", words="the vessel's", follows="cross_flow_drag.linear"
+    )

@@ -1,1 +1,200 @@
-"""Filter (to come)."""
+"""Kalman filter over a recording with one slowly varying unmodelled force per freedom, and its smoother.
+
+State z = (positions, earth-axes rates, body-axes latent forces), n = 3 NQ. Measured channels are coded: 0 .. NQ-1 a
+position, NQ .. 2 NQ-1 a body-axes rate. Measurements are taken one at a time, so any of them may be missing (nan).
+"""
+
+from math import cos, exp, log, sin, sqrt
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from boatsim.base import Array
+from boatsim.kernels.laws import HELD, MEMORY, actuate
+from boatsim.kernels.planar import NQ, K, constants, slopes, step_in_place
+
+NY = 2 * NQ
+NZ = 3 * NQ
+GATE = 5.0  # [sd] a measurement further off is taken for an outlier: no update, a bounded penalty
+SETTLE = 1e4  # [s] longer than any actuator takes
+
+
+@njit(error_model="numpy", cache=True)
+def predict(
+    t: float, h: float, substeps: int, y: Array, command: Array, memory: Array, p: Array, on: Any, k: Array,
+    force: Array, act: Array,
+) -> None:  # fmt: skip
+    """Carry y (2 NQ,) over one sample interval h with the command held and the latent force constant, in place."""
+    dt = h / substeps
+    for j in range(substeps):
+        actuate(command, memory, dt, p, on, act)
+        step_in_place(t + j * dt, y, dt, act, p, on, k, force)
+
+
+@njit(error_model="numpy", cache=True)
+def transition(
+    t: float, h: float, z: Array, act: Array, p: Array, on: Any, k: Array, decay: float, F: Array, work: Array
+) -> None:
+    """Linearised transition F (n, n) over h: third-order exponential of the numerical Jacobian of the accelerations."""
+    base, moved = work[0, :NQ], work[1, :NQ]
+    y, force = z[:NY].copy(), z[NY:].copy()
+    slopes(t, y, act, p, on, k, force, base)
+    A = np.zeros((NZ, NZ))
+    for i in range(NQ):
+        A[i, NQ + i] = 1.0
+    for j in range(NZ):
+        step = 1e-6
+        if j < NY:
+            y[j] += step
+            slopes(t, y, act, p, on, k, force, moved)
+            y[j] -= step
+        else:
+            # forces enter linearly; a step of their own size would vanish beside large ones
+            step = 1e-3 * (1.0 + abs(force[j - NY]))
+            force[j - NY] += step
+            slopes(t, y, act, p, on, k, force, moved)
+            force[j - NY] -= step
+        for i in range(NQ):
+            A[NQ + i, j] = (moved[i] - base[i]) / step
+    Ah = A * h
+    A2 = Ah @ Ah
+    F[:] = Ah + 0.5 * A2 + (A2 @ Ah) / 6.0
+    for i in range(NZ):
+        F[i, i] += 1.0
+    for i in range(NY, NZ):
+        F[i, i] = decay
+
+
+@njit(error_model="numpy", cache=True)
+def observe(z: Array, code: int, row: Array) -> float:
+    """Expected value of one channel; fills its row (n,) of the measurement matrix."""
+    row[:] = 0.0
+    if code < NQ:
+        row[code] = 1.0
+        return float(z[code])
+    if NQ == 1 or code == NY - 1:
+        row[code] = 1.0
+        return float(z[code])
+    c, s = cos(z[2]), sin(z[2])
+    xd, yd = z[NQ], z[NQ + 1]
+    if code == NQ:  # u
+        row[NQ], row[NQ + 1], row[2] = c, s, c * yd - s * xd
+        return float(c * xd + s * yd)
+    row[NQ], row[NQ + 1], row[2] = -s, c, -s * yd - c * xd
+    return float(c * yd - s * xd)
+
+
+@njit(error_model="numpy", cache=True)
+def kalman(
+    times: Array, measured: Array, codes: Any, commands: Array, max_step: float, body: Array, p: Array, on: Any,
+    sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, full: bool, gains: Array, scale: Array, white: Array,
+    keep: bool, means: Array, covariances: Array, transitions: Array, predicted: Array,
+) -> float:  # fmt: skip
+    """One pass. measured (N, C), nan where missing; noise (C,) and sigma (NQ,) are variances of sensors and force.
+
+    full: compute gains (N, C, n) and inverse innovation sd `scale` (N, C), 0 where missing or an outlier; otherwise
+    reuse them. white (N, C) gets the whitened innovations. keep: store what the smoother needs. Returns log likelihood.
+    """
+    k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
+    constants(body, p, on, k)
+    for _ in range(3):
+        actuate(commands[0], memory, SETTLE, p, on, act)
+    z, P = z0.copy(), P0.copy()
+    F, row, work = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((2, NQ))
+    likelihood = 0.0
+    if keep:
+        means[0], covariances[0], predicted[0] = z, P, z
+    for i in range(1, len(times)):
+        h = times[i] - times[i - 1]
+        decay = exp(-h / tau)
+        if full:
+            transition(times[i - 1], h, z, act, p, on, k, decay, F, work)
+            P = F @ P @ F.T
+            for j in range(NQ):
+                P[NY + j, NY + j] += sigma[j] * (1.0 - decay * decay)
+        y, force = z[:NY].copy(), z[NY:].copy()
+        predict(
+            times[i - 1], h, max(1, int(np.ceil(h / max_step - 1e-9))), y, commands[i - 1], memory, p, on, k, force, act
+        )
+        z[:NY] = y
+        z[NY:] *= decay
+        if keep:
+            predicted[i], transitions[i] = z, F
+        for c in range(measured.shape[1]):
+            if np.isnan(measured[i, c]):
+                scale[i, c] = white[i, c] = 0.0
+                continue
+            error = measured[i, c] - observe(z, codes[c], row)
+            if full:
+                Ph = P @ row
+                variance = row @ Ph + noise[c]
+                scale[i, c] = 1.0 / sqrt(variance)
+                gains[i, c] = Ph / variance
+                likelihood += log(scale[i, c])
+                if abs(error) * scale[i, c] > GATE:
+                    scale[i, c] = 0.0
+            if scale[i, c] == 0.0:
+                white[i, c] = 0.0
+                likelihood -= 0.5 * GATE * GATE
+                continue
+            white[i, c] = error * scale[i, c]
+            likelihood -= 0.5 * white[i, c] ** 2
+            z += gains[i, c] * error
+            if full:
+                P -= np.outer(gains[i, c], Ph)
+        if full:
+            P = 0.5 * (P + P.T)
+        if keep:
+            means[i], covariances[i] = z, P
+    return likelihood
+
+
+@njit(error_model="numpy", cache=True)
+def smooth(means: Array, covariances: Array, transitions: Array, predicted: Array, sigma: Array, times: Array, tau: float) -> None:  # fmt: skip
+    """Rauch-Tung-Striebel smoother, in place on means (N, n) and covariances (N, n, n)."""
+    for i in range(len(times) - 2, -1, -1):
+        F = transitions[i + 1]
+        decay = exp(-(times[i + 1] - times[i]) / tau)
+        ahead = F @ covariances[i] @ F.T
+        for j in range(NQ):
+            ahead[NY + j, NY + j] += sigma[j] * (1.0 - decay * decay)
+        for j in range(NZ):
+            ahead[j, j] *= 1.0 + 1e-9  # positions and rates are driven through the force alone: keep it invertible
+            ahead[j, j] += 1e-18
+        G = np.linalg.solve(ahead, F @ covariances[i]).T
+        means[i] += G @ (means[i + 1] - predicted[i + 1])
+        covariances[i] += G @ (covariances[i + 1] - ahead) @ G.T
+
+
+@njit(error_model="numpy", cache=True)
+def free_runs(
+    times: Array, commands: Array, max_step: float, body: Array, p: Array, on: Any, starts: Any, ends: Any, states: Array,
+    out: Array,
+) -> None:  # fmt: skip
+    """Free runs from row starts[j] to ends[j] out of states[j] (2 NQ,), driven by the commands alone; fills out (N, 2 NQ).
+
+    Actuator memory runs from the first row on, latent forces are zero. Rows of several runs may touch: out is (S, N, 2 NQ).
+    """
+    k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
+    constants(body, p, on, k)
+    for _ in range(3):
+        actuate(commands[0], memory, SETTLE, p, on, act)
+    nothing = np.zeros(NQ)
+    saved = np.zeros((len(times), MEMORY))
+    for i in range(len(times) - 1):
+        saved[i] = memory
+        h = times[i + 1] - times[i]
+        n = max(1, int(np.ceil(h / max_step - 1e-9)))
+        for j in range(n):
+            actuate(commands[i], memory, h / n, p, on, act)
+    for run in range(len(starts)):
+        y = states[run].copy()
+        memory[:] = saved[starts[run]]
+        out[run, starts[run]] = y
+        for i in range(starts[run], ends[run]):
+            h = times[i + 1] - times[i]
+            predict(
+                times[i], h, max(1, int(np.ceil(h / max_step - 1e-9))), y, commands[i], memory, p, on, k, nothing, act
+            )
+            out[run, i + 1] = y

@@ -8,8 +8,8 @@ from typing import Any
 
 from boatsim.base import Array, Wrench
 
-ACTUATORS = 0  # number of actuators
 HELD = 0  # length of act
+MEMORY = 1  # floats that all channels together remember
 
 
 def sees(  # noqa: PLR0913

@@ -32,7 +32,7 @@ def constants(body: Array, p: Array, on: Any, k: Array) -> None:
     k[2], k[3], k[4] = m66 / determinant, -m26 / determinant, m22 / determinant
 
 
-@njit(inline="always", error_model="numpy")
+@njit(error_model="numpy", cache=True)
 def accelerations(t: float, y: Any, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
     """Earth-axes accelerations (x'', y'', psi''); extra is a further body force (X, Y, N)."""
     c, s, r = cos(y[2]), sin(y[2]), y[5]
@@ -81,7 +81,7 @@ def step_in_place(t: float, y: Array, dt: float, act: Array, p: Array, on: Any, 
 
 @njit(error_model="numpy", cache=True)
 def steps(t: float, y: Array, dt: float, n: int, act: Array, p: Array, on: Any, k: Array) -> None:
-    """n steps with the actuators held, in place."""
+    """N steps with the actuators held, in place."""
     z = (y[0], y[1], y[2], y[3], y[4], y[5])
     for i in range(n):
         z = step(t + i * dt, z, dt, act, p, on, k, (0.0, 0.0, 0.0))
@@ -100,7 +100,7 @@ def forces(t: float, y: Array, act: Array, p: Array, on: Any) -> tuple[float, fl
     return w.X, w.Y, w.N
 
 
-@njit(inline="always", error_model="numpy")
+@njit(error_model="numpy", cache=True)
 def slopes(t: float, y: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array) -> None:
     """Accelerations on arrays, for linearisation."""
     z = (y[0], y[1], y[2], y[3], y[4], y[5])

@@ -25,7 +25,7 @@ def constants(body: Array, p: Array, on: Any, k: Array) -> None:
     k[0] = 1.0 / (body[1] + k[1])
 
 
-@njit(inline="always", error_model="numpy")
+@njit(error_model="numpy", cache=True)
 def accelerations(t: float, y: Any, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
     """Roll acceleration phi''; extra is a further moment (K,)."""
     w = wrench(sees(t, 0.0, 0.0, 0.0, y[0], 0.0, 0.0, y[1], 0.0, 0.0, 0.0, 1.0, 0.0, act), p, on)
@@ -55,7 +55,7 @@ def step_in_place(t: float, y: Array, dt: float, act: Array, p: Array, on: Any, 
 
 @njit(error_model="numpy", cache=True)
 def steps(t: float, y: Array, dt: float, n: int, act: Array, p: Array, on: Any, k: Array) -> None:
-    """n steps with the actuators held, in place."""
+    """N steps with the actuators held, in place."""
     z = (y[0], y[1])
     for i in range(n):
         z = step(t + i * dt, z, dt, act, p, on, k, (0.0,))
@@ -69,7 +69,7 @@ def forces(t: float, y: Array, act: Array, p: Array, on: Any) -> tuple[float]:
     return (w.K,)
 
 
-@njit(inline="always", error_model="numpy")
+@njit(error_model="numpy", cache=True)
 def slopes(t: float, y: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array) -> None:
     """Accelerations on arrays, for linearisation."""
     out[0] = accelerations(t, (y[0], y[1]), act, p, on, k, (extra[0],))

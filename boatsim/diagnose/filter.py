@@ -1,0 +1,204 @@
+"""Recordings on a vessel's compiled filter: likelihood of parameters, smoothed states, missing force, free runs.
+
+The model has one slowly varying latent force per freedom (Ornstein-Uhlenbeck, after Kristensen et al. 2004, grey-box
+modelling). It stands for whatever is not modelled, so that parameter estimates are not bent to absorb it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from boatsim.base import AXES, Array
+from boatsim.errors import BadInput
+from boatsim.program import Program
+from boatsim.recording import Recording
+from boatsim.run import commands_of
+from boatsim.vessel import Vessel
+
+MAX_STEP = 0.05  # [s] largest integration step between samples
+CHANNELS = {  # measured signal -> (noise family, freedom, rate or position)
+    "x_m": ("position_sd_m", "surge", 0),
+    "y_m": ("position_sd_m", "sway", 0),
+    "psi_rad": ("heading_sd_rad", "yaw", 0),
+    "phi_rad": ("roll_sd_rad", "roll", 0),
+    "u_mps": ("speed_sd_mps", "surge", 1),
+    "v_mps": ("speed_sd_mps", "sway", 1),
+    "r_radps": ("yaw_rate_sd_radps", "yaw", 1),
+    "p_radps": ("roll_rate_sd_radps", "roll", 1),
+}
+NOISE = {  # [m, rad, m/s, rad/s] where neither recording nor vessel states one: fitted from here with a wide prior
+    "position_sd_m": 0.01,
+    "heading_sd_rad": 0.01,
+    "roll_sd_rad": 0.002,
+    "speed_sd_mps": 0.02,
+    "yaw_rate_sd_radps": 0.005,
+    "roll_rate_sd_radps": 0.005,
+}
+
+
+@dataclass(frozen=True)
+class Levels:
+    """How noisy sensors and water are: one set for all recordings of a diagnosis."""
+
+    force: Array  # (NQ,) rms of the latent force [N, N m]
+    time_constant: float  # [s] of the latent force
+    sensors: Mapping[str, float]  # standard deviation by noise family
+
+
+@dataclass
+class Track:
+    """One recording laid on a program: what was measured and commanded, and this run's own parameter values."""
+
+    name: str
+    program: Program
+    times: Array  # (N,) s
+    measured: Array  # (N, C), nan where missing
+    families: tuple[str, ...]  # noise family of each channel
+    signals: tuple[str, ...]
+    codes: Array  # (C,) integers
+    commands: Array  # (N, K)
+    values: Array  # nominal parameters of this run
+    body: Array
+    start: Array = field(init=False)  # (n,) first state
+    spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
+    _store: Any = field(init=False, repr=False, default=None)
+
+    def __post_init__(self) -> None:
+        nq = self.program.module.NQ
+        self.start, self.spread = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq))
+        self._gains = np.zeros((*self.measured.shape, 3 * nq))
+        self._scale, self._white = np.zeros(self.measured.shape), np.zeros(self.measured.shape)
+        for c, code in enumerate(self.codes):
+            good = np.isfinite(self.measured[:, c])
+            if code < nq and good.any():
+                y, t = self.measured[good, c], self.times[good]
+                self.start[code] = y[0]
+                gap = np.searchsorted(t, t + max(1.0, 4 * float(np.median(np.diff(t))))).clip(max=len(t) - 1)
+                far = gap > np.arange(len(t))
+                speed = (y[gap] - y)[far] / (t[gap] - t)[far]
+                self.spread[nq + code, nq + code] = float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
+        if nq == 3:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
+            self.spread[3, 3] = self.spread[4, 4] = max(self.spread[3, 3], self.spread[4, 4])
+
+    def likelihood(self, values: Array, on: Array, levels: Levels, full: bool = True) -> float:
+        """Log likelihood of parameters; `full=False` keeps gains, outliers and scale of the last full pass."""
+        return self._pass(values, on, levels, full, None)
+
+    @property
+    def white(self) -> Array:
+        """Whitened prediction errors (N * C,) of the last pass."""
+        return self._white.ravel()
+
+    def smoothed(self, values: Array, on: Array, levels: Levels) -> tuple[Array, Array]:
+        """Smoothed states (N, n) and their covariances (N, n, n)."""
+        n, dim = len(self.times), len(self.start)
+        keep = np.zeros((n, dim)), np.zeros((n, dim, dim)), np.zeros((n, dim, dim)), np.zeros((n, dim))
+        self._pass(values, on, levels, True, keep)
+        means, covariances, transitions, predicted = keep
+        self.program.module.smooth(
+            means, covariances, transitions, predicted, levels.force**2, self.times, levels.time_constant
+        )
+        return means, covariances
+
+    def free_runs(self, values: Array, on: Array, levels: Levels, horizon: float) -> list[tuple[int, Array]]:
+        """(first row, states (M, 2 NQ)) of free runs of `horizon` s, each started at its smoothed state.
+
+        Starts lie every horizon from the first row; a rest shorter than the horizon is left out.
+        """
+        means, _ = self.smoothed(values, on, levels)
+        starts, ends = segments(self.times, horizon)
+        if not starts:
+            return []
+        nq = self.program.module.NQ
+        out = np.full((len(starts), len(self.times), 2 * nq), np.nan)
+        states = np.ascontiguousarray(means[starts, : 2 * nq])
+        self.program.module.free_runs(
+            self.times, self.commands, MAX_STEP, self.body, values, on, np.array(starts), np.array(ends), states, out
+        )
+        return [(a, out[i, a : b + 1]) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
+
+    def _pass(self, values: Array, on: Array, levels: Levels, full: bool, keep: Any) -> float:
+        nq = self.program.module.NQ
+        noise = np.array([levels.sensors[f] ** 2 for f in self.families])
+        covariance = self.spread.copy()
+        for c, code in enumerate(self.codes):
+            if code < nq:
+                covariance[code, code] = noise[c]
+        for i in range(nq):
+            covariance[2 * nq + i, 2 * nq + i] = levels.force[i] ** 2
+            if covariance[nq + i, nq + i] == 0.0:
+                covariance[nq + i, nq + i] = 1.0
+        means, covariances, transitions, predicted = keep or self._nothing()
+        found = self.program.module.kalman(
+            self.times, self.measured, self.codes, self.commands, MAX_STEP, self.body, values, on, levels.force**2,
+            levels.time_constant, noise, self.start, covariance, full, self._gains, self._scale, self._white,
+            keep is not None, means, covariances, transitions, predicted,
+        )  # fmt: skip
+        if full:
+            self._constant = found + 0.5 * float(np.sum(self._white**2))
+            return float(found)
+        return float(self._constant - 0.5 * np.sum(self._white**2))
+
+    def _nothing(self) -> Any:
+        if self._store is None:
+            self._store = np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))
+        return self._store
+
+
+def segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
+    """Rows at which free runs start and end: every horizon from the first row, shorter rests left out."""
+    starts, ends = [], []
+    begin = float(times[0])
+    step = float(np.median(np.diff(times)))
+    while begin + horizon <= times[-1] + 0.5 * step:
+        a, b = int(np.argmin(abs(times - begin))), int(np.argmin(abs(times - begin - horizon)))
+        if b > a:
+            starts.append(a)
+            ends.append(b)
+        begin += horizon
+    return starts, ends
+
+
+def axes_of(vessel: Vessel) -> tuple[str, ...]:
+    """Names of the freedoms in the filter's order."""
+    return tuple(a for a in AXES if a in vessel.freedoms)
+
+
+def track(recording: Recording, program: Program) -> Track:
+    """Lay a recording on a program. Raises BadInput if nothing was measured that the vessel's freedoms explain."""
+    vessel = program.vessel
+    axes = axes_of(vessel)
+    found = [(n, *CHANNELS[n]) for n in CHANNELS if n in recording.signals and CHANNELS[n][1] in axes]
+    if not any(rate == 0 for *_, rate in found):
+        wanted = [n for n, (_, axis, rate) in CHANNELS.items() if axis in axes and rate == 0]
+        raise BadInput(f"{recording.path or recording.name}: none of {', '.join(wanted)} in it, which {vessel.name} moves")
+    codes = np.array([axes.index(axis) + rate * len(axes) for _, _, axis, rate in found])
+    measured = np.column_stack([recording.signals[n] for n, *_ in found])
+    return Track(
+        recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
+        tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes,
+        np.ascontiguousarray(_commands(recording, vessel)), program.values(), program.body,
+    )  # fmt: skip
+
+
+def _commands(recording: Recording, vessel: Vessel) -> Array:
+    """(N, K) commands; a vessel without channels gets one column of zeros."""
+    if not vessel.commands:
+        return np.zeros((len(recording), 1))
+    return commands_of(recording, vessel.commands)
+
+
+def nominal_levels(vessel: Vessel, recordings: Sequence[Recording]) -> Levels:
+    """What is stated: ambient force and sensor noise of the recordings, else of the vessel, else general values."""
+    axes = axes_of(vessel)
+    force = np.array([vessel.diagnosis.ambient.get(a, 0.0) for a in axes])
+    stated = recordings[0].notes.ambient
+    if "axes" in stated and "force_rms" in stated:
+        given = dict(zip(stated["axes"], np.atleast_1d(stated["force_rms"]).tolist(), strict=False))
+        force = np.array([given.get(a, f) for a, f in zip(axes, force, strict=True)])
+    if not (force > 0).all():
+        raise BadInput(f"{vessel.name}: no ambient force stated for {axes[int(np.argmin(force))]}; [diagnosis] ambient needs it")
+    noise = {**NOISE, **vessel.diagnosis.noise, **recordings[0].notes.noise}
+    return Levels(force, float(stated.get("time_constant_s", vessel.diagnosis.time_constant)), noise)

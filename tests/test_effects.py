@@ -1,0 +1,448 @@
+"""Laws that hold for every effect on the shelf, then each effect alone against its closed form."""
+
+import inspect
+import re
+import sys
+from dataclasses import replace
+from itertools import pairwise
+from math import cos, exp, hypot, pi, sin
+from typing import Any
+
+import boats
+import numpy as np
+import pytest
+
+from boatsim import content, vessel
+from boatsim.base import AXES, Array, Channel, Effect, Flow, Force, Inertia, motion
+from boatsim.effects.added_mass import AddedMass
+from boatsim.effects.cross_flow_drag import CrossFlowDrag
+from boatsim.effects.cubic_damping import CubicDamping
+from boatsim.effects.current import Current
+from boatsim.effects.damping_error import DampingError
+from boatsim.effects.fan_wind import AIR_DENSITY, FanWind
+from boatsim.effects.linear_damping import LinearDamping
+from boatsim.effects.outboards import Outboards
+from boatsim.effects.pwm_thrust import PwmThrust
+from boatsim.effects.quadratic_damping import QuadraticDamping
+from boatsim.effects.righting_arm import RightingArm
+from boatsim.effects.righting_arm_stiffening import RightingArmStiffening
+from boatsim.effects.servo import Servo
+from boatsim.effects.shallow_water import ShallowWater
+from boatsim.effects.steering_offset import SteeringOffset
+from boatsim.effects.surge_drag import SurgeDrag
+from boatsim.effects.thrust_gain_error import ThrustGainError
+from boatsim.effects.thrust_imbalance import ThrustImbalance
+from boatsim.effects.thrust_lag import ThrustLag
+from boatsim.effects.weak_reverse import WeakReverse
+from boatsim.effects.wind import Wind
+from boatsim.errors import BadInput
+from boatsim.program import Program
+
+SHELF: dict[str, type[Effect]] = {name: content.load_class("effect", name) for name in content.names("effect")}
+FORCES = [n for n, e in SHELF.items() if issubclass(e, Force)]
+CHANNELS = [n for n, e in SHELF.items() if issubclass(e, Channel)]
+FLOWS = [n for n, e in SHELF.items() if issubclass(e, Flow)]
+INERTIAS = [n for n, e in SHELF.items() if issubclass(e, Inertia)]
+SUSPECTS = [n for n, e in SHELF.items() if any(p.fit for p in e.params().values())]
+
+# What a mirror at the boat's plane of symmetry does. A parameter that points to starboard or clockwise changes its sign:
+# name it here when an effect brings a new one. Pairs named port and starboard change places.
+TO_STARBOARD = {"toward", "east", "list", "fraction"}
+TURNS_SIGN = {"y", "psi", "phi", "v", "vr", "p", "r", "sin_psi"}  # of a motion
+SI = {"rad", "m", "kg", "s", "N"}
+
+
+def drawn(kind: type[Effect], seed: int) -> Any:
+    """An effect with random parameters, none of them zero."""
+    rng = np.random.default_rng(seed)
+    return kind(**{n: float(rng.uniform(max(p.low, -1.5), min(p.high, 2.0))) for n, p in kind.params().items()})
+
+
+def drawn_motion(seed: int) -> dict[str, float]:
+    """A random motion with two outboards."""
+    rng = np.random.default_rng(seed)
+    names = ("psi", "phi", "u", "v", "p", "r", "thrust_port_N", "thrust_starboard_N")
+    return {n: float(a) for n, a in zip(names, rng.uniform(-1.0, 1.0, 8), strict=True)} | {
+        "steer_port_rad": float(rng.uniform(-0.8, 0.8)),
+        "steer_starboard_rad": float(rng.uniform(-0.8, 0.8)),
+    }
+
+
+def swapped(name: str) -> str:
+    """The other side's name."""
+    if "port" in name:
+        return name.replace("port", "starboard")
+    return name.replace("starboard", "port")
+
+
+def mirrored_motion(given: dict[str, float]) -> dict[str, float]:
+    """The motion seen in the mirror; steering angles change place and sign."""
+    return {swapped(n): -a if n in TURNS_SIGN or n.startswith("steer") else a for n, a in given.items()}
+
+
+def mirrored(effect: Any) -> Any:
+    """The effect seen in the mirror."""
+    kind = type(effect)
+    image = {}
+    for name in kind.params():
+        steers = swapped(name) != name and getattr(kind, "acts_on", "") == "steer"
+        image[swapped(name)] = (-1.0 if name in TO_STARBOARD or steers else 1.0) * getattr(effect, name)
+    return replace(effect, **image)
+
+
+def on_a_vessel(effect: Effect) -> Any:
+    """The effect on the first vessel that can take it."""
+    for name in content.names("vessel"):
+        try:
+            return effect.completed(vessel.load(name))
+        except BadInput:
+            continue
+    raise AssertionError(f"no vessel can take {effect.name()}")
+
+
+def stepped(effect: Any, commands: list[float], dt: float, side: float = 0.0, source: float = 0.0) -> list[float]:
+    """What a channel makes of commands held for dt [s] each, from a memory at zero."""
+    memory = np.zeros(max(type(effect).slots, 1))
+    return [type(effect).channel(x, side, source, memory, 0, dt, effect.values()) for x in commands]
+
+
+# Laws of the whole shelf
+
+
+@pytest.mark.parametrize("name", FORCES)
+@pytest.mark.parametrize("seed", range(5))
+def test_mirror_image_of_the_motion_gives_the_mirror_image_of_the_force(name: str, seed: int) -> None:
+    effect, given = drawn(SHELF[name], seed), drawn_motion(seed)
+    seen = effect.wrench(motion(current=(0.2, 0.1), **given))
+    image = mirrored(effect).wrench(motion(current=(0.2, -0.1), **mirrored_motion(given)))
+    assert any(abs(part) > 1e-6 for part in seen)
+    assert image == pytest.approx((seen.X, -seen.Y, -seen.K, -seen.N), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", CHANNELS)
+@pytest.mark.parametrize("seed", range(5))
+def test_mirror_image_of_a_command_gives_the_mirror_image_of_the_signal(name: str, seed: int) -> None:
+    effect = drawn(SHELF[name], seed)
+    sign = -1.0 if type(effect).acts_on == "steer" else 1.0
+    rng = np.random.default_rng(seed)
+    commands, source = list(rng.uniform(-1.0, 1.0, 8)), float(rng.uniform(-200.0, 200.0))
+    port = stepped(effect, commands, 0.05, -1.0, source)
+    starboard = stepped(mirrored(effect), [sign * x for x in commands], 0.05, 1.0, source)
+    assert starboard == pytest.approx([sign * y for y in port], rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", FLOWS)
+def test_mirror_image_of_a_flow(name: str) -> None:
+    effect = drawn(SHELF[name], 0)
+    north, east = type(effect).flow(effect.values())
+    assert type(effect).flow(mirrored(effect).values()) == pytest.approx((north, -east))
+
+
+@pytest.mark.parametrize("name", INERTIAS)
+def test_inertia_is_symmetric_and_takes_no_energy(name: str) -> None:
+    mass = drawn(SHELF[name], 1).mass()
+    assert mass == pytest.approx(mass.T)
+    assert np.linalg.eigvalsh(mass).min() >= -1e-12
+    assert SHELF[name].moves_with in ("water", "hull")  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("name", INERTIAS)
+@pytest.mark.parametrize("seed", range(3))
+def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None:
+    drag_free = {n: 0.0 for n in ("section_drag_coefficient", "linear") if n in SHELF[name].params()}
+    m = motion(**drawn_motion(seed))
+    force = replace(drawn(SHELF[name], seed), **drag_free).wrench(m)
+    assert hypot(force.X, force.Y) > 1e-6
+    assert force.X * m.ur + force.Y * m.vr + force.N * m.r == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", SUSPECTS)
+@pytest.mark.parametrize("seed", range(3))
+def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
+    kind = SHELF[name]
+    effect = on_a_vessel(kind(**{n: p.absent for n, p in kind.params().items() if p.fit}))
+    if isinstance(effect, Force):
+        assert effect.wrench(motion(**drawn_motion(seed))) == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-15)
+    if isinstance(effect, Flow):
+        assert type(effect).flow(effect.values()) == (0.0, 0.0)
+    if isinstance(effect, Inertia):
+        assert not effect.mass().any()
+    if isinstance(effect, Channel):
+        commands = list(np.random.default_rng(seed).uniform(-1.0, 1.0, 8))
+        assert stepped(effect, commands, 0.05, 1.0) == commands
+
+
+@pytest.mark.parametrize("name", SHELF)
+def test_an_effect_says_what_it_is(name: str) -> None:
+    kind = SHELF[name]
+    assert kind.name() == name
+    assert kind.words and kind.shown_by and not kind.words.endswith(".")
+    assert kind.kind in ("physics", "measurement")
+    assert inspect.getdoc(sys.modules[kind.__module__]) and "__doc__" in vars(kind) and kind.__doc__
+    assert issubclass(kind, Force | Inertia | Flow | Channel)
+
+
+@pytest.mark.parametrize("name", SHELF)
+def test_parameters_lie_inside_their_bounds_and_say_what_they_are(name: str) -> None:
+    kind = SHELF[name]
+    for key, about in kind.params().items():
+        assert about.low <= getattr(kind(), key) <= about.high, key
+        assert about.words, key
+        assert set(re.findall("[A-Za-z]+", about.unit)) <= SI, key
+        assert about.axis in ("", *AXES), key
+        if about.fit:
+            assert about.spread > 0 and about.low <= about.absent <= about.high, key
+    for start in kind.starts:
+        kind(**start)
+
+
+@pytest.mark.parametrize("name", SHELF)
+def test_a_setting_out_of_bounds_or_misspelt_is_refused_in_words(name: str) -> None:
+    kind = SHELF[name]
+    key, about = next(iter(kind.params().items()))
+    with pytest.raises(BadInput, match=re.escape(f"; allowed {about.low:g} to {about.high:g}")) as refused:
+        kind.from_settings({key: 2.0 * about.high + 1.0})
+    assert str(refused.value).startswith(f"{kind.__name__}.{key} = ") and about.words in str(refused.value)
+    with pytest.raises(BadInput, match=f"did you mean '{key}'"):
+        kind.from_settings({f"{key}_": about.low})
+    for wrong in (float("nan"), "1", True):
+        with pytest.raises(BadInput, match=f"{key} = .*allowed is a number"):
+            kind.from_settings({key: wrong})
+
+
+# Damping and restoring
+
+
+def test_linear_damping_is_a_matrix_times_the_velocity() -> None:
+    force = LinearDamping(surge=3, sway=10, yaw=0.8, roll=2, sway_by_yaw=0.5, yaw_by_sway=-0.3).wrench(
+        motion(u=0.2, v=0.1, p=0.3, r=-0.4)
+    )
+    assert force == pytest.approx((-0.6, -1.0 + 0.2, -0.6, 0.32 + 0.03))
+
+
+@pytest.mark.parametrize(("kind", "power"), [(QuadraticDamping, 2), (CubicDamping, 3)])
+def test_damping_grows_with_a_power_of_the_speed_and_opposes_it(kind: type[Force], power: int) -> None:
+    effect = kind(surge=2, sway=3, yaw=5, roll=7)  # type: ignore[call-arg]
+    one = effect.wrench(motion(u=0.3, v=-0.3, p=0.3, r=-0.3))
+    assert one == pytest.approx([k * 0.3**power for k in (-2, 3, -7, 5)])
+    double = effect.wrench(motion(u=0.6, v=-0.6, p=0.6, r=-0.6))
+    assert double == pytest.approx([2**power * part for part in one])
+
+
+def test_surge_drag() -> None:
+    assert SurgeDrag(linear=0.5, quadratic=2).wrench(motion(u=-0.4, v=1.0)) == pytest.approx((0.2 + 0.32, 0, 0, 0))
+
+
+def test_damping_error_is_the_difference_to_the_vessels_own_damping() -> None:
+    boat = vessel.load("trial_boat")
+    own, m = boat.effect("linear_damping"), motion(u=0.3, v=-0.2, r=0.5)
+    assert isinstance(own, LinearDamping)
+    error = DampingError(surge_factor=1.4, sway_factor=0.7, yaw_factor=2.0).completed(boat).wrench(m)
+    sound = own.wrench(m)
+    wanted = replace(own, surge=1.4 * own.surge, sway=0.7 * own.sway, yaw=2.0 * own.yaw).wrench(m)
+    assert np.add(sound, error) == pytest.approx(wanted)
+
+
+def test_righting_arm_rests_at_its_list() -> None:
+    arm = RightingArm(stiffness=800.0, list=0.02)
+    assert arm.wrench(motion(phi=0.02)) == (0.0, 0.0, 0.0, 0.0)
+    assert arm.wrench(motion(phi=0.12)).K == pytest.approx(-80.0)
+
+
+def test_righting_arm_stiffening_bends_the_vessels_own_curve() -> None:
+    boat = vessel.load("kvlcc2_roll")
+    effect = RightingArmStiffening(cubic=-2.0).completed(boat)
+    assert effect.wrench(motion(phi=0.3)).K == pytest.approx(2.0 * 822.3 * 0.3**3)
+
+
+@pytest.mark.parametrize(
+    ("kind", "boat"),
+    [(DampingError, "joystick_boat"), (RightingArmStiffening, "trial_boat"), (ShallowWater, "trial_boat")],
+)
+def test_an_effect_that_changes_another_says_which_one_is_missing(kind: type[Effect], boat: str) -> None:
+    with pytest.raises(BadInput, match=f"{boat}: {kind.name()} needs a vessel with"):
+        kind().completed(vessel.load(boat))
+
+
+# Water
+
+
+def test_added_mass_far_ahead_is_a_point_mass_on_a_lever() -> None:
+    mass = AddedMass(surge=1.0, sway=4.0, sway_at=0.5, yaw=0.3, roll=0.2).mass()
+    assert mass == pytest.approx(np.array([[1, 0, 0, 0], [0, 4, 0, 2], [0, 0, 0.2, 0], [0, 2, 0, 0.3 + 1.0]]))
+
+
+def test_coriolis_force_is_the_published_matrix() -> None:
+    effect, m = (
+        AddedMass(surge=0.6, sway=3.0, yaw=0.3, sway_at=0.2),
+        motion(current=(0.1, -0.05), psi=0.4, u=1, v=0.3, r=0.2),
+    )
+    nr = np.array([m.ur, m.vr, m.r])
+    a = effect.mass()[np.ix_([0, 1, 3], [0, 1, 3])] @ nr
+    X, Y, N = -np.array([[0, 0, -a[1]], [0, 0, a[0]], [a[1], -a[0], 0]]) @ nr
+    assert effect.wrench(m) == pytest.approx((X, Y, 0.0, N))
+    half = replace(effect, coriolis=0.5).wrench(m)
+    assert half == pytest.approx((X / 2, Y / 2, 0.0, N / 2))
+
+
+def test_a_current_moves_the_water_and_pushes_a_boat_only_through_it() -> None:
+    assert Current.flow(Current(north=0.3, east=-0.1).values()) == (0.3, -0.1)
+    drifting = motion(
+        current=(0.3, -0.1), psi=0.7, u=0.3 * cos(0.7) - 0.1 * sin(0.7), v=-0.1 * cos(0.7) - 0.3 * sin(0.7)
+    )
+    assert LinearDamping(surge=3, sway=10).wrench(drifting) == pytest.approx((0, 0, 0, 0), abs=1e-15)
+
+
+@pytest.mark.parametrize("factor", [1.0, 1.5, 3.0])
+def test_shallow_water_multiplies_sway_and_yaw(factor: float) -> None:
+    boat, m = vessel.load("joystick_boat"), motion(u=0.3, v=-0.2, r=0.5)
+    mass, drag = boat.effect("added_mass"), boat.effect("cross_flow_drag")
+    assert isinstance(mass, AddedMass) and isinstance(drag, CrossFlowDrag)
+    shallow = ShallowWater(factor=factor).completed(boat)
+    deeper = replace(mass, sway=factor * mass.sway, yaw=factor * mass.yaw)
+    assert mass.mass() + shallow.mass() == pytest.approx(deeper.mass())
+    more = replace(drag, section_drag_coefficient=factor * drag.section_drag_coefficient, linear=factor * drag.linear)
+    together = np.sum([e.wrench(m) for e in (mass, drag, shallow)], axis=0)
+    assert together == pytest.approx(np.add(deeper.wrench(m), more.wrench(m)))
+
+
+def test_cross_flow_drag_takes_length_and_draught_of_its_vessel() -> None:
+    boat = vessel.load("joystick_boat", ["heavy"])
+    assert (own := boat.effect("cross_flow_drag")) is not None
+    assert own.values().length == 1.25 and own.values().draught == 0.065
+
+
+def test_linear_sections_and_surge_drag_go_with_cross_flow() -> None:
+    drag = CrossFlowDrag(length=2.0, draught=0.1, centre=0.3, linear=4.0, surge_quadratic=5.0)
+    x = np.linspace(-0.7, 1.3, 20001)
+    sections = -4.0 * (0.2 + 0.5 * x)
+    expected = (-5.0 * 0.09, np.trapezoid(sections, x), 0.0, np.trapezoid(sections * x, x))
+    assert drag.wrench(motion(u=0.3, v=0.2, r=0.5)) == pytest.approx(expected, rel=1e-7)
+
+
+# Air
+
+
+@pytest.mark.parametrize("psi", [0.0, 0.3, 2.5, -1.2])
+def test_a_boat_drifting_with_the_air_feels_no_wind(psi: float) -> None:
+    drifting = motion(psi=psi, u=2.0 * cos(0.3 - psi), v=2.0 * sin(0.3 - psi))
+    assert FanWind(speed=2.0, toward=0.3).wrench(drifting) == pytest.approx((0, 0, 0, 0), abs=1e-12)
+
+
+def test_fan_wind_ahead_and_abeam() -> None:
+    astern = FanWind(speed=3.0, toward=0.0, front=0.02, side=0.1, arm=-0.05)
+    assert astern.wrench(motion()) == pytest.approx((0.5 * AIR_DENSITY * 9 * 0.02, 0, 0, 0))
+    Y = 0.5 * AIR_DENSITY * 9 * 0.1
+    assert replace(astern, toward=pi / 2).wrench(motion()) == pytest.approx((0, Y, 0, -0.05 * Y))
+
+
+@pytest.mark.parametrize("psi", [0.0, 0.8, -2.0])
+def test_wind_pushes_in_one_direction_of_the_world(psi: float) -> None:
+    force = Wind(force=0.2, toward=0.5, arm=0.1, end_on=1.0).wrench(motion(psi=psi))
+    north, east = force.X * cos(psi) - force.Y * sin(psi), force.X * sin(psi) + force.Y * cos(psi)
+    assert (north, east) == pytest.approx((0.2 * cos(0.5), 0.2 * sin(0.5)))
+    assert force.N == pytest.approx(0.1 * force.Y)
+
+
+# Outboards and what comes before them
+
+
+def test_outboards_are_two_forces_at_two_places() -> None:
+    m = motion(thrust_port_N=1.0, thrust_starboard_N=-0.5, steer_port_rad=0.3, steer_starboard_rad=-0.4)
+    places = [(np.array([-0.5, -0.2]), 1.2 * 1.0, 0.3), (np.array([-0.5, 0.2]), 1.2 * -0.5, -0.4)]
+    forces = [thrust * np.array([cos(a), sin(a)]) for _, thrust, a in places]
+    N = sum(at[0] * f[1] - at[1] * f[0] for (at, _, _), f in zip(places, forces, strict=True))
+    expected = (forces[0][0] + forces[1][0], forces[0][1] + forces[1][1], 0.0, N)
+    assert Outboards(x=-0.5, half_spacing=0.2, gain=1.2).wrench(m) == pytest.approx(expected)
+
+
+def test_pwm_curve() -> None:
+    curve = PwmThrust(at_150=0.6, dead=30.0, exponent=2.0)
+    thrust = [stepped(curve, [0.0], 0.02, 1.0, pwm)[0] for pwm in (0.0, 30.0, 90.0, 150.0, 255.0, -150.0)]
+    assert thrust == pytest.approx([0.0, 0.0, 0.15, 0.6, 0.6 * 1.875**2, -0.6])
+    assert stepped(curve, [0.4], 0.02, 1.0, 150.0) == [1.0]
+
+
+@pytest.mark.parametrize(("command", "thrust"), [(1.0, 1.0), (0.0, 0.0), (-1.0, -0.7)])
+def test_weak_reverse(command: float, thrust: float) -> None:
+    assert stepped(WeakReverse(astern_factor=0.7), [command], 0.02) == [thrust]
+
+
+def test_imbalance_and_gain_error() -> None:
+    uneven = ThrustImbalance(fraction=0.1)
+    assert [stepped(uneven, [2.0], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx([2.2, 1.8])
+    assert stepped(ThrustGainError(factor=1.3), [-2.0], 0.02) == pytest.approx([-2.6])
+
+
+def test_steering_offset_of_each_side() -> None:
+    offset = SteeringOffset(port=0.1, starboard=-0.2)
+    assert [stepped(offset, [0.3], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx([0.4, 0.1])
+
+
+@pytest.mark.parametrize("dt", [0.02, 0.1, 1.0])
+def test_lag_gives_the_mean_of_the_step_response_over_each_step(dt: float) -> None:
+    T = 0.15
+
+    def impulse(t: float) -> float:
+        return t + T * (exp(-t / T) - 1.0)  # integral of 1 - exp(-t / T)
+
+    ends = [i * dt for i in range(9)]
+    expected = [(impulse(b) - impulse(a)) / dt for a, b in pairwise(ends)]
+    assert stepped(ThrustLag(time_constant=T), [1.0] * 8, dt) == pytest.approx(expected, rel=1e-12)
+
+
+def test_lag_does_not_depend_on_the_step() -> None:
+    rng = np.random.default_rng(3)
+    commands = list(rng.uniform(-1, 1, 10))
+    coarse = stepped(ThrustLag(time_constant=0.2), commands, 0.1)
+    fine = stepped(ThrustLag(time_constant=0.2), [c for c in commands for _ in range(5)], 0.02)
+    assert np.reshape(fine, (10, 5)).mean(axis=1) == pytest.approx(coarse, rel=1e-12)
+
+
+def positions(servo: Servo, commands: list[float], dt: float) -> Array:
+    """Angle at the end of each step: the channel gives the means."""
+    at = [0.0]
+    for mean in stepped(servo, commands, dt):
+        at.append(2.0 * mean - at[-1])
+    return np.array(at)
+
+
+def test_servo_keeps_its_range() -> None:
+    angles = positions(Servo(range=0.7, rate=1e3, lag=0.0), [2.0, -2.0, 0.5], 0.02)
+    assert angles == pytest.approx([0.0, 0.7, -0.7, 0.5])
+
+
+def test_servo_turns_at_its_rate_until_the_lag_takes_over() -> None:
+    angles = positions(Servo(range=1.0, rate=0.5, lag=0.2), [1.0] * 400, 0.01)
+    turning = np.diff(angles) / 0.01
+    assert turning.max() <= 0.5 + 1e-9
+    assert turning[:100] == pytest.approx(0.5)  # the lag alone would turn faster: (1 - angle) / lag > rate
+    assert angles[-1] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_servo_lag_alone_is_the_first_order_response() -> None:
+    angles = positions(Servo(range=1.0, rate=1e3, lag=0.06), [0.5] * 20, 0.01)
+    assert angles == pytest.approx(0.5 * (1.0 - np.exp(-0.01 * np.arange(21) / 0.06)), abs=1e-12)
+
+
+def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float]:
+    """What the boat's actuators settle at."""
+    program = Program(boat)
+    act, memory = np.zeros(program.module.HELD), np.zeros(program.memory_size)
+    values, on = program.values(), program.switches()
+    for _ in range(3):
+        program.module.actuate_in_place(program.command_array(commands), memory, 1e4, values, on, act)
+    return dict(zip(boat.actuators, act, strict=False))
+
+
+@pytest.mark.parametrize("first", ["weak_reverse", "pwm_thrust"])
+def test_channels_act_in_the_order_of_the_file(tmp_path: Any, first: str) -> None:
+    order = [first, "pwm_thrust" if first == "weak_reverse" else "weak_reverse"]
+    values = {"weak_reverse": {"astern_factor": 0.5}, "pwm_thrust": {"at_150": 1.0}}
+    pwm = '[channels.pwm_port]\nlow = -255.0\nhigh = 255.0\nfamily = "pwm"\nside = -1\nactuator = false\n[[effect]]\nuse = "current"'
+    folder = boats.written(tmp_path, "ordered", boats.PLANAR.replace('[[effect]]\nuse = "current"', pwm))
+    boat = vessel.load(str(folder), extra=[{"use": name} | values[name] for name in order])
+    settled = actuated(boat, {"thrust_port_N": -1.0, "pwm_port": -150.0, "thrust_starboard_N": -1.0})
+    # thrust beside what the PWM gives: weakened alone if weak_reverse comes first, together with it if it comes last
+    assert settled["thrust_port_N"] == pytest.approx(-0.5 - 1.0 if first == "weak_reverse" else 0.5 * -2.0)
+    assert settled["thrust_starboard_N"] == -0.5
