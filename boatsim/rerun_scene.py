@@ -5,13 +5,15 @@ Axes are those of the picture: z up, x forward, y to port; SNAME (x, y, psi) app
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.base import Array
-from boatsim.vessel import Vessel
+
+if TYPE_CHECKING:
+    from boatsim.vessel import Vessel
 
 Triangles = NDArray[np.uint32]
 SEEN = 2  # MuJoCo geom group of what is drawn; touching shapes are in group 3
@@ -53,7 +55,7 @@ class Scene:
     reach: float = 0.3  # [m/N] length of an arrow per newton
 
 
-def scene_from(model: Any, vessel: Vessel, tank: Any) -> Scene:
+def scene_from(model: Any, vessel: "Vessel", tank: Any) -> Scene:
     """The scene of a compiled model: `model` is its MjModel, `tank` the world.Tank (length, width, centre)."""
     thrust = [c.high for c in vessel.commands.values() if c.family == "thrust" and c.actuator]
     return Scene(

@@ -15,6 +15,14 @@ from boatsim.files import Table, checked, read_toml
 from boatsim.sensors import Camera, Sensors
 from boatsim.vessel import Vessel
 
+NORMS = {  # what is measured -> norms that [norms] may name; `boatsim.metrics` defines them
+    "sway": (
+        "yaw_rate_inf", "yaw_rate_l2", "yaw_rate_rms", "yaw_rate_l1", "heading_at_0.9m", "surge_offset", "time_to_0.9m",
+    ),
+    "yaw": ("position_inf", "position_rms", "position_l1", "moved", "turn_time", "excursion"),
+    "berth": ("return_distance", "return_heading", "wall_contacts"),
+}  # fmt: skip
+
 
 class TankTable(Table):
     """Water with walls; without this table the water is open."""
@@ -122,6 +130,7 @@ def from_table(raw: dict[str, Any], path: Path) -> Scenario:
         sensors, camera = _settings(Sensors, file.sensors, "sensors"), _settings(Camera, file.camera, "camera")
         _check_goals(file, vessel, controller)
         _check_shape(file, vessel)
+        _check_norms(file, camera)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
     return Scenario(_name(path), file, vessel, controller, sensors, camera)
@@ -172,4 +181,14 @@ def _check_shape(file: ScenarioFile, vessel: Vessel) -> None:
             raise BadInput(f"start x, y = {file.start.x:g}, {file.start.y:g} m lies outside the tank")
 
 
-__all__ = ["NormTable", "Scenario", "ScenarioFile", "from_table", "load"]
+def _check_norms(file: ScenarioFile, camera: Camera) -> None:
+    """Only norms of what is measured are judged, and the frames they need are taken."""
+    allowed = NORMS[file.measure] if file.measure else ()
+    for name in file.norms:
+        if name not in allowed:
+            raise BadInput(unknown_name("[norms] key", name, allowed))
+    if file.measure in ("sway", "yaw") and camera.rate % 6.0:
+        raise BadInput(f"[camera] rate = {camera.rate:g} Hz; allowed with this measure is a multiple of 6 Hz")
+
+
+__all__ = ["NORMS", "CheckTable", "NormTable", "Scenario", "ScenarioFile", "from_table", "load"]

@@ -38,6 +38,8 @@ class DiagnosisTable(Table):
     suspects: list[str] = []
     ambient: dict[str, float] = {}  # tolerated unmodelled force per axis (surge, sway, roll, yaw), rms [N, N m]
     time_constant: float = 1.0  # [s] of the ambient force
+    horizon: float = Field(default=6.0, gt=0)  # [s] length of a free run
+    rate: float = Field(default=20.0, gt=0)  # [Hz] rows closer together are thinned out: their noise is not independent
     coefficient_uncertainty: dict[str, float] = {}  # relative sd: damping, thrust, restoring
     noise: dict[str, float] = {}  # sensor noise where a recording states none
 
@@ -47,6 +49,7 @@ class VesselFile(Table):
 
     about: str
     source: str
+    based_on: str = ""  # vessel whose folder holds the hull and own effects; set in a patched file
     hull: str = "hull.xml"
     freedoms: list[Literal["surge", "sway", "roll", "yaw"]]
     length: float = Field(gt=0)  # [m]
@@ -133,11 +136,12 @@ def load(
             raise BadInput(
                 f"{table['use']} is one of {called}'s own effects; change its values in [set.{table['use']}]"
             )
+    folder = find("vessel", file.based_on, path.parent).parent if file.based_on else path.parent
     vessel = Vessel(
-        called, path.parent, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam, file.draught,
+        called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam, file.draught,
         file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
     )  # fmt: skip
-    return with_effects(vessel, [*file.effect, *extra], beside or path.parent)
+    return with_effects(with_effects(vessel, file.effect, folder), extra, beside or folder)
 
 
 def with_effects(vessel: Vessel, tables: Sequence[Mapping[str, Any]], folder: Path) -> Vessel:

@@ -45,8 +45,8 @@ FLOWS = [n for n, e in SHELF.items() if issubclass(e, Flow)]
 INERTIAS = [n for n, e in SHELF.items() if issubclass(e, Inertia)]
 SUSPECTS = [n for n, e in SHELF.items() if any(p.fit for p in e.params().values())]
 
-# What a mirror at the boat's plane of symmetry does. A parameter that points to starboard or clockwise changes its sign:
-# name it here when an effect brings a new one. Pairs named port and starboard change places.
+# What a mirror at the boat's plane of symmetry does. A parameter that points to starboard or clockwise changes its
+# sign: name it here when an effect brings a new one. Pairs named port and starboard change places.
 TO_STARBOARD = {"toward", "east", "list", "fraction"}
 TURNS_SIGN = {"y", "psi", "phi", "v", "vr", "p", "r", "sin_psi"}  # of a motion
 SI = {"rad", "m", "kg", "s", "N"}
@@ -150,7 +150,7 @@ def test_inertia_is_symmetric_and_takes_no_energy(name: str) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None:
     drag_free = {n: 0.0 for n in ("section_drag_coefficient", "linear") if n in SHELF[name].params()}
-    m = motion(**drawn_motion(seed))
+    m = motion(current=(0.0, 0.0), **drawn_motion(seed))
     force = replace(drawn(SHELF[name], seed), **drag_free).wrench(m)
     assert hypot(force.X, force.Y) > 1e-6
     assert force.X * m.ur + force.Y * m.vr + force.N * m.r == pytest.approx(0.0, abs=1e-12)
@@ -162,7 +162,9 @@ def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, se
     kind = SHELF[name]
     effect = on_a_vessel(kind(**{n: p.absent for n, p in kind.params().items() if p.fit}))
     if isinstance(effect, Force):
-        assert effect.wrench(motion(**drawn_motion(seed))) == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-15)
+        assert effect.wrench(motion(current=(0.0, 0.0), **drawn_motion(seed))) == pytest.approx(
+            (0.0, 0.0, 0.0, 0.0), abs=1e-15
+        )
     if isinstance(effect, Flow):
         assert type(effect).flow(effect.values()) == (0.0, 0.0)
     if isinstance(effect, Inertia):
@@ -439,8 +441,8 @@ def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float
 def test_channels_act_in_the_order_of_the_file(tmp_path: Any, first: str) -> None:
     order = [first, "pwm_thrust" if first == "weak_reverse" else "weak_reverse"]
     values = {"weak_reverse": {"astern_factor": 0.5}, "pwm_thrust": {"at_150": 1.0}}
-    pwm = '[channels.pwm_port]\nlow = -255.0\nhigh = 255.0\nfamily = "pwm"\nside = -1\nactuator = false\n[[effect]]\nuse = "current"'
-    folder = boats.written(tmp_path, "ordered", boats.PLANAR.replace('[[effect]]\nuse = "current"', pwm))
+    pwm = '[channels]\npwm_port = { low = -255.0, high = 255.0, family = "pwm", side = -1, actuator = false }'
+    folder = boats.written(tmp_path, "ordered", boats.PLANAR.replace("[channels]", pwm))
     boat = vessel.load(str(folder), extra=[{"use": name} | values[name] for name in order])
     settled = actuated(boat, {"thrust_port_N": -1.0, "pwm_port": -150.0, "thrust_starboard_N": -1.0})
     # thrust beside what the PWM gives: weakened alone if weak_reverse comes first, together with it if it comes last

@@ -49,9 +49,9 @@ class Problem:
 
     def __init__(self, tracks: Sequence[Track], ambient: Levels, uncertainty: dict[str, float]) -> None:
         """`uncertainty` is the relative sd of coefficients by kind ("damping", "thrust", ...)."""
-        self.tracks, self.ambient = list(tracks), ambient
+        self.tracks, self.ambient, self.uncertainty = list(tracks), ambient, uncertainty
         self.program = tracks[0].program
-        self.nuisances = self._nuisances(uncertainty)
+        self.nuisances = self._nuisances()
         self.links = self._links()
 
     def parameters(self, suspects: Sequence[str]) -> tuple[Free, ...]:
@@ -89,12 +89,12 @@ class Problem:
         free = self.nuisances
         return Fit((), free, np.ones(len(free)), np.zeros((len(free), len(free))), self.ambient, -np.inf)
 
-    def _nuisances(self, uncertainty: dict[str, float]) -> tuple[Free, ...]:
+    def _nuisances(self) -> tuple[Free, ...]:
         found = []
         freedoms = self.program.vessel.freedoms
         for effect in self.program.vessel.effects:
             for name, about in type(effect).params().items():
-                sd = uncertainty.get(about.calibrates, 0.0)
+                sd = self.uncertainty.get(about.calibrates, 0.0)
                 at = self.program.index(effect.name(), name)
                 used = self.tracks[0].values[at] != 0.0 and (not about.axis or about.axis in freedoms)
                 if about.calibrates and sd > 0 and used:

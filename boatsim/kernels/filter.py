@@ -17,6 +17,7 @@ from boatsim.kernels.planar import NQ, K, constants, slopes, step_in_place
 NY = 2 * NQ
 NZ = 3 * NQ
 GATE = 5.0  # [sd] a measurement further off is taken for an outlier: no update, a bounded penalty
+IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has lost track and must follow
 SETTLE = 1e4  # [s] longer than any actuator takes
 
 
@@ -102,7 +103,7 @@ def kalman(
         actuate(commands[0], memory, SETTLE, p, on, act)
     z, P = z0.copy(), P0.copy()
     F, row, work = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((2, NQ))
-    likelihood = 0.0
+    likelihood, outliers = 0.0, np.zeros(measured.shape[1])
     if keep:
         means[0], covariances[0], predicted[0] = z, P, z
     for i in range(1, len(times)):
@@ -132,7 +133,9 @@ def kalman(
                 scale[i, c] = 1.0 / sqrt(variance)
                 gains[i, c] = Ph / variance
                 likelihood += log(scale[i, c])
-                if abs(error) * scale[i, c] > GATE:
+                far = abs(error) * scale[i, c] > GATE and outliers[c] < IN_A_ROW
+                outliers[c] = outliers[c] + 1.0 if far else 0.0
+                if far:
                     scale[i, c] = 0.0
             if scale[i, c] == 0.0:
                 white[i, c] = 0.0

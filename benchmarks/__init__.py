@@ -1,0 +1,1 @@
+"""Speed, accuracy and diagnosis figures; they print tables and assert nothing."""

@@ -1,0 +1,179 @@
+"""Speed of the physics, of a whole scenario and of a fresh process: `python -m benchmarks.engine`, about two minutes.
+
+RK4 steps/s are medians of five rounds in which the variants take turns, so that a busy machine slows all of them: the
+joystick boat with all its effects and four more, in a tank so large that it touches nothing, collision on.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+
+from rich.console import Console
+from rich.table import Table
+
+from boatsim import scenario, vessel
+from boatsim.engine import Engine, State
+from boatsim.run import run
+from boatsim.twin import Twin
+from boatsim.world import Tank
+
+ROUNDS = 5
+STEP = 0.02  # [s]
+START = State(0.0, 0.0, 0.0, 0.3, 0.0, 0.2, 0.05, 0.0, 0.1)
+COMMANDS = {"pwm_port": 120.0, "pwm_starboard": -90.0, "steer_port_rad": 0.4, "steer_starboard_rad": -0.3}
+EXTRA = (
+    {"use": "weak_reverse", "astern_factor": 0.694},
+    {"use": "fan_wind", "speed": 1.5, "toward": 0.8},
+    {"use": "current", "north": 0.02, "east": -0.01},
+    {"use": "shallow_water", "factor": 1.3},
+)
+SCENARIO = "joystick_boat/sway_1"
+OPEN = {"until": {}, "tank": {"length": 1e4, "width": 1e4}}  # so that the boat sails on and touches nothing
+CLI = [sys.executable, "-c", "from boatsim.cli import main; main()"]
+
+
+@dataclass
+class Variant:
+    """One way to step the boat."""
+
+    name: str
+    steps: int
+    advance: Callable[[], object]
+    rates: list[float] = field(default_factory=list)  # [steps/s]
+
+    def measure(self) -> None:
+        """One more round."""
+        start = perf_counter()
+        self.advance()
+        self.rates.append(self.steps / (perf_counter() - start))
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A measured number beside what it is to reach."""
+
+    name: str
+    value: float
+    unit: str
+    target: float
+    at_least: bool = True
+
+    def row(self) -> tuple[str, str, str, str]:
+        """Cells of the printed table."""
+        reached = self.value >= self.target if self.at_least else self.value <= self.target
+        sign = ">=" if self.at_least else "<="
+        target = f"{sign} {self.target:,.10g} {self.unit}" if 0.0 < self.target < float("inf") else ""
+        return self.name, f"{self.value:,.4g} {self.unit}", target, "" if not target else "yes" if reached else "NO"
+
+
+def stepping() -> list[Figure]:
+    """RK4 steps/s of engine, floor and twin."""
+    boat = vessel.load("joystick_boat", extra=EXTRA)
+    tank = Tank(1e4, 1e4, 1.0)
+    engines = {name: Engine(boat, tank, STEP, callback=name, show=False) for name in ("native", "python")}
+    engines["floor"] = Engine(boat, tank, STEP, show=False)
+    engines["floor"].callback = None
+    twin = Twin(boat, STEP)
+    start = [START.x, START.y, START.psi, START.u, START.v, START.r]
+
+    def coast(name: str, steps: int) -> None:
+        engines[name].reset(START, COMMANDS)
+        engines[name].coast(steps)
+
+    variants = {
+        "native": Variant("native", 40_000, lambda: coast("native", 40_000)),
+        "floor": Variant("floor", 40_000, lambda: coast("floor", 40_000)),
+        "python": Variant("python", 5_000, lambda: coast("python", 5_000)),
+        "twin": Variant("twin", 1_000_000, lambda: twin.coast(start, COMMANDS, 1_000_000)),
+    }
+    for variant in variants.values():
+        variant.advance()  # compiles, warms up
+    for _ in range(ROUNDS):
+        for variant in variants.values():
+            variant.measure()
+    share = [n / f for n, f in zip(variants["native"].rates, variants["floor"].rates, strict=True)]
+    rate = {name: median(v.rates) for name, v in variants.items()}
+    return [
+        Figure("engine, no callback (floor)", rate["floor"], "steps/s", 0.0),
+        Figure("engine, native callback", rate["native"], "steps/s", 110_000),
+        Figure("engine, native callback / floor", 100.0 * median(share), "%", 80),
+        Figure("engine, Python callback", rate["python"], "steps/s", 10_000),
+        Figure("twin", rate["twin"], "steps/s", 3_000_000),
+    ]
+
+
+def scenario_speed() -> Figure:
+    """A minute with controller, sensors and log, after imports and compilation."""
+    seconds = []
+    run(scenario.load(SCENARIO, OPEN | {"duration": 1.0}))
+    for _ in range(ROUNDS):
+        minute = scenario.load(SCENARIO, OPEN | {"duration": 60.0})
+        start = perf_counter()
+        run(minute)
+        seconds.append(perf_counter() - start)
+    return Figure("60 s scenario with controller, sensors, log", 60.0 / median(seconds), "x real time", 100)
+
+
+def process(arguments: list[str], **environment: str) -> tuple[float, float]:
+    """Wall time [s] and peak memory [MB] of a process. Raises RuntimeError with what it said if it broke."""
+    with tempfile.TemporaryFile() as said:
+        start = perf_counter()
+        child = subprocess.Popen(arguments, stdout=said, stderr=said, env=os.environ | environment)
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        took = perf_counter() - start
+        if child.returncode not in (0, 1):  # 1: a bar was missed, which is no matter here
+            said.seek(0)
+            raise RuntimeError(f"exit code {child.returncode}: {said.read().decode()}")
+    unit = 1e6 if sys.platform == "darwin" else 1e6 / 1024  # ru_maxrss: bytes there, KiB elsewhere
+    return took, usage.ru_maxrss / unit
+
+
+def processes() -> list[Figure]:
+    """The command line: first start with nothing compiled, later starts, an hour."""
+    with tempfile.TemporaryDirectory() as folder:
+        out, cache = f"{folder}/out", f"{folder}/cache"
+        cold, _ = process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)
+        warm = median(process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)[0] for _ in range(3))
+        hour, peak = process([*CLI, "run", str(an_hour(Path(folder))), "--out", out], BOATSIM_CACHE=cache)
+    return [
+        Figure(f"boatsim run {SCENARIO}, first time", cold, "s", 20, at_least=False),
+        Figure(f"boatsim run {SCENARIO}, later", warm, "s", 3, at_least=False),
+        Figure("boatsim run, 1 h of simulated time", hour, "s", float("inf"), at_least=False),
+        Figure("boatsim run, 1 h: peak memory", peak, "MB", 500, at_least=False),
+    ]
+
+
+def an_hour(folder: Path) -> Path:
+    """A scenario file of one hour in open water, in that folder."""
+    path = folder / "an_hour.toml"
+    path.write_text(
+        'about = "An hour under way."\nvessel = "joystick_boat"\nduration = 3600.0\n'
+        '[controller]\nuse = "l1_joystick"\n[sensors]\nspeed_sd = 0.01\n[[goal]]\nsway_mps = 0.07\n'
+    )
+    return path
+
+
+def main() -> None:
+    """Measure and print."""
+    console = Console()
+    table = Table("", "measured", "to reach", "reached")
+    for name, part in (
+        ("steps/s of engine and twin", stepping),
+        ("a scenario", lambda: [scenario_speed()]),
+        ("the command line, cold, warm and for an hour", processes),
+    ):
+        with console.status(f"measuring {name}"):
+            for figure in part():
+                table.add_row(*figure.row())
+    console.print(table)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,123 @@
+"""The answer file of a diagnosis: verdict, effects with their parameters, where, limits, fit."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from boatsim import __version__
+from boatsim.base import Effect
+from boatsim.diagnose import locate, show
+from boatsim.diagnose.findings import FreeRun
+from boatsim.diagnose.fit import Fit, Problem
+from boatsim.diagnose.rank import Named, Ranking
+
+ONE_SIDED_95 = 1.645  # [sd]
+
+
+def compose(
+    problem: Problem,
+    ranking: Ranking,
+    forces: Sequence[locate.Force],
+    stretches: Sequence[FreeRun],
+    held_out: Sequence[str],
+    horizon: float,
+) -> dict[str, Any]:
+    """diagnosis.json as a dictionary, without the seconds."""
+    effects = [_effect(problem, ranking.best, n) for n in ranking.named]
+    verdict = "ambiguous" if any(e["tied_with"] for e in effects) else "named" if effects else "nothing_missing"
+    found = show.errors(stretches)
+    none = {model: 0.0 for model in ()}
+    return {
+        "verdict": verdict,
+        "sentence": sentence(verdict, effects),
+        "seconds": 0.0,
+        "version": __version__,
+        "effects": effects,
+        "unknown": {"flag": False, "gain_nats": round(ranking.left_over, 3)},
+        "candidates": _candidates(ranking),
+        "upper_limits": {name: _limits(problem, fitted, name) for name, fitted in ranking.last.items()},
+        "where": {
+            "axes": locate.strength(problem, forces),
+            "intervals": [vars(i) for i in locate.intervals(problem, forces)],
+            "region": [],
+        },
+        "fit": {
+            "horizon_s": horizon,
+            "held_out": list(held_out),
+            "position_rms_m": found.get("position_rms_m", none),
+            "heading_rms_rad": found.get("heading_rms_rad", none),
+            **({"roll_rms_rad": found["roll_rms_rad"]} if "roll_rms_rad" in found else {}),
+        },
+        "next_experiment": {},
+        "patch": "patched.toml",
+    }
+
+
+def key_of(name: str, unit: str) -> str:
+    """Parameter name with its unit: force in N -> force_N, north in m/s -> north_mps, a ratio stays as it is."""
+    suffix = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
+    return f"{name}_{suffix}" if suffix else name
+
+
+def sentence(verdict: str, effects: Sequence[dict[str, Any]]) -> str:
+    """The verdict in one sentence that a person understands."""
+    if verdict == "nothing_missing":
+        return "Nothing is missing beyond the tolerated noise: the vessel as stated explains the recordings."
+    parts = []
+    for e in effects:
+        values = ", ".join(
+            f"{k} = {p['value']:.3g} +- {p['sd']:.1g}" for k, p in e["parameters"].items() if abs(p["value"]) > p["sd"]
+        )
+        tie = f" (or {', or '.join(e['tied_with'])}: these data can not tell)" if e["tied_with"] else ""
+        parts.append(f"{e['words']} [{e['name']}: {values}]{tie}")
+    return "Left out of the model: " + "; and ".join(parts) + "."
+
+
+def _effect(problem: Problem, best: Fit, named: Named) -> dict[str, Any]:
+    kind = _kind(problem, named.name)
+    return {
+        "name": named.name,
+        "kind": kind.kind,
+        "probability": round(named.probability, 4),
+        "gain_nats": round(named.gain, 2),
+        "words": kind.words,
+        "tied_with": list(named.tied_with),
+        "parameters": {
+            key_of(f.name, kind.params()[f.name].unit): {
+                "value": best.value(named.name, f.name)[0],
+                "sd": best.value(named.name, f.name)[1],
+                "unit": kind.params()[f.name].unit,
+            }
+            for f in best.free
+            if f.effect == named.name and not f.relative
+        },
+    }
+
+
+def _candidates(ranking: Ranking) -> list[dict[str, Any]]:
+    """Every entry tried alone, best first, with its probability against the others and against nothing."""
+    names = sorted(ranking.first, key=lambda n: -ranking.first[n])
+    gains = np.array([0.0, *(ranking.first[n] for n in names)])
+    weights = np.exp(gains - gains.max())
+    weights /= weights.sum()
+    return [
+        {"name": n, "gain_nats": round(float(g), 2), "probability": round(float(w), 4)}
+        for n, g, w in zip(names, gains[1:], weights[1:], strict=True)
+    ]
+
+
+def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
+    """How far each parameter can be from not acting at all, at 95 %."""
+    params = _kind(problem, name).params()
+    out = {}
+    for f in fitted.free:
+        if f.effect == name and not f.relative:
+            value, sd = fitted.value(name, f.name)
+            strength = abs(value - params[f.name].absent) + ONE_SIDED_95 * sd
+            out[key_of(f.name, params[f.name].unit)] = float(f"{strength:.3g}")
+    return out
+
+
+def _kind(problem: Problem, name: str) -> type[Effect]:
+    return next(type(e) for e in problem.program.effects if e.name() == name)

@@ -1,0 +1,179 @@
+"""What `boatsim diagnose`, `replay` and `compare` do: files in, files and a few printed lines out."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from boatsim import scenario as scenarios
+from boatsim.base import Array
+from boatsim.diagnose import patch, report, show
+from boatsim.diagnose.analysis import Diagnosis, open_recording
+from boatsim.diagnose.analysis import diagnose as analyse
+from boatsim.diagnose.filter import nominal_levels, track
+from boatsim.diagnose.findings import FreeRun
+from boatsim.diagnose.fit import Fit, Problem, fit_noise
+from boatsim.errors import BadInput
+from boatsim.program import Program
+from boatsim.recording import Notes, Recording, replacing, write_csv
+from boatsim.vessel import Vessel
+
+FORCE_NAMES = {"surge": "force_X_N", "sway": "force_Y_N", "roll": "force_K_Nm", "yaw": "force_N_Nm"}
+
+
+def diagnose(
+    runs: list[Path], hold_out: list[Path], vessel: str | None, load: list[str], out: Path, library: list[str],
+    without: list[str],
+) -> int:  # fmt: skip
+    """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
+    found = analyse(runs, hold_out, vessel, load, library, without)
+    write(found, out)
+    for line in summary(found):
+        print(line)
+    print(f"written to {out}: report.html, report.md, diagnosis.json, patched.toml, diagnosis.rrd")
+    return 0
+
+
+def write(found: Diagnosis, out: Path) -> None:
+    """All files of a diagnosis, the answer last, so that where it lies the others are whole."""
+    out.mkdir(parents=True, exist_ok=True)
+    report.write(found.findings, out)
+    patch.write(found.vessel, found.ranking.best, out / "patched.toml")
+    overlay(found, out / "diagnosis.rrd")
+    with replacing(out / "diagnosis.json") as temporary:
+        temporary.write_text(json.dumps(found.findings.answer, indent=1) + "\n", encoding="utf-8")
+
+
+def summary(found: Diagnosis) -> list[str]:
+    """What is printed of a diagnosis."""
+    answer = found.findings.answer
+    lines = [answer["sentence"]]
+    for effect in answer["effects"]:
+        lines.append(f"  {effect['name']}: gains {effect['gain_nats']:.1f} nats, probability {effect['probability']:.2f}")
+        lines += [f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()]
+    fit = answer["fit"]
+    lines.append(f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):")
+    for key, unit, scale in (
+        ("position_rms_m", "m", 1.0), ("heading_rms_rad", "deg", 57.29578), ("roll_rms_rad", "deg", 57.29578),
+    ):  # fmt: skip
+        if fit.get(key):
+            cells = ", ".join(f"{m} {fit[key][m] * scale:.4g}" for m in show.MODELS)
+            lines.append(f"  {key.split('_')[0]} rms [{unit}]: {cells}")
+    return lines
+
+
+def overlay(found: Diagnosis, path: Path) -> None:
+    """diagnosis.rrd: recorded, nominal, recalibrated and patched boats of the first unseen run on one time line."""
+    from boatsim import rerun_log, world
+    from boatsim.rerun_scene import scene_from
+
+    stretches = [s for s in found.findings.free_runs if s.run == found.findings.free_runs[0].run]
+    boats = {m: _joined(stretches, m) for m in ("recorded", *show.MODELS)} if stretches else {}
+    boats = {"recording" if m == "recorded" else m: r for m, r in boats.items()}
+    chosen = next((m for m in found.findings.missing if stretches and m.run == stretches[0].run), None)
+    missing = None
+    if chosen is not None:
+        signals: dict[str, Array] = {}
+        for axis, mean in chosen.force.items():
+            name, sd = FORCE_NAMES[axis], chosen.sd[axis]
+            signals |= {name: mean, f"{name}_low": mean - 2 * sd, f"{name}_high": mean + 2 * sd}
+        missing = Recording(chosen.run, chosen.t, signals)
+    tank = world.Tank(10 * found.vessel.length, 10 * found.vessel.length, found.vessel.length, walls=False)
+    scene = scene_from(world.build(found.vessel, tank), found.vessel, tank)
+    intervals = [i for i in found.findings.answer["where"]["intervals"] if chosen is not None and i["run"] == chosen.run]
+    with replacing(path) as temporary:
+        rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
+
+
+def _joined(stretches: Sequence[FreeRun], model: str) -> Recording:
+    """Consecutive free runs of one model as one recording."""
+    t = np.concatenate([s.t[:-1] for s in stretches] + [stretches[-1].t[-1:]])
+    names = list(stretches[0].channels[model])
+    cut = [{n: s.channels[model][n][:-1] for n in names} for s in stretches]
+    cut.append({n: stretches[-1].channels[model][n][-1:] for n in names})
+    return Recording(model, t, {n: np.concatenate([c[n] for c in cut]) for n in names})
+
+
+def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:
+    """Free runs of a vessel over a recording, driven by the recorded commands alone: replay.csv and rms errors."""
+    recording, boat = open_recording(run, vessel, load)
+    problem, fitted = _as_written(recording, boat)
+    stretches = show.free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
+    if not stretches:
+        raise BadInput(f"{run}: {recording.t[-1] - recording.t[0]:g} s long; a free run of {horizon:g} s does not fit")
+    _write_replay(stretches, out / "replay.csv")
+    for family, found in show.errors(stretches).items():
+        print(f"{family}: {found['simulated']:.5g} ({len(stretches)} free runs of {horizon:g} s)")
+    print(f"written to {out}: replay.csv")
+    return 0
+
+
+def _as_written(recording: Recording, boat: Vessel) -> tuple[Problem, Fit]:
+    """A vessel file on a recording, nothing fitted but the noise that the smoothed starts need."""
+    program = Program(boat)
+    problem = Problem([track(recording, program)], nominal_levels(boat, [recording]), {})
+    return problem, replace(problem.nominal(), levels=fit_noise(problem))
+
+
+def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
+    """Columns t_s, segment, pose; times as in the recording."""
+    names = list(stretches[0].channels["simulated"])
+    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        file.write(",".join(["t_s", "segment", *names]) + "\n")
+        for i, s in enumerate(stretches):
+            for k, t in enumerate(s.t):
+                cells = ",".join(f"{s.channels['simulated'][n][k]:.9g}" for n in names)
+                file.write(f"{t:.10g},{i},{cells}\n")
+
+
+def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None, out: Path) -> int:
+    """A recording beside a simulation: of its own commands from its smoothed first state, or of a scenario."""
+    recording, boat = open_recording(run, vessel, load)
+    if scenario:
+        simulated = _of_scenario(recording, scenario)
+    else:
+        problem, fitted = _as_written(recording, boat)
+        whole = float(recording.t[-1] - recording.t[0])
+        only = show.free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[0]
+        simulated = only.channels["simulated"]
+    signals: dict[str, Array] = {}
+    print(f"{'signal':10s} {'rms error':>12s} {'largest':>12s}   of a range of")
+    for name, value in simulated.items():
+        off = value - recording.signals[name]
+        signals |= {f"recorded_{name}": recording.signals[name], f"simulated_{name}": value, f"error_{name}": off}
+        reach = float(np.nanmax(recording.signals[name]) - np.nanmin(recording.signals[name]))
+        print(f"{name:10s} {_rms(off):12.5g} {np.nanmax(np.abs(off)):12.5g}   {reach:.5g}")
+    write_csv(Recording(recording.name, recording.t, signals, Notes()), out / "compare.csv")
+    _compare_rrd(boat, recording, simulated, out / "compare.rrd")
+    print(f"written to {out}: compare.csv, compare.rrd")
+    return 0
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.nanmean(values**2)))
+
+
+def _of_scenario(recording: Recording, name: str) -> dict[str, Array]:
+    """A scenario's own run at the times of a recording."""
+    from boatsim.run import run
+
+    log = run(scenarios.load(name)).recording
+    if recording.t[0] > log.t[-1]:
+        raise BadInput(f"{name} ends at {log.t[-1]:g} s, before {recording.name} begins ({recording.t[0]:g} s)")
+    shared = [n for n in ("x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "r_radps") if n in recording.signals]
+    return {n: np.interp(recording.t, log.t, log.signals[n], right=np.nan) for n in shared}
+
+
+def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Any], path: Path) -> None:
+    from boatsim import rerun_log, world
+    from boatsim.rerun_scene import scene_from
+
+    tank = world.Tank(10 * boat.length, 10 * boat.length, boat.length, walls=False)
+    scene = scene_from(world.build(boat, tank), boat, tank)
+    measured = Recording("recording", recording.t, {n: recording.signals[n] for n in simulated})
+    boats = {"recording": measured, "simulated": Recording("simulated", recording.t, dict(simulated))}
+    with replacing(path) as temporary:
+        rerun_log.log_overlay(temporary, boats, None, [], scene)

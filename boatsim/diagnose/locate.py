@@ -1,0 +1,76 @@
+"""Where the mismatch is: the missing force of each axis over time with its band, and when zero lies outside it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from boatsim.base import Array
+from boatsim.diagnose.filter import Track, axes_of
+from boatsim.diagnose.fit import Fit, Problem, fit_time_constant
+
+BAND = 2.0  # [sd] zero outside this band counts as missing
+SHORTEST = 0.5  # [s] a shorter excursion is not worth an interval
+UNITS = {"surge": "N", "sway": "N", "roll": "N m", "yaw": "N m"}
+
+
+@dataclass(frozen=True)
+class Force:
+    """Missing force of one run."""
+
+    run: str
+    t: Array  # (N,) s
+    mean: Array  # (N, axes) [N, N m] body axes
+    sd: Array  # (N, axes)
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A stretch of time in which a force is missing."""
+
+    run: str
+    from_s: float
+    to_s: float
+    axis: str
+
+
+def missing_force(problem: Problem, found: Fit, tracks: Sequence[Track]) -> list[Force]:
+    """Smoothed latent force under a fitted hypothesis, its level and correlation time refitted for the band."""
+    on = problem.program.switches(found.suspects)
+    levels = fit_time_constant(problem, found)
+    nq = problem.program.module.NQ
+    out = []
+    for track in tracks:
+        means, covariances = track.smoothed(problem.values(track, found.free, found.theta), on, levels)
+        variance = np.diagonal(covariances, axis1=1, axis2=2)[:, 2 * nq :]
+        out.append(Force(track.name, track.times, means[:, 2 * nq :], np.sqrt(np.maximum(variance, 0.0))))
+    return out
+
+
+def intervals(problem: Problem, forces: Sequence[Force]) -> list[Interval]:
+    """Stretches in which zero lies outside the band of at least twice the ambient force, per run and axis."""
+    found = []
+    for force in forces:
+        for i, axis in enumerate(axes_of(problem.program.vessel)):
+            size = np.abs(force.mean[:, i])
+            outside = (size > BAND * force.sd[:, i]) & (size > problem.ambient.force[i])
+            edges = np.flatnonzero(np.diff(np.concatenate([[0], outside.astype(np.int8), [0]])))
+            for a, b in zip(edges[::2], edges[1::2], strict=True):
+                begin, end = float(force.t[a]), float(force.t[b - 1])
+                if end - begin >= SHORTEST:
+                    found.append(Interval(force.run, begin, end, axis))
+    return found
+
+
+def strength(problem: Problem, forces: Sequence[Force]) -> dict[str, dict[str, float | str]]:
+    """rms of the missing force per axis over all runs, with the rms of its standard deviation."""
+    mean = np.concatenate([f.mean for f in forces])
+    sd = np.concatenate([f.sd for f in forces])
+    return {
+        axis: {
+            "rms": float(np.sqrt(np.mean(mean[:, i] ** 2))),
+            "sd": float(np.sqrt(np.mean(sd[:, i] ** 2))),
+            "unit": UNITS[axis],
+        }
+        for i, axis in enumerate(axes_of(problem.program.vessel))
+    }

@@ -1,0 +1,87 @@
+"""Names what is missing: every suspect fitted inside the filter, scored by evidence, selected forward, pruned backward."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from boatsim.diagnose.fit import Fit, Problem, converge, fit, fit_noise
+
+ENOUGH = 4.0  # [nats] an effect must gain to be named
+ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
+MOST = 3  # effects in one answer
+UNKNOWN_FACTOR = 2.0  # what is left is judged against this many times the ambient force
+
+
+@dataclass(frozen=True)
+class Named:
+    """An effect the data call for."""
+
+    name: str
+    gain: float  # [nats] on top of the others named
+    probability: float
+    tied_with: tuple[str, ...]  # look-alikes, at most three
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """What selection found."""
+
+    nominal: Fit  # the vessel as written, noise and force levels fitted
+    recalibrated: Fit  # the nominal structure with its own coefficients refitted
+    best: Fit
+    named: tuple[Named, ...]
+    first: dict[str, float]  # gain of every suspect alone over the recalibrated nominal [nats]
+    last: dict[str, Fit]  # every suspect not named, fitted on top of the best set
+    left_over: float  # [nats] that a force beyond twice the ambient one gains after the best set
+
+
+def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
+    """Forward selection over the candidates, the incumbent converged before each comparison."""
+    nominal = replace(problem.nominal(), levels=fit_noise(problem))
+    recalibrated = converge(problem, fit(problem, (), nominal))
+    best, first, steps = recalibrated, {}, []
+    while True:
+        tried = {n: fit(problem, (*best.suspects, n), best) for n in candidates if n not in best.suspects}
+        gains = {n: f.evidence - best.evidence for n, f in tried.items()}
+        first = first or dict(gains)
+        if not tried or len(best.suspects) == MOST or max(gains.values()) < ENOUGH:
+            break
+        name = max(gains, key=lambda n: gains[n])
+        steps.append((name, gains))
+        best = _pruned(problem, converge(problem, tried[name]))
+    named = tuple(_named(problem, best, n, candidates, dict(steps)) for n in best.suspects)
+    return Ranking(nominal, recalibrated, best, named, first, tried, left_over(problem, best))
+
+
+def _pruned(problem: Problem, best: Fit) -> Fit:
+    """Without the earlier effects that the newest one has made needless."""
+    for name in best.suspects[:-1]:
+        rest = tuple(n for n in best.suspects if n != name)
+        without = converge(problem, fit(problem, rest, best))
+        if without.evidence > best.evidence - 0.5 * ENOUGH:
+            best = without
+    return best
+
+
+def _named(
+    problem: Problem, best: Fit, name: str, candidates: tuple[str, ...], steps: dict[str, dict[str, float]]
+) -> Named:
+    """Gain of one effect on top of the others, and how its rivals do in its place."""
+    rest = tuple(n for n in best.suspects if n != name)
+    without = converge(problem, fit(problem, rest, best))
+    gain = best.evidence - without.evidence
+    # only rivals that came near when the effect was chosen are worth fitting again
+    near = [n for n, g in steps.get(name, {}).items() if n not in best.suspects and g > steps[name][name] - 4 * ALIKE]
+    rivals = {n: converge(problem, fit(problem, (*rest, n), without)).evidence - without.evidence for n in near}
+    weights = np.exp(np.array([0.0, gain, *rivals.values()]) - max(gain, 0.0))
+    order = sorted(rivals, key=lambda n: -rivals[n])
+    tied = tuple(n for n in order if rivals[n] > gain - ALIKE)[:3]
+    return Named(name, gain, float(weights[1] / weights.sum()), tied)
+
+
+def left_over(problem: Problem, best: Fit) -> float:
+    """Nats that the latent force gains beyond twice the ambient level: what nothing in the library explains."""
+    on = problem.program.switches(best.suspects)
+    held = replace(best.levels, force=np.minimum(best.levels.force, UNKNOWN_FACTOR * problem.ambient.force))
+    free = problem.likelihood(best.free, best.theta, on, best.levels)
+    return free - problem.likelihood(best.free, best.theta, on, held)

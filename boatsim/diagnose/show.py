@@ -1,0 +1,131 @@
+"""Shows what a model gains: free runs over data it has not seen, beside the nominal and the recalibrated boat."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from boatsim.base import Array
+from boatsim.diagnose.filter import Track, segments
+from boatsim.diagnose.findings import FreeRun
+from boatsim.diagnose.fit import Fit, Problem, converge, fit
+from boatsim.diagnose.rank import Ranking
+from boatsim.recording import Recording
+
+MODELS = ("nominal", "recalibrated", "patched")
+FAMILIES = {"position_rms_m": ("x_m", "y_m"), "heading_rms_rad": ("psi_rad",), "roll_rms_rad": ("phi_rad",)}
+
+
+def split(recordings: Sequence[Recording], hold_out: Sequence[Recording]) -> tuple[list[Recording], list[Recording], str]:
+    """Recordings to fit, recordings kept unseen, and a sentence that says which.
+
+    Without a hold-out the last run is kept, or the middle third of a single run: the tail of a decay would be nearly
+    linear and test nothing.
+    """
+    if hold_out:
+        return list(recordings), list(hold_out), "kept unseen: " + ", ".join(r.name for r in hold_out)
+    if len(recordings) > 1:
+        return list(recordings[:-1]), [recordings[-1]], f"no run was held out, so the last one, {recordings[-1].name}, was kept unseen"
+    whole = recordings[0]
+    a, b = (float(whole.t[0] + f * (whole.t[-1] - whole.t[0])) for f in (1 / 3, 2 / 3))
+    step = float(np.median(np.diff(whole.t)))
+    parts = [whole.between(whole.t[0], a), whole.between(a, b), whole.between(b + 0.5 * step, whole.t[-1])]
+    first, middle, last = (
+        replace(part, name=f"{whole.name} ({name} third)") for part, name in zip(parts, ("first", "middle", "last"), strict=True)
+    )
+    note = f"one run only, so its middle third, {a:.1f} to {b:.1f} s, was kept unseen"
+    return [first, last], [middle], note
+
+
+def fits_of(problem: Problem, ranking: Ranking) -> dict[str, Fit]:
+    """The three boats that are compared."""
+    return {"nominal": ranking.nominal, "recalibrated": ranking.recalibrated, "patched": ranking.best}
+
+
+def free_runs(problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Track], horizon: float) -> list[FreeRun]:
+    """Free runs of all models over recordings, each started at its own smoothed state every `horizon` s."""
+    nq = problem.program.module.NQ
+    out = []
+    for track in tracks:
+        runs = {
+            name: track.free_runs(
+                problem.values(track, f.free, f.theta), problem.program.switches(f.suspects), f.levels, horizon
+            )
+            for name, f in fits.items()
+        }
+        for i, (begin, end) in enumerate(zip(*segments(track.times, horizon), strict=True)):
+            channels: dict[str, dict[str, Array]] = {"recorded": {}, **{name: {} for name in fits}}
+            for c, code in enumerate(track.codes):
+                if code < nq:
+                    channels["recorded"][track.signals[c]] = track.measured[begin : end + 1, c]
+                    for name in fits:
+                        channels[name][track.signals[c]] = runs[name][i][1][:, code]
+            t = track.times[begin : end + 1]
+            out.append(FreeRun(track.name, float(t[0]), t, channels))
+    return out
+
+
+def errors(stretches: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
+    """rms error per family of signals and model over all stretches."""
+    found: dict[str, dict[str, float]] = {}
+    for family, signals in FAMILIES.items():
+        if not stretches or not any(s in stretches[0].channels["recorded"] for s in signals):
+            continue
+        found[family] = {}
+        for model in (m for m in stretches[0].channels if m != "recorded"):
+            off = [
+                (s.channels[model][n] - s.channels["recorded"][n]).ravel()
+                for s in stretches
+                for n in signals
+                if n in s.channels["recorded"]
+            ]
+            found[family][model] = float(np.sqrt(np.nanmean(np.concatenate(off) ** 2)))
+    return found
+
+
+def by_part(
+    problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Track], horizon: float
+) -> list[tuple[Track, str, dict[str, float]]]:
+    """(part, family, rms by model) of every part; "alone" is the nominal structure refitted to that part only."""
+    out = []
+    for track in tracks:
+        own = Problem([track], problem.ambient, problem.uncertainty)
+        alone = {"alone": converge(own, fit(own, (), fits["recalibrated"]))}
+        for family, found in errors(free_runs(problem, {**fits, **alone}, [track], horizon)).items():
+            out.append((track, family, found))
+    return out
+
+
+def table_of(
+    parts: Sequence[tuple[Track, str, dict[str, float]]], fitted: Sequence[Track], horizon: float
+) -> tuple[str, list[str], list[list[str]]]:
+    """Free-run errors of every part of the data, fitted and unseen: (title, header, rows)."""
+    rows = []
+    for track, family, found in parts:
+        what, unit, scale = _readable(family)
+        cells = [f"{found[m] * scale:.3g}" for m in (*MODELS, "alone")]
+        seen = "fitted" if any(t is track for t in fitted) else "unseen"
+        rows.append([track.name, seen, f"{what} [{unit}]", *cells, f"{found['patched'] / found['recalibrated']:.2f}"])
+    header = ["part", "data", "rms error of", *MODELS, "nominal refitted to this part alone", "patched / recalibrated"]
+    return f"Free runs of {horizon:g} s, part by part", header, rows
+
+
+def remarks(parts: Sequence[tuple[Track, str, dict[str, float]]]) -> list[str]:
+    """Parts of the data that the nominal structure explains as well as the patched boat, once refitted to them alone."""
+    out = []
+    for track, family, found in parts:
+        if found["patched"] >= min(found["alone"], found["recalibrated"]) * 0.95 and found["nominal"] != found["patched"]:
+            what, unit, scale = _readable(family)
+            out.append(
+                f"{track.name}: the nominal structure, refitted to this part alone, already gives the {what} to "
+                f"{found['alone'] * scale:.2g} {unit} (patched boat: {found['patched'] * scale:.2g} {unit}). This part alone "
+                "does not show what is missing."
+            )
+    return out
+
+
+def _readable(family: str) -> tuple[str, str, float]:
+    """Words, unit and factor to it, of a family of signals."""
+    if family == "position_rms_m":
+        return "position", "m", 1.0
+    return family.split("_")[0], "deg", float(np.degrees(1.0))

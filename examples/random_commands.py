@@ -1,0 +1,20 @@
+"""The joystick boat as a dm_control environment: 20 s of random commands, then a picture, no display needed."""
+
+import numpy as np
+from matplotlib.image import imsave
+
+from boatsim import env
+
+boat = env.load("joystick_boat/berth")
+spec = boat.action_spec()  # one number for each command channel; spec.name lists them
+random = np.random.default_rng(3)
+step = boat.reset()
+for i in range(round(20.0 / boat.control_timestep())):
+    if i % 25 == 0:  # a new command every 2 s
+        action = random.uniform(spec.minimum, spec.maximum)
+    step = boat.step(action)
+
+for name, value in step.observation.items():
+    print(f"{name:24s} {value:8.3f}")
+imsave("random_commands.png", boat.physics.render(720, 1280, camera_id="oblique"))
+print("random_commands.png: the boat after 20 s")

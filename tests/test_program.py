@@ -1,0 +1,149 @@
+"""Composition: an edited law is compiled anew, a suspect that is off does nothing, a user's own effect works."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import boats
+import numpy as np
+import pytest
+
+from boatsim import vessel
+from boatsim.base import Array
+from boatsim.effects.current import Current
+from boatsim.effects.wind import Wind
+from boatsim.errors import BadInput
+from boatsim.program import Program
+
+SPRING = '''"""A spring in roll."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from numba import njit
+
+from boatsim.base import Force, Wrench, param
+
+
+@njit(inline="always")
+def law(m, q):
+    """Moment against the heel."""
+    return Wrench(0.0, 0.0, -3.0 * q.stiffness * m.phi, 0.0)
+
+
+@dataclass(frozen=True)
+class Spring(Force):
+    """Moment in proportion to the heel."""
+
+    words: ClassVar[str] = "a spring turns the boat back"
+    shown_by: ClassVar[str] = "a roll decay"
+    law: ClassVar = law
+
+    stiffness: float = param(1.0, low=0.0, high=10.0, unit="N m", words="per rad")
+'''
+USE_SPRING = '[[effect]]\nuse = "spring"\n'
+SNIPPET = """
+import sys
+import numpy as np
+from boatsim import vessel
+from boatsim.program import Program
+
+program = Program(vessel.load(sys.argv[1]))
+act = np.zeros(program.module.HELD)
+print(program.module.forces(0.0, np.array([0.1, 0.0]), act, program.values(), program.switches())[0])
+"""
+
+
+def with_spring(folder: Path) -> Path:
+    """Folder of a vessel with an effect of its own beside it."""
+    place = boats.written(folder, "test_roller", boats.ROLL + USE_SPRING)
+    (place / "spring.py").write_text(SPRING)
+    return place
+
+
+def moment(place: Path) -> float:
+    """Roll moment [N m] at 0.1 rad, in a fresh process."""
+    done = subprocess.run([sys.executable, "-c", SNIPPET, str(place)], capture_output=True, text=True, check=True)
+    return float(done.stdout)
+
+
+def roll_moment(program: Program, phi: float) -> float:
+    act = np.zeros(program.module.HELD)
+    (K,) = program.module.forces(0.0, np.array([phi, 0.0]), act, program.values(), program.switches())
+    return float(K)
+
+
+def test_an_edited_law_gives_its_new_number(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
+    place = with_spring(tmp_path)
+    assert moment(place) == pytest.approx(-0.1 * (2.0 + 3.0))
+    law = place / "spring.py"
+    law.write_text(law.read_text().replace("-3.0", "-4.0"))
+    assert moment(place) == pytest.approx(-0.1 * (2.0 + 4.0))
+    assert len(list((tmp_path / "cache").glob("test_roller_*.py"))) == 2
+
+
+def test_effects_of_one_name_beside_two_vessels_are_two_effects(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
+    places = []
+    for folder, factor in (("one", "-3.0"), ("two", "-5.0")):
+        (tmp_path / folder).mkdir()
+        places.append(with_spring(tmp_path / folder))
+        law = places[-1] / "spring.py"
+        law.write_text(law.read_text().replace("-3.0", factor))
+    found = [roll_moment(Program(vessel.load(str(place))), 0.1) for place in places]
+    assert found == pytest.approx([-0.1 * (2.0 + 3.0), -0.1 * (2.0 + 5.0)])
+
+
+STATE = np.array([0.1, 0.2, 0.4, 0.3, -0.2, 0.1])
+
+
+def planar_forces(program: Program, on: Array) -> tuple[float, ...]:
+    act = np.zeros(program.module.HELD)
+    return tuple(program.module.forces(0.0, STATE, act, program.values(), on))
+
+
+def test_a_suspect_acts_only_when_it_is_switched_on(tmp_path: Path) -> None:
+    suspects = (Wind(force=0.3, toward=0.2), Current(north=0.1))
+    bare = boats.planar(tmp_path)
+    program = Program(bare, suspects)
+    off, windy = program.switches(), program.switches(["wind"])
+    assert list(off[-2:]) == [0.0, 0.0] and list(windy[-2:]) == [1.0, 0.0]
+    own = Program(bare)
+    none = planar_forces(own, own.switches())
+    assert planar_forces(program, off) == none
+    north, east = 0.3 * np.cos(0.2), 0.3 * np.sin(0.2)
+    along, across = 0.5 * (np.cos(0.4) * north + np.sin(0.4) * east), np.cos(0.4) * east - np.sin(0.4) * north
+    assert np.subtract(planar_forces(program, windy), none) == pytest.approx([along, across, 0.0])
+    assert planar_forces(program, program.switches(["current"])) != none
+
+
+def test_parameters_lie_where_the_index_says(tmp_path: Path) -> None:
+    program = Program(boats.planar(tmp_path, {"quadratic_damping": {"yaw": 1.25}}))
+    assert program.values()[program.index("quadratic_damping", "yaw")] == 1.25
+    assert program.values()[program.index("outboards", "half_spacing")] == 0.5
+
+
+def test_commands_that_are_not_given_are_zero(tmp_path: Path) -> None:
+    program = Program(boats.planar(tmp_path))
+    assert list(program.command_array({"thrust_starboard_N": 2.0})) == [0.0, 2.0, 0.0, 0.0]
+    with pytest.raises(BadInput, match="test_boat: command 'steer' does not exist"):
+        program.command_array({"steer": 0.1})
+
+
+def test_roll_together_with_yaw_is_refused(tmp_path: Path) -> None:
+    text = boats.PLANAR.replace('"yaw"]', '"yaw", "roll"]')
+    boat = vessel.load(str(boats.written(tmp_path, "test_boat", text)))
+    with pytest.raises(BadInput, match="roll with them is not there yet"):
+        _ = Program(boat).module
+
+
+def test_an_unwritable_cache_folder_falls_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("not a folder")
+    monkeypatch.setenv("BOATSIM_CACHE", str(blocked / "cache"))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    boat = vessel.load(str(boats.written(tmp_path, "test_fallback", boats.ROLL)))
+    assert str(Program(boat).module.__file__).startswith(str(tmp_path / "boatsim-"))

@@ -1,0 +1,123 @@
+"""Vessel files: loads and settings laid over them, and one clear line for whatever is wrong in them."""
+
+from pathlib import Path
+from typing import Any
+
+import boats
+import pytest
+
+from boatsim import content, vessel
+from boatsim.effects.added_mass import AddedMass
+from boatsim.effects.outboards import Outboards
+from boatsim.errors import BadInput
+
+
+def of(text: str, tmp_path: Path, **more: Any) -> vessel.Vessel:
+    return vessel.load(str(boats.written(tmp_path, "test_boat", text)), **more)
+
+
+@pytest.mark.parametrize("name", content.names("vessel"))
+def test_every_vessel_loads_in_every_load(name: str) -> None:
+    boat = vessel.load(name)
+    assert boat.about and boat.source and (boat.path / boat.hull).is_file()
+    for load in boat.loads:
+        assert vessel.load(name, [load]).load == (load,)
+    for command in boat.commands.values():
+        assert command.low < command.high
+
+
+@pytest.mark.parametrize("name", content.names("vessel"))
+def test_suspects_of_a_vessel_can_be_put_on_it(name: str) -> None:
+    boat = vessel.load(name)
+    own = {e.name() for e in boat.effects}
+    for suspect in boat.diagnosis.suspects:
+        assert suspect not in own
+        vessel.load(name, extra=[{"use": suspect}])
+
+
+def test_a_load_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:
+    plain, laden = boats.planar(tmp_path), boats.planar(tmp_path, loads=["laden"])
+    assert (plain.body.mass, laden.body.mass) == (6.0, 8.0)
+    assert (plain.length, laden.length) == (1.0, 1.5)
+    assert laden.body.yaw_inertia == plain.body.yaw_inertia
+    assert laden.effect("added_mass") == AddedMass(surge=0.9, sway=3.0, yaw=0.3)
+    assert plain.effects[1:] == laden.effects[1:]
+
+
+def test_loads_add_up_and_settings_go_on_top() -> None:
+    boat = vessel.load("joystick_boat", ["heavy", "wide"], {"outboards": {"gain": 0.9}})
+    assert boat.load == ("heavy", "wide")
+    assert boat.effect("outboards") == Outboards(x=-0.571, half_spacing=0.28, gain=0.9)
+    assert boat.body.mass == 5.6 and boat.body.roll_inertia == 0.3
+    assert boat.geometry["ballast_mass"] == 1.0 and boat.geometry["motor_half_spacing"] == 0.28
+
+
+def test_settings_can_change_the_body(tmp_path: Path) -> None:
+    assert boats.planar(tmp_path, {"body": {"mass": 7.0}}).body.mass == 7.0
+
+
+def test_extra_effects_come_after_the_vessels_own() -> None:
+    boat = vessel.load("trial_boat", extra=[{"use": "current", "north": 0.1}, {"use": "weak_reverse"}])
+    assert [e.name() for e in boat.effects][-3:] == ["outboards", "current", "weak_reverse"]
+
+
+def test_what_the_vessel_is_asked_for() -> None:
+    boat = vessel.load("joystick_boat")
+    assert boat.effect("wind") is None
+    assert boat.actuators == ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
+    assert boat.limits()["pwm_port"] == (-255.0, 255.0)
+    assert boat.beside("thrust_starboard_N", "pwm") == "pwm_starboard"
+    assert boat.beside("thrust_port_N", "rudder") is None
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("about =", "abuot ="), r"test_boat/vessel\.toml: key 'abuot' does not exist; did you mean 'about'"),
+        (("roll_inertia", "roll_inerta"), r"key in \[body\] 'roll_inerta' .*did you mean 'roll_inertia'"),
+        (("mass = 6.0", "mass = -6.0"), r"vessel\.toml: body\.mass = -6\.0; input should be greater than 0"),
+        (("beam = 0.4\n", ""), r"vessel\.toml: beam is missing"),
+        (('"yaw"]', '"jaw"]'), r"freedoms\.2 = 'jaw'; input should be 'surge', 'sway', 'roll' or 'yaw'"),
+        (("side = -1", "side = 2"), r"channels\.thrust_port_N\.side = 2"),
+        (('use = "current"', 'use = "curent"'), "effect 'curent' does not exist; did you mean 'current'"),
+        (("sway = 3.0", "swai = 3.0"), "test_boat: AddedMass: setting 'swai' does not exist; did you mean 'sway'"),
+        (
+            ("surge = 0.6", "surge = -0.6"),
+            r"test_boat: AddedMass\.surge = -0\.6 kg; allowed 0 to 1e\+09 kg \(-X_udot\)",
+        ),
+        (('use = "current"', "north = 0.1"), r"an \[\[effect\]\] needs use = its name"),
+        (("length = 1.0", "length ="), "not a TOML file .*line 5"),
+    ],
+)
+def test_a_mistake_in_a_vessel_file_is_one_line(tmp_path: Path, change: tuple[str, str], message: str) -> None:
+    assert change[0] in boats.PLANAR
+    with pytest.raises(BadInput, match=message) as refused:
+        of(boats.PLANAR.replace(*change, 1), tmp_path)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({"loads": ["ladden"]}, r"test_boat/vessel\.toml: load 'ladden' does not exist; did you mean 'laden'"),
+        ({"settings": {"curent": {}}}, "table to change 'curent' does not exist; did you mean 'current'"),
+        ({"settings": {"current": {"nort": 1.0}}}, "Current: setting 'nort' does not exist; did you mean 'north'"),
+        ({"settings": {"current": {"north": 9.0}}}, r"Current\.north = 9 m/s; allowed -5 to 5 m/s"),
+        ({"settings": {"body": {"mas": 9.0}}}, r"key in \[body\] 'mas' does not exist; did you mean 'mass'"),
+        ({"extra": [{"use": "current"}]}, r"current is one of test_boat's own effects; .*\[set\.current\]"),
+        ({"extra": [{"use": "wnid"}]}, "effect 'wnid' does not exist; did you mean 'wind'"),
+    ],
+)
+def test_a_mistake_in_what_is_laid_over_it_is_one_line(tmp_path: Path, more: dict[str, Any], message: str) -> None:
+    with pytest.raises(BadInput, match=message) as refused:
+        of(boats.PLANAR, tmp_path, **more)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_vessel_that_does_not_exist_is_named_with_the_nearest() -> None:
+    with pytest.raises(BadInput, match="vessel 'joystik_boat' does not exist; did you mean 'joystick_boat'"):
+        vessel.load("joystik_boat")
+
+
+def test_a_command_that_does_not_exist_is_named_with_the_nearest() -> None:
+    assert "did you mean 'pwm_port'" in vessel.load("joystick_boat").no_command("pmw_port")
