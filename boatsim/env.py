@@ -1,6 +1,7 @@
 """The boat as a dm_control environment: commands in, SNAME observations out, on the physics of `boatsim.engine`.
 
-`load` gives an environment with the interface of dm_env; `examples/random_commands.py` uses it.
+`load` gives an environment with the interface of dm_env; `examples/random_commands.py` uses it. Where there is no
+display, import this module before dm_control: it has dm_control draw without one.
 """
 
 import os
@@ -179,7 +180,7 @@ class BoatTask(control.Task):
         return -float((s.u - surge) ** 2 + (s.v - sway) ** 2 + swing**2)
 
     def _goal(self, physics: BoatPhysics) -> list[float]:
-        goal = self.scenario.goal_at(physics.engine.state.t)
+        goal = self.scenario.goal_at(physics.time())
         return [goal.get(name, 0.0) for name in STICK]
 
 

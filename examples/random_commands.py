@@ -5,9 +5,9 @@ from matplotlib.image import imsave
 
 from boatsim import env
 
-boat = env.load("joystick_boat/berth")
+boat = env.load("joystick_boat/yaw_1")
 spec = boat.action_spec()  # one number for each command channel; spec.name lists them
-random = np.random.default_rng(3)
+random = np.random.default_rng(1)
 step = boat.reset()
 for i in range(round(20.0 / boat.control_timestep())):
     if i % 25 == 0:  # a new command every 2 s

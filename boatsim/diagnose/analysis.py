@@ -50,6 +50,15 @@ def _thinned(recording: Recording, vessel: Vessel) -> tuple[Recording, Vessel]:
     return recording.thinned(vessel.diagnosis.rate), vessel
 
 
+def _named_apart(opened: dict[Path, tuple[Recording, Vessel]]) -> dict[Path, tuple[Recording, Vessel]]:
+    """Recordings of the same file name get their folder's name in front: sway_1/camera."""
+    stems = [path.stem for path in opened]
+    return {
+        path: (replace(r, name=f"{path.resolve().parent.name}/{path.stem}") if stems.count(path.stem) > 1 else r, v)
+        for path, (r, v) in opened.items()
+    }
+
+
 def suspects_of(vessel: Vessel, library: Sequence[str], without: Sequence[str]) -> tuple[Effect, ...]:
     """Entries to try: the vessel's list and --library, less --without and what the vessel already has."""
     wanted = dict.fromkeys([*vessel.diagnosis.suspects, *library])
@@ -80,6 +89,7 @@ def diagnose(
 ) -> Diagnosis:
     """Locate, name and model what the vessel leaves out of the recordings. Raises BadInput."""
     opened = {path: _thinned(*open_recording(path, vessel, load)) for path in dict.fromkeys([*runs, *hold_out])}
+    opened = _named_apart(opened)
     boats = {id(r): v for r, v in opened.values()}
     whole = [opened[p][0] for p in runs]
     first = boats[id(whole[0])]
@@ -136,6 +146,6 @@ def _findings(problem: Problem, ranking: Ranking, unseen: Sequence, vessel: Vess
         for f, x, s in zip(recalibrated.free, recalibrated.theta, sd, strict=True)
     }
     return Findings(
-        answer, vessel.name, (), (), "", missing, tuple(stretches), tuple(show.remarks(parts)),
+        answer, vessel.name, (), (), "", missing, tuple(stretches), tuple(show.remarks(parts, problem.tracks)),
         coefficients, tuple(t for t in tables if t[2]),
     )  # fmt: skip

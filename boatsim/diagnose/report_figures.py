@@ -4,12 +4,14 @@ Lines are SVG stretched to the page, numbers beside them are text of the page: s
 light and dark and on paper, at a few bytes a point and a millisecond a figure.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.base import Array
 from boatsim.diagnose.findings import FreeRun, Missing
@@ -19,7 +21,6 @@ GRID = 2000  # units of the drawing along each edge; whole ones are finer than a
 POINTS = 500  # of a line; more are not seen
 BAND = 2.0  # [sd] zero outside this band counts as missing
 TIMES, SQUARE = 3.2, 1.25  # width of a curve over time and of a map by its height
-LEGEND = {"recorded": "recorded", "nominal": "nominal", "recalibrated": "recalibrated", "patched": "patched"}
 SIGNALS = {"psi_rad": "heading", "phi_rad": "roll"}
 
 
@@ -47,28 +48,28 @@ class Panel:
     about: str = ""  # what a reader who can not see it is told
 
 
-def legend(looks: Sequence[tuple[str, str]]) -> str:
-    """Line or area samples with their words; (look, words) each."""
-    areas = ("band", "flag")
-    shapes = {True: "M0 3H28V13H0Z", False: "M0 8H28"}
+def legend(looks: Mapping[str, str]) -> str:
+    """Line or area samples with their words, by look."""
+    shapes = {look: "M0 3H28V13H0Z" if look in ("band", "flag") else "M0 8H28" for look in looks}
     items = (
-        f'<li><svg class="key" viewBox="0 0 28 16" aria-hidden="true"><path class="{look}" d="{shapes[look in areas]}"/>'
-        f"</svg>{escape(words)}</li>"
-        for look, words in looks
+        f'<li><svg class="key" viewBox="0 0 28 16" aria-hidden="true"><path class="{look}" d="{shapes[look]}"/></svg>'
+        f"{escape(words)}</li>"
+        for look, words in looks.items()
     )
     return f'<ul class="legend">{"".join(items)}</ul>'
 
 
 def figure(panels: Sequence[Panel], title: str, wide: bool = False) -> str:
-    """Panels under one another with a title; the last one carries the numbers along x if they share them."""
-    parts = [_panel(p, i + 1 == len(panels) or p.x_label != panels[-1].x_label) for i, p in enumerate(panels)]
-    return f'<figure class="chart{" wide" if wide else ""}"><figcaption>{escape(title)}</figcaption>{"".join(parts)}</figure>'
+    """Panels under one another with a title; they share x, so the last one carries its numbers."""
+    parts = "".join(_panel(p, p is panels[-1]) for p in panels)
+    look = "chart wide" if wide else "chart"
+    return f'<figure class="{look}"><figcaption>{escape(title)}</figcaption>{parts}</figure>'
 
 
 def _panel(p: Panel, numbered: bool) -> str:
     """Title, drawing, and the numbers at their share of its width and height."""
-    places = [(v, (v - p.x[0]) / (p.x[1] - p.x[0])) for v in ticks(*p.x, 5)]
-    heights = [(v, (v - p.y[0]) / (p.y[1] - p.y[0])) for v in ticks(*p.y, 4)]
+    places = [(v, (v - p.x[0]) / (p.x[1] - p.x[0])) for v in ticks(*p.x, 6)]
+    heights = [(v, (v - p.y[0]) / (p.y[1] - p.y[0])) for v in ticks(*p.y, 5)]
     drawn = [f'<path class="flag" d="{_box(p, a, b)}"/>' for a, b in p.flags]
     grid = "".join(f"M0 {GRID * (1 - s):.0f}H{GRID}" for _, s in heights)
     grid += "".join(f"M{GRID * s:.0f} 0V{GRID}" for _, s in places)
@@ -82,8 +83,9 @@ def _panel(p: Panel, numbered: bool) -> str:
     if numbered:
         marks += "".join(f'<span class="x" style="left:{100 * s:.1f}%">{_tick(v)}</span>' for v, s in places)
     below = f'<p class="along">{escape(p.x_label)}</p>' if numbered else ""
+    look = "plot numbered" if numbered else "plot"
     return (
-        f'<p class="across">{escape(p.title)}</p><div class="plot{" numbered" if numbered else ""}" style="--shape:{p.shape:g}">'
+        f'<p class="across">{escape(p.title)}</p><div class="{look}" style="--shape:{p.shape:g}">'
         f'<svg viewBox="0 0 {GRID} {GRID}" preserveAspectRatio="none" role="img" '
         f'aria-label="{escape(p.about or p.title)}">{"".join(drawn)}</svg>{marks}</div>{below}'
     )
@@ -93,7 +95,8 @@ def _place(p: Panel, x: Array, y: Array) -> list[list[int]]:
     """Drawing coordinates; what is far outside is put just outside."""
     across = GRID * (np.asarray(x) - p.x[0]) / (p.x[1] - p.x[0])
     down = GRID * (p.y[1] - np.asarray(y)) / (p.y[1] - p.y[0])
-    return np.column_stack([across, np.clip(down, -GRID, 2 * GRID)]).round().astype(int).tolist()
+    found: list[list[int]] = np.column_stack([across, np.clip(down, -GRID, 2 * GRID)]).round().astype(int).tolist()
+    return found
 
 
 def _curve(p: Panel, line: Line) -> str:
@@ -114,13 +117,13 @@ def _box(p: Panel, begin: float, end: float) -> str:
     return f"M{a:.0f} 0H{b:.0f}V{GRID}H{a:.0f}Z"
 
 
-def thinned(y: Array) -> Array:
+def thinned(y: Array) -> NDArray[np.int64]:
     """Rows that keep the shape of a long curve: of each bucket its lowest and its highest."""
     if len(y) <= POINTS:
         return np.arange(len(y))
     edges = np.linspace(0, len(y), POINTS // 2 + 1).astype(int)
     rows = [a + f(y[a:b]) for a, b in pairwise(edges) for f in (np.argmin, np.argmax)]
-    return np.unique([0, *rows, len(y) - 1])
+    return np.unique(np.array([0, *rows, len(y) - 1]))
 
 
 def ticks(low: float, high: float, most: int) -> list[float]:
@@ -146,7 +149,10 @@ def limits(values: Sequence[Array], zero: bool = True) -> tuple[float, float]:
     return (low - air if low < 0.0 or not zero else low), high + air
 
 
-def missing_figures(runs: Sequence[Missing], intervals: Sequence[dict[str, object]], shared: Sequence[Missing]) -> list[str]:
+Intervals = Sequence[Mapping[str, Any]]  # as in the answer: run, axis, from_s, to_s
+
+
+def missing_figures(runs: Sequence[Missing], intervals: Intervals, shared: Sequence[Missing]) -> list[str]:
     """One figure per run: the missing force of each axis over time, one scale per axis for all of `shared`."""
     scales = {}
     for axis in shared[0].force if shared else ():
@@ -160,15 +166,15 @@ def missing_figures(runs: Sequence[Missing], intervals: Sequence[dict[str, objec
 
 
 def _missing_panel(
-    m: Missing, axis: str, intervals: Sequence[dict[str, object]], y: tuple[float, float], unit: str, factor: float
+    m: Missing, axis: str, intervals: Intervals, y: tuple[float, float], unit: str, factor: float
 ) -> Panel:
-    flags = tuple((float(i["from_s"]), float(i["to_s"])) for i in intervals if (i["run"], i["axis"]) == (m.run, axis))  # type: ignore[arg-type]
+    flags = tuple((i["from_s"], i["to_s"]) for i in intervals if (i["run"], i["axis"]) == (m.run, axis))
     force, sd = factor * m.force[axis], factor * m.sd[axis]
     lines = [Line("missing", m.t, force)] + ([Line("left", m.t, factor * m.left[axis])] if axis in m.left else [])
     rms = number(float(np.sqrt(np.nanmean(force**2))))
     about = f"Missing force in {axis} over {m.run}: rms {rms} {unit}; flagged in {len(flags)} intervals."
-    band = m.t, force - BAND * sd, force + BAND * sd
-    return Panel(f"{axis} [{unit}]", tuple(lines), (float(m.t[0]), float(m.t[-1])), y, "time [s]", band, flags, about=about)
+    band, x = (m.t, force - BAND * sd, force + BAND * sd), (float(m.t[0]), float(m.t[-1]))
+    return Panel(f"{axis} [{unit}]", tuple(lines), x, y, "time [s]", band, flags, about=about)
 
 
 def free_run_figures(runs: Sequence[FreeRun]) -> list[str]:
@@ -220,7 +226,9 @@ def _map(runs: Sequence[FreeRun]) -> Panel:
         ((a + b) / 2 - size / 2, (a + b) / 2 + size / 2) for (a, b), size in ((across, SQUARE * height), (up, height))
     )
     about = "Path seen from above: the recording and the free runs of each boat."
-    return Panel("x, forward or north [m]", tuple(lines), x, y, "y, to starboard or east [m]", shape=SQUARE, about=about)
+    return Panel(
+        "x, forward or north [m]", tuple(lines), x, y, "y, to starboard or east [m]", shape=SQUARE, about=about
+    )
 
 
 def _error_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
@@ -231,7 +239,9 @@ def _error_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
     kept = {m: e for m, e in errors.items() if m != "nominal" or largest[m] <= 2.5 * others or not others}
     unit, factor = handy("m" if signal == "position" else "rad", max(largest[m] for m in kept))
     lines = tuple(Line(m, r.t, factor * e) for m, found in errors.items() for r, e in zip(runs, found, strict=True))
-    left = "" if "nominal" in kept else f"; nominal up to {number(factor * largest['nominal'])} {unit}, out of the picture"
+    left = (
+        "" if "nominal" in kept else f"; nominal up to {number(factor * largest['nominal'])} {unit}, out of the picture"
+    )
     y = limits([factor * e for found in kept.values() for e in found])
     words = "position" if signal == "position" else SIGNALS[signal]
     x = float(runs[0].t[0]), float(runs[-1].t[-1])
@@ -244,6 +254,6 @@ def _signal_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
     models = ["recorded", *models_in(runs[0])]
     lines = tuple(Line(m, r.t, factor * r.channels[m][signal]) for r in runs for m in models)
     x = float(runs[0].t[0]), float(runs[-1].t[-1])
-    words = SIGNALS[signal]
-    about = f"{words} over time: the recording and the free runs of each boat"
-    return Panel(f"{words} [{unit}]", lines, x, limits([v.y for v in lines if v.look != "nominal"]), "time [s]", about=about)
+    y = limits([v.y for v in lines if v.look != "nominal"])
+    about = f"{SIGNALS[signal]} over time: the recording and the free runs of each boat"
+    return Panel(f"{SIGNALS[signal]} [{unit}]", lines, x, y, "time [s]", about=about)

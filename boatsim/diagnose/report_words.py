@@ -8,8 +8,8 @@ from boatsim.recording_notes import unit_of
 
 DEGREE = 180.0 / math.pi
 IN_DEGREES = {"rad": "°", "rad/s": "°/s", "rad/s^2": "°/s²"}
-PREFIXES = ((1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"))  # of forces and moments
-LENGTHS = ((1.0, "m"), (1e-2, "cm"), (1e-3, "mm"))
+FORCES = ((1e6, 1e6, "M"), (1e3, 1e3, "k"), (1e-2, 1.0, ""), (0.0, 1e-3, "m"))  # from this size on, factor, prefix
+LENGTHS = ((1.0, 1.0, "m"), (1e-2, 1e-2, "cm"), (0.0, 1e-3, "mm"))
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -96,12 +96,10 @@ def handy(unit: str, largest: float) -> tuple[str, float]:
     """(unit, factor) that make a number of this size readable: m -> cm, N -> kN, rad -> °."""
     if unit in IN_DEGREES:
         return IN_DEGREES[unit], DEGREE
-    if unit == "m":
-        size, name = next((p for p in LENGTHS if largest >= p[0]), LENGTHS[-1])
-        return name, 1.0 / size
-    if unit in ("N", "N m"):
-        size, prefix = next((p for p in PREFIXES if largest >= p[0]), PREFIXES[-1])
-        return prefix + unit, 1.0 / size
+    if unit in ("m", "N", "N m"):
+        steps = LENGTHS if unit == "m" else FORCES
+        _, size, name = next((s for s in steps if largest >= s[0]), steps[-1])
+        return name if unit == "m" else name + unit, 1.0 / size
     return unit_words(unit), 1.0
 
 
@@ -128,8 +126,8 @@ def sentence(answer: Mapping[str, Any]) -> str:
         count = {1: "one thing", 2: "two things", 3: "three things"}.get(len(physics), f"{len(physics)} things")
         named = f"the model leaves out {count}: {listed(physics)}"
     if measured:
-        first = "; beside it, in the measurement and not in the physics: " if named else "the physics is right, the measurement is not: "
-        named += first + listed(measured)
+        alone = "the physics is right, the measurement is not: "
+        named += ("; beside it, in the measurement and not in the physics: " if named else alone) + listed(measured)
     if answer["verdict"] == "unknown":
         strong = [f"{a['rms']:.2g} {a['unit']} rms in {axis}" for axis, a in answer["where"]["axes"].items()]
         size = f" ({listed(strong)})" if strong else ""
@@ -146,4 +144,4 @@ def sentence(answer: Mapping[str, Any]) -> str:
 
 def _clause(effect: Mapping[str, Any]) -> str:
     numbers = parameters(effect)
-    return effect["words"] + (f" ({numbers})" if numbers else "")
+    return f"{effect['words']} ({numbers})" if numbers else str(effect["words"])

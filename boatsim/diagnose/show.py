@@ -110,11 +110,11 @@ def table_of(
     return f"Free runs of {horizon:g} s, part by part", header, rows
 
 
-def remarks(parts: Sequence[tuple[Track, str, dict[str, float]]]) -> list[str]:
-    """Parts of the data that the nominal structure explains as well as the patched boat, once refitted to them alone."""
+def remarks(parts: Sequence[tuple[Track, str, dict[str, float]]], fitted: Sequence[Track]) -> list[str]:
+    """Fitted parts that the nominal structure explains as well as the patched boat, once refitted to them alone."""
     out = []
     for track, family, found in parts:
-        if found["patched"] >= min(found["alone"], found["recalibrated"]) * 0.95 and found["nominal"] != found["patched"]:
+        if any(t is track for t in fitted) and found["patched"] >= min(found["alone"], found["recalibrated"]) * 0.95 and found["nominal"] != found["patched"]:
             what, unit, scale = _readable(family)
             out.append(
                 f"{track.name}: the nominal structure, refitted to this part alone, already gives the {what} to "

@@ -31,6 +31,6 @@ class PwmThrust(Channel):
     source_family: ClassVar[str] = "pwm"
     channel: ClassVar = channel
 
-    at_150: float = param(0.5, low=0.0, high=100.0, unit="N", words="thrust at PWM 150, k_T", calibrates="thrust")
+    at_150: float = param(0.5, low=0.0, high=100.0, unit="N", words="thrust at PWM 150, k_T")
     dead: float = param(0.0, low=0.0, high=149.0, unit="", words="PWM below which nothing turns, p0")
     exponent: float = param(1.0, low=0.5, high=3.0, unit="", words="n of the curve")

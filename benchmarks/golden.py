@@ -1,0 +1,139 @@
+"""Today's norms of every measured scenario, kept so that no change goes unseen.
+
+python -m benchmarks.golden                           what has drifted; exit 1 if anything has
+python -m benchmarks.golden --update --reason "..."   take the new values; the reason goes into CHANGELOG.md
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from boatsim import scenario
+from boatsim.content import names
+from boatsim.metrics import Norm, norms
+from boatsim.recording import replacing
+from boatsim.run import run
+
+HOME = Path(__file__).parents[1]
+HEADING = "## Norms"
+NEW = "is new"
+# Arithmetic of other machines differs in the 16th digit. Start conditions off by 1e-11 move no norm of any scenario by
+# more than 2e-8 of itself, the relays of the thesis' program included; so 1e-6 is a change of the code.
+TOLERANCE = 1e-6
+NOTHING = 1e-9  # absolute, for norms that are zero
+FIELDS = ("today", "at_6hz", "published")
+Values = dict[str, dict[str, Any]]  # norm -> today, at_6hz, published, unit
+
+
+def tracked() -> list[str]:
+    """Scenarios that measure something."""
+    return [name for name in names("scenario") if (file := scenario.load(name).file).measure or file.check]
+
+
+def measured(name: str) -> dict[str, Norm]:
+    """Norms of a scenario with seed 0."""
+    return norms(run(scenario.load(name), 0))
+
+
+def values(found: Mapping[str, Norm]) -> Values:
+    """What is kept of each norm."""
+    return {
+        name: {"today": _digits(n.value), "at_6hz": _digits(n.at_6hz), "published": n.published, "unit": n.unit}
+        for name, n in found.items()
+    }
+
+
+def path_of(name: str, home: Path = HOME) -> Path:
+    """File of a scenario's values."""
+    return home / "tests" / "golden" / f"{name}.json"
+
+
+def kept(name: str, home: Path = HOME) -> Values:
+    """The values kept of a scenario; none if it is new."""
+    path = path_of(name, home)
+    found: Values = json.loads(path.read_text(encoding="utf-8"))["norms"] if path.is_file() else {}
+    return found
+
+
+def drifts(name: str, old: Values, new: Values) -> list[str]:
+    """A line for everything that is not as it was: scenario, norm, old, new and the paper's value."""
+    return [line for norm in {**old, **new} for line in _drift(name, norm, old.get(norm), new.get(norm))]
+
+
+def update(changed: Mapping[str, tuple[Values, list[str]]], reason: str, home: Path = HOME) -> None:
+    """Write the new values of the scenarios that drifted, and the reason with every drift into the changelog."""
+    for name, (new, _) in changed.items():
+        content = {"scenario": name, "seed": 0, "norms": new}
+        path_of(name, home).parent.mkdir(parents=True, exist_ok=True)
+        _write(path_of(name, home), json.dumps(content, indent=1) + "\n")
+    changelog = home / "CHANGELOG.md"
+    text = changelog.read_text(encoding="utf-8") if changelog.is_file() else "# Changelog\n"
+    _write(changelog, with_reason(text, reason, [line for _, lines in changed.values() for line in lines]))
+
+
+def with_reason(changelog: str, reason: str, lines: list[str]) -> str:
+    """The changelog with one more entry at the top of its section on norms; new norms are counted, not listed."""
+    if HEADING not in changelog.splitlines():
+        changelog = f"{changelog.rstrip()}\n\n{HEADING}\n"
+    moved = [line for line in lines if not line.endswith(NEW)]
+    fresh = len(lines) - len(moved)
+    entry = [f"- {reason}", *(f"  - {line}" for line in moved), *([f"  - {fresh} new norms"] if fresh else [])]
+    before, _, after = changelog.partition(f"{HEADING}\n")
+    return f"{before}{HEADING}\n\n" + "\n".join(entry) + "\n" + after.lstrip("\n")
+
+
+def _drift(name: str, norm: str, old: Mapping[str, Any] | None, new: Mapping[str, Any] | None) -> Iterable[str]:
+    if old is None or new is None:
+        yield f"{name} {norm} {NEW if old is None else 'is gone'}"
+        return
+    for field in FIELDS:
+        if not _same(old[field], new[field]):
+            words = {"today": "", "at_6hz": " at 6 Hz", "published": " as published"}[field]
+            yield f"{name} {norm}{words}: {old[field]} -> {new[field]} {new['unit']} (paper: {new['published']})"
+
+
+def _same(old: float | None, new: float | None) -> bool:
+    if old is None or new is None:
+        return old is new
+    return abs(new - old) <= max(TOLERANCE * abs(old), NOTHING)
+
+
+def _digits(value: float | None) -> float | None:
+    """Nine digits: more than the tolerance sees."""
+    return None if value is None else float(f"{value:.9g}")
+
+
+def _write(path: Path, text: str) -> None:
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """0 nothing drifted or taken over, 1 drifted, 2 wrong use."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.golden", description="Norms kept of every scenario.")
+    parser.add_argument("--update", action="store_true", help="take today's values")
+    parser.add_argument("--reason", default="", help="why they changed; goes into CHANGELOG.md")
+    given = parser.parse_args(arguments)
+    reason = " ".join(given.reason.split())
+    if given.update and not reason:
+        print('--update needs --reason "why the norms changed"', file=sys.stderr)
+        return 2
+    changed: dict[str, tuple[Values, list[str]]] = {}
+    for name in tracked():
+        new = values(measured(name))
+        if lines := drifts(name, kept(name), new):
+            changed[name] = (new, lines)
+            print("\n".join(lines), flush=True)
+    if changed and given.update:
+        update(changed, reason)
+        print(f"{len(changed)} scenarios written, reason in CHANGELOG.md")
+        return 0
+    print("no norm has drifted" if not changed else f"{len(changed)} scenarios have drifted")
+    return int(bool(changed))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,5 @@
+"""The command line: `boatsim run | list | margins | compare | replay | diagnose`."""
+
+from boatsim.cli.commands import app, main
+
+__all__ = ["app", "main"]

@@ -1,0 +1,177 @@
+"""Runs scenarios one after another or in processes of their own, with a progress bar and one exit code for all."""
+
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from boatsim import scenario as scenarios
+from boatsim.cli import show
+from boatsim.cli.commands import BAD_INPUT, INTERRUPTED, complain
+from boatsim.errors import BadInput, BoatsimError
+
+POLL = 0.1  # [s] between two looks at the processes
+
+Report = Callable[[int, float], None]  # number of a task, simulated time it has reached [s]
+
+
+@dataclass(frozen=True)
+class Task:
+    """One scenario to run; plain values, so that it can be sent to a process."""
+
+    given: str  # name or path as the user wrote it
+    name: str
+    duration: float  # [s] at most
+    folder: Path
+    seed: int | None
+    live: bool
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a task."""
+
+    task: Task
+    content: dict[str, Any] | None = None  # of norms.json; None: there are no files
+    error: str | None = None
+
+    @property
+    def code(self) -> int:
+        """Exit code: 2 nothing could be run, 130 interrupted, 1 a bar missed, 0 all bars met."""
+        if self.content is None:
+            return BAD_INPUT if self.error else INTERRUPTED
+        if not self.content["complete"]:
+            return INTERRUPTED
+        return int(any(norm["ok"] is False for norm in self.content["norms"].values()))
+
+
+def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None, live: bool) -> int:
+    """Run scenarios, print their norms, return the exit code. All are checked before any runs; raises BadInput."""
+    tasks = plan(names, out, seed, live)
+    jobs = min(jobs, len(tasks))
+    if live and jobs > 1:
+        raise BadInput("--live shows one run at a time; leave --jobs away")
+    with show.progress([(t.name, t.duration) for t in tasks]) as report:
+        outcomes = _in_processes(tasks, jobs, report) if jobs > 1 else _in_turn(tasks, report)
+    for outcome in outcomes:
+        if outcome.error:
+            complain(outcome.error)
+        elif outcome.content:
+            show.norms(outcome.content, outcome.task.folder)
+    if any(outcome.code == INTERRUPTED for outcome in outcomes):
+        complain("interrupted; what was logged is kept")
+    return max(outcome.code for outcome in outcomes)
+
+
+def plan(names: Sequence[str], out: Path | None, seed: int | None, live: bool) -> list[Task]:
+    """What to run and where its files go, from names that may be wrong."""
+    loaded = [scenarios.load(name) for name in names]
+    folders = _folders([s.name for s in loaded], out)
+    return [
+        Task(given, s.name, s.file.duration, folder, seed, live)
+        for given, s, folder in zip(names, loaded, folders, strict=True)
+    ]
+
+
+def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
+    """DIR for one scenario, DIR/sway_1 for each of several; out/sway_1 if DIR is not given."""
+    if out and len(names) == 1:
+        return [out]
+    short = [name.rpartition("/")[2] for name in names]
+    used = short if len(set(short)) == len(short) else list(names)
+    if len(set(used)) < len(used):
+        twice = next(name for name in used if used.count(name) > 1)
+        raise BadInput(f"scenario {twice!r} is named twice; both would write to the same folder")
+    return [(out or Path("out")) / name for name in used]
+
+
+def carry_out(task: Task, progress: Callable[[float], None]) -> Outcome:
+    """Run one task, whatever comes of it."""
+    try:
+        from boatsim.outputs import run_into
+
+        return Outcome(task, run_into(task.folder, scenarios.load(task.given), task.seed, task.live, progress))
+    except BoatsimError as error:
+        return Outcome(task, error=f"{task.name}: {error}")
+    except OSError as error:
+        return Outcome(task, error=f"{error.filename or task.folder}: {error.strerror or error}")
+    except KeyboardInterrupt:
+        return Outcome(task)
+
+
+def _in_turn(tasks: Sequence[Task], report: Report) -> list[Outcome]:
+    outcomes: list[Outcome] = []
+    for number, task in enumerate(tasks):
+        outcomes.append(carry_out(task, lambda t, number=number: report(number, t)))  # type: ignore[misc]
+        report(number, task.duration)
+        if outcomes[-1].code == INTERRUPTED:
+            break
+    return outcomes
+
+
+# Several processes: Ctrl-C reaches this one only, which asks the others to stop --------------------------------------
+
+
+def _in_processes(tasks: Sequence[Task], jobs: int, report: Report) -> list[Outcome]:
+    context = get_context("spawn")  # a fork would copy MuJoCo's and rerun's threads half alive
+    stop, reached = context.Event(), context.Array("d", len(tasks))
+    with ProcessPoolExecutor(jobs, context, _begin, (stop, reached)) as pool:
+        with _ignoring_interrupts():  # processes inherit it
+            futures = [pool.submit(_work, number, task) for number, task in enumerate(tasks)]
+        while True:
+            try:
+                _watch(futures, tasks, reached, report)
+                return [_result(task, future) for task, future in zip(tasks, futures, strict=True)]
+            except KeyboardInterrupt:
+                stop.set()
+
+
+def _watch(futures: Sequence[Future[Outcome]], tasks: Sequence[Task], reached: Any, report: Report) -> None:
+    """Report until all are done."""
+    waiting = True
+    while waiting:
+        waiting = bool(wait(futures, timeout=POLL).not_done)
+        for number, (task, future) in enumerate(zip(tasks, futures, strict=True)):
+            report(number, task.duration if future.done() else reached[number])
+
+
+def _result(task: Task, future: Future[Outcome]) -> Outcome:
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        return Outcome(task, error=f"{task.name}: its process was killed (out of memory?)")
+
+
+def _begin(stop: Any, reached: Any) -> None:
+    """First thing in a new process: what it shares with the one that watches."""
+    global _stop, _reached
+    _stop, _reached = stop, reached
+
+
+def _work(number: int, task: Task) -> Outcome:
+    """One task in a process of its own."""
+
+    def progress(t: float) -> None:
+        _reached[number] = t
+        if _stop.is_set():
+            raise KeyboardInterrupt
+
+    return Outcome(task) if _stop.is_set() else carry_out(task, progress)
+
+
+_stop: Any = None
+_reached: Any = None
+
+
+@contextmanager
+def _ignoring_interrupts() -> Iterator[None]:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

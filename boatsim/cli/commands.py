@@ -1,0 +1,184 @@
+"""The commands and their options; what they do is imported when they are called, so that `--help` is quick.
+
+Exit codes: 0 done, all bars met; 1 a bar missed; 2 bad input; 130 interrupted.
+"""
+
+import functools
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, Literal, ParamSpec
+
+import typer
+
+import boatsim
+from boatsim.errors import BoatsimError
+
+BAD_INPUT, INTERRUPTED = 2, 130
+P = ParamSpec("P")
+
+app = typer.Typer(
+    name="boatsim",
+    help="Small-boat motion and control on MuJoCo, and what a simulation of a real boat has left out.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+Runs = Annotated[list[Path], typer.Argument(metavar="RUN...", help="Recordings: .csv, .parquet or our own .rrd.")]
+OneRun = Annotated[Path, typer.Argument(metavar="RUN", help="A recording: .csv, .parquet or our own .rrd.")]
+VesselName = Annotated[
+    str | None, typer.Option("--vessel", metavar="NAME|FILE", help="Nominal vessel, instead of recording.toml's.")
+]
+Load = Annotated[str, typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide.")]
+
+
+def guarded(command: Callable[P, int | None]) -> Callable[P, None]:
+    """The command with its result as exit code; what goes wrong is one line."""
+
+    @functools.wraps(command)
+    def guard(*args: P.args, **options: P.kwargs) -> None:
+        raise typer.Exit(_code(lambda: command(*args, **options) or 0))
+
+    return guard
+
+
+def _code(command: Callable[[], int]) -> int:
+    """Exit code of a command, its error printed."""
+    try:
+        return command()
+    except BoatsimError as error:
+        complain(str(error))
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        complain(f"{where}{error.strerror or error}")
+    except KeyboardInterrupt:
+        complain("interrupted")
+        return INTERRUPTED
+    return BAD_INPUT
+
+
+def complain(message: str) -> None:
+    """One line to stderr."""
+    print(f"boatsim: {' '.join(message.split())}", file=sys.stderr)
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        print(f"boatsim {boatsim.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and leave.")
+    ] = False,
+) -> None:
+    """Options of the program itself."""
+
+
+options.__doc__ = None  # the program's help is that of `app`
+
+
+@app.command()
+@guarded
+def run(
+    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO...", help="Names or .toml files.")],
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder for the files [default: out/NAME].")] = None,
+    jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
+    seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,
+    live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer while it runs.")] = False,
+) -> int:
+    """Run scenarios: recording.csv, norms.json, camera.csv, run.rrd, and a table of norms beside their bars."""
+    from boatsim.cli.batch import run_all
+
+    return run_all(scenarios, out, jobs, seed, live)
+
+
+@app.command("list")
+@guarded
+def list_(
+    kind: Annotated[
+        Literal["vessels", "controllers", "effects", "scenarios"] | None, typer.Argument(help="Only these.")
+    ] = None,
+) -> None:
+    """List vessels, controllers, effects and scenarios, a line each."""
+    from boatsim.cli.show import listing
+
+    print("\n".join(listing(kind)))
+
+
+@app.command()
+@guarded
+def margins(controller: Annotated[str, typer.Argument(help="Name of a controller, or its .py file.")]) -> None:
+    """Print L1 norm, crossover, phase margin and delay margin of a controller's feedback channels."""
+    from boatsim import content
+    from boatsim import margins as found
+
+    print(found.text(found.table(content.load_class("controller", controller)())))
+
+
+@app.command()
+@guarded
+def compare(
+    run: OneRun,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for compare.csv and compare.rrd.")],
+    vessel: VesselName = None,
+    load: Load = "",
+    scenario: Annotated[
+        str | None, typer.Option(metavar="NAME|FILE", help="Simulate this, not the recorded commands.")
+    ] = None,
+) -> int:
+    """Compare a recording with a simulation of its commands, or of a scenario."""
+    from boatsim.diagnose import commands
+
+    return commands.compare(run, vessel, _loads(load), scenario, out)
+
+
+@app.command()
+@guarded
+def replay(
+    run: OneRun,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for replay.csv.")],
+    vessel: VesselName = None,
+    load: Load = "",
+    horizon: Annotated[float, typer.Option(min=0.1, metavar="S", help="Length of each free run [s].")] = 6.0,
+) -> int:
+    """Simulate a recording in free runs, each driven by the recorded commands alone."""
+    from boatsim.diagnose import commands
+
+    return commands.replay(run, vessel, _loads(load), horizon, out)
+
+
+@app.command()
+@guarded
+def diagnose(
+    runs: Runs,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for report.html and the other files.")],
+    hold_out: Annotated[
+        list[Path] | None, typer.Option(metavar="RUN", help="Judge the result on this one, unseen; may be repeated.")
+    ] = None,
+    vessel: VesselName = None,
+    load: Load = "",
+    library: Annotated[
+        list[str] | None, typer.Option(metavar="NAME|FILE", help="Try this effect too; may be repeated.")
+    ] = None,
+    without: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Do not try this effect; may be repeated.")
+    ] = None,
+) -> int:
+    """Say which physics a vessel's model leaves out of recordings of the real one."""
+    from boatsim.diagnose import commands
+
+    return commands.diagnose(runs, hold_out or [], vessel, _loads(load), out, library or [], without or [])
+
+
+def _loads(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def main() -> Any:
+    """Entry point of the program; leaves with its exit code."""
+    return app()

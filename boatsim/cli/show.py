@@ -1,0 +1,82 @@
+"""What the command line prints: progress, the table of norms, the list of content."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from boatsim import content
+from boatsim.files import read_toml
+
+
+@contextmanager
+def progress(tasks: Sequence[tuple[str, float]]) -> Iterator[Callable[[int, float], None]]:
+    """Progress bars of tasks (name, simulated time [s]) on stderr; nothing where that is not a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    clock = TextColumn("{task.completed:.0f} of {task.total:.0f} s simulated")
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), clock, TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
+        rows = [bars.add_task(name, total=duration) for name, duration in tasks]
+        yield lambda number, t: bars.update(rows[number], completed=t)
+
+
+def norms(found: dict[str, Any], folder: Path) -> None:
+    """Table norm, value, published, bar, ok of a run, from the content of its norms.json."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    state = "" if found["complete"] else ", interrupted"
+    table = Table(title=Text(f"{found['scenario']}, {found['controller']}, seed {found['seed']}{state}"))
+    table.add_column("norm")
+    for heading in ("value", "published"):
+        table.add_column(heading, justify="right")
+    table.add_column("bar")
+    table.add_column("ok")
+    for name, norm in found["norms"].items():
+        published = "" if norm["published"] is None else f"{norm['published']:.4g}"
+        table.add_row(name, _value(norm), published, _bar(norm["bar"]), _verdict(norm["ok"]))
+    console = Console()
+    if found["norms"]:
+        console.print(table)
+    else:
+        console.print(table.title)
+    console.print(Text(f"written to {folder}"), soft_wrap=True)
+
+
+def _value(norm: dict[str, Any]) -> str:
+    value = norm["value"]
+    return "not reached" if value is None or not isfinite(value) else f"{value:.4g} {norm['unit']}".rstrip()
+
+
+def _bar(bar: dict[str, float | None] | None) -> str:
+    low, high = (bar["low"], bar["high"]) if bar else (None, None)
+    if low is not None and high is not None:
+        return f"{low:.4g} to {high:.4g}"
+    return f"at least {low:.4g}" if low is not None else f"at most {high:.4g}" if high is not None else ""
+
+
+def _verdict(ok: bool | None) -> str:
+    return "" if ok is None else "[green]yes[/]" if ok else "[bold red]no[/]"
+
+
+def listing(only: str | None) -> list[str]:
+    """Lines of `boatsim list`: a heading for each kind, then name and a line about each."""
+    kinds = [only] if only else ["vessels", "controllers", "effects", "scenarios"]
+    lines: list[str] = []
+    for kind in kinds:
+        names = content.names(kind.removesuffix("s"))
+        width = max(map(len, names), default=0)
+        lines += [*([""] if lines else []), f"{kind}:"]
+        lines += [f"  {name:{width}}  {_about(kind.removesuffix('s'), name)}" for name in names]
+    return lines
+
+
+def _about(kind: str, name: str) -> str:
+    if kind in ("vessel", "scenario"):
+        return str(read_toml(content.find(kind, name)).get("about", ""))
+    return str(content.load_class(kind, name).words)

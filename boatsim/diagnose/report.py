@@ -1,0 +1,67 @@
+"""The report of a diagnosis for people: one page and the same as plain text, made from one list of sections."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from boatsim.diagnose.findings import Findings
+from boatsim.diagnose.report_blocks import Section, as_text, safe
+from boatsim.diagnose.report_sections import proof, sections_of
+from boatsim.diagnose.report_words import listed, number, sentence
+from boatsim.recording import replacing
+
+__all__ = ["sentence", "write"]
+
+VERDICTS = {
+    "named": "Named",
+    "ambiguous": "Named, with look-alikes",
+    "unknown": "Cause not in the library",
+    "nothing_missing": "Nothing missing",
+}
+
+
+def write(findings: Findings, folder: Path) -> None:
+    """Write report.html (one page, nothing fetched) and report.md (the same in text). Raises OSError."""
+    sections = [s for s in sections_of(findings) if s.blocks]
+    for name, text in (("report.html", page(findings, sections)), ("report.md", markdown(findings, sections))):
+        with replacing(folder / name) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+
+
+def page(findings: Findings, sections: Sequence[Section]) -> str:
+    """The page, complete in itself."""
+    from jinja2 import Environment, StrictUndefined
+
+    template = (Path(__file__).parent / "templates" / "report.html.j2").read_text(encoding="utf-8")
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["held"] = lambda words: words.replace(" ± ", "\u00a0±\u00a0")  # no line ends within
+    answer = findings.answer
+    return environment.from_string(template).render(
+        f=findings, verdict=VERDICTS[answer["verdict"]], answer=answer, headline=_headline(findings), sections=sections,
+        proof=proof(findings), facts=_facts(findings),
+    )  # fmt: skip
+
+
+def markdown(findings: Findings, sections: Sequence[Section]) -> str:
+    """The same as text."""
+    verdict = VERDICTS[findings.answer["verdict"]]
+    lines = [f"# {safe(_headline(findings))}", "", f"**{verdict}.** {safe(proof(findings))}", ""]
+    lines += [f"- {name}: {safe(value)}" for name, value in _facts(findings)]
+    for section in sections:
+        lines += ["", f"## {section.title}"]
+        for block in section.blocks:
+            lines += as_text(block)
+    return "\n".join(lines) + "\n"
+
+
+def _headline(f: Findings) -> str:
+    return str(f.answer["sentence"]) or sentence(f.answer)
+
+
+def _facts(f: Findings) -> list[tuple[str, str]]:
+    """Who, on what, how long."""
+    return [
+        ("Vessel", f.vessel),
+        ("Fitted to", listed(f.runs)),
+        ("Kept unseen", f.held_out_note or listed(f.held_out) or "nothing"),
+        ("Took", f"{number(f.answer['seconds'])} s, boatsim {f.answer['version']}"),
+    ]

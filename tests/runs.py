@@ -1,0 +1,37 @@
+"""Runs of shipped scenarios, each made once for all tests that look at it."""
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+from boatsim import scenario
+from boatsim.content import find, names
+from boatsim.files import read_toml
+from boatsim.metrics import Norm, norms
+from boatsim.run import run
+
+SHIPPED = tuple(name for name in names("scenario") if name.startswith("joystick_boat/"))
+TESTS = ("sway_1", "sway_2", "sway_3", "sway_4", "yaw_1", "yaw_2", "yaw_3", "yaw_4")  # of the thesis
+
+
+def raw(name: str) -> dict[str, Any]:
+    """Content of a shipped scenario's file."""
+    return read_toml(find("scenario", name))
+
+
+@cache
+def found(name: str, seed: int = 0) -> tuple[dict[str, Norm], int]:
+    """Norms of a shipped scenario, and in how many steps the hull touched a wall."""
+    done = run(scenario.load(name), seed)
+    return norms(done), int((done.recording["contacts"] > 0).sum())
+
+
+def mean(runs: Sequence[dict[str, Norm]]) -> dict[str, float]:
+    """Mean of each norm over runs that all reached it."""
+    return {name: sum(one[name].value for one in runs) / len(runs) for name in runs[0]}  # type: ignore[misc]
+
+
+@cache
+def mean_of(name: str, seeds: int = 6) -> dict[str, float]:
+    """Mean norms over seeds 0, 1, ..."""
+    return mean([found(name, seed)[0] for seed in range(seeds)])

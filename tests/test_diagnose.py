@@ -1,0 +1,251 @@
+"""The diagnosis: its filter against a dense Gaussian, its answers on data whose truth is known, and on real data."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+from scipy.stats import multivariate_normal
+
+from boatsim import recording, scenario, vessel
+from boatsim.diagnose import analysis, patch, show
+from boatsim.diagnose.answer import key_of
+from boatsim.diagnose.filter import Levels, segments, track
+from boatsim.errors import BadInput
+from boatsim.outputs import run_into
+from boatsim.program import Program
+from boatsim.recording import Notes, Recording
+
+DATA = Path(__file__).parent / "data"
+DECAY = DATA / "kvlcc2_roll_decay" / "decay_0kn_run2.csv"
+
+
+# ---- the filter
+
+
+def roll_recording(n: int = 40, dt: float = 0.2) -> Recording:
+    rng = np.random.default_rng(3)
+    t = dt * np.arange(n)
+    phi = 0.1 * np.exp(-0.02 * t) * np.cos(2.46 * t) + 1e-3 * rng.standard_normal(n)
+    phi[7] = np.nan  # a sample that is missing
+    return Recording("roll", t, {"phi_rad": phi})
+
+
+def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model():
+    boat = vessel.load("kvlcc2_roll")
+    rec = roll_recording()
+    found = track(rec, Program(boat))
+    levels = Levels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
+    on = found.program.switches()
+    values = found.program.values()
+    # the same model written down here: d/dt (phi, p, K) and its exact discretisation
+    inertia, damping, stiffness = 115.6 + 19.8, 6.7, 822.3
+    h = rec.t[1] - rec.t[0]
+    A = np.array([[0, 1, 0], [-stiffness / inertia, -damping / inertia, 1 / inertia], [0, 0, 0]])
+    F = expm(A * h)
+    F[2, 2] = np.exp(-h / 1.5)
+    Q = np.diag([0.0, 0.0, 9.0 * (1 - F[2, 2] ** 2)])
+    P0 = found.spread.copy()
+    P0[0, 0], P0[2, 2] = 1e-6, 9.0
+    n = len(rec)
+    big = np.zeros((3 * n, 3 * n))
+    mean = np.zeros(3 * n)
+    block, centre = P0, np.array([rec["phi_rad"][0], 0.0, 0.0])
+    for i in range(n):
+        mean[3 * i : 3 * i + 3] = centre
+        big[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = block
+        cross = block
+        for j in range(i + 1, n):
+            cross = cross @ F.T
+            big[3 * i : 3 * i + 3, 3 * j : 3 * j + 3] = cross
+            big[3 * j : 3 * j + 3, 3 * i : 3 * i + 3] = cross.T
+        block, centre = F @ block @ F.T + Q, F @ centre
+    rows = [3 * i for i in range(1, n) if np.isfinite(rec["phi_rad"][i])]
+    y = rec["phi_rad"][[r // 3 for r in rows]]
+    S = big[np.ix_(rows, rows)] + 1e-6 * np.eye(len(rows))
+    dense = multivariate_normal(mean[rows], S).logpdf(y)
+    got = found.likelihood(values, on, levels) - 0.5 * len(rows) * np.log(2 * np.pi)
+    # the filter linearises to third order in h, and holds the force over a sample
+    assert got == pytest.approx(dense, abs=0.05 * len(rows))
+    gain = np.linalg.solve(S, big[rows]).T
+    smoothed = mean + gain @ (y - mean[rows])
+    means, covariances = found.smoothed(values, on, levels)
+    assert means[:, 0] == pytest.approx(smoothed[0::3], abs=2e-4)
+    variance = np.diag(big - gain @ big[rows])[2::3]
+    assert np.sqrt(covariances[5:-5, 2, 2]) == pytest.approx(np.sqrt(variance)[5:-5], rel=0.05)
+
+
+def test_one_outlier_moves_neither_states_nor_evidence_much():
+    boat = vessel.load("kvlcc2_roll")
+    clean = roll_recording()
+    spoilt = replace(clean, signals={"phi_rad": clean["phi_rad"].copy()})
+    spoilt["phi_rad"][20] += 0.5
+    levels = Levels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
+    program = Program(boat)
+    first, second = (track(r, program).smoothed(program.values(), program.switches(), levels)[0] for r in (clean, spoilt))
+    assert np.abs(first[:, 0] - second[:, 0]).max() < 2e-3
+
+
+def test_free_runs_start_every_horizon_and_leave_a_shorter_rest_out():
+    starts, ends = segments(np.arange(0, 20.01, 0.5), 6.0)
+    assert [(0.5 * a, 0.5 * b) for a, b in zip(starts, ends, strict=True)] == [(0, 6), (6, 12), (12, 18)]
+
+
+# ---- answers on data from an integrator that shares no code with the tool
+
+M, IZ, A11, A22, A66 = 4.6, 0.6, 0.3, 9.0, 0.7  # the trial boat: kg, kg m^2
+XU, YV, NR, X_MOTOR, Y_MOTOR = 3.0, 10.0, 1.0, -0.6, 0.19
+
+
+def truth(t, y, thrust, steer, astern, toward):
+    """Surge, sway, yaw of the trial boat with its rigid-body Coriolis force only, written out for this test."""
+    _, _, psi, u, v, r = y
+    push = np.where(thrust < 0, astern, 1.0) * thrust
+    X = (push * np.cos(steer)).sum() + toward[0] * 0.5 * np.cos(toward[1] - psi)
+    Y = (push * np.sin(steer)).sum() + toward[0] * np.sin(toward[1] - psi)
+    N = X_MOTOR * (push * np.sin(steer)).sum() + Y_MOTOR * (push[0] * np.cos(steer[0]) - push[1] * np.cos(steer[1]))
+    du = (X - XU * u + M * v * r) / (M + A11)
+    dv = (Y - YV * v - M * u * r) / (M + A22)
+    c, s = np.cos(psi), np.sin(psi)
+    return [u * c - v * s, u * s + v * c, r, du, dv, (N - NR * r) / (IZ + A66)]
+
+
+def recorded(name: str, seed: int, astern: float = 1.0, wind: tuple[float, float] = (0.0, 0.0)) -> Recording:
+    rng = np.random.default_rng(seed)
+    dt, n = 1 / 6, 240
+    commands = np.repeat(np.column_stack([rng.uniform(-0.9, 0.9, (30, 2)), rng.uniform(-0.6, 0.6, (30, 2))]), 8, axis=0)
+    y, rows = np.zeros(6), []
+    for k in range(n):
+        rows.append(y[:3])
+        args = (commands[k, :2], commands[k, 2:], astern, wind)
+        y = solve_ivp(truth, (0, dt), y, args=args, rtol=1e-8, atol=1e-10).y[:, -1]
+    pose = np.array(rows) + rng.standard_normal((n, 3)) * [0.003, 0.003, 0.012]
+    names = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | dict(zip(names, commands.T, strict=True))
+    return Recording(name, dt * np.arange(n), signals, Notes(vessel="trial_boat"))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("runs")
+
+
+def written(folder: Path, *recordings: Recording) -> list[Path]:
+    for r in recordings:
+        recording.write_csv(r, folder / f"{r.name}.csv")
+    return [folder / f"{r.name}.csv" for r in recordings]
+
+
+def test_ideal_boat_has_nothing_missing(folder):
+    runs = written(folder, recorded("ideal_1", 1), recorded("ideal_2", 2))
+    answer = analysis.diagnose(runs, vessel="trial_boat").findings.answer
+    assert answer["verdict"] == "nothing_missing" and answer["effects"] == []
+    limits = answer["upper_limits"]["weak_reverse"]["astern_factor"]
+    assert 0.0 < limits < 0.1  # so small a weakness would have gone unseen
+
+
+def test_two_effects_are_named_with_their_values_and_the_patched_boat_follows_unseen_data(folder):
+    wind = (0.12, 0.8)
+    runs = written(folder, *(recorded(f"both_{i}", 10 + i, astern=0.7, wind=wind) for i in range(3)))
+    found = analysis.diagnose(runs, vessel="trial_boat")
+    answer = found.findings.answer
+    assert {e["name"] for e in answer["effects"]} == {"weak_reverse", "wind"} and answer["verdict"] == "named"
+    values = {k: p for e in answer["effects"] for k, p in e["parameters"].items()}
+    for key, true in (("astern_factor", 0.7), ("force_N", 0.12), ("toward_rad", 0.8)):
+        assert abs(values[key]["value"] - true) < 4 * values[key]["sd"] and values[key]["sd"] < 0.1, key
+    rms = answer["fit"]["position_rms_m"]
+    assert answer["fit"]["held_out"] == ["both_2"]
+    assert rms["patched"] < 0.006 < 0.2 * rms["recalibrated"]  # 3 mm camera noise and that of the smoothed start
+
+
+def test_patched_file_gives_the_fitted_motion_back(folder):
+    runs = written(folder, *(recorded(f"both_{i}", 10 + i, astern=0.7, wind=(0.12, 0.8)) for i in range(2)))
+    found = analysis.diagnose(runs[:1], runs[1:], "trial_boat")
+    patch.write(found.vessel, found.ranking.best, folder / "patched.toml")
+    again = vessel.load(str(folder / "patched.toml"))
+    assert {e.name() for e in again.effects} >= {"weak_reverse", "wind"}
+    assert "# [kg]" in (folder / "patched.toml").read_text()  # comments are kept
+    rec = recording.read(runs[1], again.limits())
+    fitted, own = track(rec, found.problem.program), track(rec, Program(again))
+    best = found.ranking.best
+    first = fitted.free_runs(
+        found.problem.values(fitted, best.free, best.theta), fitted.program.switches(best.suspects), best.levels, 6.0
+    )
+    second = own.free_runs(own.values, own.program.switches(), best.levels, 6.0)
+    for (_, a), (_, b) in zip(first, second, strict=True):
+        assert np.abs(a - b).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", ["T002", "T003", "T019"])
+def test_practice_trials_are_named_exactly(name):
+    trial = DATA / "trials" / name
+    truth_is = json.loads((trial / "answer.json").read_text())
+    answer = analysis.diagnose([trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"]).findings.answer
+    assert {e["name"] for e in answer["effects"]} == {e["name"] for e in truth_is["effects"]}
+    reference = truth_is["reference_position_rms_m"]
+    best = reference.get("true_structure", reference["recalibrated"])
+    assert answer["fit"]["position_rms_m"]["patched"] < 1.1 * best
+
+
+def test_a_single_run_keeps_its_middle_third_unseen():
+    rec = recorded("single", 5)
+    fitted, unseen, note = show.split([rec], [])
+    assert [len(r) for r in (*fitted, *unseen)] == pytest.approx([80, 80, 80], abs=2)
+    assert unseen[0].t[0] > fitted[0].t[-1] - 0.2 and fitted[1].t[0] > unseen[0].t[-1]
+    assert "middle third" in note
+
+
+def test_bad_requests_get_one_line(folder):
+    runs = written(folder, recorded("alone", 1))
+    with pytest.raises(BadInput, match="no vessel given"):
+        analysis.diagnose(runs)
+    with pytest.raises(BadInput, match="did you mean 'weak_reverse'"):
+        analysis.diagnose(runs, vessel="trial_boat", without=["weak_revers"])
+    with pytest.raises(BadInput, match="phi_rad"):
+        analysis.diagnose(runs, vessel="kvlcc2_roll")
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "key"),
+    [("force", "N", "force_N"), ("north", "m/s", "north_mps"), ("factor", "", "factor"), ("time_constant", "s", "time_constant_s"),
+     ("surge_quadratic", "N s^2/m^2", "surge_quadratic_Ns2pm2")],
+)  # fmt: skip
+def test_parameter_keys_carry_their_unit(name, unit, key):
+    assert key_of(name, unit) == key
+
+
+# ---- the thesis' own boat
+
+
+@pytest.fixture(scope="module")
+def thesis(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("thesis")
+    for name in ("sway_1", "yaw_1", "sway_3", "yaw_3"):
+        run_into(folder / name, scenario.load(f"joystick_boat/{name}_as_published"))
+    return folder
+
+
+def test_reverse_thrust_taken_for_ideal_is_found_in_the_thesis_own_tests(thesis):
+    runs = [thesis / n / "camera.csv" for n in ("sway_1", "yaw_1")]
+    unseen = [thesis / n / "camera.csv" for n in ("sway_3", "yaw_3")]
+    answer = analysis.diagnose(runs, unseen).findings.answer
+    assert [e["name"] for e in answer["effects"]] == ["weak_reverse"]
+    assert answer["effects"][0]["parameters"]["astern_factor"]["value"] == pytest.approx(0.694, rel=0.05)
+    rms = answer["fit"]["position_rms_m"]
+    assert rms["patched"] < rms["nominal"] / 5 and rms["patched"] < rms["recalibrated"] / 5
+
+
+# ---- a real roll decay
+
+
+def test_real_roll_decay_shows_nonlinear_damping_and_stiffening_on_unseen_data():
+    found = analysis.diagnose([DECAY]).findings
+    answer = found.answer
+    names = {e["name"] for e in answer["effects"]}
+    assert "righting_arm_stiffening" in names and names & {"quadratic_damping", "cubic_damping"}
+    rms = answer["fit"]["roll_rms_rad"]
+    assert rms["patched"] < 0.5 * rms["recalibrated"]
+    assert any("last third" in r for r in found.remarks)  # there the linear model is already right, and it says so

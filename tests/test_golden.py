@@ -1,0 +1,76 @@
+"""No norm of a shipped scenario drifts unseen."""
+
+import json
+from pathlib import Path
+
+import pytest
+from runs import found
+
+from benchmarks import golden
+from benchmarks.golden import TOLERANCE, drifts, kept, main, path_of, tracked, update, values, with_reason
+from boatsim.metrics import Norm
+
+TRACKED = tracked()
+OLD = {"yaw_rate_inf": {"today": 0.5, "at_6hz": 1.1, "published": 2.8, "unit": "deg/s"}}
+
+
+def with_today(value: float | None) -> golden.Values:
+    return {"yaw_rate_inf": OLD["yaw_rate_inf"] | {"today": value}}
+
+
+@pytest.mark.parametrize("name", TRACKED)
+def test_norms_are_what_they_were(name: str) -> None:
+    lines = drifts(name, kept(name), values(found(name)[0]))
+    assert not lines, "\n".join([*lines, 'if this is wanted: python -m benchmarks.golden --update --reason "..."'])
+
+
+def test_nothing_is_kept_of_scenarios_that_are_gone() -> None:
+    folder = path_of("joystick_boat/sway_1").parents[1]
+    stored = {str(path.relative_to(folder).with_suffix("")) for path in folder.rglob("*.json")}
+    assert stored == set(TRACKED) and len(stored) >= 29
+
+
+def test_a_drift_is_a_line_with_scenario_norm_old_new_and_paper() -> None:
+    (line,) = drifts("joystick_boat/sway_1", OLD, with_today(0.7))
+    assert line == "joystick_boat/sway_1 yaw_rate_inf: 0.5 -> 0.7 deg/s (paper: 2.8)"
+
+
+def test_drift_begins_at_the_tolerance() -> None:
+    assert drifts("x", OLD, with_today(0.5 * (1 + 0.9 * TOLERANCE))) == []
+    assert len(drifts("x", OLD, with_today(0.5 * (1 + 1.1 * TOLERANCE)))) == 1
+
+
+def test_norms_that_come_go_or_lose_their_value_are_drifts() -> None:
+    assert drifts("x", {}, OLD) == ["x yaw_rate_inf is new"]
+    assert drifts("x", OLD, {}) == ["x yaw_rate_inf is gone"]
+    assert drifts("x", OLD, with_today(None)) == ["x yaw_rate_inf: 0.5 -> None deg/s (paper: 2.8)"]
+
+
+@pytest.mark.parametrize("reason", [[], ["--reason", ""], ["--reason", " \n"]])
+def test_an_update_without_a_reason_is_refused(reason: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--update", *reason]) == 2
+    assert capsys.readouterr().err == '--update needs --reason "why the norms changed"\n'
+
+
+def test_an_update_writes_the_values_and_the_reason(tmp_path: Path) -> None:
+    (tmp_path / "CHANGELOG.md").write_text("# Changelog\n\n## Norms\n\n- older reason\n\n## Other\n")
+    new = with_today(0.7)
+    update({"boat/one": (new, drifts("boat/one", OLD, new))}, "servo lag corrected", tmp_path)
+    assert json.loads(path_of("boat/one", tmp_path).read_text())["seed"] == 0
+    assert drifts("boat/one", kept("boat/one", tmp_path), new) == []
+    assert (tmp_path / "CHANGELOG.md").read_text() == (
+        "# Changelog\n\n## Norms\n\n- servo lag corrected\n"
+        "  - boat/one yaw_rate_inf: 0.5 -> 0.7 deg/s (paper: 2.8)\n- older reason\n\n## Other\n"
+    )
+
+
+def test_a_changelog_without_a_section_on_norms_gets_one() -> None:
+    assert with_reason("# Changelog\n", "first values", ["a b is new", "a c is new"]) == (
+        "# Changelog\n\n## Norms\n\n- first values\n  - 2 new norms\n"
+    )
+
+
+def test_what_is_kept_of_a_norm_survives_the_file() -> None:
+    norm = Norm(1 / 3, "m", 0.07, {"low": None, "high": 1.0}, True, 2 / 3, 0.01)
+    stored = json.loads(json.dumps(values({"moved": norm})))
+    assert stored == {"moved": {"today": 0.333333333, "at_6hz": 0.666666667, "published": 0.07, "unit": "m"}}
