@@ -1,5 +1,6 @@
 """Finds content by name: vessels, controllers and scenarios are files, and a file's name is its name everywhere."""
 
+import hashlib
 import importlib
 import importlib.util
 import sys
@@ -79,17 +80,23 @@ def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
     if kind == "effect" and name in names("effect"):
         module = importlib.import_module(f"boatsim.effects.{name}")
     elif kind == "effect":
-        folder = beside or Path()
-        path = folder / name if name.endswith(".py") else folder / f"{name}.py"
+        path = (beside or Path()) / (name if name.endswith(".py") else f"{name}.py")
         if not path.is_file():
             raise BadInput(unknown_name("effect", name, names("effect")))
-        module = module_at(path.resolve(), f"boatsim_user_effect_{path.stem}")
-        name = path.stem
+        name, module = path.stem, _own_module(path)
     else:
         path = find("controller", name, beside)
+        shipped = path.parent == root() / KINDS["controller"]
         name = path.stem
-        module = module_at(path, f"boatsim.controllers.{name}")
+        module = module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path)
     found = getattr(module, camel_case(name), None)
     if found is None:
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
     return found
+
+
+def _own_module(path: Path) -> ModuleType:
+    """A user's own file: two folders may each have a push.py, and it may be edited while we run."""
+    path = path.resolve()
+    stamp = hashlib.sha256(str(path).encode() + path.read_bytes()).hexdigest()[:16]
+    return module_at(path, f"boatsim_own_{path.stem}_{stamp}")

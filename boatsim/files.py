@@ -38,7 +38,7 @@ def checked(model: type[T], data: dict[str, Any], file: str) -> T:
 
 def _line(model: type[BaseModel], error: ValidationError) -> str:
     """First mistake of a validation in words."""
-    first = error.errors()[0]
+    first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")  # a misspelt key is also a missing one
     place = ".".join(str(p) for p in first["loc"])
     if first["type"] == "extra_forbidden":
         table = ".".join(str(p) for p in first["loc"][:-1])

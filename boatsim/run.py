@@ -36,7 +36,7 @@ class Log:
     def add(self, row: list[float]) -> None:
         """One more row."""
         if self.count == len(self.rows):
-            self.rows = np.concatenate([self.rows, np.empty_like(self.rows)])
+            self.rows = np.concatenate([self.rows, np.empty((max(CHUNK, self.count // 4), len(self.names)))])
         self.rows[self.count] = row
         self.count += 1
 
@@ -86,8 +86,6 @@ class Runner:
                 self._advance()
                 if progress and self.log.count % 100 == 0:
                     progress(self._state.t)
-            self._control()
-            self._write_row([])
             complete = True
         except KeyboardInterrupt:
             pass

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cache
+from math import nan
 from typing import Any
 
 from boatsim import scenario
@@ -27,8 +28,10 @@ def found(name: str, seed: int = 0) -> tuple[dict[str, Norm], int]:
 
 
 def mean(runs: Sequence[dict[str, Norm]]) -> dict[str, float]:
-    """Mean of each norm over runs that all reached it."""
-    return {name: sum(one[name].value for one in runs) / len(runs) for name in runs[0]}  # type: ignore[misc]
+    """Mean of each norm over runs; nan, which meets no bar, where one of them never reached it."""
+    return {
+        name: sum(nan if (value := one[name].value) is None else value for one in runs) / len(runs) for name in runs[0]
+    }
 
 
 @cache

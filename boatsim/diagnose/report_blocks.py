@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import dataclass, field, replace
-from html import escape
 from typing import ClassVar
 
 
@@ -75,7 +74,8 @@ class Section:
 
 def safe(words: str) -> str:
     """Names from files do not become mark-up."""
-    return re.sub(r"([|*\[\]`])", r"\\\1", escape(words, quote=False)).replace("\n", " ")
+    words = words.replace("&", "&amp;").replace("<", "&lt;").replace("\n", " ")
+    return re.sub(r"([|*`]|(?<=\])\()", r"\\\1", words)
 
 
 def as_text(block: Block) -> list[str]:

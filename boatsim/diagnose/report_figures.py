@@ -239,9 +239,7 @@ def _error_panel(runs: Sequence[FreeRun], signal: str) -> Panel:
     kept = {m: e for m, e in errors.items() if m != "nominal" or largest[m] <= 2.5 * others or not others}
     unit, factor = handy("m" if signal == "position" else "rad", max(largest[m] for m in kept))
     lines = tuple(Line(m, r.t, factor * e) for m, found in errors.items() for r, e in zip(runs, found, strict=True))
-    left = (
-        "" if "nominal" in kept else f"; nominal up to {number(factor * largest['nominal'])} {unit}, out of the picture"
-    )
+    left = "" if "nominal" in kept else f"; nominal up to {number(factor * largest['nominal'])}, out of the picture"
     y = limits([factor * e for found in kept.values() for e in found])
     words = "position" if signal == "position" else SIGNALS[signal]
     x = float(runs[0].t[0]), float(runs[-1].t[-1])

@@ -69,7 +69,7 @@ def proof(f: Findings) -> str:
         return f"In free runs of {stretch} over unseen data the recalibrated vessel has an rms error of {errors}."
     compared = (f"of {after} in {words} instead of {before} ({_times(gain)})" for words, before, after, gain in parts)
     return (
-        f"With it in the model, free runs of {stretch} over unseen data have an rms error {listed(compared)}; the "
+        f"With this in the model, free runs of {stretch} over unseen data have an rms error {listed(compared)}; the "
         "comparison is with the same vessel after its own coefficients were refitted."
     )
 
@@ -187,10 +187,10 @@ def _proof(f: Findings) -> Iterator[Block]:
     rows = [_compared(words, fit[key], unit) for key, (words, unit, _) in FAMILIES.items() if fit.get(key)]
     if rows:
         caption = f"rms error of free runs of {fit['horizon_s']:g} s over {listed(fit['held_out'])}"
-        yield Table(f"{caption}; last, recalibrated against patched", ["error in", *MODELS, "times smaller"], rows)
+        yield Table(caption, ["error in", *MODELS, "better by"], rows)
     runs = [list(group) for _, group in groupby(f.free_runs, key=lambda r: r.run)]
     if len(runs) > 1:
-        yield Table("The same, run by run", ["run", *MODELS, "times smaller"], _by_run(runs))
+        yield Table("The same, run by run", ["run", *MODELS, "better by"], _by_run(runs))
     if runs:
         looks = {m: m for m in runs[0][0].channels}
         yield Figures(figures.legend(looks), [p for r in runs[:UNSEEN_PICTURES] for p in figures.free_run_figures(r)])
@@ -199,7 +199,11 @@ def _proof(f: Findings) -> Iterator[Block]:
 
 
 def _compared(words: str, rms: dict[str, float], unit: str) -> list[str]:
-    return [words, *alike([rms[m] for m in MODELS], unit), number(rms["recalibrated"] / max(rms["patched"], 1e-300), 3)]
+    return [
+        words,
+        *alike([rms[m] for m in MODELS], unit),
+        f"{number(rms['recalibrated'] / max(rms['patched'], 1e-300))} ×",
+    ]
 
 
 def _by_run(runs: Sequence[Sequence[FreeRun]]) -> list[list[str]]:
@@ -227,7 +231,7 @@ def _ranking(f: Findings) -> Iterator[Block]:
     ]
     most = max(max(c["gain_nats"] for c in candidates), 1e-9)
     bars = tuple(max(0.0, c["gain_nats"]) / most for c in candidates)
-    caption = "Every entry alone, by how much better it explains the fitted recordings than the recalibrated vessel"
+    caption = "Each entry alone, before any is named: how much better than the recalibrated vessel it explains the fit"
     header = ["entry", "gain [nats]", "probability", "verdict", "it would mean"]
     yield without_empty(Table(caption, header, rows, (3, 4), bars))
 

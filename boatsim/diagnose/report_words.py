@@ -1,6 +1,7 @@
 """Numbers and sentences as a person reads them: degrees, handy units, as many digits as the spread allows."""
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -10,6 +11,8 @@ DEGREE = 180.0 / math.pi
 IN_DEGREES = {"rad": "°", "rad/s": "°/s", "rad/s^2": "°/s²"}
 FORCES = ((1e6, 1e6, "M"), (1e3, 1e3, "k"), (1e-2, 1.0, ""), (0.0, 1e-3, "m"))  # from this size on, factor, prefix
 LENGTHS = ((1.0, 1.0, "m"), (1e-2, 1e-2, "cm"), (0.0, 1e-3, "mm"))
+FACTOR = "(kg|rad|N|m|s)([2-9]?)"
+UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?")  # how keys spell a unit
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -79,8 +82,18 @@ def parameter(key: str, unit: str = "") -> tuple[str, str]:
     compact = unit.replace(" ", "").replace("^", "").replace("/", "p")
     if compact and key.endswith(f"_{compact}"):
         return plain(key.removesuffix(f"_{compact}")), unit
-    found = unit or unit_of(key)
-    return (plain(key.rpartition("_")[0]) if found and not unit else plain(key)), found
+    if unit:
+        return plain(key), unit
+    name, _, ending = key.rpartition("_")
+    unit = unit_of(key) or (_spelt(ending) if name and UNIT.fullmatch(ending) else "")
+    return plain(name if unit else key), unit
+
+
+def _spelt(compact: str) -> str:
+    """Ns2pm2 -> N s^2/m^2."""
+    above, _, below = compact.partition("p")
+    parts = (" ".join(f"{u}^{n}" if n else u for u, n in re.findall(FACTOR, part)) for part in (above, below))
+    return "/".join(part for part in parts if part)
 
 
 def percent(share: float) -> str:

@@ -32,7 +32,7 @@ def constants(body: Array, p: Array, on: Any, k: Array) -> None:
     k[2], k[3], k[4] = m66 / determinant, -m26 / determinant, m22 / determinant
 
 
-@njit(error_model="numpy", cache=True)
+@njit(inline="always", error_model="numpy")
 def accelerations(t: float, y: Any, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
     """Earth-axes accelerations (x'', y'', psi''); extra is a further body force (X, Y, N)."""
     c, s, r = cos(y[2]), sin(y[2]), y[5]
@@ -52,23 +52,24 @@ def accelerations(t: float, y: Any, act: Array, p: Array, on: Any, k: Array, ext
 @njit(inline="always", error_model="numpy")
 def step(t: float, y: Any, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
     """One Runge-Kutta step of fourth order with the actuators held; state tuple in, state tuple out."""
-    h = 0.5 * dt
-    a0, a1, a2 = accelerations(t, y, act, p, on, k, extra)
-    y2 = (y[0] + h * y[3], y[1] + h * y[4], y[2] + h * y[5], y[3] + h * a0, y[4] + h * a1, y[5] + h * a2)
-    b0, b1, b2 = accelerations(t + h, y2, act, p, on, k, extra)
-    y3 = (y[0] + h * y2[3], y[1] + h * y2[4], y[2] + h * y2[5], y[3] + h * b0, y[4] + h * b1, y[5] + h * b2)
-    c0, c1, c2 = accelerations(t + h, y3, act, p, on, k, extra)
-    y4 = (y[0] + dt * y3[3], y[1] + dt * y3[4], y[2] + dt * y3[5], y[3] + dt * c0, y[4] + dt * c1, y[5] + dt * c2)
-    d0, d1, d2 = accelerations(t + dt, y4, act, p, on, k, extra)
+    z, at = y, 0.0
+    s0 = s1 = s2 = r0 = r1 = r2 = 0.0
+    for stage in range(4):  # a loop, so that the laws are compiled once
+        a0, a1, a2 = accelerations(t + at, z, act, p, on, k, extra)
+        w = 1.0 if stage == 0 or stage == 3 else 2.0
+        s0 += w * z[3]
+        s1 += w * z[4]
+        s2 += w * z[5]
+        r0 += w * a0
+        r1 += w * a1
+        r2 += w * a2
+        at = dt if stage == 2 else 0.5 * dt
+        z = (
+            y[0] + at * z[3], y[1] + at * z[4], y[2] + at * z[5],
+            y[3] + at * a0, y[4] + at * a1, y[5] + at * a2,
+        )  # fmt: skip
     w = dt / 6.0
-    return (
-        y[0] + w * (y[3] + 2.0 * y2[3] + 2.0 * y3[3] + y4[3]),
-        y[1] + w * (y[4] + 2.0 * y2[4] + 2.0 * y3[4] + y4[4]),
-        y[2] + w * (y[5] + 2.0 * y2[5] + 2.0 * y3[5] + y4[5]),
-        y[3] + w * (a0 + 2.0 * b0 + 2.0 * c0 + d0),
-        y[4] + w * (a1 + 2.0 * b1 + 2.0 * c1 + d1),
-        y[5] + w * (a2 + 2.0 * b2 + 2.0 * c2 + d2),
-    )
+    return y[0] + w * s0, y[1] + w * s1, y[2] + w * s2, y[3] + w * r0, y[4] + w * r1, y[5] + w * r2
 
 
 @njit(error_model="numpy", cache=True)
