@@ -11,6 +11,7 @@ import pytest
 from boatsim.diagnose import report
 from boatsim.diagnose.findings import Findings, FreeRun, Missing
 from boatsim.diagnose.report_figures import thinned, ticks
+from boatsim.diagnose.report_sections import sections_of
 from boatsim.diagnose.report_words import alike, number, parameter, percent, quantity, spread
 
 VOID = {"meta", "br", "hr", "img", "input", "link"}
@@ -335,6 +336,18 @@ def test_sentence_is_made_of_the_words_of_the_effects():
     assert report.sentence(unknown().answer).startswith("Something is missing that no entry of the library explains")
 
 
+def test_an_rms_by_run_is_that_of_the_coordinates_as_in_the_answer():
+    f = planar()
+    two = (*f.free_runs, *(replace(r, run="run_4") for r in f.free_runs))
+    tables = [
+        b for s in sections_of(replace(f, free_runs=two)) if s.key == "proof" for b in s.blocks if b.kind == "table"
+    ]
+    off = [r.channels["patched"][n] - r.channels["recorded"][n] for r in f.free_runs for n in ("x_m", "y_m")]
+    rms = float(np.sqrt(np.mean(np.concatenate(off) ** 2)))
+    row = next(r for r in tables[1].rows if r[0] == "run_4, position")
+    assert row[3] == f"{number(100 * rms)} cm"
+
+
 def test_a_failed_write_leaves_the_old_report_whole(tmp_path, monkeypatch):
     report.write(planar(), tmp_path)
     before = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
@@ -374,6 +387,10 @@ def test_a_value_has_the_digits_its_deviation_allows(value, sd, text):
     assert spread(value, sd) == text
 
 
+def test_nothing_is_written_as_minus_nothing():
+    assert (number(-0.0), number(-0.71), number(4.0e7)) == ("0", "−0.710", "4.00 × 10⁷")
+
+
 def test_readers_get_degrees_and_handy_units():
     assert quantity(np.pi / 2, "rad", 0.01) == "(90.00 ± 0.57)°"
     assert alike([0.142, 0.0139], "m") == ["14.2 cm", "1.39 cm"]
@@ -381,6 +398,7 @@ def test_readers_get_degrees_and_handy_units():
     assert (percent(0.99999), percent(0.973), percent(1e-9), percent(0.004)) == ("> 99.9 %", "97 %", "< 0.1 %", "0.4 %")
     assert parameter("toward_rad", "rad") == ("toward", "rad") and parameter("astern_factor") == ("astern factor", "")
     assert parameter("roll_Nms3") == ("roll", "N m s^3") and parameter("x_Ns2pm2") == ("x", "N s^2/m^2")
+    assert parameter("cubic_perrad2") == parameter("cubic_perrad2", "1/rad^2") == ("cubic", "1/rad^2")
     assert parameter("rate_radps") == ("rate", "rad/s") and parameter("mass_kg") == ("mass", "kg")
     assert parameter("surge_quadratic_Ns2pm2", "N s^2/m^2") == ("surge quadratic", "N s^2/m^2")
 

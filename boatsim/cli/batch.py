@@ -64,7 +64,8 @@ def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None,
         elif outcome.content:
             show.norms(outcome.content, outcome.task.folder)
     if any(outcome.code == INTERRUPTED for outcome in outcomes):
-        complain("interrupted; what was logged is kept")
+        kept = any(outcome.content for outcome in outcomes)
+        complain("interrupted; what was logged is kept" if kept else "interrupted before anything was logged")
     return max(outcome.code for outcome in outcomes)
 
 

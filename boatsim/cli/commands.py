@@ -26,7 +26,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-Runs = Annotated[list[Path], typer.Argument(metavar="RUN...", help="Recordings: .csv, .parquet or our own .rrd.")]
+Runs = Annotated[list[Path], typer.Argument(metavar="RUN", help="Recordings: .csv, .parquet or our own .rrd.")]
 OneRun = Annotated[Path, typer.Argument(metavar="RUN", help="A recording: .csv, .parquet or our own .rrd.")]
 VesselName = Annotated[
     str | None, typer.Option("--vessel", metavar="NAME|FILE", help="Nominal vessel, instead of recording.toml's.")
@@ -79,13 +79,10 @@ def options(
     """Options of the program itself."""
 
 
-options.__doc__ = None  # the program's help is that of `app`
-
-
 @app.command()
 @guarded
 def run(
-    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO...", help="Names or .toml files.")],
+    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names or .toml files.")],
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder for the files [default: out/NAME].")] = None,
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
     seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,

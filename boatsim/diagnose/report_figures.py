@@ -209,7 +209,7 @@ def position_error(run: FreeRun, model: str) -> Array:
 
 
 def error_of(run: FreeRun, model: str, signal: str) -> Array:
-    """Error (M,) of a signal, or of "position", in SI units."""
+    """Error (M,) of a signal, or of "position" (its distance), in SI units."""
     if signal == "position":
         return position_error(run, model)
     return run.channels[model][signal] - run.channels["recorded"][signal]

@@ -43,7 +43,8 @@ GLOSSARY = (
     ("free run",
      "The simulated boat starts at the state of the real one and is then driven by the recorded commands alone, "
      "without ever looking at the recording again. What it misses by is the error of the model."),
-    ("rms", "Root mean square: the size of a quantity that changes, over all of its samples."),
+    ("rms", "Root mean square: the size of a quantity that changes, over all of its samples. "
+        "In a position x and y count each."),
     ("gain, in nats",
      "How much better an explanation predicts the recordings, as a natural logarithm, the freedom of its extra "
      "parameters paid for. 1 nat is a factor of 2.7, 3 nats 20, 4 nats 55. An effect is named from 4 nats on; entries "
@@ -91,10 +92,16 @@ def sections_of(f: Findings) -> list[Section]:
         Section("coefficients", "Refitted coefficients", list(_coefficients(f))),
         Section("next", "What to record next", list(_next(f))),
         Section("cannot", "What this can not tell", list(_cannot(f))),
-        Section("more", "Further tables", [Table(t, h, r) for t, h, r in f.extra_tables]),
+        Section("more", "Further tables", [Table(t, h, r, _prose(r)) for t, h, r in f.extra_tables]),
         Section("files", "Files", list(_files(f))),
         Section("reading", "How to read this", [Items(GLOSSARY)]),
     ]
+
+
+def _prose(rows: Sequence[Sequence[str]]) -> tuple[int, ...]:
+    """Columns of words, after the first."""
+    wordy = {i for row in rows for i, cell in enumerate(row) if i and cell and not any(c.isdigit() for c in cell)}
+    return tuple(sorted(wordy))
 
 
 def _what(f: Findings) -> Iterator[Block]:
@@ -213,7 +220,8 @@ def _by_run(runs: Sequence[Sequence[FreeRun]]) -> list[list[str]]:
             wanted = ("x_m", "y_m") if signal == "position" else (signal,)
             if all(s in group[0].channels["recorded"] for s in wanted):
                 errors = {m: np.concatenate([figures.error_of(r, m, signal) for r in group]) for m in MODELS}
-                rms = {m: math.sqrt(float(np.nanmean(e**2))) for m, e in errors.items()}
+                each = 2 if signal == "position" else 1  # both coordinates of a position count
+                rms = {m: math.sqrt(float(np.nanmean(e**2)) / each) for m, e in errors.items()}
                 rows.append(_compared(f"{group[0].run}, {words}", rms, unit))
     return rows
 
@@ -252,7 +260,7 @@ def _coefficients(f: Findings) -> Iterator[Block]:
         return
     caption = "The nominal structure with its own coefficients refitted: factor on the value in the vessel file"
     changes = {name: f"{100 * (factor - 1):+.1f} %".replace("-", "−") for name, (factor, _) in f.coefficients.items()}
-    rows = [[plain(name), spread(*f.coefficients[name]), change] for name, change in changes.items()]
+    rows = [[plain(name.replace(".", ", ")), spread(*f.coefficients[name]), change] for name, change in changes.items()]
     yield Table(caption, ["coefficient", "factor ± deviation", "change"], rows)
 
 

@@ -12,7 +12,7 @@ IN_DEGREES = {"rad": "°", "rad/s": "°/s", "rad/s^2": "°/s²"}
 FORCES = ((1e6, 1e6, "M"), (1e3, 1e3, "k"), (1e-2, 1.0, ""), (0.0, 1e-3, "m"))  # from this size on, factor, prefix
 LENGTHS = ((1.0, 1.0, "m"), (1e-2, 1e-2, "cm"), (0.0, 1e-3, "mm"))
 FACTOR = "(kg|rad|N|m|s)([2-9]?)"
-UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?")  # how keys spell a unit
+UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")  # how keys spell a unit
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -40,7 +40,7 @@ def number(value: float, digits: int = 3) -> str:
     """To this many significant digits; a power of ten only where plain digits would be hard to read."""
     if not math.isfinite(value):
         return "none" if math.isnan(value) else "∞"
-    size = abs(value)
+    size, value = abs(value), value + 0.0  # -0 becomes 0
     if value == 0.0 or 1e-4 <= size < 1e6:
         text = f"{value:.{_decimals(size, digits)}f}"
     else:
@@ -79,7 +79,7 @@ def quantity(value: float, unit: str, sd: float = 0.0) -> str:
 
 def parameter(key: str, unit: str = "") -> tuple[str, str]:
     """(name in words, unit) of a parameter key of the answer: `toward_rad` -> (toward, rad)."""
-    compact = unit.replace(" ", "").replace("^", "").replace("/", "p")
+    compact = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
     if compact and key.endswith(f"_{compact}"):
         return plain(key.removesuffix(f"_{compact}")), unit
     if unit:
@@ -91,6 +91,8 @@ def parameter(key: str, unit: str = "") -> tuple[str, str]:
 
 def _spelt(compact: str) -> str:
     """Ns2pm2 -> N s^2/m^2."""
+    if compact.startswith("per"):
+        return f"1/{_spelt(compact.removeprefix('per'))}"
     above, _, below = compact.partition("p")
     parts = (" ".join(f"{u}^{n}" if n else u for u, n in re.findall(FACTOR, part)) for part in (above, below))
     return "/".join(part for part in parts if part)
@@ -124,9 +126,9 @@ def alike(values: Sequence[float], unit: str) -> list[str]:
 
 
 def parameters(effect: Mapping[str, Any]) -> str:
-    """The fitted numbers of an effect in a row: astern factor 0.694 ± 0.012."""
-    found = ((key, p, *parameter(key, p["unit"])) for key, p in effect["parameters"].items())
-    return ", ".join(f"{name} {quantity(p['value'], unit, p['sd'])}" for _, p, name, unit in found)
+    """The fitted numbers of an effect in a row: astern factor 0.694 ± 0.012; without those that may well be zero."""
+    found = [(p["value"], p["sd"], *parameter(key, p["unit"])) for key, p in effect["parameters"].items()]
+    return ", ".join(f"{name} {quantity(value, unit, sd)}" for value, sd, name, unit in found if abs(value) > sd)
 
 
 def sentence(answer: Mapping[str, Any]) -> str:

@@ -41,7 +41,7 @@ def transition(
     base, moved = work[0, :NQ], work[1, :NQ]
     y, force = z[:NY].copy(), z[NY:].copy()
     slopes(t, y, act, p, on, k, force, base)
-    A = np.zeros((NZ, NZ))
+    A, B = np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
     for i in range(NQ):
         A[i, NQ + i] = 1.0
     for j in range(NZ):
@@ -58,13 +58,42 @@ def transition(
             force[j - NY] -= step
         for i in range(NQ):
             A[NQ + i, j] = (moved[i] - base[i]) / step
-    Ah = A * h
-    A2 = Ah @ Ah
-    F[:] = Ah + 0.5 * A2 + (A2 @ Ah) / 6.0
+    # exp(A h) to third order; only the rows of the rates and, above them, their own integrals are not trivial
     for i in range(NZ):
+        for j in range(NZ):
+            A[i, j] *= h
+    multiply(A, A, B)
+    multiply(B, A, F)
+    for i in range(NZ):
+        for j in range(NZ):
+            F[i, j] = A[i, j] + 0.5 * B[i, j] + F[i, j] / 6.0
         F[i, i] += 1.0
     for i in range(NY, NZ):
         F[i, i] = decay
+
+
+@njit(error_model="numpy", cache=True)
+def multiply(A: Array, B: Array, out: Array) -> None:
+    """out = A B for the filter's small matrices, most of A's rows zero: faster here than a library call."""
+    out[:] = 0.0
+    for i in range(NZ):
+        for k in range(NZ):
+            x = A[i, k]
+            if x != 0.0:
+                for j in range(NZ):
+                    out[i, j] += x * B[k, j]
+
+
+@njit(error_model="numpy", cache=True)
+def carry(F: Array, P: Array, work: Array) -> None:
+    """P = F P F', symmetric, in place."""
+    multiply(F, P, work)
+    for i in range(NZ):
+        for j in range(i + 1):
+            x = 0.0
+            for k in range(NZ):
+                x += work[i, k] * F[j, k]
+            P[i, j] = P[j, i] = x
 
 
 @njit(error_model="numpy", cache=True)
@@ -102,7 +131,8 @@ def kalman(
     for _ in range(3):
         actuate(commands[0], memory, SETTLE, p, on, act)
     z, P = z0.copy(), P0.copy()
-    F, row, work = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((2, NQ))
+    F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((2, NQ)), np.zeros((NZ, NZ))
+    y, force, Ph = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
     likelihood, outliers = 0.0, np.zeros(measured.shape[1])
     if keep:
         means[0], covariances[0], predicted[0] = z, P, z
@@ -111,15 +141,17 @@ def kalman(
         decay = exp(-h / tau)
         if full:
             transition(times[i - 1], h, z, act, p, on, k, decay, F, work)
-            P = F @ P @ F.T
+            carry(F, P, work2)
             for j in range(NQ):
                 P[NY + j, NY + j] += sigma[j] * (1.0 - decay * decay)
         y, force = z[:NY].copy(), z[NY:].copy()
         predict(
             times[i - 1], h, max(1, int(np.ceil(h / max_step - 1e-9))), y, commands[i - 1], memory, p, on, k, force, act
         )
-        z[:NY] = y
-        z[NY:] *= decay
+        for a in range(NY):
+            z[a] = y[a]
+        for a in range(NY, NZ):
+            z[a] *= decay
         if keep:
             predicted[i], transitions[i] = z, F
         for c in range(measured.shape[1]):
@@ -128,10 +160,16 @@ def kalman(
                 continue
             error = measured[i, c] - observe(z, codes[c], row)
             if full:
-                Ph = P @ row
-                variance = row @ Ph + noise[c]
+                variance = noise[c]
+                for a in range(NZ):
+                    Ph[a] = 0.0
+                    for b in range(NZ):
+                        Ph[a] += P[a, b] * row[b]
+                for a in range(NZ):
+                    variance += row[a] * Ph[a]
                 scale[i, c] = 1.0 / sqrt(variance)
-                gains[i, c] = Ph / variance
+                for a in range(NZ):
+                    gains[i, c, a] = Ph[a] / variance
                 likelihood += log(scale[i, c])
                 far = abs(error) * scale[i, c] > GATE and outliers[c] < IN_A_ROW
                 outliers[c] = outliers[c] + 1.0 if far else 0.0
@@ -143,11 +181,12 @@ def kalman(
                 continue
             white[i, c] = error * scale[i, c]
             likelihood -= 0.5 * white[i, c] ** 2
-            z += gains[i, c] * error
+            for a in range(NZ):
+                z[a] += gains[i, c, a] * error
             if full:
-                P -= np.outer(gains[i, c], Ph)
-        if full:
-            P = 0.5 * (P + P.T)
+                for a in range(NZ):
+                    for b in range(NZ):
+                        P[a, b] -= gains[i, c, a] * Ph[b]
         if keep:
             means[i], covariances[i] = z, P
     return likelihood
