@@ -1,8 +1,8 @@
 """Diagnoses a folder of trials in parallel: `python -m benchmarks.trials TRIALS [--out RESULTS] [--all]`.
 
 TRIALS/Txxx/ holds run_1.csv, run_2.csv (to diagnose from), run_3.csv (held out) and answer.json. Writes
-RESULTS/Txxx/diagnosis.json and replay.csv of run_3 with the patched vessel, then prints how the answers compare with the
-truth and the seconds per diagnosis. Without --all only trials whose truth is in the vessel's library count.
+RESULTS/Txxx/diagnosis.json and replay.csv of run_3 with the patched vessel, then prints how the answers compare with
+the truth and the seconds per diagnosis. Without --all only trials whose truth is in the vessel's library count.
 """
 
 import argparse
@@ -52,6 +52,7 @@ def compare(answer: dict[str, Any], found: dict[str, Any]) -> dict[str, Any]:
         "concealed": answer["concealed"],
         "truth": truth,
         "said": said,
+        "named": bool(said),
         "exact": said == truth,
         "wrong": bool(said - truth),
         "seconds": found["seconds"],
@@ -66,15 +67,19 @@ def share(rows: list[dict[str, Any]], key: str) -> str:
 def print_figures(rows: dict[str, dict[str, Any]]) -> None:
     """Figures and every trial that is not exactly right."""
     by = {k: [r for r in rows.values() if r["kind"] == k] for k in ("none", "single", "pair")}
-    seen = {k: [r for r in v if r["visible"]] for k, v in by.items()}
-    print(f"false alarms among nothing-missing trials   {share([{**r, 'said': bool(r['said'])} for r in by['none']], 'said')}")
-    print(f"visible single effects, exactly named       {share(seen['single'], 'exact')}")
-    print(f"  of these concealed by the tracker         {share([r for r in seen['single'] if r['concealed']], 'exact')}")
-    print(f"visible pairs, both named and nothing else  {share(seen['pair'], 'exact')}")
-    print(f"wrong names (none, singles, pairs)          {share([r for k in by for r in by[k]], 'wrong')}")
+    singles, pairs = ([r for r in by[k] if r["visible"]] for k in ("single", "pair"))
     seconds = sorted(r["seconds"] for r in rows.values())
-    if seconds:
-        print(f"seconds per diagnosis                       median {statistics.median(seconds):.2f}, p95 {seconds[int(0.95 * (len(seconds) - 1))]:.2f}")
+    figures = {
+        "false alarms among nothing-missing trials": share(by["none"], "named"),
+        "visible single effects, exactly named": share(singles, "exact"),
+        "  of these concealed by the tracker": share([r for r in singles if r["concealed"]], "exact"),
+        "visible pairs, both named and nothing else": share(pairs, "exact"),
+        "wrong names (none, singles, pairs)": share([r for k in by for r in by[k]], "wrong"),
+        "seconds per diagnosis, median": f"{statistics.median(seconds):.2f}",
+        "seconds per diagnosis, p95": f"{seconds[int(0.95 * (len(seconds) - 1))]:.2f}",
+    }
+    for what, value in figures.items():
+        print(f"{what:44s} {value}")
     for name, r in sorted(rows.items()):
         if not r["exact"]:
             seen_words = "" if r["visible"] else " (invisible: adds less than 6 nats)"
@@ -100,7 +105,8 @@ def main() -> None:
         for done in as_completed(waiting):
             done.result()
             progress.advance(task)
-    print(f"{len(chosen)} trials of {len(answers)} in {time.time() - begin:.0f} s on {args.jobs} processes; answers in {args.out}")
+    took = time.time() - begin
+    print(f"{len(chosen)} trials of {len(answers)} in {took:.0f} s on {args.jobs} processes; answers in {args.out}")
     found = {n: json.loads((args.out / n / "diagnosis.json").read_text()) for n in chosen}
     print_figures({n: compare(answers[n], found[n]) for n in chosen})
 

@@ -78,7 +78,7 @@ def angle_fields(actuators: tuple[str, ...]) -> tuple[str, ...]:
 
 @cache
 def motion_type(actuators: tuple[str, ...]) -> Any:
-    """NamedTuple type of a vessel: the fields of `Motion`, its actuators, then cosine and sine of each angle of them."""
+    """NamedTuple type of a vessel: fields of `Motion`, its actuators, then cosine and sine of each angle of them."""
     from collections import namedtuple
 
     return namedtuple("VesselMotion", (*Motion._fields, *actuators, *angle_fields(actuators)))
@@ -173,6 +173,7 @@ class Effect(Checked):
     shown_by: ClassVar[str] = ""  # the manoeuvre that shows it best
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law
+    strength: ClassVar[tuple[str, ...]] = ()  # parameters that say how strong it is; empty: all that may be fitted
     starts: ClassVar[tuple[Mapping[str, float], ...]] = ()  # where a fit starts; empty: a tenth of each spread
 
     @classmethod

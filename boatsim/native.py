@@ -25,7 +25,7 @@ _PROBES = (
 )
 
 
-def _words(address: int, count: int) -> np.ndarray:  # type: ignore[type-arg]
+def _words(address: int, count: int) -> np.ndarray:
     """A view of `count` 8-byte words of memory."""
     return np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_int64)), (count,))
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from boatsim import metrics
 from boatsim.content import names
+from boatsim.errors import BadInput
 from boatsim.recording import write_csv
 from boatsim.run import Run, Runner
 from boatsim.scenario import Scenario
@@ -89,6 +90,8 @@ def _log(path: Path, runner: Runner, live: bool) -> Any:
 @contextmanager
 def _filling(folder: Path) -> Iterator[Path]:
     """A new folder beside `folder`, whose files move into it once all of them are whole."""
+    if folder.exists() and not folder.is_dir():
+        raise BadInput(f"{folder}: is a file; the files of a run need a folder")
     folder.parent.mkdir(parents=True, exist_ok=True)
     new = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     try:

@@ -233,8 +233,8 @@ def _actuate(program: Program) -> list[str]:
         lines.append(f"    act[{k}] = x")
     for k, name in enumerate(angle_fields(program.vessel.actuators)):
         part, angle = name.split("_", 1)
-        source = program.vessel.actuators.index(angle)
-        lines.append(f"    act[{len(program.vessel.actuators) + k}] = {part}(act[{source}])")
+        at = program.vessel.actuators.index(angle)
+        lines.append(f"    act[{len(program.vessel.actuators) + k}] = {part}(act[{at}])")
     return lines
 
 

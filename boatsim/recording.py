@@ -58,7 +58,7 @@ class Recording:
         return replace(self, t=self.t[inside], signals={k: v[inside] for k, v in self.signals.items()})
 
     def thinned(self, rate: float) -> "Recording":
-        """Every n-th row, so that no more than about `rate` rows a second are left; the commands are those of the rows kept."""
+        """Every n-th row, so that about `rate` rows a second are left; the commands are those of the rows kept."""
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         return replace(self, t=self.t[::n], signals={k: v[::n] for k, v in self.signals.items()}) if n > 1 else self
 

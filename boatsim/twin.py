@@ -1,4 +1,4 @@
-"""The same laws without MuJoCo: integrates the same joint coordinates with the same Runge-Kutta method, in compiled code.
+"""The same laws without MuJoCo: the same joint coordinates, the same Runge-Kutta method, in compiled code.
 
 For fits, replays and large batches; must agree with `boatsim.engine` to rounding.
 """
@@ -11,14 +11,6 @@ from boatsim.base import Array
 from boatsim.errors import BadInput
 from boatsim.program import Program
 from boatsim.vessel import Vessel
-
-POSE = {"planar": ("x_m", "y_m", "psi_rad"), "roll": ("phi_rad",)}
-RATES = {"planar": ("u_mps", "v_mps", "r_radps"), "roll": ("p_radps",)}
-
-
-def kind(vessel: Vessel) -> str:
-    """ "planar" or "roll": which kernel a vessel's freedoms need."""
-    return "planar" if "yaw" in vessel.freedoms else "roll"
 
 
 def body_rates(y: Array) -> Array:

@@ -138,8 +138,8 @@ def load(
             )
     folder = find("vessel", file.based_on, path.parent).parent if file.based_on else path.parent
     vessel = Vessel(
-        called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam, file.draught,
-        file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
+        called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
+        file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
     )  # fmt: skip
     return with_effects(with_effects(vessel, file.effect, folder), extra, beside or folder)
 

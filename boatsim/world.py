@@ -63,7 +63,9 @@ def build(
     spec.option.timestep = step
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
     spec.option.gravity = (0, 0, 0)
-    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a motion gone wild is an error of ours to report
+    spec.option.disableflags |= (
+        mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    )  # a motion gone wild is an error of ours to report
     spec.nuserdata = userdata
     size_tank(spec, tank, vessel)
     hull = add_hull(spec, vessel)

@@ -24,7 +24,6 @@ HEAVY = {  # library -> the only modules that may import it
     "dm_control": {"env"},
     "dm_env": {"env"},
     "rerun": {"rerun_log", "blueprint"},
-    "matplotlib": {"diagnose.report", "diagnose.report_figures"},
     "jinja2": {"diagnose.report"},
 }
 ROOT = Path(__file__).parents[1]

@@ -85,7 +85,9 @@ def test_one_outlier_moves_neither_states_nor_evidence_much():
     spoilt["phi_rad"][20] += 0.5
     levels = Levels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
     program = Program(boat)
-    first, second = (track(r, program).smoothed(program.values(), program.switches(), levels)[0] for r in (clean, spoilt))
+    first, second = (
+        track(r, program).smoothed(program.values(), program.switches(), levels)[0] for r in (clean, spoilt)
+    )
     assert np.abs(first[:, 0] - second[:, 0]).max() < 2e-3
 
 
@@ -210,8 +212,8 @@ def test_bad_requests_get_one_line(folder):
 
 @pytest.mark.parametrize(
     ("name", "unit", "key"),
-    [("force", "N", "force_N"), ("north", "m/s", "north_mps"), ("factor", "", "factor"), ("time_constant", "s", "time_constant_s"),
-     ("surge_quadratic", "N s^2/m^2", "surge_quadratic_Ns2pm2")],
+    [("force", "N", "force_N"), ("north", "m/s", "north_mps"), ("factor", "", "factor"),
+     ("time_constant", "s", "time_constant_s"), ("surge_quadratic", "N s^2/m^2", "surge_quadratic_Ns2pm2")],
 )  # fmt: skip
 def test_parameter_keys_carry_their_unit(name, unit, key):
     assert key_of(name, unit) == key

@@ -17,7 +17,7 @@ TEST_COMMAND = "./setup.sh && .venv/bin/python -m pytest"
 
 
 def test_importing_boatsim_imports_nothing_heavy() -> None:
-    heavy = {"mujoco", "numba", "scipy", "rerun", "pyarrow", "dm_control", "pydantic", "matplotlib", "jinja2", "typer"}
+    heavy = {"mujoco", "numba", "scipy", "rerun", "pyarrow", "dm_control", "pydantic", "jinja2", "typer"}
     code = "import sys, boatsim; print(*{name.partition('.')[0] for name in sys.modules})"
     loaded = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     assert "boatsim" in loaded.split()

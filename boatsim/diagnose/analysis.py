@@ -1,6 +1,7 @@
 """A whole diagnosis: recordings and a vessel in, findings out."""
 
 import time
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,7 +15,7 @@ from boatsim.diagnose import locate, show
 from boatsim.diagnose.answer import compose
 from boatsim.diagnose.filter import axes_of, nominal_levels, track
 from boatsim.diagnose.findings import Findings, Missing
-from boatsim.diagnose.fit import Problem
+from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.rank import Ranking, rank
 from boatsim.errors import BadInput, unknown_name
 from boatsim.program import Program
@@ -113,8 +114,9 @@ def diagnose(
         runs=tuple(r.name for r in fitted),
         held_out=tuple(r.name for r in unseen),
         held_out_note=note,
-        remarks=(*findings.remarks, *(m for r, _ in opened.values() for m in r.remarks)),
     )
+    for line in dict.fromkeys(m for r, _ in opened.values() for m in r.remarks):
+        warnings.warn(line, stacklevel=2)
     return Diagnosis(findings, first, problem, ranking)
 
 

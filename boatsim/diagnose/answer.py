@@ -7,9 +7,9 @@ import numpy as np
 
 from boatsim import __version__
 from boatsim.base import Effect
-from boatsim.diagnose import locate, show
+from boatsim.diagnose import locate, report_words, show
 from boatsim.diagnose.findings import FreeRun
-from boatsim.diagnose.fit import Fit, Problem
+from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.rank import Named, Ranking
 
 ONE_SIDED_95 = 1.645  # [sd]
@@ -27,10 +27,10 @@ def compose(
     effects = [_effect(problem, ranking.best, n) for n in ranking.named]
     verdict = "ambiguous" if any(e["tied_with"] for e in effects) else "named" if effects else "nothing_missing"
     found = show.errors(stretches)
-    none = {model: 0.0 for model in ()}
-    return {
+    none: dict[str, float] = {}
+    answer: dict[str, Any] = {
         "verdict": verdict,
-        "sentence": sentence(verdict, effects),
+        "sentence": "",
         "seconds": 0.0,
         "version": __version__,
         "effects": effects,
@@ -52,26 +52,14 @@ def compose(
         "next_experiment": {},
         "patch": "patched.toml",
     }
+    answer["sentence"] = report_words.sentence(answer)
+    return answer
 
 
 def key_of(name: str, unit: str) -> str:
     """Parameter name with its unit: force in N -> force_N, north in m/s -> north_mps, a ratio stays as it is."""
     suffix = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
     return f"{name}_{suffix}" if suffix else name
-
-
-def sentence(verdict: str, effects: Sequence[dict[str, Any]]) -> str:
-    """The verdict in one sentence that a person understands."""
-    if verdict == "nothing_missing":
-        return "Nothing is missing beyond the tolerated noise: the vessel as stated explains the recordings."
-    parts = []
-    for e in effects:
-        values = ", ".join(
-            f"{k} = {p['value']:.3g} +- {p['sd']:.1g}" for k, p in e["parameters"].items() if abs(p["value"]) > p["sd"]
-        )
-        tie = f" (or {', or '.join(e['tied_with'])}: these data can not tell)" if e["tied_with"] else ""
-        parts.append(f"{e['words']} [{e['name']}: {values}]{tie}")
-    return "Left out of the model: " + "; and ".join(parts) + "."
 
 
 def _effect(problem: Problem, best: Fit, named: Named) -> dict[str, Any]:
@@ -109,10 +97,11 @@ def _candidates(ranking: Ranking) -> list[dict[str, Any]]:
 
 def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
     """How far each parameter can be from not acting at all, at 95 %."""
-    params = _kind(problem, name).params()
+    kind = _kind(problem, name)
+    params = kind.params()
     out = {}
     for f in fitted.free:
-        if f.effect == name and not f.relative:
+        if f.effect == name and not f.relative and f.name in (kind.strength or params):
             value, sd = fitted.value(name, f.name)
             strength = abs(value - params[f.name].absent) + ONE_SIDED_95 * sd
             out[key_of(f.name, params[f.name].unit)] = float(f"{strength:.3g}")

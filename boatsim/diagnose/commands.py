@@ -15,7 +15,8 @@ from boatsim.diagnose.analysis import Diagnosis, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.findings import FreeRun
-from boatsim.diagnose.fit import Fit, Problem, fit_noise
+from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.problem import Fit, Problem
 from boatsim.errors import BadInput
 from boatsim.program import Program
 from boatsim.recording import Notes, Recording, replacing, write_csv
@@ -52,7 +53,9 @@ def summary(found: Diagnosis) -> list[str]:
     answer = found.findings.answer
     lines = [answer["sentence"]]
     for effect in answer["effects"]:
-        lines.append(f"  {effect['name']}: gains {effect['gain_nats']:.1f} nats, probability {effect['probability']:.2f}")
+        lines.append(
+            f"  {effect['name']}: gains {effect['gain_nats']:.1f} nats, probability {effect['probability']:.2f}"
+        )
         lines += [f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()]
     fit = answer["fit"]
     lines.append(f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):")
@@ -83,7 +86,9 @@ def overlay(found: Diagnosis, path: Path) -> None:
         missing = Recording(chosen.run, chosen.t, signals)
     tank = world.Tank(10 * found.vessel.length, 10 * found.vessel.length, found.vessel.length, walls=False)
     scene = scene_from(world.build(found.vessel, tank), found.vessel, tank)
-    intervals = [i for i in found.findings.answer["where"]["intervals"] if chosen is not None and i["run"] == chosen.run]
+    intervals = [
+        i for i in found.findings.answer["where"]["intervals"] if chosen is not None and i["run"] == chosen.run
+    ]
     with replacing(path) as temporary:
         rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
 

@@ -173,7 +173,8 @@ def track(recording: Recording, program: Program) -> Track:
     found = [(n, *CHANNELS[n]) for n in CHANNELS if n in recording.signals and CHANNELS[n][1] in axes]
     if not any(rate == 0 for *_, rate in found):
         wanted = [n for n, (_, axis, rate) in CHANNELS.items() if axis in axes and rate == 0]
-        raise BadInput(f"{recording.path or recording.name}: none of {', '.join(wanted)} in it, which {vessel.name} moves")
+        where = recording.path or recording.name
+        raise BadInput(f"{where}: none of {', '.join(wanted)} in it, which {vessel.name} moves")
     codes = np.array([axes.index(axis) + rate * len(axes) for _, _, axis, rate in found])
     measured = np.column_stack([recording.signals[n] for n, *_ in found])
     return Track(
@@ -199,6 +200,7 @@ def nominal_levels(vessel: Vessel, recordings: Sequence[Recording]) -> Levels:
         given = dict(zip(stated["axes"], np.atleast_1d(stated["force_rms"]).tolist(), strict=False))
         force = np.array([given.get(a, f) for a, f in zip(axes, force, strict=True)])
     if not (force > 0).all():
-        raise BadInput(f"{vessel.name}: no ambient force stated for {axes[int(np.argmin(force))]}; [diagnosis] ambient needs it")
+        axis = axes[int(np.argmin(force))]
+        raise BadInput(f"{vessel.name}: no ambient force stated for {axis}; [diagnosis] ambient needs it")
     noise = {**NOISE, **vessel.diagnosis.noise, **recordings[0].notes.noise}
     return Levels(force, float(stated.get("time_constant_s", vessel.diagnosis.time_constant)), noise)

@@ -7,7 +7,8 @@ import numpy as np
 
 from boatsim.base import Array
 from boatsim.diagnose.filter import Track, axes_of
-from boatsim.diagnose.fit import Fit, Problem, fit_time_constant
+from boatsim.diagnose.levels import fit_time_constant
+from boatsim.diagnose.problem import Fit, Problem
 
 BAND = 2.0  # [sd] zero outside this band counts as missing
 SHORTEST = 0.5  # [s] a shorter excursion is not worth an interval
@@ -63,7 +64,7 @@ def intervals(problem: Problem, forces: Sequence[Force]) -> list[Interval]:
 
 
 def strength(problem: Problem, forces: Sequence[Force]) -> dict[str, dict[str, float | str]]:
-    """rms of the missing force per axis over all runs, with the rms of its standard deviation."""
+    """Rms of the missing force per axis over all runs, with the rms of its standard deviation."""
     mean = np.concatenate([f.mean for f in forces])
     sd = np.concatenate([f.sd for f in forces])
     return {

@@ -1,4 +1,4 @@
-"""Writes a fitted boat back as a vessel file: the original with its comments, coefficients recalibrated, effects added."""
+"""Writes a fitted boat back as a vessel file: the original with comments, recalibrated, the effects found added."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import Any
 
 import tomlkit
 
-from boatsim.diagnose.fit import Fit
+from boatsim.diagnose.problem import Fit
 from boatsim.recording import replacing
 from boatsim.vessel import Vessel
 
@@ -56,4 +56,3 @@ def _loads(document: Any, effect: str, name: str) -> list[Any]:
 
 def _rounded(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
-

@@ -1,10 +1,12 @@
-"""Names what is missing: every suspect fitted inside the filter, scored by evidence, selected forward, pruned backward."""
+"""Names what is missing: every suspect fitted in the filter, scored by evidence, selected forward, pruned backward."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnose.fit import Fit, Problem, converge, fit, fit_noise
+from boatsim.diagnose.fit import converge, fit
+from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.problem import Fit, Problem
 
 ENOUGH = 4.0  # [nats] an effect must gain to be named
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
@@ -39,7 +41,9 @@ def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
     """Forward selection over the candidates, the incumbent converged before each comparison."""
     nominal = replace(problem.nominal(), levels=fit_noise(problem))
     recalibrated = converge(problem, fit(problem, (), nominal))
-    best, first, steps = recalibrated, {}, []
+    best = recalibrated
+    first: dict[str, float] = {}
+    steps: list[tuple[str, dict[str, float]]] = []
     while True:
         tried = {n: fit(problem, (*best.suspects, n), best) for n in candidates if n not in best.suspects}
         gains = {n: f.evidence - best.evidence for n, f in tried.items()}

@@ -62,6 +62,6 @@ def _facts(f: Findings) -> list[tuple[str, str]]:
     return [
         ("Vessel", f.vessel),
         ("Fitted to", listed(f.runs)),
-        ("Kept unseen", f.held_out_note or listed(f.held_out) or "nothing"),
+        ("Kept unseen", f.held_out_note.removeprefix("kept unseen: ") or listed(f.held_out) or "nothing"),
         ("Took", f"{number(f.answer['seconds'])} s, boatsim {f.answer['version']}"),
     ]

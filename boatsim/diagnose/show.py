@@ -8,7 +8,8 @@ import numpy as np
 from boatsim.base import Array
 from boatsim.diagnose.filter import Track, segments
 from boatsim.diagnose.findings import FreeRun
-from boatsim.diagnose.fit import Fit, Problem, converge, fit
+from boatsim.diagnose.fit import converge, fit
+from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.rank import Ranking
 from boatsim.recording import Recording
 
@@ -16,7 +17,9 @@ MODELS = ("nominal", "recalibrated", "patched")
 FAMILIES = {"position_rms_m": ("x_m", "y_m"), "heading_rms_rad": ("psi_rad",), "roll_rms_rad": ("phi_rad",)}
 
 
-def split(recordings: Sequence[Recording], hold_out: Sequence[Recording]) -> tuple[list[Recording], list[Recording], str]:
+def split(
+    recordings: Sequence[Recording], hold_out: Sequence[Recording]
+) -> tuple[list[Recording], list[Recording], str]:
     """Recordings to fit, recordings kept unseen, and a sentence that says which.
 
     Without a hold-out the last run is kept, or the middle third of a single run: the tail of a decay would be nearly
@@ -25,14 +28,18 @@ def split(recordings: Sequence[Recording], hold_out: Sequence[Recording]) -> tup
     if hold_out:
         return list(recordings), list(hold_out), "kept unseen: " + ", ".join(r.name for r in hold_out)
     if len(recordings) > 1:
-        return list(recordings[:-1]), [recordings[-1]], f"no run was held out, so the last one, {recordings[-1].name}, was kept unseen"
+        last_run = recordings[-1]
+        return (
+            list(recordings[:-1]),
+            [last_run],
+            f"no run was held out, so the last one, {last_run.name}, was kept unseen",
+        )
     whole = recordings[0]
     a, b = (float(whole.t[0] + f * (whole.t[-1] - whole.t[0])) for f in (1 / 3, 2 / 3))
     step = float(np.median(np.diff(whole.t)))
     parts = [whole.between(whole.t[0], a), whole.between(a, b), whole.between(b + 0.5 * step, whole.t[-1])]
-    first, middle, last = (
-        replace(part, name=f"{whole.name} ({name} third)") for part, name in zip(parts, ("first", "middle", "last"), strict=True)
-    )
+    thirds = ("first", "middle", "last")
+    first, middle, last = (replace(p, name=f"{whole.name} ({n} third)") for p, n in zip(parts, thirds, strict=True))
     note = f"one run only, so its middle third, {a:.1f} to {b:.1f} s, was kept unseen"
     return [first, last], [middle], note
 
@@ -66,7 +73,7 @@ def free_runs(problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Track]
 
 
 def errors(stretches: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
-    """rms error per family of signals and model over all stretches."""
+    """Rms error per family of signals and model over all stretches."""
     found: dict[str, dict[str, float]] = {}
     for family, signals in FAMILIES.items():
         if not stretches or not any(s in stretches[0].channels["recorded"] for s in signals):
@@ -114,12 +121,13 @@ def remarks(parts: Sequence[tuple[Track, str, dict[str, float]]], fitted: Sequen
     """Fitted parts that the nominal structure explains as well as the patched boat, once refitted to them alone."""
     out = []
     for track, family, found in parts:
-        if any(t is track for t in fitted) and found["patched"] >= min(found["alone"], found["recalibrated"]) * 0.95 and found["nominal"] != found["patched"]:
+        enough = found["patched"] >= 0.95 * min(found["alone"], found["recalibrated"])
+        if enough and any(t is track for t in fitted):
             what, unit, scale = _readable(family)
             out.append(
                 f"{track.name}: the nominal structure, refitted to this part alone, already gives the {what} to "
-                f"{found['alone'] * scale:.2g} {unit} (patched boat: {found['patched'] * scale:.2g} {unit}). This part alone "
-                "does not show what is missing."
+                f"{found['alone'] * scale:.2g} {unit} (patched boat: {found['patched'] * scale:.2g} {unit}). "
+                "This part alone does not show what is missing."
             )
     return out
 

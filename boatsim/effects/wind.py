@@ -25,6 +25,7 @@ class Wind(Force):
     words: ClassVar[str] = "a steady wind pushes the hull in one direction of the world"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     law: ClassVar = law
+    strength: ClassVar = ("force",)
     starts: ClassVar = tuple({"force": 0.08, "toward": quarter * pi / 2} for quarter in (-1, 0, 1, 2))
 
     force: float = param(

@@ -74,7 +74,7 @@ def transition(
 
 @njit(error_model="numpy", cache=True)
 def multiply(A: Array, B: Array, out: Array) -> None:
-    """out = A B for the filter's small matrices, most of A's rows zero: faster here than a library call."""
+    """Out = A B for the filter's small matrices, most of A's rows zero: faster here than a library call."""
     out[:] = 0.0
     for i in range(NZ):
         for k in range(NZ):
@@ -193,7 +193,9 @@ def kalman(
 
 
 @njit(error_model="numpy", cache=True)
-def smooth(means: Array, covariances: Array, transitions: Array, predicted: Array, sigma: Array, times: Array, tau: float) -> None:  # fmt: skip
+def smooth(
+    means: Array, covariances: Array, transitions: Array, predicted: Array, sigma: Array, times: Array, tau: float
+) -> None:  # fmt: skip
     """Rauch-Tung-Striebel smoother, in place on means (N, n) and covariances (N, n, n)."""
     for i in range(len(times) - 2, -1, -1):
         F = transitions[i + 1]
@@ -211,12 +213,12 @@ def smooth(means: Array, covariances: Array, transitions: Array, predicted: Arra
 
 @njit(error_model="numpy", cache=True)
 def free_runs(
-    times: Array, commands: Array, max_step: float, body: Array, p: Array, on: Any, starts: Any, ends: Any, states: Array,
-    out: Array,
+    times: Array, commands: Array, max_step: float, body: Array, p: Array, on: Any, starts: Any, ends: Any,
+    states: Array, out: Array,
 ) -> None:  # fmt: skip
-    """Free runs from row starts[j] to ends[j] out of states[j] (2 NQ,), driven by the commands alone; fills out (N, 2 NQ).
+    """Free runs from row starts[j] to ends[j] out of states[j] (2 NQ,), driven by the commands alone.
 
-    Actuator memory runs from the first row on, latent forces are zero. Rows of several runs may touch: out is (S, N, 2 NQ).
+    Actuator memory runs from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ).
     """
     k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
@@ -228,7 +230,7 @@ def free_runs(
         saved[i] = memory
         h = times[i + 1] - times[i]
         n = max(1, int(np.ceil(h / max_step - 1e-9)))
-        for j in range(n):
+        for _j in range(n):
             actuate(commands[i], memory, h / n, p, on, act)
     for run in range(len(starts)):
         y = states[run].copy()

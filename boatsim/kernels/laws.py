@@ -1,4 +1,4 @@
-"""Signatures of what a vessel's effects compose to. `boatsim.program` replaces the import of this file by the real ones.
+"""Signatures of what a vessel's effects compose to. `boatsim.program` puts the real ones in place of this file.
 
 p is the flat array of all effects' parameters, on says which optional effects act, act holds the actuators and the
 cosine and sine of those that are angles.

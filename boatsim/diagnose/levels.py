@@ -1,0 +1,100 @@
+"""Fits how noisy sensors and water are: sensor noise, level and correlation time of the latent force."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from boatsim.base import Array
+from boatsim.diagnose.filter import Levels
+from boatsim.diagnose.problem import Fit, Problem
+
+FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above the ambient level
+SENSOR_PRIOR = 0.4  # sd of log noise about the stated one
+TIME_PRIOR = 0.7  # sd of log time constant
+
+
+def force_prior(problem: Problem, levels: Levels) -> float:
+    """Log prior of the latent force: near the ambient level, more is likelier than less."""
+    over = np.log(levels.force / problem.ambient.force)
+    return float(np.sum(-0.5 * np.where(over > 0, over / FORCE_PRIOR[1], over / FORCE_PRIOR[0]) ** 2))
+
+
+def fit_force(problem: Problem, found: Fit, step: float = 0.5) -> Levels:
+    """Latent-force level of each axis refitted under a hypothesis: one parabolic search per axis."""
+    on = problem.program.switches(found.suspects)
+    log_force = np.log(found.levels.force)
+
+    def score(x: Array) -> float:
+        levels = replace(found.levels, force=np.exp(x))
+        return problem.likelihood(found.free, found.theta, on, levels) + force_prior(problem, levels)
+
+    return replace(found.levels, force=np.exp(_coordinate_search(score, log_force, step, 1)))
+
+
+def fit_noise(problem: Problem, sweeps: int = 4) -> Levels:
+    """Sensor noise and latent-force levels under the nominal model, before anything is named."""
+    families = sorted({f for t in problem.tracks for f in t.families})
+    n = len(problem.ambient.force)
+    on = problem.program.switches(())
+    nominal = problem.nominal()
+    stated = np.log([problem.ambient.sensors[f] for f in families])
+    rough = np.log([_roughness(problem, f) or problem.ambient.sensors[f] for f in families])
+
+    def levels(x: Array) -> Levels:
+        sensors = {**problem.ambient.sensors, **dict(zip(families, np.exp(x[n:]).tolist(), strict=True))}
+        return replace(problem.ambient, force=np.exp(x[:n]), sensors=sensors)
+
+    def score(x: Array) -> float:
+        prior = -0.5 * float(np.sum(((x[n:] - stated) / SENSOR_PRIOR) ** 2))
+        return problem.likelihood(nominal.free, nominal.theta, on, levels(x)) + force_prior(problem, levels(x)) + prior
+
+    begin = np.concatenate([np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)])
+    return levels(_coordinate_search(score, begin, 0.6, sweeps))
+
+
+def fit_time_constant(problem: Problem, found: Fit) -> Levels:
+    """Latent-force levels with their correlation time, for the band that locates a mismatch in time."""
+    on = problem.program.switches(found.suspects)
+
+    def levels(x: Array) -> Levels:
+        return replace(found.levels, force=np.exp(x[:-1]), time_constant=float(np.exp(x[-1])))
+
+    def score(x: Array) -> float:
+        prior = -0.5 * ((x[-1] - np.log(problem.ambient.time_constant)) / TIME_PRIOR) ** 2
+        likelihood = problem.likelihood(found.free, found.theta, on, levels(x))
+        return likelihood + force_prior(problem, levels(x)) + float(prior)
+
+    begin = np.append(np.log(found.levels.force), np.log(found.levels.time_constant))
+    return levels(_coordinate_search(score, begin, 0.5, 3))
+
+
+def _roughness(problem: Problem, family: str) -> float:
+    """Noise sd of a sensor from third differences of its signal, robust to outliers; 0 if it never varies."""
+    found = []
+    for t in problem.tracks:
+        for c, f in enumerate(t.families):
+            y = t.measured[np.isfinite(t.measured[:, c]), c]
+            if f == family and len(y) > 8:
+                found.append(np.diff(y, 3) ** 2 / 20.0)
+    return float(np.sqrt(np.median(np.concatenate(found)) / 0.455)) if found else 0.0
+
+
+def _coordinate_search(score: Callable[[Array], float], x: Array, step: float, sweeps: int) -> Array:
+    """Maximise a smooth score one coordinate at a time: a parabola through three points, then the best of four."""
+    best = score(x)
+    for _ in range(sweeps):
+        for j in range(len(x)):
+            e = np.zeros(len(x))
+            e[j] = step
+            above, below = score(x + e), score(x - e)
+            curve = above - 2.0 * best + below
+            shift = 0.5 * step * (below - above) / curve if curve < -1e-9 else (step if above > below else -step)
+            e[j] = float(np.clip(shift, -2.0 * step, 2.0 * step))
+            options = [(best, x), (score(x + e), x + e)]
+            e = np.zeros(len(x))
+            e[j] = step
+            options += [(above, x + e), (below, x - e)]
+            best, x = max(options, key=lambda o: o[0])
+        step *= 0.7
+    return x

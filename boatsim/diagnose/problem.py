@@ -1,0 +1,107 @@
+"""What is to be fitted: recordings on one program, the coefficients and suspects that are free, and a fit of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from boatsim.base import Array
+from boatsim.diagnose.filter import Levels, Track
+
+
+@dataclass(frozen=True)
+class Free:
+    """A parameter to fit. A nuisance scales the run's own value: `relative` is true and its mean is 1."""
+
+    effect: str
+    name: str
+    at: int  # position in the flat parameter array
+    mean: float
+    sd: float
+    low: float
+    high: float
+    relative: bool = False
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A converged hypothesis."""
+
+    suspects: tuple[str, ...]
+    free: tuple[Free, ...]
+    theta: Array  # (F,) fitted values
+    covariance: Array  # (F, F)
+    levels: Levels
+    evidence: float  # log of the Laplace evidence [nats]
+
+    def value(self, effect: str, name: str) -> tuple[float, float]:
+        """Fitted value and standard deviation of one parameter."""
+        i = next(i for i, f in enumerate(self.free) if f.effect == effect and f.name == name and not f.relative)
+        return float(self.theta[i]), float(np.sqrt(self.covariance[i, i]))
+
+
+class Problem:
+    """Recordings, a program with all suspects compiled in, and what may be fitted."""
+
+    def __init__(self, tracks: Sequence[Track], ambient: Levels, uncertainty: dict[str, float]) -> None:
+        """`uncertainty` is the relative sd of coefficients by kind ("damping", "thrust", ...)."""
+        self.tracks, self.ambient, self.uncertainty = list(tracks), ambient, uncertainty
+        self.program = tracks[0].program
+        self.nuisances = self._nuisances()
+        self.links = self._links()
+
+    def parameters(self, suspects: Sequence[str]) -> tuple[Free, ...]:
+        """Coefficients of the nominal, then everything that the suspects let be fitted."""
+        free = list(self.nuisances)
+        own = len(self.program.vessel.effects)
+        for effect in self.program.effects[own:]:
+            if effect.name() not in suspects:
+                continue
+            for name, about in type(effect).params().items():
+                if about.fit and (not about.axis or about.axis in self.program.vessel.freedoms):
+                    at = self.program.index(effect.name(), name)
+                    free.append(Free(effect.name(), name, at, about.absent, about.spread, about.low, about.high))
+        return tuple(free)
+
+    def values(self, track: Track, free: Sequence[Free], theta: Array) -> Array:
+        """A run's flat parameters with the free ones put in."""
+        p = track.values.copy()
+        for f, x in zip(free, theta, strict=True):
+            p[f.at] = track.values[f.at] * x if f.relative else x
+        for to, source in self.links:
+            p[to] = p[source]
+        return p
+
+    def likelihood(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels, full: bool = True) -> float:
+        """Log likelihood of all runs."""
+        return sum(t.likelihood(self.values(t, free, theta), on, levels, full) for t in self.tracks)
+
+    def white(self) -> Array:
+        """Whitened prediction errors of all runs, of the last pass."""
+        return np.concatenate([t.white for t in self.tracks])
+
+    def nominal(self) -> Fit:
+        """Nothing fitted: the vessel as it is written."""
+        free = self.nuisances
+        return Fit((), free, np.ones(len(free)), np.zeros((len(free), len(free))), self.ambient, -np.inf)
+
+    def _nuisances(self) -> tuple[Free, ...]:
+        found = []
+        freedoms = self.program.vessel.freedoms
+        for effect in self.program.vessel.effects:
+            for name, about in type(effect).params().items():
+                sd = self.uncertainty.get(about.calibrates, 0.0)
+                at = self.program.index(effect.name(), name)
+                used = self.tracks[0].values[at] != 0.0 and (not about.axis or about.axis in freedoms)
+                if about.calibrates and sd > 0 and used:
+                    found.append(Free(effect.name(), name, at, 1.0, sd, 0.05, 20.0, True))
+        return tuple(found)
+
+    def _links(self) -> list[tuple[int, int]]:
+        links = []
+        for effect in self.program.effects:
+            for name, about in type(effect).params().items():
+                owner, _, key = about.follows.partition(".")
+                if owner and owner != "vessel":
+                    links.append((self.program.index(effect.name(), name), self.program.index(owner, key)))
+        return links

@@ -1,0 +1,271 @@
+"""The command line: what a run leaves, its exit codes, that nothing is left half done, and one line for each mistake."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from boatsim import __version__, content, recording
+from boatsim.cli import app
+
+FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"}
+PLAIN = """
+about = "Two seconds to starboard."
+vessel = "joystick_boat"
+load = ["light", "narrow"]
+duration = 2.0
+[controller]
+use = "l1_joystick"
+[[goal]]
+sway_mps = 0.07
+[[effect]]
+use = "weak_reverse"
+astern_factor = 0.694
+"""
+IMPOSSIBLE = '[[check]]\nsignal = "v_mps"\nnorm = "inf"\nbelow = 1e-9\n'
+QUITTER = """
+from dataclasses import dataclass
+from boatsim.control import Controller
+
+@dataclass
+class Quitter(Controller):
+    def step(self, sense, goal):
+        if sense.t > 1.0:
+            raise KeyboardInterrupt
+        return {"steer_port_rad": 0.1}
+"""
+
+
+def boatsim(*arguments: object) -> Any:
+    """The command run in this process: exit_code, stdout, stderr."""
+    return CliRunner().invoke(app, [str(a) for a in arguments], catch_exceptions=False)
+
+
+def write(path: Path, text: str = PLAIN, change: tuple[str, str] = ("", "")) -> Path:
+    assert change[0] in text
+    path.write_text(text.replace(*change) if change[0] else text, encoding="utf-8")
+    return path
+
+
+def norms_of(folder: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((folder / "norms.json").read_text())
+    return found
+
+
+@pytest.fixture(scope="module")
+def sway(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, Any]]:
+    out = tmp_path_factory.mktemp("runs") / "a" / "sway"
+    yield out, boatsim("run", "joystick_boat/sway_1", "--out", out)
+
+
+def test_a_run_leaves_its_files_and_nothing_else(sway: tuple[Path, Any]) -> None:
+    out, result = sway
+    assert result.exit_code == 0 and not result.stderr
+    assert {f.name for f in out.iterdir()} == FILES
+    assert list(out.parent.iterdir()) == [out]
+
+
+def test_norms_json_has_what_the_table_prints(sway: tuple[Path, Any]) -> None:
+    out, result = sway
+    found = norms_of(out)
+    head = {"scenario": "joystick_boat/sway_1", "controller": "l1_joystick", "seed": 0, "complete": True}
+    assert {k: v for k, v in found.items() if k != "norms"} == head
+    for name, norm in found["norms"].items():
+        assert set(norm) == {"value", "unit", "published", "bar", "ok", "at_6hz", "noise_floor"}
+        line = next(line for line in result.stdout.splitlines() if name in line)
+        assert f"{norm['value']:.4g} {norm['unit']}" in line
+        assert (" yes " in line) == (norm["ok"] is True)
+
+
+def test_norms_json_agrees_with_recording_csv(sway: tuple[Path, Any]) -> None:
+    out, _ = sway
+    found, log = norms_of(out)["norms"], recording.read(out / "recording.csv")
+    t = found["time_to_0.9m"]["value"]
+    starboard = np.interp([t - 1.0 / 3.0, t], log.t, log["y_m"])  # at the frame before, and at the frame it was seen
+    assert starboard[0] < 0.9 <= starboard[1]
+    assert found["surge_offset"]["value"] == pytest.approx(np.interp(t, log.t, log["x_m"]), abs=1e-9)
+
+
+def test_camera_csv_is_a_recording_that_knows_its_boat(tmp_path: Path) -> None:
+    text = PLAIN.replace("[controller]", "[set.pwm_thrust]\nat_150 = 0.314\n[controller]")
+    file = write(tmp_path / "s.toml", text.replace("2.0", "8.0"))
+    assert boatsim("run", file, "--out", tmp_path / "out").exit_code == 0
+    seen = recording.read(tmp_path / "out" / "camera.csv")
+    assert (seen.notes.vessel, seen.notes.load) == ("joystick_boat", ("light", "narrow"))
+    assert seen.notes.settings == {"pwm_thrust": {"at_150": 0.314}}
+    assert set(seen.notes.noise) == {"position_sd_m", "heading_sd_rad"} and not seen.remarks
+    assert {"x_m", "y_m", "psi_rad", "pwm_port", "steer_starboard_rad"} <= set(seen.signals)
+    assert np.diff(seen.t) == pytest.approx(1.0 / 6.0)
+    assert not recording.read(tmp_path / "out" / "recording.csv").notes.noise  # the truth has none
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_one_others(tmp_path: Path) -> None:
+    file = write(tmp_path / "s.toml")
+    for out, seed in (("a", 3), ("b", 3), ("c", 4)):
+        assert boatsim("run", file, "--seed", seed, "--out", tmp_path / out).exit_code == 0
+        assert norms_of(tmp_path / out)["seed"] == seed
+    a, b, c = ((tmp_path / out / "recording.csv").read_bytes() for out in "abc")
+    assert a == b != c
+
+
+def test_several_scenarios_get_a_folder_each_and_one_exit_code(tmp_path: Path) -> None:
+    good, missed = write(tmp_path / "good.toml"), write(tmp_path / "missed.toml", PLAIN + IMPOSSIBLE)
+    assert boatsim("run", good, missed, "--out", tmp_path / "out").exit_code == 1
+    assert {f.name for f in (tmp_path / "out").iterdir()} == {"good", "missed"}
+    assert all({f.name for f in folder.iterdir()} == FILES for folder in (tmp_path / "out").iterdir())
+    assert norms_of(tmp_path / "out" / "missed")["norms"]["v_mps_inf"]["ok"] is False
+
+
+def test_a_ctrl_c_keeps_what_was_logged(tmp_path: Path) -> None:
+    (tmp_path / "quitter.py").write_text(QUITTER)
+    text = PLAIN.replace('"l1_joystick"', '"quitter.py"').replace("[[goal]]\nsway_mps = 0.07\n", "")
+    quits, good = write(tmp_path / "quits.toml", text), write(tmp_path / "good.toml")
+    result = boatsim("run", quits, good, "--out", tmp_path / "out")
+    assert result.exit_code == 130
+    assert [f.name for f in (tmp_path / "out").iterdir()] == ["quits"]  # the next one was not begun
+    assert norms_of(tmp_path / "out" / "quits")["complete"] is False
+    log = recording.read(tmp_path / "out" / "quits" / "recording.csv")
+    assert 0.9 < log.t[-1] < 1.2 and set(log["steer_port_rad"]) == {0.1}
+
+
+MISTAKES = {  # change of the plain scenario, what its one line must name
+    "key": ('about = "', 'abuot = "x"\nabout = "', ("abuot", "did you mean 'about'")),
+    "key of a table": ("[[goal]]", "[tank]\nlenght = 3.0\n[[goal]]", ("lenght", "'length'")),
+    "setting": ('use = "l1_joystick"', 'use = "l1_joystick"\nperoid = 0.1', ("peroid", "'period'")),
+    "goal": ("sway_mps", "sway_mp", ("sway_mp", "'sway_mps'")),
+    "vessel": ("joystick_boat", "joystik_boat", ("joystik_boat", "'joystick_boat'")),
+    "load": ('"light"', '"lite"', ("lite", "light")),
+    "controller": ("l1_joystick", "l1_joystik", ("l1_joystik", "'l1_joystick'")),
+    "effect": ('use = "weak_reverse"', 'use = "weak_revers"', ("weak_revers", "'weak_reverse'")),
+    "value": ("0.694", "69.4", ("WeakReverse.astern_factor = 69.4", "allowed")),
+    "type": ("duration = 2.0", 'duration = "long"', ("duration", "long")),
+    "syntax": ("duration = 2.0", "duration = ", ("s.toml", "line")),
+    # known only when the run is over
+    "check": ("[[goal]]", '[[check]]\nsignal = "v_mp"\nnorm = "inf"\nbelow = 1.0\n[[goal]]', ("v_mp", "'v_mps'")),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_is_one_line_exit_code_2_and_leaves_nothing(mistake: str, tmp_path: Path) -> None:
+    old, new, named = MISTAKES[mistake]
+    file = write(tmp_path / "s.toml", change=(old, new))
+    result = boatsim("run", file, "--out", tmp_path / "out")
+    assert result.exit_code == 2 and not result.stdout
+    assert result.stderr.count("\n") == 1 and all(part in result.stderr for part in named), result.stderr
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_nothing_runs_if_one_of_several_scenarios_is_wrong(tmp_path: Path) -> None:
+    result = boatsim("run", write(tmp_path / "s.toml"), "joystick_boat/sway_11", "--out", tmp_path / "out")
+    assert result.exit_code == 2 and "did you mean 'joystick_boat/sway_1'" in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_two_scenarios_never_share_a_folder(tmp_path: Path) -> None:
+    file = write(tmp_path / "s.toml")
+    result = boatsim("run", file, file, "--out", tmp_path / "out")
+    assert result.exit_code == 2 and "named twice" in result.stderr and not (tmp_path / "out").exists()
+
+
+def test_a_file_where_the_folder_should_be_is_left_alone(tmp_path: Path) -> None:
+    taken = write(tmp_path / "taken", "mine")
+    result = boatsim("run", write(tmp_path / "s.toml"), "--out", taken)
+    assert result.exit_code == 2 and "is a file" in result.stderr and taken.read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    "arguments", [["run"], ["run", "--jobs", "0", "x"], ["nothing"], ["list", "boats"], ["replay"]]
+)
+def test_wrong_usage_is_exit_code_2(arguments: list[str]) -> None:
+    assert boatsim(*arguments).exit_code == 2
+
+
+@pytest.mark.parametrize("kind", ["vessel", "controller", "effect", "scenario"])
+def test_list_has_a_line_about_everything(kind: str) -> None:
+    result = boatsim("list", f"{kind}s")
+    lines = [line.split(maxsplit=1) for line in result.stdout.splitlines()[1:]]
+    assert result.exit_code == 0 and [name for name, about in lines if about] == content.names(kind)
+    assert result.stdout.strip() in boatsim("list").stdout
+
+
+def test_margins_prints_the_l1_norm_of_the_yaw_channel() -> None:
+    result = boatsim("margins", "l1_joystick")
+    assert result.exit_code == 0 and "0.616" in result.stdout
+    assert "did you mean 'l1_joystick'" in boatsim("margins", "l1_joystik").stderr
+
+
+def test_version() -> None:
+    assert boatsim("--version").stdout.split() == ["boatsim", __version__]
+
+
+def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+    for name in ("diagnose", "replay", "compare"):
+        monkeypatch.setattr(f"boatsim.diagnose.commands.{name}", lambda *given: asked.append(given) or 0)
+    boat = ["--vessel", "trial_boat", "--load", "heavy,wide", "--out", "o"]
+    kept = ["--hold-out", "c.csv", "--library", "wind", "--library", "own.py", "--without", "current"]
+    assert boatsim("diagnose", "a.csv", "b.csv", *boat, *kept).exit_code == 0
+    assert (
+        boatsim("replay", "a.csv", *boat).exit_code == boatsim("replay", "a.csv", *boat, "--horizon", 4).exit_code == 0
+    )
+    assert boatsim("compare", "a.csv", "--scenario", "s.toml", "--out", "o").exit_code == 0
+    a, load, out = Path("a.csv"), ["heavy", "wide"], Path("o")
+    assert asked == [
+        ([a, Path("b.csv")], [Path("c.csv")], "trial_boat", load, out, ["wind", "own.py"], ["current"]),
+        (a, "trial_boat", load, 6.0, out),
+        (a, "trial_boat", load, 4.0, out),
+        (a, None, [], "s.toml", out),
+    ]
+
+
+# Processes of their own ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_a_shipped_scenario_is_a_script(tmp_path: Path) -> None:
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"  # where the installed `boatsim` lies
+    script = content.root() / "scenarios" / "joystick_boat" / "sway_1.toml"
+    done = subprocess.run([script], cwd=tmp_path, env=os.environ | {"PATH": path}, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert {f.name for f in (tmp_path / "out" / "sway_1").iterdir()} == FILES
+
+
+@pytest.mark.parametrize("name", content.names("scenario"))
+def test_every_shipped_scenario_can_be_executed(name: str) -> None:
+    file = content.find("scenario", name)
+    assert os.access(file, os.X_OK) and file.read_text().startswith("#!/usr/bin/env -S boatsim run\n")
+
+
+@pytest.mark.slow
+def test_processes_give_the_same_bytes_as_one(tmp_path: Path) -> None:
+    files = [write(tmp_path / "a.toml"), write(tmp_path / "b.toml", PLAIN + IMPOSSIBLE)]
+    assert boatsim("run", *files, "--out", tmp_path / "one").exit_code == 1
+    assert boatsim("run", *files, "--out", tmp_path / "two", "--jobs", 2).exit_code == 1
+    for file in ("a/recording.csv", "b/recording.csv", "b/norms.json"):
+        assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
+
+
+@pytest.mark.slow
+def test_ctrl_c_stops_all_processes_and_keeps_what_each_had(tmp_path: Path) -> None:
+    files = [write(tmp_path / f"{n}.toml", change=("2.0", "80000.0")) for n in "ab"]
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "boatsim", "run", *files, "--jobs", "2", "--out", out]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True) as running:
+        until = time.monotonic() + 120.0
+        while len(list(out.glob(".*/run.rrd"))) < 2 and time.monotonic() < until:
+            time.sleep(0.1)
+        os.killpg(running.pid, signal.SIGINT)  # as a terminal sends it: to all of them
+        assert running.wait(60.0) == 130
+        assert running.stderr and running.stderr.read().count("\n") == 1
+    assert sorted(f.name for f in out.iterdir()) == ["a", "b"]
+    for folder in out.iterdir():
+        assert {f.name for f in folder.iterdir()} == FILES and norms_of(folder)["complete"] is False
