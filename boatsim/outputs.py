@@ -34,15 +34,14 @@ def run_into(
     `folder` is as it was.
     """
     runner = Runner(scenario, seed)
-    with _filling(folder) as new, _log(new / "run.rrd", runner, live) as log:
+    with _interrupts() as ignore, _filling(folder) as new, _log(new / "run.rrd", runner, live) as log:
         runner.listen = log.chunk
         run = runner.run(progress)
-        with _undisturbed():
-            found = metrics.norms(run)
-            log.finish({name: asdict(norm) for name, norm in found.items()})
-            log.close()
-            content = metrics.to_json(run, found)
-            write(run, content, new)
+        ignore()  # a second Ctrl-C must not cost the files of a run that the first one ended
+        found = metrics.norms(run)
+        log.finish({name: asdict(norm) for name, norm in found.items()})
+        content = metrics.to_json(run, found)
+        write(run, content, new)
     return content
 
 
@@ -104,10 +103,10 @@ def _filling(folder: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def _undisturbed() -> Iterator[None]:
-    """Ctrl-C waits: a second one must not cost the files of a run that the first one ended."""
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _interrupts() -> Iterator[Callable[[], object]]:
+    """A switch that makes Ctrl-C do nothing until the block is left."""
+    before = signal.getsignal(signal.SIGINT)
     try:
-        yield
+        yield lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)
     finally:
         signal.signal(signal.SIGINT, before)

@@ -93,12 +93,13 @@ def read(path: Path | str, channels: Mapping[str, tuple[float, float]] | None = 
 def write_csv(recording: Recording, path: Path | str) -> None:
     """Write all signals, t_s first, to 12 digits: the same recording gives the same bytes. Raises OSError."""
     names = ["t_s", *recording.signals]
-    table = np.column_stack([recording.t, *recording.signals.values()]) + 0.0  # -0 becomes 0
+    columns = [recording.t, *recording.signals.values()]
     line = ",".join(["%.12g"] * len(names)) + "\n"
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         file.write(",".join(names) + "\n")
-        for start in range(0, len(table), 10_000):  # an hour of rows is not formatted in one piece of memory
-            rows = table[start : start + 10_000].tolist()
+        for start in range(0, len(recording), 10_000):  # an hour of rows is not formatted in one piece of memory
+            part = np.column_stack([c[start : start + 10_000] for c in columns]) + 0.0  # -0 becomes 0
+            rows = part.tolist()
             file.write("".join([line % tuple(row) for row in rows]).replace("nan", ""))
 
 

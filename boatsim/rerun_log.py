@@ -338,7 +338,8 @@ def _log_arrows(stream: rr.RecordingStream, rows: Recording, scene: Scene) -> No
     for what in ("force", "wind"):
         if f"{what}_X_N" in rows.signals and f"{what}_Y_N" in rows.signals:
             vector = _flat(rows[f"{what}_X_N"], rows[f"{what}_Y_N"])
-            _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, 0.2 * scene.length), COLOURS[what])
+            height = scene.length * (0.2 if what == "force" else 0.35)  # one above the other, so that both can be read
+            _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, height), COLOURS[what])
 
 
 def _arrow(

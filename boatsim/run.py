@@ -18,6 +18,9 @@ from boatsim.world import Tank
 SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
 FIELDS = ("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
 CAMERA = ("led_x_m", "led_y_m", "button_x_m", "button_y_m", "x_m", "y_m", "psi_rad")
+POSE = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw", "phi_rad": "roll"}
+RATES = {"u_mps": "surge", "v_mps": "sway", "r_radps": "yaw", "p_radps": "roll"}
+COMPONENTS = {"surge": "X_N", "sway": "Y_N", "roll": "K_Nm", "yaw": "N_Nm"}
 CHUNK = 500  # [rows] handed to a listener at a time
 Listener = Callable[[Recording], None]
 
@@ -70,6 +73,11 @@ class Runner:
         tank = Tank(**file.tank.model_dump()) if file.tank else None
         self.engine = Engine(scenario.vessel, tank, file.step)
         self._imu, self._marks = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
+        vessel = scenario.vessel
+        self._pose = [n for n, axis in POSE.items() if axis in vessel.freedoms]
+        self._rates = [n for n, axis in RATES.items() if axis in vessel.freedoms]
+        self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
+        self._actuators = vessel.actuators
         self._winds = [e for e in scenario.vessel.effects if e.name() in ("fan_wind", "wind")]
         self._commands: dict[str, float] = {}
         self._sense: Sense | None = None
@@ -80,8 +88,8 @@ class Runner:
     def run(self, progress: Callable[[float], None] | None = None) -> Run:
         """Run to the end, or to an interruption, which keeps what was logged. `progress` gets the time reached [s]."""
         complete = False
+        self._start()  # an interruption in here has nothing to keep
         try:
-            self._start()
             while not self._finished():
                 self._advance()
                 if progress and self.log.count % 100 == 0:
@@ -108,20 +116,23 @@ class Runner:
         self._control()
         self._estimates = list(controller.estimates())
         self.log = Log(self._columns())
-        self._film = Log(["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self.scenario.vessel.commands])
-        self._average: list[Array] = []
+        self._film = Log(["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self._sent_channels])
+        self._average: list[list[float]] = []
         self._write_row(self._shoot(state, state))
 
     def _columns(self) -> list[str]:
-        vessel = self.scenario.vessel
         limits = [f"{name}{end}" for name in self._adaptive() for end in ("", "_low", "_high")]
         references = [n for n in self._estimates if n.startswith("reference_")]
+        force, wind = ([f"{what}_{c}" for c in self._components()] for what in ("force", "wind"))
         return [
-            "t_s", "x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "p_radps", "r_radps", *vessel.commands,
-            *(f"actual_{n}" for n in vessel.actuators), *(f"sensed_{n}" for n in SENSED),
-            *(f"camera_{n}" for n in CAMERA), "force_X_N", "force_Y_N", "force_K_Nm", "force_N_Nm", "wind_X_N",
-            "wind_Y_N", "wind_N_Nm", "contacts", *(f"estimate_{n}" for n in limits), *references,
+            "t_s", *self._pose, *self._rates, *self._sent_channels, *(f"actual_{n}" for n in self._actuators),
+            *(f"sensed_{n}" for n in SENSED), *(f"camera_{n}" for n in CAMERA), *force, *(wind if self._winds else ()),
+            "contacts", *(f"estimate_{n}" for n in limits), *references,
         ]  # fmt: skip
+
+    def _components(self) -> list[str]:
+        """Force components of the vessel's freedoms."""
+        return [name for axis, name in COMPONENTS.items() if axis in self.scenario.vessel.freedoms]
 
     def _adaptive(self) -> list[str]:
         return [n for n in self._estimates if not n.startswith("reference_")]
@@ -129,7 +140,7 @@ class Runner:
     def _advance(self) -> None:
         """One step of physics from the commands in force, then control at its end if it is due, then a row."""
         before = self._state
-        self._average.append(self.engine.program.command_array(self._commands))
+        self._average.append(self._sent_now())
         self.engine.command(self._commands)
         self.engine.advance()
         self._state = self.engine.state
@@ -162,7 +173,7 @@ class Runner:
         )
         for f in frames:
             self._close_frame()
-            self._film.add([f.t, f.x, f.y, f.psi, *f[1:5], *self.engine.program.command_array(self._commands)])
+            self._film.add([f.t, f.x, f.y, f.psi, *f[1:5], *self._sent_now()])
         self._frame += len(frames)
         return frames
 
@@ -176,15 +187,19 @@ class Runner:
         s, engine, sense = self._state, self.engine, self._sense
         assert sense is not None
         estimates = self.scenario.controller.estimates()
-        X, Y, K, N = engine.wrench()
+        axes = [axis in self.scenario.vessel.freedoms for axis in COMPONENTS]
         self.log.add(
             [
-                *(s.t, s.x, s.y, s.psi, s.phi, s.u, s.v, s.p, s.r),
-                *engine.program.command_array(self._commands),
+                s.t,
+                *(getattr(s, n.split("_")[0]) for n in self._pose),
+                *(getattr(s, n.split("_")[0]) for n in self._rates),
+                *self._sent_now(),
                 *engine.actuators.values(),
                 *(getattr(sense, f) for f in FIELDS),
                 *((*frames[-1][1:5], *frames[-1][5:]) if frames else [nan] * len(CAMERA)),
-                *(X, Y, K, N, *self._wind(s), engine.contacts),
+                *(f for f, there in zip(engine.wrench(), axes, strict=True) if there),
+                *(f for f, there in zip(self._wind(s), axes, strict=True) if there and self._winds),
+                engine.contacts,
                 *(value for name in self._adaptive() for value in estimates[name]),
                 *(estimates[n].value for n in self._estimates if n.startswith("reference_")),
             ]
@@ -192,14 +207,18 @@ class Runner:
         if self.log.count - self._sent >= CHUNK:
             self._send(CHUNK)
 
-    def _wind(self, s: State) -> tuple[float, float, float]:
-        """Force of the wind effects in body axes [N, N, N m]."""
-        total = [0.0, 0.0, 0.0]
+    def _sent_now(self) -> list[float]:
+        """Commands in force, those the controller sets."""
+        return [self._commands.get(n, 0.0) for n in self._sent_channels]
+
+    def _wind(self, s: State) -> list[float]:
+        """Force of the wind effects (X, Y, K, N) in body axes [N, N m]."""
+        total = [0.0] * 4
         for effect in self._winds:
             law: Any = type(effect).law.py_func  # type: ignore[attr-defined]  # one call needs no compiling
             w = law(motion(psi=s.psi, u=s.u, v=s.v, r=s.r), effect.values())
-            total = [total[0] + w.X, total[1] + w.Y, total[2] + w.N]
-        return total[0], total[1], total[2]
+            total = [a + b for a, b in zip(total, w, strict=True)]
+        return total
 
     def _send(self, least: int) -> None:
         """New rows to the listener."""

@@ -13,9 +13,9 @@ LAYERS = (  # a module may import from its own layer and from the lines above it
     "vessel scenario sensors margins",
     "program world native",
     "engine twin",
-    "run metrics rerun_log rerun_scene blueprint env",
+    "run metrics rerun_log rerun_scene blueprint env outputs",
     "diagnose",
-    "cli",
+    "cli __main__",
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names.split()}
 FOR_CONTROLLERS = {"errors", "base", "control", "adaptive", "allocation"}  # plain laws, ready to move to a boat

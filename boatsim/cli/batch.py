@@ -12,8 +12,8 @@ from typing import Any
 
 from boatsim import scenario as scenarios
 from boatsim.cli import show
-from boatsim.cli.commands import BAD_INPUT, INTERRUPTED, complain
-from boatsim.errors import BadInput, BoatsimError
+from boatsim.cli.exits import FAULTS, Exit, complain, words
+from boatsim.errors import BadInput
 
 POLL = 0.1  # [s] between two looks at the processes
 
@@ -41,13 +41,14 @@ class Outcome:
     error: str | None = None
 
     @property
-    def code(self) -> int:
-        """Exit code: 2 nothing could be run, 130 interrupted, 1 a bar missed, 0 all bars met."""
+    def code(self) -> Exit:
+        """How this one ended."""
         if self.content is None:
-            return BAD_INPUT if self.error else INTERRUPTED
+            return Exit.BAD_INPUT if self.error else Exit.INTERRUPTED
         if not self.content["complete"]:
-            return INTERRUPTED
-        return int(any(norm["ok"] is False for norm in self.content["norms"].values()))
+            return Exit.INTERRUPTED
+        missed = any(norm["ok"] is False for norm in self.content["norms"].values())
+        return Exit.MISSED if missed else Exit.MET
 
 
 def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None, live: bool) -> int:
@@ -63,7 +64,7 @@ def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None,
             complain(outcome.error)
         elif outcome.content:
             show.norms(outcome.content, outcome.task.folder)
-    if any(outcome.code == INTERRUPTED for outcome in outcomes):
+    if any(outcome.code == Exit.INTERRUPTED for outcome in outcomes):
         kept = any(outcome.content for outcome in outcomes)
         complain("interrupted; what was logged is kept" if kept else "interrupted before anything was logged")
     return max(outcome.code for outcome in outcomes)
@@ -97,10 +98,8 @@ def carry_out(task: Task, progress: Callable[[float], None]) -> Outcome:
         from boatsim.outputs import run_into
 
         return Outcome(task, run_into(task.folder, scenarios.load(task.given), task.seed, task.live, progress))
-    except BoatsimError as error:
-        return Outcome(task, error=f"{task.name}: {error}")
-    except OSError as error:
-        return Outcome(task, error=f"{error.filename or task.folder}: {error.strerror or error}")
+    except FAULTS as error:
+        return Outcome(task, error=f"{task.name}: {words(error)}")
     except KeyboardInterrupt:
         return Outcome(task)
 
@@ -110,7 +109,7 @@ def _in_turn(tasks: Sequence[Task], report: Report) -> list[Outcome]:
     for number, task in enumerate(tasks):
         outcomes.append(carry_out(task, lambda t, number=number: report(number, t)))  # type: ignore[misc]
         report(number, task.duration)
-        if outcomes[-1].code == INTERRUPTED:
+        if outcomes[-1].code == Exit.INTERRUPTED:
             break
     return outcomes
 

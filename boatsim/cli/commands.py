@@ -1,10 +1,6 @@
-"""The commands and their options; what they do is imported when they are called, so that `--help` is quick.
-
-Exit codes: 0 done, all bars met; 1 a bar missed; 2 bad input; 130 interrupted.
-"""
+"""The commands and their options; what they do is imported when they are called, so that `--help` is quick."""
 
 import functools
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal, ParamSpec
@@ -12,9 +8,8 @@ from typing import Annotated, Any, Literal, ParamSpec
 import typer
 
 import boatsim
-from boatsim.errors import BoatsimError
+from boatsim.cli.exits import FAULTS, Exit, complain, words
 
-BAD_INPUT, INTERRUPTED = 2, 130
 P = ParamSpec("P")
 
 app = typer.Typer(
@@ -48,20 +43,12 @@ def _code(command: Callable[[], int]) -> int:
     """Exit code of a command, its error printed."""
     try:
         return command()
-    except BoatsimError as error:
-        complain(str(error))
-    except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        complain(f"{where}{error.strerror or error}")
+    except FAULTS as error:
+        complain(words(error))
+        return Exit.BAD_INPUT
     except KeyboardInterrupt:
         complain("interrupted")
-        return INTERRUPTED
-    return BAD_INPUT
-
-
-def complain(message: str) -> None:
-    """One line to stderr."""
-    print(f"boatsim: {' '.join(message.split())}", file=sys.stderr)
+        return Exit.INTERRUPTED
 
 
 def _version(asked: bool) -> None:

@@ -70,8 +70,7 @@ def summary(found: Diagnosis) -> list[str]:
 
 def overlay(found: Diagnosis, path: Path) -> None:
     """diagnosis.rrd: recorded, nominal, recalibrated and patched boats of the first unseen run on one time line."""
-    from boatsim import rerun_log, world
-    from boatsim.rerun_scene import scene_from
+    from boatsim import rerun_log
 
     stretches = [s for s in found.findings.free_runs if s.run == found.findings.free_runs[0].run]
     boats = {m: _joined(stretches, m) for m in ("recorded", *show.MODELS)} if stretches else {}
@@ -84,13 +83,27 @@ def overlay(found: Diagnosis, path: Path) -> None:
             name, sd = FORCE_NAMES[axis], chosen.sd[axis]
             signals |= {name: mean, f"{name}_low": mean - 2 * sd, f"{name}_high": mean + 2 * sd}
         missing = Recording(chosen.run, chosen.t, signals)
-    tank = world.Tank(10 * found.vessel.length, 10 * found.vessel.length, found.vessel.length, walls=False)
-    scene = scene_from(world.build(found.vessel, tank), found.vessel, tank)
+    scene = _water_around(found.vessel, boats.get("recording"))
     intervals = [
         i for i in found.findings.answer["where"]["intervals"] if chosen is not None and i["run"] == chosen.run
     ]
     with replacing(path) as temporary:
         rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
+
+
+def _water_around(boat: Vessel, path: Recording | None) -> Any:
+    """Scene of a boat in open water that reaches two boat lengths beyond where it went."""
+    from boatsim import world
+    from boatsim.rerun_scene import scene_from
+
+    spans = []
+    for name in ("x_m", "y_m"):
+        where = path.signals[name] if path is not None and name in path.signals else np.zeros(1)
+        spans.append((float(np.nanmin(where)), float(np.nanmax(where))))
+    length, width = (high - low + 4 * boat.length for low, high in spans)
+    centre = (sum(spans[0]) / 2, sum(spans[1]) / 2)
+    tank = world.Tank(length, width, boat.draught * 2, walls=False, centre=centre)
+    return scene_from(world.build(boat, tank), boat, tank)
 
 
 def _joined(stretches: Sequence[FreeRun], model: str) -> Recording:
@@ -173,12 +186,9 @@ def _of_scenario(recording: Recording, name: str) -> dict[str, Array]:
 
 
 def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Any], path: Path) -> None:
-    from boatsim import rerun_log, world
-    from boatsim.rerun_scene import scene_from
+    from boatsim import rerun_log
 
-    tank = world.Tank(10 * boat.length, 10 * boat.length, boat.length, walls=False)
-    scene = scene_from(world.build(boat, tank), boat, tank)
     measured = Recording("recording", recording.t, {n: recording.signals[n] for n in simulated})
     boats = {"recording": measured, "simulated": Recording("simulated", recording.t, dict(simulated))}
     with replacing(path) as temporary:
-        rerun_log.log_overlay(temporary, boats, None, [], scene)
+        rerun_log.log_overlay(temporary, boats, None, [], _water_around(boat, measured))

@@ -17,7 +17,8 @@ from boatsim.recording import Recording
 from boatsim.run import commands_of
 from boatsim.vessel import Vessel
 
-MAX_STEP = 0.05  # [s] largest integration step between samples
+MAX_STEP = 0.05  # [s] largest integration step of a free run
+FIT_STEP = 0.1  # [s] the same in the filter, which is corrected at every sample
 CHANNELS = {  # measured signal -> (noise family, freedom, rate or position)
     "x_m": ("position_sd_m", "surge", 0),
     "y_m": ("position_sd_m", "sway", 0),
@@ -132,7 +133,7 @@ class Track:
                 covariance[nq + i, nq + i] = 1.0
         means, covariances, transitions, predicted = keep or self._nothing()
         found = self.program.module.kalman(
-            self.times, self.measured, self.codes, self.commands, MAX_STEP, self.body, values, on, levels.force**2,
+            self.times, self.measured, self.codes, self.commands, FIT_STEP, self.body, values, on, levels.force**2,
             levels.time_constant, noise, self.start, covariance, full, self._gains, self._scale, self._white,
             keep is not None, means, covariances, transitions, predicted,
         )  # fmt: skip

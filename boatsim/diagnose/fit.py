@@ -64,19 +64,18 @@ def descend(
     low, high = np.array([f.low for f in free]), np.array([f.high for f in free])
     theta = np.clip(theta, low, high)
 
-    def score(x: Array, full: bool = True) -> float:
-        return problem.likelihood(free, x, on, levels, full) - 0.5 * float(np.sum(((x - mean) / sd) ** 2))
+    def score(x: Array) -> float:
+        return problem.likelihood(free, x, on, levels) - 0.5 * float(np.sum(((x - mean) / sd) ** 2))
 
     best, damping = score(theta), 1e-3
     J = np.zeros((1, len(free)))
     for _ in range(iterations):
-        problem.likelihood(free, theta, on, levels, full=False)
-        J = _jacobian(problem, free, theta, on, levels, high, sd)
-        A = J.T @ J
-        g = -(J.T @ problem_white(problem, free, theta, on, levels)) - (theta - mean) / sd
+        white = problem.white()  # at theta: the last pass was a full one there
+        J = _jacobian(problem, free, theta, on, levels, high, sd, white)
+        A, g = J.T @ J, -(J.T @ white) - (theta - mean) / sd
         step, gain = None, 0.0
         for _ in range(5):
-            trial = np.clip(theta + sd * _bounded_step(A, g, damping, theta, sd, low, high), low, high)
+            trial = np.clip(theta + sd * _bounded_step(A, g, damping, theta, low, high), low, high)
             value = score(trial)
             if np.isfinite(value) and value > best - 1e-6:
                 step, gain = trial, value - best
@@ -94,27 +93,28 @@ def descend(
     return Fit(tuple(suspects), free, theta, covariance, levels, evidence)
 
 
-def problem_white(problem: Problem, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> Array:
-    """Whitened prediction errors at theta with the gains of the last full pass."""
-    problem.likelihood(free, theta, on, levels, full=False)
-    return problem.white()
-
-
 def _jacobian(
-    problem: Problem, free: Sequence[Free], theta: Array, on: Array, levels: Levels, high: Array, sd: Array
+    problem: Problem,
+    free: Sequence[Free],
+    theta: Array,
+    on: Array,
+    levels: Levels,
+    high: Array,
+    sd: Array,
+    white: Array,
 ) -> Array:
     """Derivative of the whitened errors by theta / sd, forward differences of a hundredth of the prior sd."""
-    base = problem_white(problem, free, theta, on, levels)
-    J = np.empty((len(base), len(free)))
+    J = np.empty((len(white), len(free)))
     for j in range(len(free)):
         moved = theta.copy()
         h = 0.01 * sd[j] if theta[j] + 0.01 * sd[j] <= high[j] else -0.01 * sd[j]
         moved[j] += h
-        J[:, j] = (problem_white(problem, free, moved, on, levels) - base) * (sd[j] / h)
+        problem.likelihood(free, moved, on, levels, full=False)
+        J[:, j] = (problem.white() - white) * (sd[j] / h)
     return J
 
 
-def _bounded_step(A: Array, g: Array, damping: float, theta: Array, sd: Array, low: Array, high: Array) -> Array:
+def _bounded_step(A: Array, g: Array, damping: float, theta: Array, low: Array, high: Array) -> Array:
     """Newton step in units of sd; a parameter at its bound that wants out stays."""
     free = np.ones(len(g), dtype=bool)
     step = np.zeros(len(g))

@@ -10,6 +10,7 @@ from boatsim.diagnose.problem import Fit, Problem
 
 ENOUGH = 4.0  # [nats] an effect must gain to be named
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
+FRONT, CLOSE = 3, 10.0  # how many candidates, and how near to the first [nats], are looked at more closely
 MOST = 3  # effects in one answer
 UNKNOWN_FACTOR = 2.0  # what is left is judged against this many times the ambient force
 
@@ -45,7 +46,7 @@ def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
     first: dict[str, float] = {}
     steps: list[tuple[str, dict[str, float]]] = []
     while True:
-        tried = {n: fit(problem, (*best.suspects, n), best) for n in candidates if n not in best.suspects}
+        tried = _tried(problem, best, candidates)
         gains = {n: f.evidence - best.evidence for n, f in tried.items()}
         first = first or dict(gains)
         if not tried or len(best.suspects) == MOST or max(gains.values()) < ENOUGH:
@@ -55,6 +56,14 @@ def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
         best = _pruned(problem, converge(problem, tried[name]))
     named = tuple(_named(problem, best, n, candidates, dict(steps)) for n in best.suspects)
     return Ranking(nominal, recalibrated, best, named, first, tried, left_over(problem, best))
+
+
+def _tried(problem: Problem, best: Fit, candidates: tuple[str, ...]) -> dict[str, Fit]:
+    """Every other candidate on top of the best set; those in front with the force levels refitted."""
+    tried = {n: fit(problem, (*best.suspects, n), best, rounds=1) for n in candidates if n not in best.suspects}
+    order = sorted(tried, key=lambda n: -tried[n].evidence)
+    front = [n for i, n in enumerate(order) if i < FRONT or tried[n].evidence > tried[order[0]].evidence - CLOSE]
+    return tried | {n: fit(problem, tried[n].suspects, tried[n]) for n in front}
 
 
 def _pruned(problem: Problem, best: Fit) -> Fit:
