@@ -110,7 +110,7 @@ def _view(scene: Scene, trails: Sequence[str]) -> rrb.Spatial3DView:
         background=SKY,
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
-            position=(x - 0.8 * size, -y, 0.75 * size), look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0)
+            position=(x - 0.6 * size, -y, 0.6 * size), look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0)
         ),
         overrides={f"{WORLD}/{trail}": so_far for trail in trails},
     )

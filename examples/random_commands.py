@@ -1,7 +1,7 @@
 """The joystick boat as a dm_control environment: 20 s of random commands, then a picture, no display needed."""
 
 import numpy as np
-from matplotlib.image import imsave
+from PIL import Image
 
 from boatsim import env
 
@@ -16,5 +16,5 @@ for i in range(round(20.0 / boat.control_timestep())):
 
 for name, value in step.observation.items():
     print(f"{name:24s} {value:8.3f}")
-imsave("random_commands.png", boat.physics.render(720, 1280, camera_id="oblique"))
+Image.fromarray(boat.physics.render(720, 1280, camera_id="oblique")).save("random_commands.png")
 print("random_commands.png: the boat after 20 s")
