@@ -1,7 +1,7 @@
 """Runs a scenario: every period sensors, controller, commands; every step actuators and physics; all of it logged."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import nan
 from typing import Any
 
@@ -25,30 +25,23 @@ CHUNK = 500  # [rows] handed to a listener at a time
 Listener = Callable[[Recording], None]
 
 
-@dataclass
 class Log:
-    """A table that grows by rows, one float a column."""
+    """A table filled row by row, one float a column; laid out by columns, so that a recording of it copies nothing."""
 
-    names: list[str]
-    rows: Array = field(init=False)
-    count: int = 0
-
-    def __post_init__(self) -> None:
-        self.rows = np.empty((CHUNK, len(self.names)))
+    def __init__(self, names: list[str], most: int) -> None:
+        """`most` is the largest number of rows; memory is taken only as rows come."""
+        self.names, self.count = names, 0
+        self.columns = np.empty((len(names), most))
 
     def add(self, row: list[float]) -> None:
         """One more row."""
-        if self.count == len(self.rows):
-            self.rows = np.concatenate([self.rows, np.empty((max(CHUNK, self.count // 4), len(self.names)))])
-        self.rows[self.count] = row
+        self.columns[:, self.count] = row
         self.count += 1
 
     def recording(self, name: str, notes: Notes, start: int = 0) -> Recording:
         """The rows from `start` on; the first column is time."""
-        part = self.rows[start : self.count]
-        return Recording(
-            name, part[:, 0].copy(), {n: part[:, i + 1].copy() for i, n in enumerate(self.names[1:])}, notes
-        )
+        t, *signals = self.columns[:, start : self.count]
+        return Recording(name, t, dict(zip(self.names[1:], signals, strict=True)), notes)
 
 
 @dataclass(frozen=True)
@@ -115,8 +108,10 @@ class Runner:
         # the log's columns are known once the controller has stepped: which estimates it has
         self._control()
         self._estimates = list(controller.estimates())
-        self.log = Log(self._columns())
-        self._film = Log(["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self._sent_channels])
+        duration = self.scenario.file.duration
+        self.log = Log(self._columns(), round(duration / self.scenario.file.step) + 2)
+        seen = ["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self._sent_channels]
+        self._film = Log(seen, round(duration * self.scenario.camera.rate) + 2)
         self._average: list[list[float]] = []
         self._write_row(self._shoot(state, state))
 
@@ -180,7 +175,7 @@ class Runner:
     def _close_frame(self) -> None:
         """Give the last camera row the mean of the commands sent since."""
         if self._film.count and self._average:
-            self._film.rows[self._film.count - 1, 1 + len(CAMERA) :] = np.mean(self._average, axis=0)
+            self._film.columns[1 + len(CAMERA) :, self._film.count - 1] = np.mean(self._average, axis=0)
         self._average.clear()
 
     def _write_row(self, frames: list[Frame]) -> None:
