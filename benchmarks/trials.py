@@ -28,7 +28,8 @@ def diagnose_one(trial: Path, out: Path) -> None:
     vessel = "trial_boat"
     found = analysis.diagnose([trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"], vessel)
     out.mkdir(parents=True, exist_ok=True)
-    patch.write(found.vessel, found.ranking.best, out / "patched.toml")
+    kinds = {e.name(): type(e) for e in found.problem.program.suspects}
+    patch.write(found.vessel, found.ranking.best, kinds, out / "patched.toml")
     with contextlib.redirect_stdout(io.StringIO()):
         commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], 6.0, out)
     (out / "diagnosis.json").write_text(json.dumps(found.findings.answer, indent=1))
@@ -46,6 +47,8 @@ def compare(answer: dict[str, Any], found: dict[str, Any]) -> dict[str, Any]:
     """One trial's row: what was there, what was said."""
     truth = {e["name"] for e in answer["effects"]}
     said = {e["name"] for e in found["effects"]} - set(answer.get("tolerated", []))
+    same = {other: name for name, others in answer.get("equivalent", {}).items() for other in others}
+    said = {n if n in truth else same.get(n, n) for n in said}
     return {
         "kind": answer["kind"],
         "visible": answer.get("visible", True) and not answer.get("borderline", False),

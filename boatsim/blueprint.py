@@ -79,7 +79,11 @@ def of_overlay(
     moved = [n for n in ("x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "r_radps", "p_radps") if n in set(names)]
     motion = [_plot(words(n), [f"{boat}/{n}" for boat in boats]) for n in moved]
     forces = [
-        _plot(f"Missing {axis} force", [n for n in (name, f"{name}_low", f"{name}_high", f"{name}_flagged")], "missing")
+        _plot(
+            f"Missing {axis} {'force' if axis in ('surge', 'sway') else 'moment'}",
+            [n for n in (name, f"{name}_low", f"{name}_high", f"{name}_flagged")],
+            "missing",
+        )
         for name, axis in MISSING.items()
         if name in missing
     ]

@@ -4,6 +4,7 @@ import hashlib
 import importlib
 import importlib.util
 import sys
+import traceback
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -36,13 +37,15 @@ def names(kind: str) -> list[str]:
 def find(kind: str, name: str, beside: Path | None = None) -> Path:
     """Path of a vessel.toml, controller .py or scenario .toml, given by name or by a path of the user's own.
 
-    `beside` is the folder a relative path starts from, after the working directory. Raises BadInput.
+    `beside` is the folder a relative path starts from; if nothing is there, the working directory. Raises BadInput.
     """
     suffix = ".py" if kind == "controller" else ".toml"
-    for folder in [Path(), *([beside] if beside else [])]:
+    for folder in [*([beside] if beside else []), Path()]:
         own = folder / name
         if own.suffix == suffix and own.is_file():
             return own.resolve()
+        if beside and kind == "controller" and name not in names(kind) and (folder / f"{name}{suffix}").is_file():
+            return (folder / f"{name}{suffix}").resolve()
         if kind == "vessel" and (own / "vessel.toml").is_file() and "/" in name:
             return (own / "vessel.toml").resolve()
     if name in names(kind):
@@ -64,9 +67,17 @@ def module_at(path: Path, name: str) -> ModuleType:
     sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
-    except Exception:
+    except Exception as error:
         del sys.modules[name]
-        raise
+        row = next(
+            (
+                f" line {f.lineno}"
+                for f in reversed(traceback.extract_tb(error.__traceback__))
+                if f.filename == str(path)
+            ),
+            "",
+        )
+        raise BadInput(f"{path}:{row} {type(error).__name__}: {error}".replace("\n", " ")) from error
     return module
 
 
@@ -80,8 +91,9 @@ def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
     if kind == "effect" and name in names("effect"):
         module = importlib.import_module(f"boatsim.effects.{name}")
     elif kind == "effect":
-        path = (beside or Path()) / (name if name.endswith(".py") else f"{name}.py")
-        if not path.is_file():
+        file = name if name.endswith(".py") else f"{name}.py"
+        path = next((p for p in ((beside or Path()) / file, Path(file)) if p.is_file()), None)
+        if path is None:
             raise BadInput(unknown_name("effect", name, names("effect")))
         name, module = path.stem, _own_module(path)
     else:
@@ -93,6 +105,18 @@ def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
     if found is None:
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
     return found
+
+
+def address(effect: Any) -> str:
+    """What an effect class is found by from anywhere: its name if it is on the shelf, else the path of its file."""
+    if effect.__module__.startswith("boatsim.effects."):
+        return str(effect.name())
+    return str(Path(sys.modules[effect.__module__].__file__ or "").resolve())
+
+
+def vessel_address(file: Path) -> str:
+    """The name of a shipped vessel, else the path of its file."""
+    return file.parent.name if file.parent.parent == root() / KINDS["vessel"] else str(file.resolve())
 
 
 def _own_module(path: Path) -> ModuleType:

@@ -39,7 +39,8 @@ class Controller(Checked):
     """Base of controllers: `reset` before a run, then `step` once every `period` seconds."""
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
-    commands: ClassVar[tuple[str, ...]] = ()  # names of the command channels it sets
+    commands: ClassVar[tuple[str, ...]] = ()  # command channels it sets; empty: any
+    goals: ClassVar[tuple[str, ...]] = ()  # keys a [[goal]] may have; empty: the vessel's command channels
 
     period: float = param(0.08, low=0.001, high=10.0, unit="s", words="time between two control steps")
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from boatsim import metrics
-from boatsim.content import names
+from boatsim.content import vessel_address
 from boatsim.errors import BadInput
 from boatsim.recording import write_csv
 from boatsim.run import Run, Runner
@@ -56,8 +56,7 @@ def write(run: Run, content: Mapping[str, Any], folder: Path) -> None:
 def notes_toml(run: Run) -> str:
     """recording.toml: what a diagnosis of the run may know. Effects the scenario adds are what it has to find."""
     vessel, notes = run.scenario.vessel, run.recording.notes
-    name = vessel.name if vessel.name in names("vessel") else str(vessel.file)  # a user's own file, from anywhere
-    lines = [f"vessel = {_value(name)}", f"load = {_value(list(notes.load))}"]
+    lines = [f"vessel = {_value(vessel_address(vessel.file))}", f"load = {_value(list(notes.load))}"]
     for effect, values in notes.settings.items():
         lines += _table(f"set.{_key(effect)}", values)
     lines += _table(f"runs.{CAMERA}.noise", notes.noise)  # recording.csv has none: it is the truth

@@ -20,7 +20,7 @@ import numba
 import numpy as np
 
 from boatsim.base import Array, Channel, Effect, Flow, Force, Inertia, angle_fields
-from boatsim.content import module_at
+from boatsim.content import address, module_at
 from boatsim.errors import BadInput
 from boatsim.recording import replacing
 from boatsim.vessel import Vessel
@@ -88,7 +88,7 @@ class Program:
         source = _source(self)
         folder = _cache_folder()
         stamp = _stamp(self, source)
-        path = folder / f"{self.vessel.name}_{stamp}.py"
+        path = folder / f"program_{stamp}.py"
         if not path.exists():
             with replacing(path) as temporary:
                 temporary.write_text(source)
@@ -127,12 +127,10 @@ def _kernel(name: str) -> str:
 
 def _source(program: Program) -> str:
     """The whole program as Python source."""
-    planar = "yaw" in program.vessel.freedoms
-    if planar and "roll" in program.vessel.freedoms:
-        raise BadInput(
-            f"{program.vessel.name}: freedoms surge, sway, yaw or roll alone; roll with them is not there yet"
-        )
-    kernel = "planar" if planar else "roll"
+    kernel = {("surge", "sway", "yaw"): "planar", ("roll",): "roll"}.get(tuple(program.vessel.freedoms))
+    if kernel is None:
+        found = ", ".join(program.vessel.freedoms)
+        raise BadInput(f"{program.vessel.name}: freedoms = {found}; allowed are surge, sway, yaw, or roll alone")
     return "\n\n".join(
         [_composition(program), _kernel(kernel), _kernel("common"), _kernel("filter"), _kernel("callback")]
     )
@@ -156,13 +154,13 @@ def _composition(program: Program) -> str:
     angles = angle_fields(actuators)
     held = [f"act[{i}]" for i in range(len(actuators) + len(angles))]
     head = [
-        f'"""Effects of {program.vessel.name}, composed by boatsim.program; not meant to be edited."""',
+        '"""Effects of a vessel, composed by boatsim.program; not meant to be edited."""',
         "from math import cos, sin",
         "import numpy as np",
         "from numba import njit",
         "from boatsim.base import Wrench, motion_type",
         "from boatsim.program import classes_of",
-        f"E = classes_of({[_address(e) for e in program.effects]!r})",
+        f"E = classes_of({[address(type(e)) for e in program.effects]!r})",
         f"Seen = motion_type({actuators!r})",
         f"HELD, MEMORY = {max(len(held), 1)}, {program.memory_size}",
     ]
@@ -236,12 +234,6 @@ def _actuate(program: Program) -> list[str]:
         at = program.vessel.actuators.index(angle)
         lines.append(f"    act[{len(program.vessel.actuators) + k}] = {part}(act[{at}])")
     return lines
-
-
-def _address(effect: Effect) -> str:
-    """Name of a shelf effect, path of a user's own."""
-    own = type(effect).__module__.startswith("boatsim.effects.")
-    return effect.name() if own else str(getsourcefile(type(effect)))
 
 
 def classes_of(addresses: Sequence[str]) -> list[type[Effect]]:

@@ -58,9 +58,15 @@ class Recording:
         return replace(self, t=self.t[inside], signals={k: v[inside] for k, v in self.signals.items()})
 
     def thinned(self, rate: float) -> "Recording":
-        """Every n-th row, so that about `rate` rows a second are left; the commands are those of the rows kept."""
+        """Every n-th row, so that about `rate` rows a second are left, each with the mean command until the next."""
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
-        return replace(self, t=self.t[::n], signals={k: v[::n] for k, v in self.signals.items()}) if n > 1 else self
+        if n == 1:
+            return self
+        ends = np.append(np.arange(0, len(self.t), n), len(self.t))
+        signals = {k: v[::n] for k, v in self.signals.items()}
+        for name in (k for k in signals if COMMAND.match(k)):
+            signals[name] = np.add.reduceat(self.signals[name], ends[:-1]) / np.diff(ends)
+        return replace(self, t=self.t[::n], signals=signals)
 
     def used(self) -> "Recording":
         """The part its notes name in `use`, or all of it."""

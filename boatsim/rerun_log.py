@@ -6,8 +6,10 @@ the 3D scene is drawn from the same columns. rerun is imported here and in `blue
 
 import math
 import socket
+import sys
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -197,7 +199,8 @@ def _open(stream: rr.RecordingStream, path: Path | str | None, live: bool) -> bo
         sinks.append(rr.FileSink(str(path)))
     if live:
         if not _listening():
-            rr.spawn(connect=False, recording=stream)
+            with suppress(RuntimeError):  # no viewer to start: said below
+                rr.spawn(connect=False, recording=stream, executable_path=_viewer())
         if _listening():
             sinks.append(rr.GrpcSink(f"rerun+http://127.0.0.1:{PORT}/proxy"))
         else:
@@ -206,6 +209,12 @@ def _open(stream: rr.RecordingStream, path: Path | str | None, live: bool) -> bo
         stream.set_sinks(*sinks)
         stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     return bool(sinks)
+
+
+def _viewer() -> str | None:
+    """The viewer beside the running Python, which need not be on the path; None: wherever rerun finds it."""
+    beside = Path(sys.executable).parent / "rerun"
+    return str(beside) if beside.is_file() else None
 
 
 def _end(stream: rr.RecordingStream) -> None:

@@ -73,7 +73,7 @@ class CheckTable(Table):
 class ScenarioFile(Table):
     """The content of a scenario .toml."""
 
-    about: str
+    about: str = ""
     vessel: str
     load: list[str] = []
     duration: float = Field(gt=0, le=86400)  # [s]
@@ -129,7 +129,7 @@ def from_table(raw: dict[str, Any], path: Path) -> Scenario:
         controller = _made("controller", file.controller, path.parent)
         sensors, camera = _settings(Sensors, file.sensors, "sensors"), _settings(Camera, file.camera, "camera")
         _check_goals(file, vessel, controller)
-        _check_shape(file, vessel)
+        _check_shape(file, controller)
         _check_norms(file, camera)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
@@ -160,12 +160,14 @@ def _settings(kind: Any, table: Mapping[str, Any], key: str) -> Any:
 
 def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> None:
     """Goals are named by the controller, or are command channels of the vessel for one that passes them on."""
-    known = getattr(type(controller), "goals", None)
-    allowed = list(vessel.commands) if known is None else list(known)
+    allowed = type(controller).goals or tuple(vessel.commands)
     for goal in file.goal:
         for key in goal:
             if key != "from" and key not in allowed:
                 raise BadInput(unknown_name("[[goal]] key", key, ["from", *allowed]))
+            channel = vessel.commands.get(key)
+            if channel and not channel.low <= goal[key] <= channel.high:
+                raise BadInput(f"[[goal]] {key} = {goal[key]:g}; allowed {channel.low:g} to {channel.high:g}")
     starts = [g.get("from", 0.0) for g in file.goal]
     if starts != sorted(starts):
         raise BadInput(f"[[goal]] from = {starts}; allowed are times in ascending order")
@@ -173,8 +175,10 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
         raise BadInput(f"controller {file.controller['use']} sets {unknown[0]}; {vessel.no_command(unknown[0])}")
 
 
-def _check_shape(file: ScenarioFile, vessel: Vessel) -> None:
+def _check_shape(file: ScenarioFile, controller: Controller) -> None:
     """The boat starts inside its tank, and the controller's period holds at least one step."""
+    if controller.period < file.step - 1e-12:
+        raise BadInput(f"step = {file.step:g} s; allowed is at most the controller's period, {controller.period:g} s")
     if file.tank:
         dx, dy = file.start.x - file.tank.centre[0], file.start.y - file.tank.centre[1]
         if abs(dx) > file.tank.length / 2 or abs(dy) > file.tank.width / 2:

@@ -5,12 +5,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, PositiveFloat
 
 from boatsim.base import Effect
 from boatsim.content import find, load_class
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, checked, read_toml
+
+Freedom = Literal["surge", "sway", "roll", "yaw"]
+Noise = Literal[
+    "position_sd_m", "heading_sd_rad", "roll_sd_rad", "speed_sd_mps", "yaw_rate_sd_radps", "roll_rate_sd_radps"
+]
 
 
 class Body(Table):
@@ -36,12 +41,16 @@ class DiagnosisTable(Table):
     """What a diagnosis may assume of this vessel before it has seen data."""
 
     suspects: list[str] = []
-    ambient: dict[str, float] = {}  # tolerated unmodelled force per axis (surge, sway, roll, yaw), rms [N, N m]
-    time_constant: float = 1.0  # [s] of the ambient force
+    ambient: dict[
+        Freedom, PositiveFloat
+    ] = {}  # tolerated unmodelled force per axis (surge, sway, roll, yaw), rms [N, N m]
+    time_constant: float = Field(default=1.0, gt=0)  # [s] of the ambient force
     horizon: float = Field(default=6.0, gt=0)  # [s] length of a free run
     rate: float = Field(default=20.0, gt=0)  # [Hz] rows closer together are thinned out: their noise is not independent
-    coefficient_uncertainty: dict[str, float] = {}  # relative sd: damping, thrust, restoring
-    noise: dict[str, float] = {}  # sensor noise where a recording states none
+    coefficient_uncertainty: dict[
+        Literal["damping", "thrust", "restoring"], PositiveFloat
+    ] = {}  # relative sd: damping, thrust, restoring
+    noise: dict[Noise, PositiveFloat] = {}  # sensor noise where a recording states none
 
 
 class VesselFile(Table):
@@ -51,7 +60,7 @@ class VesselFile(Table):
     source: str
     based_on: str = ""  # vessel whose folder holds the hull and own effects; set in a patched file
     hull: str = "hull.xml"
-    freedoms: list[Literal["surge", "sway", "roll", "yaw"]]
+    freedoms: list[Freedom]
     length: float = Field(gt=0)  # [m]
     beam: float = Field(gt=0)  # [m]
     draught: float = Field(gt=0)  # [m]

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -256,12 +257,20 @@ def test_ctrl_c_stops_all_processes_and_keeps_what_each_had(tmp_path: Path) -> N
     assert boatsim("run", short, "--out", tmp_path / "alone").exit_code == 0
     out = tmp_path / "out"
     command: list[str | Path] = [sys.executable, "-m", "boatsim", "run", short, *long, "--jobs", "2", "--out", out]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True) as running:
+    # a shell that runs us in the background ignores SIGINT, which a child would inherit
+    heeding = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with subprocess.Popen(
+        command, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heeding
+    ) as running:
         until = time.monotonic() + 120.0
         while len(list(out.glob(".[ab].*/run.rrd"))) < 2 and time.monotonic() < until:
             time.sleep(0.1)
         os.killpg(running.pid, signal.SIGINT)  # as a terminal sends it: to all of them
-        assert running.wait(60.0) == 130
+        try:
+            assert running.wait(60.0) == 130
+        except subprocess.TimeoutExpired:
+            os.killpg(running.pid, signal.SIGKILL)
+            raise
         assert running.stderr and running.stderr.read().count("\n") == 1
     assert sorted(f.name for f in out.iterdir()) == ["a", "b", "short"]
     for folder in out.iterdir():

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from scipy.stats import multivariate_normal
 
 from boatsim import recording, scenario, vessel
-from boatsim.diagnose import analysis, patch, show
+from boatsim.diagnose import analysis, commands, show
 from boatsim.diagnose.answer import key_of
 from boatsim.diagnose.filter import Levels, segments, track
 from boatsim.errors import BadInput
@@ -166,7 +166,7 @@ def test_two_effects_are_named_with_their_values_and_the_patched_boat_follows_un
 def test_patched_file_gives_the_fitted_motion_back(folder):
     runs = written(folder, *(recorded(f"both_{i}", 10 + i, astern=0.7, wind=(0.12, 0.8)) for i in range(2)))
     found = analysis.diagnose(runs[:1], runs[1:], "trial_boat")
-    patch.write(found.vessel, found.ranking.best, folder / "patched.toml")
+    commands.write(found, folder)
     again = vessel.load(str(folder / "patched.toml"))
     assert {e.name() for e in again.effects} >= {"weak_reverse", "wind"}
     assert "# [kg]" in (folder / "patched.toml").read_text()  # comments are kept

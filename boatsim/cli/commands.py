@@ -108,7 +108,9 @@ def margins(controller: Annotated[str, typer.Argument(help="Name of a controller
 @guarded
 def compare(
     run: OneRun,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for compare.csv and compare.rrd.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for compare.csv and compare.rrd.")] = Path(
+        "out/compare"
+    ),
     vessel: VesselName = None,
     load: Load = "",
     scenario: Annotated[
@@ -125,7 +127,7 @@ def compare(
 @guarded
 def replay(
     run: OneRun,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for replay.csv.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for replay.csv.")] = Path("out/replay"),
     vessel: VesselName = None,
     load: Load = "",
     horizon: Annotated[float, typer.Option(min=0.1, metavar="S", help="Length of each free run [s].")] = 6.0,
@@ -140,7 +142,9 @@ def replay(
 @guarded
 def diagnose(
     runs: Runs,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for report.html and the other files.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for report.html and the other files.")] = Path(
+        "out/diagnosis"
+    ),
     hold_out: Annotated[
         list[Path] | None, typer.Option(metavar="RUN", help="Judge the result on this one, unseen; may be repeated.")
     ] = None,

@@ -1,7 +1,6 @@
 """A whole diagnosis: recordings and a vessel in, findings out."""
 
 import time
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,7 +12,7 @@ from boatsim.base import Array, Effect
 from boatsim.content import load_class, names
 from boatsim.diagnose import locate, show
 from boatsim.diagnose.answer import compose
-from boatsim.diagnose.filter import axes_of, nominal_levels, track
+from boatsim.diagnose.filter import Track, axes_of, nominal_levels, stated_noise, track
 from boatsim.diagnose.findings import Findings, Missing
 from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.rank import Ranking, rank
@@ -31,6 +30,7 @@ class Diagnosis:
     vessel: Vessel
     problem: Problem
     ranking: Ranking
+    remarks: tuple[str, ...]  # what was read and not used
 
 
 def vessel_for(recording: Recording, vessel: str | None, load: Sequence[str]) -> Vessel:
@@ -47,32 +47,22 @@ def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple
     return read(path, found.limits()).used(), found
 
 
-def _thinned(recording: Recording, vessel: Vessel) -> tuple[Recording, Vessel]:
-    return recording.thinned(vessel.diagnosis.rate), vessel
-
-
-def _named_apart(opened: dict[Path, tuple[Recording, Vessel]]) -> dict[Path, tuple[Recording, Vessel]]:
-    """Recordings of the same file name get their folder's name in front: sway_1/camera."""
-    stems = [path.stem for path in opened]
-    return {
-        path: (replace(r, name=f"{path.resolve().parent.name}/{path.stem}") if stems.count(path.stem) > 1 else r, v)
-        for path, (r, v) in opened.items()
-    }
-
-
 def suspects_of(vessel: Vessel, library: Sequence[str], without: Sequence[str]) -> tuple[Effect, ...]:
-    """Entries to try: the vessel's list and --library, less --without and what the vessel already has."""
-    wanted = dict.fromkeys([*vessel.diagnosis.suspects, *library])
+    """Entries to try: the vessel's list and --library, less --without and what the vessel already has.
+
+    The vessel's own list may name files beside it, --library files from the working directory. Raises BadInput.
+    """
+    kinds: dict[str, type[Effect]] = {}
+    for name, folder in [*((n, vessel.path) for n in vessel.diagnosis.suspects), *((n, Path()) for n in library)]:
+        kind: type[Effect] = load_class("effect", name, folder)
+        if not any(p.fit for p in kind.params().values()):
+            raise BadInput(f"{name}: this effect has no parameter that a diagnosis may fit (fit=True)")
+        kinds[kind.name()] = kind
     for name in without:
-        if name not in wanted and name not in names("effect"):
-            raise BadInput(unknown_name("--without", name, wanted))
-    out = []
-    for name in wanted:
-        kind: type[Effect] = load_class("effect", name)
-        if kind.name() in without or vessel.effect(kind.name()) is not None:
-            continue
-        out.append(absent(kind).completed(vessel))
-    return tuple(out)
+        if name not in kinds and name not in names("effect"):
+            raise BadInput(unknown_name("--without", name, kinds))
+    tried = [k for n, k in kinds.items() if n not in without and vessel.effect(n) is None]
+    return tuple(absent(kind).completed(vessel) for kind in tried)
 
 
 def absent(kind: type[Effect]) -> Effect:
@@ -89,49 +79,71 @@ def diagnose(
     without: Sequence[str] = (),
 ) -> Diagnosis:
     """Locate, name and model what the vessel leaves out of the recordings. Raises BadInput."""
-    opened = {path: _thinned(*open_recording(path, vessel, load)) for path in dict.fromkeys([*runs, *hold_out])}
-    opened = _named_apart(opened)
-    boats = {id(r): v for r, v in opened.values()}
-    whole = [opened[p][0] for p in runs]
-    first = boats[id(whole[0])]
-    fitted, unseen, note = show.split(whole, [opened[p][0] for p in hold_out])
-    if len({v.name for _, v in opened.values()}) > 1:
-        raise BadInput(f"recordings of different vessels: {', '.join(sorted({v.name for _, v in opened.values()}))}")
-    programs = {key: Program(v, suspects_of(v, library, without)) for key, v in boats.items()}
-
-    def program_of(part: Recording) -> Program:
-        return programs[id(next((r for r, _ in opened.values() if r is part), whole[0]))]
-
-    laid = [track(r, program_of(r)) for r in (*fitted, *unseen)]
-    ambient = nominal_levels(first, fitted)
-    uncertainty = {**first.diagnosis.coefficient_uncertainty, **fitted[0].notes.coefficient_uncertainty}
-    problem = Problem(laid[: len(fitted)], ambient, uncertainty)
+    _check_apart([*runs, *hold_out])
+    opened = [open_recording(path, vessel, load) for path in (*runs, *hold_out)]
+    boats = [boat for _, boat in opened]
+    if len({(b.file, b.freedoms) for b in boats}) > 1:
+        raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}")
+    programs = {r.path: Program(b, suspects_of(b, library, without)) for r, b in opened}
+    thin = [r.thinned(b.diagnosis.rate) for r, b in opened]
+    named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
+    fitted, unseen, note = show.split(named[: len(runs)], named[len(runs) :])
+    stated = stated_noise(boats[0], fitted[0])
+    laid = [track(r, programs[r.path], stated) for r in (*fitted, *unseen)]
+    uncertainty = {str(k): sd for k, sd in boats[0].diagnosis.coefficient_uncertainty.items()}
+    uncertainty |= fitted[0].notes.coefficient_uncertainty
+    problem = Problem(laid[: len(fitted)], nominal_levels(boats[0], fitted[0]), uncertainty)
+    _compile(problem)
     begin = time.perf_counter()
-    ranking = rank(problem, tuple(e.name() for e in programs[id(whole[0])].suspects))
-    findings = _findings(problem, ranking, laid[len(fitted) :], first, begin)
-    findings = replace(
-        findings,
-        runs=tuple(r.name for r in fitted),
-        held_out=tuple(r.name for r in unseen),
-        held_out_note=note,
+    try:
+        ranking = rank(problem, tuple(e.name() for e in problem.program.suspects))
+        findings = _findings(problem, ranking, laid[len(fitted) :], boats[0], note)
+    except (np.linalg.LinAlgError, FloatingPointError) as error:
+        raise BadInput(
+            f"{runs[0]}: {boats[0].name} can not follow this recording ({error}); are its units right?"
+        ) from None
+    findings.answer["seconds"] = round(time.perf_counter() - begin, 3)
+    return Diagnosis(
+        findings, boats[0], problem, ranking, tuple(dict.fromkeys(m for r, _ in opened for m in r.remarks))
     )
-    for line in dict.fromkeys(m for r, _ in opened.values() for m in r.remarks):
-        warnings.warn(line, stacklevel=2)
-    return Diagnosis(findings, first, problem, ranking)
 
 
-def _findings(problem: Problem, ranking: Ranking, unseen: Sequence, vessel: Vessel, begin: float) -> Findings:  # type: ignore[type-arg]
+def _check_apart(paths: Sequence[Path]) -> None:
+    """What is judged on must not be what was fitted."""
+    seen: set[Path] = set()
+    for path in paths:
+        if path.resolve() in seen:
+            raise BadInput(f"{path}: given twice; a recording is either fitted or held out, once")
+        seen.add(path.resolve())
+
+
+def _names(paths: Sequence[Path]) -> list[str]:
+    """Short names that tell the recordings apart: the stem, with as many folders in front as that takes."""
+    for depth in range(1, 9):
+        short = ["/".join(p.resolve().with_suffix("").parts[-depth:]) for p in paths]
+        if len(set(short)) == len(short):
+            return short
+    return [str(p) for p in paths]
+
+
+def _compile(problem: Problem) -> None:
+    """Compile or load the filter before the clock starts: the first time takes far longer than any diagnosis."""
+    nominal, on = problem.nominal(), problem.program.switches()
+    track = problem.tracks[0]
+    track.free_runs(problem.values(track, nominal.free, nominal.theta), on, problem.ambient, float(np.ptp(track.times)))
+
+
+def _findings(problem: Problem, ranking: Ranking, unseen: Sequence[Track], vessel: Vessel, note: str) -> Findings:
     """Locate and show, then the answer."""
-    horizon = vessel.diagnosis.horizon
+    longest = max(float(np.ptp(t.times)) for t in unseen)
+    horizon = min(vessel.diagnosis.horizon, float(f"{longest:.3g}") if longest < vessel.diagnosis.horizon else np.inf)
     fits = show.fits_of(problem, ranking)
     everything = [*problem.tracks, *unseen]
     forces = locate.missing_force(problem, ranking.recalibrated, everything)
     left = locate.missing_force(problem, ranking.best, everything)
     stretches = show.free_runs(problem, fits, unseen, horizon)
     parts = show.by_part(problem, fits, everything, horizon) if ranking.named else []
-    tables = [show.table_of(parts, problem.tracks, horizon)]
-    answer = compose(problem, ranking, forces, stretches, [t.name for t in unseen], horizon)
-    answer["seconds"] = round(time.perf_counter() - begin, 3)
+    table = show.table_of(parts, problem.tracks, horizon)
     axes = axes_of(vessel)
 
     def columns(values: Array) -> dict[str, Array]:
@@ -147,7 +159,10 @@ def _findings(problem: Problem, ranking: Ranking, unseen: Sequence, vessel: Vess
         f"{f.effect}.{f.name}": (float(x), float(s))
         for f, x, s in zip(recalibrated.free, recalibrated.theta, sd, strict=True)
     }
+    held_out = tuple(t.name for t in unseen)
     return Findings(
-        answer, vessel.name, (), (), "", missing, tuple(stretches), tuple(show.remarks(parts, problem.tracks)),
-        coefficients, tuple(t for t in tables if t[2]),
+        compose(problem, ranking, forces, stretches, held_out, horizon), vessel.name,
+        tuple(t.name for t in problem.tracks), held_out, note, missing, tuple(stretches),
+        tuple(show.remarks(parts, problem.tracks, show.errors(stretches), ranking)), coefficients,
+        (table,) if table[2] else (), {type(e).name(): type(e).words for e in problem.program.suspects},
     )  # fmt: skip

@@ -7,12 +7,14 @@ import numpy as np
 
 from boatsim import __version__
 from boatsim.base import Effect
+from boatsim.control import wrap
 from boatsim.diagnose import locate, report_words, show
 from boatsim.diagnose.findings import FreeRun
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.rank import Named, Ranking
 
 ONE_SIDED_95 = 1.645  # [sd]
+TOLD = 0.9  # a fitted sd above this share of the prior one means that the data say nothing
 
 
 def compose(
@@ -72,15 +74,17 @@ def _effect(problem: Problem, best: Fit, named: Named) -> dict[str, Any]:
         "words": kind.words,
         "tied_with": list(named.tied_with),
         "parameters": {
-            key_of(f.name, kind.params()[f.name].unit): {
-                "value": best.value(named.name, f.name)[0],
-                "sd": best.value(named.name, f.name)[1],
-                "unit": kind.params()[f.name].unit,
-            }
+            key_of(f.name, kind.params()[f.name].unit): _parameter(best, named.name, f.name, kind.params()[f.name].unit)
             for f in best.free
             if f.effect == named.name and not f.relative
         },
     }
+
+
+def _parameter(best: Fit, effect: str, name: str, unit: str) -> dict[str, Any]:
+    """Value, sd and unit of a fitted parameter; angles within half a turn."""
+    value, sd = best.value(effect, name)
+    return {"value": wrap(value) if unit == "rad" else value, "sd": sd, "unit": unit}
 
 
 def _candidates(ranking: Ranking) -> list[dict[str, Any]]:
@@ -101,8 +105,10 @@ def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
     params = kind.params()
     out = {}
     for f in fitted.free:
-        if f.effect == name and not f.relative and f.name in (kind.strength or params):
-            value, sd = fitted.value(name, f.name)
+        if f.effect != name or f.relative or f.name not in (kind.strength or params):
+            continue
+        value, sd = fitted.value(name, f.name)
+        if sd < TOLD * f.sd:  # otherwise the limit would only be the prior's
             strength = abs(value - params[f.name].absent) + ONE_SIDED_95 * sd
             out[key_of(f.name, params[f.name].unit)] = float(f"{strength:.3g}")
     return out

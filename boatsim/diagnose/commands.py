@@ -1,6 +1,7 @@
 """What `boatsim diagnose`, `replay` and `compare` do: files in, files and a few printed lines out."""
 
 import json
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -31,6 +32,7 @@ def diagnose(
 ) -> int:  # fmt: skip
     """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
     found = analyse(runs, hold_out, vessel, load, library, without)
+    _say(found.remarks)
     write(found, out)
     for line in summary(found):
         print(line)
@@ -38,11 +40,18 @@ def diagnose(
     return 0
 
 
+def _say(remarks: Sequence[str]) -> None:
+    """Remarks on the input, to stderr, a line each."""
+    for line in remarks:
+        print(f"note: {line}", file=sys.stderr)
+
+
 def write(found: Diagnosis, out: Path) -> None:
     """All files of a diagnosis, the answer last, so that where it lies the others are whole."""
     out.mkdir(parents=True, exist_ok=True)
     report.write(found.findings, out)
-    patch.write(found.vessel, found.ranking.best, out / "patched.toml")
+    kinds = {e.name(): type(e) for e in found.problem.program.suspects}
+    patch.write(found.vessel, found.ranking.best, kinds, out / "patched.toml")
     overlay(found, out / "diagnosis.rrd")
     with replacing(out / "diagnosis.json") as temporary:
         temporary.write_text(json.dumps(found.findings.answer, indent=1) + "\n", encoding="utf-8")
@@ -118,6 +127,7 @@ def _joined(stretches: Sequence[FreeRun], model: str) -> Recording:
 def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:
     """Free runs of a vessel over a recording, driven by the recorded commands alone: replay.csv and rms errors."""
     recording, boat = open_recording(run, vessel, load)
+    _say(recording.remarks)
     problem, fitted = _as_written(recording, boat)
     stretches = show.free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
     if not stretches:
@@ -132,7 +142,7 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
 def _as_written(recording: Recording, boat: Vessel) -> tuple[Problem, Fit]:
     """A vessel file on a recording, nothing fitted but the noise that the smoothed starts need."""
     program = Program(boat)
-    problem = Problem([track(recording, program)], nominal_levels(boat, [recording]), {})
+    problem = Problem([track(recording, program)], nominal_levels(boat, recording), {})
     return problem, replace(problem.nominal(), levels=fit_noise(problem))
 
 
@@ -150,6 +160,7 @@ def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
 def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None, out: Path) -> int:
     """A recording beside a simulation: of its own commands from its smoothed first state, or of a scenario."""
     recording, boat = open_recording(run, vessel, load)
+    _say(recording.remarks)
     if scenario:
         simulated = _of_scenario(recording, scenario)
     else:

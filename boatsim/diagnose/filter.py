@@ -4,16 +4,16 @@ The model has one slowly varying latent force per freedom (Ornstein-Uhlenbeck, a
 modelling). It stands for whatever is not modelled, so that parameter estimates are not bent to absorb it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from boatsim.base import AXES, Array
+from boatsim.base import AXES, Array, Channel
 from boatsim.errors import BadInput
 from boatsim.program import Program
-from boatsim.recording import Recording
+from boatsim.recording import FEWEST_ROWS, Recording
 from boatsim.run import commands_of
 from boatsim.vessel import Vessel
 
@@ -62,6 +62,7 @@ class Track:
     commands: Array  # (N, K)
     values: Array  # nominal parameters of this run
     body: Array
+    noise_scale: Mapping[str, float]  # this recording's sensor noise per common one, by family
     start: Array = field(init=False)  # (n,) first state
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
     _store: Any = field(init=False, repr=False, default=None)
@@ -83,14 +84,19 @@ class Track:
         if nq == 3:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
             self.spread[3, 3] = self.spread[4, 4] = max(self.spread[3, 3], self.spread[4, 4])
 
-    def likelihood(self, values: Array, on: Array, levels: Levels, full: bool = True) -> float:
-        """Log likelihood of parameters; `full=False` keeps gains, outliers and scale of the last full pass."""
-        return self._pass(values, on, levels, full, None)
+    def likelihood(self, values: Array, on: Array, levels: Levels) -> float:
+        """Log likelihood of parameters."""
+        return self._pass(values, on, levels, True, None)
+
+    def whitened(self, values: Array, on: Array, levels: Levels) -> Array:
+        """Whitened prediction errors (N * C,) with gains, outliers and scale of the last `likelihood`."""
+        self._pass(values, on, levels, False, None)
+        return self._white.ravel().copy()
 
     @property
     def white(self) -> Array:
         """Whitened prediction errors (N * C,) of the last pass."""
-        return self._white.ravel()
+        return self._white.ravel().copy()
 
     def smoothed(self, values: Array, on: Array, levels: Levels) -> tuple[Array, Array]:
         """Smoothed states (N, n) and their covariances (N, n, n)."""
@@ -122,7 +128,7 @@ class Track:
 
     def _pass(self, values: Array, on: Array, levels: Levels, full: bool, keep: Any) -> float:
         nq = self.program.module.NQ
-        noise = np.array([levels.sensors[f] ** 2 for f in self.families])
+        noise = np.array([(levels.sensors[f] * self.noise_scale[f]) ** 2 for f in self.families])
         covariance = self.spread.copy()
         for c, code in enumerate(self.codes):
             if code < nq:
@@ -137,10 +143,7 @@ class Track:
             levels.time_constant, noise, self.start, covariance, full, self._gains, self._scale, self._white,
             keep is not None, means, covariances, transitions, predicted,
         )  # fmt: skip
-        if full:
-            self._constant = found + 0.5 * float(np.sum(self._white**2))
-            return float(found)
-        return float(self._constant - 0.5 * np.sum(self._white**2))
+        return float(found)
 
     def _nothing(self) -> Any:
         if self._store is None:
@@ -167,41 +170,70 @@ def axes_of(vessel: Vessel) -> tuple[str, ...]:
     return tuple(a for a in AXES if a in vessel.freedoms)
 
 
-def track(recording: Recording, program: Program) -> Track:
-    """Lay a recording on a program. Raises BadInput if nothing was measured that the vessel's freedoms explain."""
+def track(recording: Recording, program: Program, stated: Mapping[str, float] | None = None) -> Track:
+    """Lay a recording on a program; `stated` is the sensor noise all recordings share, where its own differs.
+
+    Raises BadInput if a column is missing that the vessel moves or is steered by, or if too few rows are left.
+    """
     vessel = program.vessel
     axes = axes_of(vessel)
+    where = recording.path or recording.name
     found = [(n, *CHANNELS[n]) for n in CHANNELS if n in recording.signals and CHANNELS[n][1] in axes]
-    if not any(rate == 0 for *_, rate in found):
-        wanted = [n for n, (_, axis, rate) in CHANNELS.items() if axis in axes and rate == 0]
-        where = recording.path or recording.name
-        raise BadInput(f"{where}: none of {', '.join(wanted)} in it, which {vessel.name} moves")
+    needed = ["psi_rad"] if "yaw" in axes else ["phi_rad"]
+    missing = [n for n in needed if n not in recording.signals] or _unfed(recording, vessel)
+    if missing or not any(rate == 0 for *_, rate in found):
+        raise BadInput(
+            f"{where}: column {(missing or ['x_m'])[0]} is missing, without which {vessel.name} can not be followed"
+        )
+    if len(recording) < FEWEST_ROWS:
+        raise BadInput(f"{where}: {recording.name} has {len(recording)} rows to use; at least {FEWEST_ROWS} are needed")
     codes = np.array([axes.index(axis) + rate * len(axes) for _, _, axis, rate in found])
     measured = np.column_stack([recording.signals[n] for n, *_ in found])
+    own = stated_noise(vessel, recording)
+    scale = {f: own[f] / (stated or own)[f] for f in own}
+    commands = commands_of(recording, vessel.commands) if vessel.commands else np.zeros((len(recording), 1))
     return Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
-        tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes,
-        np.ascontiguousarray(_commands(recording, vessel)), program.values(), program.body,
+        tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes, np.ascontiguousarray(commands),
+        program.values(), program.body, scale,
     )  # fmt: skip
 
 
-def _commands(recording: Recording, vessel: Vessel) -> Array:
-    """(N, K) commands; a vessel without channels gets one column of zeros."""
-    if not vessel.commands:
-        return np.zeros((len(recording), 1))
-    return commands_of(recording, vessel.commands)
+def _unfed(recording: Recording, vessel: Vessel) -> list[str]:
+    """Actuators for which the recording has neither a command nor one that feeds them (PWM feeds thrust)."""
+    there = recording.signals
+    return [n for n in vessel.actuators if n not in there and not any(_feeds(vessel, n, m) for m in there)]
 
 
-def nominal_levels(vessel: Vessel, recordings: Sequence[Recording]) -> Levels:
-    """What is stated: ambient force and sensor noise of the recordings, else of the vessel, else general values."""
+def _feeds(vessel: Vessel, actuator: str, command: str) -> bool:
+    """Whether a channel effect of the vessel turns this command into that actuator."""
+    if command not in vessel.commands or vessel.commands[command].side != vessel.commands[actuator].side:
+        return False
+    families = {(type(e).acts_on, type(e).source_family) for e in vessel.effects if isinstance(e, Channel)}
+    return (vessel.commands[actuator].family, vessel.commands[command].family) in families
+
+
+def stated_noise(vessel: Vessel, recording: Recording) -> dict[str, float]:
+    """Sensor noise by family: the recording's word, else the vessel's, else a general one."""
+    of_vessel = {str(family): sd for family, sd in vessel.diagnosis.noise.items()}
+    return {**NOISE, **of_vessel, **recording.notes.noise}
+
+
+def nominal_levels(vessel: Vessel, recording: Recording) -> Levels:
+    """What is stated before any fit: ambient force of recording or vessel, sensor noise. Raises BadInput."""
     axes = axes_of(vessel)
-    force = np.array([vessel.diagnosis.ambient.get(a, 0.0) for a in axes])
-    stated = recordings[0].notes.ambient
-    if "axes" in stated and "force_rms" in stated:
-        given = dict(zip(stated["axes"], np.atleast_1d(stated["force_rms"]).tolist(), strict=False))
-        force = np.array([given.get(a, f) for a, f in zip(axes, force, strict=True)])
+    given = recording.notes.ambient.get("force_rms", {})
+    if not isinstance(given, Mapping):
+        given = dict(zip(recording.notes.ambient.get("axes", axes), np.atleast_1d(given).tolist(), strict=False))
+    ambient = {str(a): rms for a, rms in vessel.diagnosis.ambient.items()}
+    force = np.array([float(given.get(a, ambient.get(a, 0.0))) for a in axes])
+    time_constant = float(recording.notes.ambient.get("time_constant_s", vessel.diagnosis.time_constant))
+    noise = stated_noise(vessel, recording)
     if not (force > 0).all():
         axis = axes[int(np.argmin(force))]
-        raise BadInput(f"{vessel.name}: no ambient force stated for {axis}; [diagnosis] ambient needs it")
-    noise = {**NOISE, **vessel.diagnosis.noise, **recordings[0].notes.noise}
-    return Levels(force, float(stated.get("time_constant_s", vessel.diagnosis.time_constant)), noise)
+        raise BadInput(f"{vessel.name}: ambient force in {axis} = {force.min():g}; allowed is more than 0")
+    if not time_constant > 0:
+        raise BadInput(f"{recording.name}: ambient time_constant_s = {time_constant:g}; allowed is more than 0 s")
+    if zero := [n for n, sd in noise.items() if not sd > 0]:
+        raise BadInput(f"{recording.name}: noise {zero[0]} = {noise[zero[0]]:g}; allowed is more than 0")
+    return Levels(force, time_constant, noise)

@@ -8,7 +8,7 @@ import numpy as np
 from boatsim.base import Array
 from boatsim.diagnose.filter import Levels
 from boatsim.diagnose.levels import fit_force, force_prior
-from boatsim.diagnose.problem import Fit, Free, Problem
+from boatsim.diagnose.problem import Fit, Free, Problem, scale_of
 
 
 def fit(problem: Problem, suspects: Sequence[str], start: Fit, rounds: int = 2) -> Fit:
@@ -46,12 +46,13 @@ def _starts(problem: Problem, suspects: Sequence[str], start: Fit) -> list[dict[
     if not new:
         return [{}]
     effect = next(e for e in problem.program.effects if e.name() == new[-1])
-    params = type(effect).params()
+    params, vessel = type(effect).params(), problem.program.vessel
     default = {}
     for name, p in params.items():
-        step = 0.1 * p.spread
+        step = 0.1 * p.spread * scale_of(p.unit, vessel)
         default[name] = p.absent + (step if p.absent + step <= p.high else -step)
-    return [{(new[-1], n): x for n, x in {**default, **s}.items()} for s in (type(effect).starts or ({},))]
+    given = [{n: x * scale_of(params[n].unit, vessel) for n, x in s.items()} for s in type(effect).starts] or [{}]
+    return [{(new[-1], n): x for n, x in {**default, **s}.items()} for s in given]
 
 
 def descend(
@@ -109,8 +110,7 @@ def _jacobian(
         moved = theta.copy()
         h = 0.01 * sd[j] if theta[j] + 0.01 * sd[j] <= high[j] else -0.01 * sd[j]
         moved[j] += h
-        problem.likelihood(free, moved, on, levels, full=False)
-        J[:, j] = (problem.white() - white) * (sd[j] / h)
+        J[:, j] = (problem.whitened(free, moved, on, levels) - white) * (sd[j] / h)
     return J
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.base import Array
 from boatsim.diagnose.filter import Track, axes_of
@@ -12,6 +13,7 @@ from boatsim.diagnose.problem import Fit, Problem
 
 BAND = 2.0  # [sd] zero outside this band counts as missing
 SHORTEST = 0.5  # [s] a shorter excursion is not worth an interval
+BRIDGE = 1.5  # [s] a shorter gap does not end one
 UNITS = {"surge": "N", "sway": "N", "roll": "N m", "yaw": "N m"}
 
 
@@ -49,18 +51,28 @@ def missing_force(problem: Problem, found: Fit, tracks: Sequence[Track]) -> list
 
 
 def intervals(problem: Problem, forces: Sequence[Force]) -> list[Interval]:
-    """Stretches in which zero lies outside the band of at least twice the ambient force, per run and axis."""
+    """Stretches in which zero lies outside the band and the force exceeds the ambient one, per run and axis."""
     found = []
     for force in forces:
         for i, axis in enumerate(axes_of(problem.program.vessel)):
             size = np.abs(force.mean[:, i])
             outside = (size > BAND * force.sd[:, i]) & (size > problem.ambient.force[i])
-            edges = np.flatnonzero(np.diff(np.concatenate([[0], outside.astype(np.int8), [0]])))
-            for a, b in zip(edges[::2], edges[1::2], strict=True):
-                begin, end = float(force.t[a]), float(force.t[b - 1])
+            for begin, end in _stretches(force.t, outside):
                 if end - begin >= SHORTEST:
                     found.append(Interval(force.run, begin, end, axis))
     return found
+
+
+def _stretches(t: Array, outside: NDArray[np.bool_]) -> list[tuple[float, float]]:
+    """Begin and end [s] of what is flagged, short gaps bridged."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], outside.astype(np.int8), [0]])))
+    out: list[tuple[float, float]] = []
+    for begin, end in zip(t[edges[::2]].tolist(), t[edges[1::2] - 1].tolist(), strict=True):
+        if out and begin - out[-1][1] < BRIDGE:
+            out[-1] = (out[-1][0], end)
+        else:
+            out.append((begin, end))
+    return out
 
 
 def strength(problem: Problem, forces: Sequence[Force]) -> dict[str, dict[str, float | str]]:

@@ -6,6 +6,8 @@ from typing import Any
 
 import tomlkit
 
+from boatsim.base import Effect
+from boatsim.content import address, vessel_address
 from boatsim.diagnose.problem import Fit
 from boatsim.recording import replacing
 from boatsim.vessel import Vessel
@@ -13,13 +15,14 @@ from boatsim.vessel import Vessel
 DIGITS = 8  # significant, so that the file gives the fitted motion back
 
 
-def patched(vessel: Vessel, found: Fit) -> str:
-    """Text of the patched vessel file."""
+def patched(vessel: Vessel, found: Fit, kinds: Mapping[str, type[Effect]]) -> str:
+    """Text of the patched vessel file; `kinds` are the classes of the suspects by name."""
     text = vessel.file.read_text(encoding="utf-8")
     if "based_on" not in tomlkit.parse(text):
-        text = f'based_on = "{vessel.name}"  # its folder holds the hull\n{text}'
+        text = f'based_on = "{vessel_address(vessel.file)}"  # its folder holds the hull\n{text}'
     document: Any = tomlkit.parse(text)
-    own = {str(t["use"]): t for t in document.get("effect", [])}
+    tables = document.setdefault("effect", tomlkit.aot())
+    own = {e.name(): t for e, t in zip(vessel.effects, tables, strict=False)}
     added: dict[str, dict[str, float]] = {name: {} for name in found.suspects}
     for free, value in zip(found.free, found.theta, strict=True):
         if not free.relative:
@@ -30,14 +33,14 @@ def patched(vessel: Vessel, found: Fit) -> str:
             table[free.name] = tomlkit.item(_rounded(float(table.get(free.name, nominal)) * float(value)))
             table[free.name].comment(f"recalibrated x {value:.4f}")
     for name, settings in added.items():
-        document["effect"].append(_effect_table(name, settings))
-    return tomlkit.dumps(document)
+        tables.append(_effect_table(address(kinds[name]), settings))
+    return str(tomlkit.dumps(document))
 
 
-def write(vessel: Vessel, found: Fit, path: Path) -> None:
+def write(vessel: Vessel, found: Fit, kinds: Mapping[str, type[Effect]], path: Path) -> None:
     """Write the patched vessel file."""
     with replacing(path) as temporary:
-        temporary.write_text(patched(vessel, found), encoding="utf-8")
+        temporary.write_text(patched(vessel, found, kinds), encoding="utf-8")
 
 
 def _effect_table(name: str, settings: Mapping[str, float]) -> Any:

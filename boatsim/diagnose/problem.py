@@ -7,6 +7,7 @@ import numpy as np
 
 from boatsim.base import Array
 from boatsim.diagnose.filter import Levels, Track
+from boatsim.vessel import Vessel
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,30 @@ class Fit:
         return float(self.theta[i]), float(np.sqrt(self.covariance[i, i]))
 
 
+MASS, LENGTH = 4.6, 1.2  # [kg], [m] the boat for which the effects state their priors
+SYMBOLS = {
+    "N": (1, 1, -2),
+    "kg": (1, 0, 0),
+    "m": (0, 1, 0),
+    "s": (0, 0, 1),
+    "rad": (0, 0, 0),
+    "1": (0, 0, 0),
+    "": (0, 0, 0),
+}
+
+
+def scale_of(unit: str, vessel: Vessel) -> float:
+    """How much larger a quantity of this unit is on a vessel than on the reference boat, by Froude's law."""
+    above, _, below = unit.partition("/")
+    powers = np.zeros(3)
+    for part, sign in ((above, 1), (below, -1)):
+        for factor in part.split():
+            symbol, _, power = factor.partition("^")
+            powers += sign * int(power or 1) * np.array(SYMBOLS[symbol])
+    length = vessel.length / LENGTH
+    return float((vessel.body.mass / MASS) ** powers[0] * length ** (powers[1] + 0.5 * powers[2]))
+
+
 class Problem:
     """Recordings, a program with all suspects compiled in, and what may be fitted."""
 
@@ -60,7 +85,8 @@ class Problem:
             for name, about in type(effect).params().items():
                 if about.fit and (not about.axis or about.axis in self.program.vessel.freedoms):
                     at = self.program.index(effect.name(), name)
-                    free.append(Free(effect.name(), name, at, about.absent, about.spread, about.low, about.high))
+                    sd = about.spread * scale_of(about.unit, self.program.vessel)
+                    free.append(Free(effect.name(), name, at, about.absent, sd, about.low, about.high))
         return tuple(free)
 
     def values(self, track: Track, free: Sequence[Free], theta: Array) -> Array:
@@ -72,9 +98,13 @@ class Problem:
             p[to] = p[source]
         return p
 
-    def likelihood(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels, full: bool = True) -> float:
+    def likelihood(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> float:
         """Log likelihood of all runs."""
-        return sum(t.likelihood(self.values(t, free, theta), on, levels, full) for t in self.tracks)
+        return sum(t.likelihood(self.values(t, free, theta), on, levels) for t in self.tracks)
+
+    def whitened(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> Array:
+        """Whitened prediction errors of all runs with the gains of the last `likelihood`."""
+        return np.concatenate([t.whitened(self.values(t, free, theta), on, levels) for t in self.tracks])
 
     def white(self) -> Array:
         """Whitened prediction errors of all runs, of the last pass."""

@@ -44,18 +44,27 @@ def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
     recalibrated = converge(problem, fit(problem, (), nominal))
     best = recalibrated
     first: dict[str, float] = {}
-    steps: list[tuple[str, dict[str, float]]] = []
-    while True:
+    for _ in range(2 * MOST):  # additions and prunings together
         tried = _tried(problem, best, candidates)
         gains = {n: f.evidence - best.evidence for n, f in tried.items()}
         first = first or dict(gains)
         if not tried or len(best.suspects) == MOST or max(gains.values()) < ENOUGH:
             break
         name = max(gains, key=lambda n: gains[n])
-        steps.append((name, gains))
         best = _pruned(problem, converge(problem, tried[name]))
-    named = tuple(_named(problem, best, n, candidates, dict(steps)) for n in best.suspects)
+    best, named = _settled(problem, best, candidates)
     return Ranking(nominal, recalibrated, best, named, first, tried, left_over(problem, best))
+
+
+def _settled(problem: Problem, best: Fit, candidates: tuple[str, ...]) -> tuple[Fit, tuple[Named, ...]]:
+    """The set without members that gain too little on top of the others, and what is to be said of the rest."""
+    while True:
+        named = tuple(_named(problem, best, n, candidates) for n in best.suspects)
+        weak = [n for n in named if n.gain < ENOUGH]
+        if not weak:
+            return best, named
+        least = min(weak, key=lambda n: n.gain).name
+        best = converge(problem, fit(problem, tuple(n for n in best.suspects if n != least), best))
 
 
 def _tried(problem: Problem, best: Fit, candidates: tuple[str, ...]) -> dict[str, Fit]:
@@ -71,22 +80,21 @@ def _pruned(problem: Problem, best: Fit) -> Fit:
     for name in best.suspects[:-1]:
         rest = tuple(n for n in best.suspects if n != name)
         without = converge(problem, fit(problem, rest, best))
-        if without.evidence > best.evidence - 0.5 * ENOUGH:
+        if without.evidence > best.evidence - ENOUGH:
             best = without
     return best
 
 
-def _named(
-    problem: Problem, best: Fit, name: str, candidates: tuple[str, ...], steps: dict[str, dict[str, float]]
-) -> Named:
+def _named(problem: Problem, best: Fit, name: str, candidates: tuple[str, ...]) -> Named:
     """Gain of one effect on top of the others, and how its rivals do in its place."""
     rest = tuple(n for n in best.suspects if n != name)
     without = converge(problem, fit(problem, rest, best))
     gain = best.evidence - without.evidence
-    # only rivals that came near when the effect was chosen are worth fitting again
-    near = [n for n, g in steps.get(name, {}).items() if n not in best.suspects and g > steps[name][name] - 4 * ALIKE]
-    rivals = {n: converge(problem, fit(problem, (*rest, n), without)).evidence - without.evidence for n in near}
-    weights = np.exp(np.array([0.0, gain, *rivals.values()]) - max(gain, 0.0))
+    others = {n: fit(problem, (*rest, n), without, rounds=1) for n in candidates if n not in best.suspects}
+    # the first look is without the force levels refitted, which makes a good explanation better: be generous
+    front = sorted(others, key=lambda n: -others[n].evidence)[:FRONT]
+    rivals = {n: converge(problem, others[n]).evidence - without.evidence for n in front}
+    weights = np.exp(np.array([0.0, gain, *rivals.values()]) - max(gain, 0.0, *rivals.values()))
     order = sorted(rivals, key=lambda n: -rivals[n])
     tied = tuple(n for n in order if rivals[n] > gain - ALIKE)[:3]
     return Named(name, gain, float(weights[1] / weights.sum()), tied)

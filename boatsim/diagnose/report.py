@@ -6,7 +6,7 @@ from pathlib import Path
 from boatsim.diagnose.findings import Findings
 from boatsim.diagnose.report_blocks import Section, as_text, safe
 from boatsim.diagnose.report_sections import proof, sections_of
-from boatsim.diagnose.report_words import listed, number, sentence
+from boatsim.diagnose.report_words import listed, sentence
 from boatsim.recording import replacing
 
 __all__ = ["sentence", "write"]
@@ -63,5 +63,5 @@ def _facts(f: Findings) -> list[tuple[str, str]]:
         ("Vessel", f.vessel),
         ("Fitted to", listed(f.runs)),
         ("Kept unseen", f.held_out_note.removeprefix("kept unseen: ") or listed(f.held_out) or "nothing"),
-        ("Took", f"{number(f.answer['seconds'])} s, boatsim {f.answer['version']}"),
+        ("Made by", f"boatsim {f.answer['version']}"),
     ]

@@ -239,7 +239,10 @@ def _ranking(f: Findings) -> Iterator[Block]:
     ]
     most = max(max(c["gain_nats"] for c in candidates), 1e-9)
     bars = tuple(max(0.0, c["gain_nats"]) / most for c in candidates)
-    caption = "Each entry alone, before any is named: how much better than the recalibrated vessel it explains the fit"
+    caption = (
+        "Each entry alone, before any is named: how much better than the recalibrated vessel it explains the fit. "
+        "The gain of a named effect above is on top of the others named, all refitted, and so differs"
+    )
     header = ["entry", "gain [nats]", "probability", "verdict", "it would mean"]
     yield without_empty(Table(caption, header, rows, (3, 4), bars))
 
@@ -251,8 +254,8 @@ def _limits(f: Findings) -> Iterator[Block]:
             words, unit = parameter(key)
             rows.append([plain(name), words, quantity(value, unit)])
     if rows:
-        caption = "What was not found: the largest strength that the recordings still allow (95 %)"
-        yield Table(caption, ["entry", "parameter", "at most"], rows, (1,))
+        caption = "What was not found: how far from not acting at all the recordings still allow it to be (95 %)"
+        yield Table(caption, ["entry", "parameter", "off by at most"], rows, (1,))
 
 
 def _coefficients(f: Findings) -> Iterator[Block]:

@@ -13,6 +13,7 @@ from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.rank import Ranking
 from boatsim.recording import Recording
 
+UNEXPLAINED = 6.0  # [nats] a force left over is worth a word beyond this
 MODELS = ("nominal", "recalibrated", "patched")
 FAMILIES = {"position_rms_m": ("x_m", "y_m"), "heading_rms_rad": ("psi_rad",), "roll_rms_rad": ("phi_rad",)}
 
@@ -37,7 +38,8 @@ def split(
     whole = recordings[0]
     a, b = (float(whole.t[0] + f * (whole.t[-1] - whole.t[0])) for f in (1 / 3, 2 / 3))
     step = float(np.median(np.diff(whole.t)))
-    parts = [whole.between(whole.t[0], a), whole.between(a, b), whole.between(b + 0.5 * step, whole.t[-1])]
+    edges = [float(whole.t[0]), a, b, float(whole.t[-1])]
+    parts = [whole.between(edges[i] + (0.5 * step if i else 0.0), edges[i + 1]) for i in range(3)]
     thirds = ("first", "middle", "last")
     first, middle, last = (replace(p, name=f"{whole.name} ({n} third)") for p, n in zip(parts, thirds, strict=True))
     note = f"one run only, so its middle third, {a:.1f} to {b:.1f} s, was kept unseen"
@@ -117,9 +119,27 @@ def table_of(
     return f"Free runs of {horizon:g} s, part by part", header, rows
 
 
-def remarks(parts: Sequence[tuple[Track, str, dict[str, float]]], fitted: Sequence[Track]) -> list[str]:
-    """Fitted parts that the nominal structure explains as well as the patched boat, once refitted to them alone."""
+def remarks(
+    parts: Sequence[tuple[Track, str, dict[str, float]]],
+    fitted: Sequence[Track],
+    unseen: Mapping[str, Mapping[str, float]],
+    ranking: Ranking,
+) -> list[str]:
+    """What the data can not tell: parts without the effect, no gain on unseen data, force that stays unexplained."""
     out = []
+    if ranking.named:
+        for family, found in unseen.items():
+            if found["patched"] > found["recalibrated"]:
+                what, unit, scale = _readable(family)
+                out.append(
+                    f"On unseen data what was added does not help in {what}: {found['patched'] * scale:.3g} {unit}, "
+                    f"the recalibrated boat {found['recalibrated'] * scale:.3g} {unit}."
+                )
+    if ranking.left_over > UNEXPLAINED:
+        out.append(
+            "A force larger than the tolerated one stays unexplained after all this "
+            f"({ranking.left_over:.0f} nats beyond twice the ambient force): none of the entries tried accounts for it."
+        )
     for track, family, found in parts:
         enough = found["patched"] >= 0.95 * min(found["alone"], found["recalibrated"])
         if enough and any(t is track for t in fitted):

@@ -139,15 +139,18 @@ def kalman(
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
         decay = exp(-h / tau)
-        if full:
+        for a in range(NY):
+            y[a] = z[a]
+        for a in range(NQ):
+            force[a] = z[NY + a]
+        predict(
+            times[i - 1], h, max(1, int(np.ceil(h / max_step - 1e-9))), y, commands[i - 1], memory, p, on, k, force, act
+        )
+        if full:  # linearised about the state before, with the actuators of this interval
             transition(times[i - 1], h, z, act, p, on, k, decay, F, work)
             carry(F, P, work2)
             for j in range(NQ):
                 P[NY + j, NY + j] += sigma[j] * (1.0 - decay * decay)
-        y, force = z[:NY].copy(), z[NY:].copy()
-        predict(
-            times[i - 1], h, max(1, int(np.ceil(h / max_step - 1e-9))), y, commands[i - 1], memory, p, on, k, force, act
-        )
         for a in range(NY):
             z[a] = y[a]
         for a in range(NY, NZ):

@@ -1,0 +1,258 @@
+"""Entries of the diagnosis' library, each against another form of its law and some on data made by scipy."""
+
+from dataclasses import dataclass
+from math import asin, cos, hypot, log, pi, sin, sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from boatsim import recording, vessel
+from boatsim.base import Array, motion
+from boatsim.diagnose import analysis
+from boatsim.effects.added_mass import AddedMass
+from boatsim.effects.added_mass_coriolis import AddedMassCoriolis
+from boatsim.effects.command_delay import HISTORY, CommandDelay
+from boatsim.effects.extra_mass import ExtraMass
+from boatsim.effects.lateral_centre_shift import LateralCentreShift
+from boatsim.effects.linear_damping import LinearDamping
+from boatsim.effects.mass_centre_shift import MassCentreShift
+from boatsim.effects.prop_walk import PropWalk
+from boatsim.effects.steering_backlash import SteeringBacklash
+from boatsim.effects.tether import Tether
+from boatsim.effects.thrust_deadband import ThrustDeadband
+from boatsim.effects.wall_effect import WallEffect
+from boatsim.recording import Notes, Recording
+
+BOAT = vessel.load("trial_boat")
+
+
+def signal(effect: Any, commands: Array, steps: Array) -> Array:
+    """What a channel makes of commands held for one step [s] each, from rest."""
+    memory = np.zeros(max(type(effect).slots, 1))
+    held = zip(commands, steps, strict=True)
+    return np.array([type(effect).channel(x, 1.0, 0.0, memory, 0, dt, effect.values()) for x, dt in held])
+
+
+# ---- channels
+
+
+@pytest.mark.parametrize("delay", [0.003, 0.1, 0.37, 1.6])
+def test_delayed_command_is_the_mean_over_an_earlier_window(delay: float) -> None:
+    rng = np.random.default_rng(2)
+    steps = rng.uniform(0.02, 0.1, 200)
+    commands = np.repeat(rng.uniform(-1.0, 1.0, 100), 2)
+    ends = np.concatenate([[-10.0, 0.0], np.cumsum(steps)])
+    impulse = np.concatenate([[0.0, 0.0], np.cumsum(commands * steps)])
+    early = np.interp(ends[1:] - delay, ends, impulse)
+    assert signal(CommandDelay(delay=delay), commands, steps) == pytest.approx(np.diff(early) / steps, abs=1e-12)
+
+
+def test_delay_remembers_every_command_of_a_fast_controller() -> None:
+    commands = np.random.default_rng(1).uniform(-1.0, 1.0, 300)
+    late = signal(CommandDelay(delay=0.02 * (HISTORY - 1)), commands, np.full(300, 0.02))
+    assert late[HISTORY - 1 :] == pytest.approx(commands[: 1 - HISTORY], abs=1e-11)
+
+
+def test_delay_forgets_what_is_beyond_its_history_without_a_jump() -> None:
+    late = signal(CommandDelay(delay=1.0), np.linspace(0.0, 1.0, 1000), np.full(1000, 0.002))
+    assert (np.diff(late) >= -1e-12).all() and late[-1] < 1.0
+
+
+def test_play_follows_a_triangle_with_the_loop_of_its_width() -> None:
+    half, width = 0.5, 0.2
+    up = np.linspace(-half, half, 501)
+    steering = np.concatenate([up, up[-2::-1], up[1:]])
+    angle = signal(SteeringBacklash(width=width), steering, np.full(len(steering), 0.02))
+    loop_in, loop_out = steering[500:], angle[500:]
+    area = abs(np.sum(0.5 * (loop_out[1:] + loop_out[:-1]) * np.diff(loop_in)))
+    assert area == pytest.approx(width * (2 * half - width), rel=1e-3)  # parallelogram of the play operator
+    assert (loop_out.max(), loop_out.min()) == pytest.approx((half - width / 2, -half + width / 2))
+
+
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.6])
+def test_deadband_has_the_describing_function_of_the_textbook(share: float) -> None:
+    amplitude = 0.8
+    angle = (np.arange(20000) + 0.5) * pi / 10000
+    thrust = signal(ThrustDeadband(width=share * amplitude), amplitude * np.sin(angle), np.full(20000, 0.02))
+    fundamental = 2.0 * np.mean(thrust * np.sin(angle)) / amplitude
+    assert fundamental == pytest.approx(1.0 - 2.0 / pi * (asin(share) + share * sqrt(1.0 - share**2)), abs=1e-5)
+
+
+# ---- forces
+
+
+@pytest.mark.parametrize("fraction", [0.3, 1.0])
+def test_added_mass_coriolis_is_kirchhoffs_force_of_the_water(fraction: float) -> None:
+    water = AddedMass(surge=0.6, sway=3.0, yaw=0.3, sway_at=0.2)
+    m = motion(current=(0.1, -0.05), psi=0.4, u=1.0, v=0.3, r=0.2)
+    M, nu = water.mass(), np.array([m.ur, m.vr, 0.0, m.r])
+    Tu, Tv = (((e @ M @ nu) + (nu @ M @ e)) / 2 for e in np.eye(4)[:2])  # derivatives of the energy nu' M nu / 2
+    effect = AddedMassCoriolis(fraction=fraction, surge=0.6, sway=3.0, sway_at=0.2)
+    assert effect.wrench(m) == pytest.approx(fraction * np.array([m.r * Tv, -m.r * Tu, 0.0, m.vr * Tu - m.ur * Tv]))
+
+
+def test_prop_walk_pushes_the_stern_to_port_astern_and_a_third_as_much_to_starboard_ahead() -> None:
+    walk = PropWalk(side_force_per_thrust=0.09).completed(BOAT)
+    assert walk.wrench(motion(thrust_port_N=-1.0, thrust_starboard_N=-0.5)) == pytest.approx((0, -0.135, 0, 0.081))
+    assert walk.wrench(motion(thrust_port_N=1.0, thrust_starboard_N=0.0)) == pytest.approx((0, 0.03, 0, -0.018))
+
+
+@pytest.mark.parametrize("shift", [-0.1, 0.25])
+def test_shifted_lateral_centre_takes_only_the_power_of_the_cross_flow_there(shift: float) -> None:
+    own = LinearDamping(sway=10.0)
+    m = motion(v=0.3, r=-0.5)
+    both = np.add(own.wrench(m), LateralCentreShift(shift=shift).completed(BOAT).wrench(m))
+    assert both[3] == pytest.approx(shift * both[1])  # one force at one place
+    assert both[1] * m.v + both[3] * m.r == pytest.approx(-10.0 * (m.v + shift * m.r) ** 2)
+
+
+def test_tether_pulls_towards_its_anchor_with_tension_and_stretch() -> None:
+    line = Tether(tension=0.05, stiffness=0.2, length=1.0, north=3.0, east=-2.0).completed(BOAT)
+    psi = 0.7
+    stern = np.array([0.5 - 0.6 * cos(psi), 0.2 - 0.6 * sin(psi)])
+    reach = np.array([3.0, -2.0]) - stern
+    distance = hypot(*reach)
+    seen = line.wrench(motion(x=0.5, y=0.2, psi=psi))
+    earth = [seen.X * cos(psi) - seen.Y * sin(psi), seen.X * sin(psi) + seen.Y * cos(psi)]
+    assert earth == pytest.approx((0.05 + 0.2 * (distance - 1.0)) * reach / distance, rel=2e-3)
+    assert seen.N == pytest.approx(-0.6 * seen.Y)
+
+
+def test_slack_tether_keeps_its_weight_and_its_drag_takes_power_at_the_stern() -> None:
+    slack = Tether(tension=0.05, stiffness=0.2, length=9.0, north=3.0).completed(BOAT)
+    assert slack.wrench(motion()).X == pytest.approx(0.05, rel=1e-3)
+    line = Tether(drag=0.4).completed(BOAT)
+    m = motion(u=0.2, v=-0.1, r=0.3)
+    force = line.wrench(m)
+    assert force.X * m.u + force.Y * m.v + force.N * m.r == pytest.approx(-0.4 * (0.2**2 + (-0.1 - 0.6 * 0.3) ** 2))
+
+
+def test_wall_effect_halves_with_every_ln2_of_its_reach_and_is_symmetric() -> None:
+    wall = WallEffect(damping_rise=1.5, pull=0.1, half_north=40.0, half_east=30.0).completed(BOAT)
+    near, far = (wall.wrench(motion(y=30.0 - 0.6 * n * log(2.0), u=0.2, v=0.1, r=0.4)) for n in (1, 2))
+    assert near == pytest.approx(2.0 * np.array(far))
+    assert near == pytest.approx((-1.5 * 3 * 0.2 / 2, 0.05 - 1.5 * 10 * 0.1 / 2, 0, -1.5 * 1 * 0.4 / 2))
+    assert wall.wrench(motion(u=0.2, v=0.1, r=0.4)) == pytest.approx((0, 0, 0, 0), abs=1e-12)
+    assert wall.wrench(motion(y=-29.0, psi=pi / 2)).X == pytest.approx(-wall.wrench(motion(y=29.0, psi=pi / 2)).X)
+
+
+# ---- inertias: what must be applied to a body of two parts that moves in a given way
+
+
+def two_bodies(parts: list[tuple[float, float]], y: Array, rates: Array) -> Array:
+    """Body-axes force about the origin [N, N m] that moves point masses (kg, m ahead), u, v, r changing by rates."""
+    u, v, r = y
+    du, dv, dr = rates
+    along = sum(m * (du - r * v - r * r * x) for m, x in parts)  # Newton for each part, in turning axes
+    across = [m * (dv + r * u + dr * x) for m, x in parts]
+    return np.array([along, sum(across), sum(f * x for f, (_, x) in zip(across, parts, strict=True))])
+
+
+@pytest.mark.parametrize(
+    ("effect", "more", "less"),
+    [
+        (ExtraMass(mass=1.3, x=0.35), [(1.3, 0.35)], []),
+        (MassCentreShift(shift=-0.12), [(4.6, -0.12)], [(4.6, 0.0)]),
+    ],
+)
+def test_inertia_and_coriolis_force_are_newtons_law_of_each_part(effect: Any, more: Any, less: Any) -> None:
+    effect = effect.completed(BOAT)
+    nu, rates = np.array([0.4, -0.2, 0.9]), np.array([0.3, 0.5, -0.7])
+    m = motion(current=(0.3, 0.2), u=nu[0], v=nu[1], r=nu[2])  # a current makes no difference to what moves on board
+    matrix = type(effect).inertia(effect.values())
+    inertial = np.array([[matrix[0], 0, 0], [0, matrix[1], matrix[2]], [0, matrix[2], matrix[3]]]) @ rates
+    force = effect.wrench(m)
+    applied = inertial - [force.X, force.Y, force.N]
+    assert applied == pytest.approx(two_bodies(more, nu, rates) - two_bodies(less, nu, rates))
+
+
+# ---- diagnoses of data from an integrator that shares no code with the tool; all on one composition
+
+
+@dataclass(frozen=True)
+class Real:
+    """What the trial boat really has, in the words of this file."""
+
+    late: float = 0.0  # [s] commands
+    play: float = 0.0  # [rad] steering
+    cargo: tuple[float, float] = (0.0, 0.0)  # [kg], [m] ahead
+    munk: float = 0.0  # share of the water's Coriolis force
+    line: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)  # [N/m], [m] length, [m] anchor north, east
+
+
+def slopes(t: float, y: Array, thrust: Array, steer: Array, real: Real) -> Array:
+    """Kirchhoff's equations of the trial boat: both momenta from kinetic energies, thrusters and damping as stated."""
+    psi, nu = y[2], y[3:]
+    c, s = cos(psi), sin(psi)
+    m, x = real.cargo
+    solid = np.array([[4.6 + m, 0, 0], [0, 4.6 + m, m * x], [0, m * x, 0.6 + m * x * x]])
+    water = np.diag([0.3, 9.0, 0.7])
+    force = -np.array([3.0, 10.0, 1.0]) * nu
+    for momentum in (solid @ nu, real.munk * (water @ nu)):
+        force += [nu[2] * momentum[1], -nu[2] * momentum[0], nu[1] * momentum[0] - nu[0] * momentum[1]]
+    push = thrust * np.array([np.cos(steer), np.sin(steer)])
+    force += [push[0].sum(), push[1].sum(), -0.6 * push[1].sum() + 0.19 * (push[0, 0] - push[0, 1])]
+    stiffness, length, north, east = real.line
+    reach = np.array([north - y[0] + 0.6 * c, east - y[1] + 0.6 * s])
+    pull = stiffness * max(hypot(*reach) - length, 0.0) / hypot(*reach) * reach
+    X, Y = c * pull[0] + s * pull[1], c * pull[1] - s * pull[0]
+    force += [X, Y, -0.6 * Y]
+    u, v, r = nu
+    return np.concatenate([[u * c - v * s, u * s + v * c, r], np.linalg.solve(solid + water, force)])
+
+
+def played(steer: Array, play: float) -> Array:
+    """Angles behind commands (N, 2) with the given total play."""
+    out = np.zeros_like(steer)
+    at = np.zeros(2)
+    for i, command in enumerate(steer):
+        at = out[i] = np.clip(at, command - play / 2, command + play / 2)
+    return out
+
+
+def recorded(real: Real, seed: int) -> Recording:
+    """40 s at 6 Hz of random steps, seen by a camera with noise."""
+    rng = np.random.default_rng(seed)
+    dt, n = 1 / 6, 240
+    raw = np.repeat(np.column_stack([rng.uniform(-0.9, 0.9, (48, 2)), rng.uniform(-0.6, 0.6, (48, 2))]), 5, axis=0)
+    acts = np.column_stack([raw[:, :2], played(raw[:, 2:], real.play)])
+    ends = np.unique(np.round(np.concatenate([dt * np.arange(n + 1), dt * np.arange(0, n, 5) + real.late]), 9))
+    y, poses = np.zeros(6), {}
+    for a, b in zip(ends[:-1], ends[1:], strict=True):
+        poses[round(a, 6)] = y[:3]
+        row = min(max(int((0.5 * (a + b) - real.late) / dt), 0), n - 1)
+        args = (acts[row, :2], acts[row, 2:], real)
+        y = solve_ivp(slopes, (a, b), y, args=args, rtol=1e-6, atol=1e-8).y[:, -1]
+    t = dt * np.arange(n)
+    pose = np.array([poses[round(a, 6)] for a in t]) + rng.standard_normal((n, 3)) * [0.003, 0.003, 0.012]
+    names = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | dict(zip(names, raw.T, strict=True))
+    return Recording(f"{seed}", t, signals, Notes(vessel="trial_boat"))
+
+
+@pytest.mark.parametrize(
+    ("real", "wanted"),
+    [
+        (
+            Real(play=0.15, munk=0.6),
+            {"steering_backlash": {"width_rad": 0.15}, "added_mass_coriolis": {"fraction": 0.6}},
+        ),
+        (Real(cargo=(1.2, 0.25)), {"extra_mass": {"mass_kg": 1.2, "x_m": 0.25}}),
+        (Real(line=(0.3, 0.8, 1.5, -1.0)), {"tether": {"north_m": 1.5, "east_m": -1.0}}),
+    ],
+    ids=lambda case: "" if isinstance(case, Real) else "+".join(case),
+)
+def test_concealed_effects_are_named_with_their_values(tmp_path: Path, real: Real, wanted: dict[str, Any]) -> None:
+    runs = [recorded(real, seed) for seed in (1, 2, 3)]
+    files = [tmp_path / f"{r.name}.csv" for r in runs]
+    for file, r in zip(files, runs, strict=True):
+        recording.write_csv(r, file)
+    answer = analysis.diagnose(files[:2], files[2:], "trial_boat").findings.answer
+    assert {e["name"] for e in answer["effects"]} == set(wanted)
+    for effect in answer["effects"]:
+        for key, true in wanted[effect["name"]].items():
+            found = effect["parameters"][key]
+            assert abs(found["value"] - true) < 3.5 * found["sd"] and found["sd"] < 0.3 * abs(true), key
