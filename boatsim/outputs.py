@@ -48,7 +48,8 @@ def run_into(
 def write(run: Run, content: Mapping[str, Any], folder: Path) -> None:
     """The files of a run but its rerun log; `content` is that of norms.json."""
     write_csv(run.recording, folder / "recording.csv")
-    write_csv(run.camera, folder / f"{CAMERA}.csv")
+    if "yaw" in run.scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
+        write_csv(run.camera, folder / f"{CAMERA}.csv")
     (folder / "recording.toml").write_text(notes_toml(run), encoding="utf-8")
     (folder / "norms.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 

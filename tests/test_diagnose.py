@@ -14,6 +14,7 @@ from boatsim import recording, scenario, vessel
 from boatsim.diagnose import analysis, commands, show
 from boatsim.diagnose.answer import key_of
 from boatsim.diagnose.filter import Levels, segments, track
+from boatsim.diagnose.problem import scale_of
 from boatsim.errors import BadInput
 from boatsim.outputs import run_into
 from boatsim.program import Program
@@ -69,7 +70,7 @@ def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model()
     dense = multivariate_normal(mean[rows], S).logpdf(y)
     got = found.likelihood(values, on, levels) - 0.5 * len(rows) * np.log(2 * np.pi)
     # the filter linearises to third order in h, and holds the force over a sample
-    assert got == pytest.approx(dense, abs=0.05 * len(rows))
+    assert got == pytest.approx(dense, abs=0.3)
     gain = np.linalg.solve(S, big[rows]).T
     smoothed = mean + gain @ (y - mean[rows])
     means, covariances = found.smoothed(values, on, levels)
@@ -251,3 +252,54 @@ def test_real_roll_decay_shows_nonlinear_damping_and_stiffening_on_unseen_data()
     rms = answer["fit"]["roll_rms_rad"]
     assert rms["patched"] < 0.5 * rms["recalibrated"]
     assert any("last third" in r for r in found.remarks)  # there the linear model is already right, and it says so
+
+
+# ---- what a user may do
+
+
+def test_a_recording_without_commands_is_refused_not_explained(folder):
+    full = recorded("steered", 1)
+    for gone in ("thrust_port_N", "steer_starboard_rad"):
+        part = replace(full, signals={k: v for k, v in full.signals.items() if k != gone})
+        with pytest.raises(BadInput, match=f"column {gone} is missing"):
+            analysis.diagnose(written(folder, part), vessel="trial_boat")
+
+
+def test_what_is_fitted_can_not_be_held_out(folder):
+    runs = written(folder, recorded("twice", 1))
+    with pytest.raises(BadInput, match="given twice"):
+        analysis.diagnose(runs, runs, "trial_boat")
+
+
+def test_horizon_shrinks_to_what_was_kept_unseen():
+    answer = analysis.diagnose([DECAY.with_name("decay_15p5kn.csv")]).findings.answer
+    assert 10.0 < answer["fit"]["horizon_s"] < 60.0 and answer["fit"]["roll_rms_rad"]["nominal"] > 0
+
+
+def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder, tmp_path, capsys):
+    text = (vessel.load("kvlcc2_roll").file).read_text()
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "vessel.toml").write_text(text)
+    for file in ("hull.xml",):
+        (mine / file).write_text((vessel.load("kvlcc2_roll").path / file).read_text())
+    own = tmp_path / "roll_weed.py"
+    law = (Path(vessel.__file__).parent / "effects" / "cubic_damping.py").read_text()
+    own.write_text(law.replace("CubicDamping", "RollWeed"))
+    without = ["cubic_damping", "quadratic_damping"]
+    code = commands.diagnose([DECAY], [], str(mine / "vessel.toml"), [], tmp_path / "out", [str(own)], without)
+    assert code == 0 and "roll_weed" in capsys.readouterr().out
+    (tmp_path / "elsewhere").mkdir()
+    code = commands.replay(DECAY, str(tmp_path / "out" / "patched.toml"), [], 60.0, tmp_path / "elsewhere")
+    rms = float(capsys.readouterr().out.split("roll_rms_rad:")[1].split()[0])
+    answer = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
+    assert code == 0 and rms < 0.5 * answer["fit"]["roll_rms_rad"]["recalibrated"]
+
+
+def test_froude_scaled_priors_are_those_of_the_small_boat():
+    small, large = vessel.load("trial_boat"), vessel.load("kvlcc2_roll")
+    length = large.length / small.length
+    assert all(scale_of(unit, small) == pytest.approx(1.0) for unit in ("N", "N s^2/m^2", "N m", "m/s", "s", ""))
+    assert scale_of("m/s", large) == pytest.approx(length**0.5)
+    assert scale_of("N", large) == pytest.approx(large.body.mass / small.body.mass)  # weight has no other scale
+    assert scale_of("N s^2/m^2", large) == pytest.approx(large.body.mass / small.body.mass / length)
