@@ -63,10 +63,10 @@ class Engine:
     def __init__(
         self, vessel: Vessel, tank: Tank | None = None, step: float = 0.02, *, callback: str = "native", **look: Any
     ) -> None:
-        """Build the model. `callback` is "native" (falls back to "python" on any difference) or "python"; `look` goes to `world.build`.
+        """Build the model; `look` goes to `world.build`. Raises BadPhysics for a model that can not be stepped.
 
-        Raises BadPhysics for a model that can not be stepped.
-        """  # noqa: E501
+        `callback` is "native" (and falls back to "python" on any difference between the two) or "python".
+        """
         self.vessel, self.step = vessel, step
         self.tank = tank or Tank(10.0 * vessel.length, 10.0 * vessel.length, vessel.length, walls=False)  # open water
         self.program = Program(vessel)
@@ -98,8 +98,7 @@ class Engine:
 
     def settle(self) -> None:
         """Let the actuators reach their commands at once."""
-        for _ in range(3):
-            self.code.actuate_in_place(self._commands, self._memory, 1e4, self._values, self._on, self._act)
+        self.code.settle(self._commands, self._memory, self._values, self._on, self._act)
         self._write_userdata()
 
     def command(self, commands: Mapping[str, float]) -> None:

@@ -61,6 +61,15 @@ def test_delay_forgets_what_is_beyond_its_history_without_a_jump() -> None:
     assert (np.diff(late) >= -1e-12).all() and late[-1] < 1.0
 
 
+def test_delay_says_when_the_next_command_arrives() -> None:
+    memory, dt = np.zeros(CommandDelay.slots), 0.05
+    values = CommandDelay(delay=0.12).values()
+    assert CommandDelay.pause(memory, 0, values) == 0.12  # a command given now
+    for i, (command, left) in enumerate([(1.0, 0.07), (1.0, 0.02), (0.5, 0.07), (0.5, 0.02), (0.5, 0.12)]):
+        CommandDelay.channel(command, 1.0, 0.0, memory, 0, dt, values)
+        assert CommandDelay.pause(memory, 0, values) == pytest.approx(left), i
+
+
 def test_play_follows_a_triangle_with_the_loop_of_its_width() -> None:
     half, width = 0.5, 0.2
     up = np.linspace(-half, half, 501)
@@ -207,9 +216,10 @@ def slopes(t: float, y: Array, thrust: Array, steer: Array, real: Real) -> Array
 def played(steer: Array, play: float) -> Array:
     """Angles behind commands (N, 2) with the given total play."""
     out = np.zeros_like(steer)
-    at = np.zeros(2)
+    at: Array = np.zeros(2)
     for i, command in enumerate(steer):
-        at = out[i] = np.clip(at, command - play / 2, command + play / 2)
+        at = np.minimum(np.maximum(at, command - play / 2), command + play / 2)
+        out[i] = at
     return out
 
 
@@ -226,7 +236,7 @@ def recorded(real: Real, seed: int) -> Recording:
         row = min(max(int((0.5 * (a + b) - real.late) / dt), 0), n - 1)
         args = (acts[row, :2], acts[row, 2:], real)
         y = solve_ivp(slopes, (a, b), y, args=args, rtol=1e-6, atol=1e-8).y[:, -1]
-    t = dt * np.arange(n)
+    t: Array = dt * np.arange(n, dtype=float)
     pose = np.array([poses[round(a, 6)] for a in t]) + rng.standard_normal((n, 3)) * [0.003, 0.003, 0.012]
     names = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
     signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | dict(zip(names, raw.T, strict=True))

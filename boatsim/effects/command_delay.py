@@ -1,12 +1,14 @@
 """Command delay: what is commanded now reaches the thrusters later."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.base import Array, Channel, param
 
+SAME = 1e-9  # [s] instants this close are one
 HISTORY = 80  # commands remembered of each actuator: one every 20 ms for the longest delay
 
 
@@ -44,6 +46,21 @@ def channel(x: float, side: float, source: float, memory: Array, at: int, dt: fl
     return (total + left * held) / dt
 
 
+@njit
+def pause(memory: Array, at: int, q: Any) -> float:
+    """Time until the next command that is on its way arrives; one given now needs the whole delay."""
+    if q.delay <= 0.0:
+        return inf
+    i, age, left = int(memory[at]), 0.0, q.delay
+    for _ in range(HISTORY):
+        age += memory[at + 2 + 2 * i]
+        if age >= q.delay - SAME:
+            break
+        left = q.delay - age
+        i = i - 1 if i > 0 else HISTORY - 1
+    return left
+
+
 @dataclass(frozen=True)
 class CommandDelay(Channel):
     """Dead time between every command and its actuator."""
@@ -53,6 +70,7 @@ class CommandDelay(Channel):
     acts_on: ClassVar[str] = ""  # every actuator
     slots: ClassVar[int] = 1 + 2 * HISTORY
     channel: ClassVar = channel
-    starts: ClassVar = tuple({"delay": delay} for delay in (0.08, 0.3, 0.8))
+    pause: ClassVar = pause
+    starts: ClassVar = ({"delay": 0.1},)
 
     delay: float = param(0.0, low=0.0, high=1.6, unit="s", words="command to effect", fit=True, spread=0.5)

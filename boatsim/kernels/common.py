@@ -9,11 +9,20 @@ from boatsim.base import Array
 from boatsim.kernels.laws import HELD, actuate
 from boatsim.kernels.planar import NQ, K, constants, step_in_place
 
+LONG = 1e4  # [s] longer than any actuator takes
+
 
 @njit(error_model="numpy", cache=True)
 def actuate_in_place(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array) -> None:
     """One step of all channels."""
     actuate(commands, memory, dt, p, on, act)
+
+
+@njit(error_model="numpy", cache=True)
+def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> None:
+    """Let the actuators reach their commands: a few steps far longer than any actuator takes, in place."""
+    for _ in range(3):
+        actuate(commands, memory, LONG, p, on, act)
 
 
 @njit(error_model="numpy", cache=True)

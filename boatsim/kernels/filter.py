@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from boatsim.base import Array
+from boatsim.kernels.common import settle
 from boatsim.kernels.laws import HELD, MEMORY, actuate
 from boatsim.kernels.planar import NQ, K, constants, slopes, step_in_place
 
@@ -18,7 +19,6 @@ NY = 2 * NQ
 NZ = 3 * NQ
 GATE = 5.0  # [sd] a measurement further off is taken for an outlier: no update, a bounded penalty
 IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has lost track and must follow
-SETTLE = 1e4  # [s] longer than any actuator takes
 
 
 @njit(error_model="numpy", cache=True)
@@ -116,6 +116,20 @@ def observe(z: Array, code: int, row: Array) -> float:
 
 
 @njit(error_model="numpy", cache=True)
+def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array) -> float:
+    """Gain (n,) of one measurement and P row' (n,), in place; returns the inverse sd of its prediction error."""
+    variance = noise
+    for a in range(NZ):
+        Ph[a] = 0.0
+        for b in range(NZ):
+            Ph[a] += P[a, b] * row[b]
+        variance += row[a] * Ph[a]
+    for a in range(NZ):
+        gain[a] = Ph[a] / variance
+    return float(1.0 / sqrt(variance))
+
+
+@njit(error_model="numpy", cache=True)
 def kalman(
     times: Array, measured: Array, codes: Any, commands: Array, max_step: float, body: Array, p: Array, on: Any,
     sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, full: bool, gains: Array, scale: Array, white: Array,
@@ -128,8 +142,7 @@ def kalman(
     """
     k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
-    for _ in range(3):
-        actuate(commands[0], memory, SETTLE, p, on, act)
+    settle(commands[0], memory, p, on, act)
     z, P = z0.copy(), P0.copy()
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((2, NQ)), np.zeros((NZ, NZ))
     y, force, Ph = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
@@ -163,26 +176,16 @@ def kalman(
                 continue
             error = measured[i, c] - observe(z, codes[c], row)
             if full:
-                variance = noise[c]
-                for a in range(NZ):
-                    Ph[a] = 0.0
-                    for b in range(NZ):
-                        Ph[a] += P[a, b] * row[b]
-                for a in range(NZ):
-                    variance += row[a] * Ph[a]
-                scale[i, c] = 1.0 / sqrt(variance)
-                for a in range(NZ):
-                    gains[i, c, a] = Ph[a] / variance
+                scale[i, c] = weigh(P, row, noise[c], gains[i, c], Ph)
                 likelihood += log(scale[i, c])
                 far = abs(error) * scale[i, c] > GATE and outliers[c] < IN_A_ROW
                 outliers[c] = outliers[c] + 1.0 if far else 0.0
                 if far:
                     scale[i, c] = 0.0
+            white[i, c] = error * scale[i, c]
             if scale[i, c] == 0.0:
-                white[i, c] = 0.0
                 likelihood -= 0.5 * GATE * GATE
                 continue
-            white[i, c] = error * scale[i, c]
             likelihood -= 0.5 * white[i, c] ** 2
             for a in range(NZ):
                 z[a] += gains[i, c, a] * error
@@ -225,8 +228,7 @@ def free_runs(
     """
     k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
-    for _ in range(3):
-        actuate(commands[0], memory, SETTLE, p, on, act)
+    settle(commands[0], memory, p, on, act)
     nothing = np.zeros(NQ)
     saved = np.zeros((len(times), MEMORY))
     for i in range(len(times) - 1):
