@@ -148,6 +148,7 @@ def test_ideal_boat_has_nothing_missing(folder):
     assert answer["verdict"] == "nothing_missing" and answer["effects"] == []
     limits = answer["upper_limits"]["weak_reverse"]["astern_factor"]
     assert 0.0 < limits < 0.1  # so small a weakness would have gone unseen
+    assert answer["where"]["region"] == []
 
 
 def test_two_effects_are_named_with_their_values_and_the_patched_boat_follows_unseen_data(folder):
@@ -159,6 +160,12 @@ def test_two_effects_are_named_with_their_values_and_the_patched_boat_follows_un
     values = {k: p for e in answer["effects"] for k, p in e["parameters"].items()}
     for key, true in (("astern_factor", 0.7), ("force_N", 0.12), ("toward_rad", 0.8)):
         assert abs(values[key]["value"] - true) < 4 * values[key]["sd"] and values[key]["sd"] < 0.1, key
+    regions = {r["variable"]: r for r in answer["where"]["region"]}
+    share = float(regions["thrust astern"]["statement"].split("about ")[1].split(" %")[0])
+    # 30 % of it is missing; the smoothed force blurs thrust that changes every 1.3 s
+    assert 20.0 < share < 40.0 and regions["thrust astern"]["p_value"] < 1e-6
+    toward = float(regions["heading in the world"]["statement"].split("toward ")[1].split(" deg")[0])
+    assert abs(toward - np.degrees(0.8)) < 15.0
     rms = answer["fit"]["position_rms_m"]
     assert answer["fit"]["held_out"] == ["both_2"]
     assert rms["patched"] < 0.006 < 0.2 * rms["recalibrated"]  # 3 mm camera noise and that of the smoothed start

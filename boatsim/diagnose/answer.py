@@ -12,6 +12,7 @@ from boatsim.diagnose import locate, report_words, show
 from boatsim.diagnose.findings import FreeRun
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.rank import Named, Ranking
+from boatsim.diagnose.regions import regions
 
 ONE_SIDED_95 = 1.645  # [sd]
 TOLD = 0.9  # a fitted sd above this share of the prior one means that the data say nothing
@@ -42,7 +43,7 @@ def compose(
         "where": {
             "axes": locate.strength(problem, forces),
             "intervals": [vars(i) for i in locate.intervals(problem, forces)],
-            "region": [],
+            "region": [vars(r) for r in regions(problem, forces, ranking.recalibrated)],
         },
         "fit": {
             "horizon_s": horizon,
