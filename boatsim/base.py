@@ -229,7 +229,7 @@ class Inertia(Effect):
     moves_with: ClassVar[str] = "water"
     inertia: ClassVar[Callable[[Any], Mass]]
 
-    def mass(self) -> Array:
+    def matrix(self) -> Array:
         """(4, 4) over (surge, sway, roll, yaw), kg, kg m, kg m^2."""
         return Mass(*type(self).inertia(self.values())).matrix()
 
@@ -248,9 +248,12 @@ class Channel(Effect):
     compiled `channel(x, side, source, memory, at, dt, values) -> float`: x is the signal so far, side -1 port,
     +1 starboard, 0 middle, source the raw command of the same side in the family `source_family`, memory[at:at +
     slots] this actuator's own memory. The value returned is the mean over the step dt [s] that begins now.
+    `pause(memory, at, values)`, where there is one, says in how many s the signal will jump while its command is held
+    (a delayed command arrives): the filter lets no step reach beyond.
     """
 
     acts_on: ClassVar[str] = "thrust"
     source_family: ClassVar[str] = ""
     slots: ClassVar[int] = 0
+    pause: ClassVar[Callable[[Array, int, Any], float] | None] = None
     channel: ClassVar[Callable[[float, float, float, Array, int, float, Any], float]]

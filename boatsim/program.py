@@ -73,7 +73,7 @@ class Program:
 
     def targets(self, effect: Channel) -> list[str]:
         """Actuators a channel effect acts on."""
-        return [a for a in self.vessel.actuators if self.vessel.commands[a].family == type(effect).acts_on]
+        return [a for a in self.vessel.actuators if type(effect).acts_on in ("", self.vessel.commands[a].family)]
 
     def command_array(self, commands: Mapping[str, float]) -> Array:
         """(C,) in the vessel's order; commands not given are zero. Raises BadInput for a name it does not take."""
@@ -183,6 +183,8 @@ def _composition(program: Program) -> str:
             inertias += _guarded(program, i, lines)
         if isinstance(effect, Channel):
             head.append(f"channel{i} = E[{i}].channel")
+            if type(effect).pause is not None:
+                head.append(f"pause{i} = E[{i}].pause")
     return "\n".join(
         [
             *head,
@@ -208,6 +210,10 @@ def _composition(program: Program) -> str:
             '@njit(inline="always", error_model="numpy")',
             "def actuate(commands, memory, dt, p, on, act):",
             *_actuate(program),
+            "",
+            '@njit(inline="always", error_model="numpy")',
+            "def pause(memory, p, on):",
+            *_pause(program),
         ]
     )
 
@@ -234,6 +240,20 @@ def _actuate(program: Program) -> list[str]:
         at = program.vessel.actuators.index(angle)
         lines.append(f"    act[{len(program.vessel.actuators) + k}] = {part}(act[{at}])")
     return lines
+
+
+def _pause(program: Program) -> list[str]:
+    """Body of `pause`: the shortest time until a channel's signal jumps while its command is held."""
+    lines, at = ["    left = np.inf"], 0
+    for name in program.vessel.actuators:
+        for i, effect in enumerate(program.effects):
+            if not isinstance(effect, Channel) or name not in program.targets(effect):
+                continue
+            if type(effect).pause is not None:
+                call = f"left = min(left, pause{i}(memory, {at}, {_call(i, effect, program.offsets[i])}))"
+                lines += _guarded(program, i, [call])
+            at += type(effect).slots
+    return [*lines, "    return left"]
 
 
 def classes_of(addresses: Sequence[str]) -> list[type[Effect]]:

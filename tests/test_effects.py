@@ -280,7 +280,7 @@ def test_an_effect_that_changes_another_says_which_one_is_missing(kind: type[Eff
 
 
 def test_added_mass_far_ahead_is_a_point_mass_on_a_lever() -> None:
-    mass = AddedMass(surge=1.0, sway=4.0, sway_at=0.5, yaw=0.3, roll=0.2).mass()
+    mass = AddedMass(surge=1.0, sway=4.0, sway_at=0.5, yaw=0.3, roll=0.2).matrix()
     assert mass == pytest.approx(np.array([[1, 0, 0, 0], [0, 4, 0, 2], [0, 0, 0.2, 0], [0, 2, 0, 0.3 + 1.0]]))
 
 
@@ -290,7 +290,7 @@ def test_coriolis_force_is_the_published_matrix() -> None:
         motion(current=(0.1, -0.05), psi=0.4, u=1, v=0.3, r=0.2),
     )
     nr = np.array([m.ur, m.vr, m.r])
-    a = effect.mass()[np.ix_([0, 1, 3], [0, 1, 3])] @ nr
+    a = effect.matrix()[np.ix_([0, 1, 3], [0, 1, 3])] @ nr
     X, Y, N = -np.array([[0, 0, -a[1]], [0, 0, a[0]], [a[1], -a[0], 0]]) @ nr
     assert effect.wrench(m) == pytest.approx((X, Y, 0.0, N))
     half = replace(effect, coriolis=0.5).wrench(m)
@@ -312,7 +312,7 @@ def test_shallow_water_multiplies_sway_and_yaw(factor: float) -> None:
     assert isinstance(mass, AddedMass) and isinstance(drag, CrossFlowDrag)
     shallow = ShallowWater(factor=factor).completed(boat)
     deeper = replace(mass, sway=factor * mass.sway, yaw=factor * mass.yaw)
-    assert mass.mass() + shallow.mass() == pytest.approx(deeper.mass())
+    assert mass.matrix() + shallow.matrix() == pytest.approx(deeper.matrix())
     more = replace(drag, section_drag_coefficient=factor * drag.section_drag_coefficient, linear=factor * drag.linear)
     together = np.sum([e.wrench(m) for e in (mass, drag, shallow)], axis=0)
     assert together == pytest.approx(np.add(deeper.wrench(m), more.wrench(m)))

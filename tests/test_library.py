@@ -97,7 +97,7 @@ def test_deadband_has_the_describing_function_of_the_textbook(share: float) -> N
 def test_added_mass_coriolis_is_kirchhoffs_force_of_the_water(fraction: float) -> None:
     water = AddedMass(surge=0.6, sway=3.0, yaw=0.3, sway_at=0.2)
     m = motion(current=(0.1, -0.05), psi=0.4, u=1.0, v=0.3, r=0.2)
-    M, nu = water.mass(), np.array([m.ur, m.vr, 0.0, m.r])
+    M, nu = water.matrix(), np.array([m.ur, m.vr, 0.0, m.r])
     Tu, Tv = (((e @ M @ nu) + (nu @ M @ e)) / 2 for e in np.eye(4)[:2])  # derivatives of the energy nu' M nu / 2
     effect = AddedMassCoriolis(fraction=fraction, surge=0.6, sway=3.0, sway_at=0.2)
     assert effect.wrench(m) == pytest.approx(fraction * np.array([m.r * Tv, -m.r * Tu, 0.0, m.vr * Tu - m.ur * Tv]))
@@ -250,6 +250,7 @@ def recorded(real: Real, seed: int) -> Recording:
             Real(play=0.15, munk=0.6),
             {"steering_backlash": {"width_rad": 0.15}, "added_mass_coriolis": {"fraction": 0.6}},
         ),
+        (Real(late=0.25), {"command_delay": {"delay_s": 0.25}}),
         (Real(cargo=(1.2, 0.25)), {"extra_mass": {"mass_kg": 1.2, "x_m": 0.25}}),
         (Real(line=(0.3, 0.8, 1.5, -1.0)), {"tether": {"north_m": 1.5, "east_m": -1.0}}),
     ],

@@ -35,7 +35,5 @@ class ExtraMass(Inertia, Force):
     strength: ClassVar = ("mass",)
     starts: ClassVar = ({"mass": 0.7, "x": 0.2}, {"mass": 0.7, "x": -0.2})
 
-    mass: float = param(  # type: ignore[assignment]
-        0.0, low=0.0, high=1e9, unit="kg", words="its mass", fit=True, spread=1.5
-    )
+    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="its mass", fit=True, spread=1.5)
     x: float = param(0.0, low=-250.0, high=250.0, unit="m", words="positive forward", fit=True, spread=0.3)

@@ -12,7 +12,7 @@ from numba import njit
 
 from boatsim.base import Array
 from boatsim.kernels.common import settle
-from boatsim.kernels.laws import HELD, MEMORY, actuate
+from boatsim.kernels.laws import HELD, MEMORY, actuate, pause
 from boatsim.kernels.planar import NQ, K, constants, slopes, step_in_place
 
 NY = 2 * NQ
@@ -27,10 +27,12 @@ def predict(
     force: Array, act: Array,
 ) -> None:  # fmt: skip
     """Carry y (2 NQ,) over one sample interval h with the command held and the latent force constant, in place."""
-    dt = h / substeps
-    for j in range(substeps):
+    done = 0.0
+    while h - done > 1e-9:
+        dt = min(h / substeps, h - done, max(pause(memory, p, on), 1e-9))
         actuate(command, memory, dt, p, on, act)
-        step_in_place(t + j * dt, y, dt, act, p, on, k, force)
+        step_in_place(t + done, y, dt, act, p, on, k, force)
+        done += dt
 
 
 @njit(error_model="numpy", cache=True)

@@ -38,3 +38,8 @@ def inertias(p: Array, on: Any, water: Array, hull: Array) -> None:
 def actuate(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array) -> None:
     """One step of all channels: commands (those the vessel takes) to act, the mean over the step that begins now."""
     raise NotImplementedError
+
+
+def pause(memory: Array, p: Array, on: Any) -> float:
+    """Time until a channel's signal jumps of itself [s]; a step must not reach beyond it."""
+    raise NotImplementedError
