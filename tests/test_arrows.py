@@ -67,7 +67,7 @@ def test_a_module_imports_from_its_own_layer_and_lower_ones_only(name: str) -> N
 
 def test_no_imports_form_a_ring() -> None:
     order = TopologicalSorter({name: own(path) - {name} for name, path in OURS.items()})
-    order.prepare()  # raises CycleError, which names the ring
+    assert set(order.static_order()) >= set(OURS)  # raises CycleError, which names the ring
 
 
 @pytest.mark.parametrize("path", CONTROLLERS, ids=lambda path: path.stem)

@@ -272,6 +272,13 @@ def test_a_recording_without_commands_is_refused_not_explained(folder):
             analysis.diagnose(written(folder, part), vessel="trial_boat")
 
 
+def test_positions_in_millimetres_are_asked_about(folder):
+    full = recorded("millimetres", 1)
+    large = {k: v * 1000.0 if k in ("x_m", "y_m") else v for k, v in full.signals.items()}
+    with pytest.raises(BadInput, match="are they in m"):
+        analysis.diagnose(written(folder, replace(full, signals=large)), vessel="trial_boat")
+
+
 def test_what_is_fitted_can_not_be_held_out(folder):
     runs = written(folder, recorded("twice", 1))
     with pytest.raises(BadInput, match="given twice"):

@@ -18,7 +18,7 @@ from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.findings import FreeRun
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, BadPhysics
 from boatsim.program import Program
 from boatsim.recording import Notes, Recording, replacing, write_csv
 from boatsim.vessel import Vessel
@@ -48,13 +48,19 @@ def _say(remarks: Sequence[str]) -> None:
 
 def write(found: Diagnosis, out: Path) -> None:
     """All files of a diagnosis, the answer last, so that where it lies the others are whole."""
+    try:
+        answer = json.dumps(found.findings.answer, indent=1, allow_nan=False) + "\n"
+    except ValueError:
+        raise BadPhysics(
+            f"{found.vessel.name}: a fitted boat diverges; are the units of the recording right?"
+        ) from None
     out.mkdir(parents=True, exist_ok=True)
     report.write(found.findings, out)
     kinds = {e.name(): type(e) for e in found.problem.program.suspects}
     patch.write(found.vessel, found.ranking.best, kinds, out / "patched.toml")
     overlay(found, out / "diagnosis.rrd")
     with replacing(out / "diagnosis.json") as temporary:
-        temporary.write_text(json.dumps(found.findings.answer, indent=1) + "\n", encoding="utf-8")
+        temporary.write_text(answer, encoding="utf-8")
 
 
 def summary(found: Diagnosis) -> list[str]:

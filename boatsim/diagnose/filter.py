@@ -19,6 +19,8 @@ from boatsim.vessel import Vessel
 
 MAX_STEP = 0.05  # [s] largest integration step of a free run
 FIT_STEP = 0.1  # [s] the same in the filter, which is corrected at every sample
+GRAVITY = 9.81  # [m/s^2]
+FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
 CHANNELS = {  # measured signal -> (noise family, freedom, rate or position)
     "x_m": ("position_sd_m", "surge", 0),
     "y_m": ("position_sd_m", "sway", 0),
@@ -192,11 +194,16 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     own = stated_noise(vessel, recording)
     scale = {f: own[f] / (stated or own)[f] for f in own}
     commands = commands_of(recording, vessel.commands) if vessel.commands else np.zeros((len(recording), 1))
-    return Track(
+    laid = Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
         tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes, np.ascontiguousarray(commands),
         program.values(), program.body, scale,
     )  # fmt: skip
+    if len(axes) == 3 and (speed := float(np.sqrt(laid.spread[3, 3]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
+        raise BadInput(
+            f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of {vessel.length:g} m; are they in m?"
+        )
+    return laid
 
 
 def _unfed(recording: Recording, vessel: Vessel) -> list[str]:

@@ -12,7 +12,7 @@ HELD = 0  # length of act
 MEMORY = 1  # floats that all channels together remember
 
 
-def sees(  # noqa: PLR0913
+def sees(
     t: float, x: float, y: float, psi: float, phi: float, u: float, v: float, p: float, r: float,
     ur: float, vr: float, c: float, s: float, act: Array,
 ) -> Any:  # fmt: skip
