@@ -71,6 +71,30 @@ class Motion(NamedTuple):
     sin_psi: float
 
 
+class Shown(NamedTuple):
+    """What instruments show of a motion; a measurement effect changes it on its way into the recording."""
+
+    x: float  # [m]
+    y: float  # [m]
+    psi: float  # [rad]
+    phi: float  # [rad]
+    u: float  # [m/s]
+    v: float  # [m/s]
+    p: float  # [rad/s]
+    r: float  # [rad/s]
+
+
+class Swell(NamedTuple):
+    """A lightly damped oscillator per axis, driven by noise: a force that comes and goes with one frequency."""
+
+    X: float  # [N] rms
+    Y: float  # [N] rms
+    K: float  # [N m] rms
+    N: float  # [N m] rms
+    frequency: float  # [rad/s]
+    damping: float  # share of the critical one
+
+
 def angle_fields(actuators: tuple[str, ...]) -> tuple[str, ...]:
     """cos_steer_port_rad, sin_steer_port_rad, ...: actuators are held over a step, so these are computed once."""
     return tuple(f"{part}_{name}" for name in actuators if name.endswith("_rad") for part in ("cos", "sin"))
@@ -167,7 +191,7 @@ def snake_case(name: str) -> str:
 
 @dataclass(frozen=True)
 class Effect(Checked):
-    """One idea of physics (or of measurement). Subclasses are Force, Inertia, Flow, Channel or a mix of them."""
+    """One idea of physics or of measurement. Subclasses are of one or several of the kinds below."""
 
     words: ClassVar[str] = ""  # the sentence a report prints: "a steady wind pushes the hull downwind ..."
     shown_by: ClassVar[str] = ""  # the manoeuvre that shows it best
@@ -257,3 +281,27 @@ class Channel(Effect):
     slots: ClassVar[int] = 0
     pause: ClassVar[Callable[[Array, int, Any], float] | None] = None
     channel: ClassVar[Callable[[float, float, float, Array, int, float, Any], float]]
+
+
+@dataclass(frozen=True)
+class Measurement(Effect):
+    """What a recording shows differs from what the boat did: compiled `shown(Shown, values) -> Shown`.
+
+    Acts in the diagnosis filter and in `replay`; the simulated boat itself does not feel it. `late(values)`, where
+    there is one, is the time [s] by which the recorded motion is late behind the recorded commands (negative: early).
+    """
+
+    kind: ClassVar[str] = "measurement"
+    shown: ClassVar[Callable[[Shown, Any], Shown] | None] = None
+    late: ClassVar[Callable[[Any], float] | None] = None
+
+
+@dataclass(frozen=True)
+class Unsteady(Force):
+    """A force with a random course in time: compiled `swell(values) -> Swell`, and `law` for one realisation.
+
+    The simulator feels the realisation that `law` gives; the diagnosis filter follows the oscillators of `swell`
+    instead and silences the law by setting the parameter `realisation` to 0.
+    """
+
+    swell: ClassVar[Callable[[Any], Swell]]

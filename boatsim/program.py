@@ -19,7 +19,17 @@ from types import ModuleType
 import numba
 import numpy as np
 
-from boatsim.base import Array, Channel, Effect, Flow, Force, Inertia, angle_fields
+from boatsim.base import (
+    Array,
+    Channel,
+    Effect,
+    Flow,
+    Force,
+    Inertia,
+    Measurement,
+    Unsteady,
+    angle_fields,
+)
 from boatsim.content import address, module_at
 from boatsim.errors import BadInput
 from boatsim.recording import replacing
@@ -158,15 +168,17 @@ def _composition(program: Program) -> str:
         "from math import cos, sin",
         "import numpy as np",
         "from numba import njit",
-        "from boatsim.base import Wrench, motion_type",
+        "from boatsim.base import Shown, Swell, Wrench, motion_type",
         "from boatsim.program import classes_of",
         f"E = classes_of({[address(type(e)) for e in program.effects]!r})",
         f"Seen = motion_type({actuators!r})",
         f"HELD, MEMORY = {max(len(held), 1)}, {program.memory_size}",
+        f"SWELLS = {any(isinstance(e, Unsteady) for e in program.effects)}",
     ]
     wrench = ["    X = Y = K = N = 0.0"]
     flow = ["    north = east = 0.0"]
     inertias = ["    pass"]
+    shown, late, swell = ["    pass"], ["    seconds = 0.0"], ["    w = Swell(0.0, 0.0, 0.0, 0.0, 0.0, 1.0)"]
     for i, (effect, offset) in enumerate(zip(program.effects, program.offsets, strict=True)):
         head.append(f"V{i} = E[{i}].values_type()")
         if isinstance(effect, Force):
@@ -181,6 +193,15 @@ def _composition(program: Program) -> str:
             into = type(effect).moves_with
             lines = [f"g = inertia{i}({_call(i, effect, offset)})", f"for j in range(7): {into}[j] += g[j]"]
             inertias += _guarded(program, i, lines)
+        if isinstance(effect, Measurement) and type(effect).shown is not None:
+            head.append(f"shown{i} = E[{i}].shown")
+            shown += _guarded(program, i, [f"m = shown{i}(m, {_call(i, effect, offset)})"])
+        if isinstance(effect, Measurement) and type(effect).late is not None:
+            head.append(f"late{i} = E[{i}].late")
+            late += _guarded(program, i, [f"seconds += late{i}({_call(i, effect, offset)})"])
+        if isinstance(effect, Unsteady):
+            head.append(f"swell{i} = E[{i}].swell")
+            swell += _guarded(program, i, [f"w = swell{i}({_call(i, effect, offset)})"])
         if isinstance(effect, Channel):
             head.append(f"channel{i} = E[{i}].channel")
             if type(effect).pause is not None:
@@ -214,6 +235,25 @@ def _composition(program: Program) -> str:
             '@njit(inline="always", error_model="numpy")',
             "def pause(memory, p, on):",
             *_pause(program),
+            "",
+            '@njit(inline="always", error_model="numpy")',
+            "def shown(m, p, on):",
+            *shown,
+            "    return m",
+            "",
+            '@njit(inline="always")',
+            "def distorted(on):",
+            f"    return {_distorted(program)}",
+            "",
+            '@njit(inline="always")',
+            "def late(p, on):",
+            *late,
+            "    return seconds",
+            "",
+            '@njit(inline="always")',
+            "def swell(p, on):",
+            *swell,
+            "    return w",
         ]
     )
 
@@ -254,6 +294,13 @@ def _pause(program: Program) -> list[str]:
                 lines += _guarded(program, i, [call])
             at += type(effect).slots
     return [*lines, "    return left"]
+
+
+def _distorted(program: Program) -> str:
+    """Condition under which an effect changes what the recording shows."""
+    own = len(program.vessel.effects)
+    acting = [i for i, e in enumerate(program.effects) if isinstance(e, Measurement) and type(e).shown is not None]
+    return "True" if any(i < own for i in acting) else " or ".join(f"on[{i}] != 0.0" for i in acting) or "False"
 
 
 def classes_of(addresses: Sequence[str]) -> list[type[Effect]]:

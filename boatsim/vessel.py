@@ -47,6 +47,7 @@ class DiagnosisTable(Table):
     time_constant: float = Field(default=1.0, gt=0)  # [s] of the ambient force
     horizon: float = Field(default=6.0, gt=0)  # [s] length of a free run
     rate: float = Field(default=20.0, gt=0)  # [Hz] rows closer together are thinned out: their noise is not independent
+    most: int = Field(default=3, ge=1, le=8)  # effects in one answer
     coefficient_uncertainty: dict[
         Literal["damping", "thrust", "restoring"], PositiveFloat
     ] = {}  # relative sd: damping, thrust, restoring

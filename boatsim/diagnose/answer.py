@@ -15,6 +15,7 @@ from boatsim.diagnose.rank import Named, Ranking
 from boatsim.diagnose.regions import regions
 
 ONE_SIDED_95 = 1.645  # [sd]
+SHAPE = 0.05  # nature's law is never quite the entry's: an sd holds this share of what was found [rad for directions]
 TOLD = 0.9  # a fitted sd above this share of the prior one means that the data say nothing
 
 
@@ -29,6 +30,7 @@ def compose(
     """diagnosis.json as a dictionary, without the seconds."""
     effects = [_effect(problem, ranking.best, n) for n in ranking.named]
     verdict = "ambiguous" if any(e["tied_with"] for e in effects) else "named" if effects else "nothing_missing"
+    verdict = "unknown" if ranking.unknown else verdict
     found = show.errors(stretches)
     none: dict[str, float] = {}
     answer: dict[str, Any] = {
@@ -37,7 +39,7 @@ def compose(
         "seconds": 0.0,
         "version": __version__,
         "effects": effects,
-        "unknown": {"flag": False, "gain_nats": round(ranking.left_over, 3)},
+        "unknown": {"flag": ranking.unknown, "gain_nats": round(ranking.left_over, 3)},
         "candidates": _candidates(ranking),
         "upper_limits": {name: _limits(problem, fitted, name) for name, fitted in ranking.last.items()},
         "where": {
@@ -75,17 +77,22 @@ def _effect(problem: Problem, best: Fit, named: Named) -> dict[str, Any]:
         "words": kind.words,
         "tied_with": list(named.tied_with),
         "parameters": {
-            key_of(f.name, kind.params()[f.name].unit): _parameter(best, named.name, f.name, kind.params()[f.name].unit)
+            key_of(f.name, kind.params()[f.name].unit): _parameter(best, kind, f.name)
             for f in best.free
             if f.effect == named.name and not f.relative
         },
     }
 
 
-def _parameter(best: Fit, effect: str, name: str, unit: str) -> dict[str, Any]:
+def _parameter(best: Fit, kind: type[Effect], name: str) -> dict[str, Any]:
     """Value, sd and unit of a fitted parameter; angles within half a turn."""
-    value, sd = best.value(effect, name)
-    return {"value": wrap(value) if unit == "rad" else value, "sd": sd, "unit": unit}
+    about = kind.params()[name]
+    value, sd = best.value(kind.name(), name)
+    if name in (kind.strength or kind.params()):
+        sd = float(np.hypot(sd, SHAPE * abs(value - about.absent)))
+    elif about.unit == "rad":
+        sd = float(np.hypot(sd, SHAPE))
+    return {"value": wrap(value) if about.unit == "rad" else value, "sd": sd, "unit": about.unit}
 
 
 def _candidates(ranking: Ranking) -> list[dict[str, Any]]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.base import AXES, Array, Channel
+from boatsim.base import AXES, Array, Channel, Unsteady
 from boatsim.errors import BadInput
 from boatsim.program import Program
 from boatsim.recording import FEWEST_ROWS, Recording
@@ -18,7 +18,7 @@ from boatsim.run import commands_of
 from boatsim.vessel import Vessel
 
 MAX_STEP = 0.05  # [s] largest integration step of a free run
-FIT_STEP = 0.1  # [s] the same in the filter, which is corrected at every sample
+FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sample
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
 CHANNELS = {  # measured signal -> (noise family, freedom, rate or position)
@@ -72,7 +72,7 @@ class Track:
     def __post_init__(self) -> None:
         nq = self.program.module.NQ
         self.start, self.spread = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq))
-        self._gains = np.zeros((*self.measured.shape, 3 * nq))
+        self._gains = np.zeros((*self.measured.shape, self.program.module.NZ))
         self._scale, self._white = np.zeros(self.measured.shape), np.zeros(self.measured.shape)
         for c, code in enumerate(self.codes):
             good = np.isfinite(self.measured[:, c])
@@ -102,12 +102,12 @@ class Track:
 
     def smoothed(self, values: Array, on: Array, levels: Levels) -> tuple[Array, Array]:
         """Smoothed states (N, n) and their covariances (N, n, n)."""
-        n, dim = len(self.times), len(self.start)
+        n, dim = len(self.times), self.program.module.NZ
         keep = np.zeros((n, dim)), np.zeros((n, dim, dim)), np.zeros((n, dim, dim)), np.zeros((n, dim))
         self._pass(values, on, levels, True, keep)
         means, covariances, transitions, predicted = keep
         self.program.module.smooth(
-            means, covariances, transitions, predicted, levels.force**2, self.times, levels.time_constant
+            means, covariances, transitions, predicted, levels.force**2, self.times, levels.time_constant, values, on
         )
         return means, covariances
 
@@ -197,13 +197,22 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     laid = Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
         tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes, np.ascontiguousarray(commands),
-        program.values(), program.body, scale,
+        _without_realisations(program), program.body, scale,
     )  # fmt: skip
     if len(axes) == 3 and (speed := float(np.sqrt(laid.spread[3, 3]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
         raise BadInput(
             f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of {vessel.length:g} m; are they in m?"
         )
     return laid
+
+
+def _without_realisations(program: Program) -> Array:
+    """Parameters with every random force silenced: the filter finds its course, a free run knows none."""
+    values = program.values()
+    for effect in program.effects:
+        if isinstance(effect, Unsteady):
+            values[program.index(effect.name(), "realisation")] = 0.0
+    return values
 
 
 def _unfed(recording: Recording, vessel: Vessel) -> list[str]:

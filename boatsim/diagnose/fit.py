@@ -1,82 +1,108 @@
 """Fits a hypothesis (which suspects act) inside the filter and scores it by its Laplace evidence."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from boatsim.base import Array
 from boatsim.diagnose.filter import Levels
 from boatsim.diagnose.levels import fit_force, force_prior
-from boatsim.diagnose.problem import Fit, Free, Problem, scale_of
+from boatsim.diagnose.problem import Fit, Free, Problem
+
+SETTLED = 0.3  # [nats] a refit that gains less changes nothing
+NEW_SWEEPS = 3  # rounds in which a new random force takes over from the latent one
 
 
-def fit(problem: Problem, suspects: Sequence[str], start: Fit, rounds: int = 2) -> Fit:
-    """A hypothesis fitted from the values of `start`, force levels refitted in turn; the best of its starts."""
-    free = problem.parameters(suspects)
-    known = {(f.effect, f.name): x for f, x in zip(start.free, start.theta, strict=True)}
-    best: Fit | None = None
-    for first in _starts(problem, suspects, start):
-        theta = np.array([known.get((f.effect, f.name), first.get((f.effect, f.name), f.mean)) for f in free])
-        found = descend(problem, suspects, free, theta, start.levels, iterations=6, enough=0.3)
-        if best is None or found.evidence > best.evidence:
-            best = found
-    assert best is not None
-    for _ in range(rounds - 1):
-        levels = fit_force(problem, best)
-        best = descend(problem, suspects, free, best.theta, levels, iterations=4, enough=0.1)
-    return replace(best, evidence=best.evidence + force_prior(problem, best.levels))
+def fit(problem: Problem, found: Fit) -> Fit:
+    """Parameters, then force levels (with the spectra of random forces), then parameters again."""
+    variance = np.diag(found.covariance)
+    new = any(f.searched and v == f.sd**2 for f, v in zip(found.free, variance, strict=True))  # never fitted
+    if not new:
+        found = descend(problem, found, iterations=4, enough=SETTLED)
+    found = fit_force(problem, found, sweeps=NEW_SWEEPS if new else 1)
+    return descend(problem, found, iterations=3, enough=0.1)
 
 
 def converge(problem: Problem, found: Fit, most: int = 4) -> Fit:
     """Refit until parameters and force levels agree, so that a later gain is not the gain of a refit."""
     for _ in range(most):
-        again = fit(problem, found.suspects, found)
+        again = fit(problem, found)
         gain = again.evidence - found.evidence
         if gain > 0:
             found = again
-        if gain < 0.3:
+        if gain < SETTLED:
             break
     return found
 
 
-def _starts(problem: Problem, suspects: Sequence[str], start: Fit) -> list[dict[tuple[str, str], float]]:
-    """Where the newest suspect's parameters start."""
-    new = [s for s in suspects if s not in start.suspects]
-    if not new:
-        return [{}]
-    effect = next(e for e in problem.program.effects if e.name() == new[-1])
-    params, vessel = type(effect).params(), problem.program.vessel
-    default = {}
-    for name, p in params.items():
-        step = 0.1 * p.spread * scale_of(p.unit, vessel)
-        default[name] = p.absent + (step if p.absent + step <= p.high else -step)
-    given = [{n: x * scale_of(params[n].unit, vessel) for n, x in s.items()} for s in type(effect).starts] or [{}]
-    return [{(new[-1], n): x for n, x in {**default, **s}.items()} for s in given]
+def reduced(problem: Problem, found: Fit, without: str) -> Fit:
+    """The start of a fit without one of the suspects."""
+    suspects = tuple(n for n in found.suspects if n != without)
+    free = problem.parameters(suspects)
+    known = {(f.effect, f.name): x for f, x in zip(found.free, found.theta, strict=True)}
+    theta = np.array([known[f.effect, f.name] for f in free])
+    return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), found.levels, -np.inf)
 
 
-def descend(
-    problem: Problem, suspects: Sequence[str], free: tuple[Free, ...], theta: Array, levels: Levels, iterations: int,
-    enough: float,
-) -> Fit:  # fmt: skip
-    """Gauss-Newton on prior and whitened prediction errors, bounds kept; evidence without the force levels' prior."""
-    on = problem.program.switches(suspects)
-    mean, sd = np.array([f.mean for f in free]), np.array([f.sd for f in free])
-    low, high = np.array([f.low for f in free]), np.array([f.high for f in free])
-    theta = np.clip(theta, low, high)
+class Space:
+    """Bounds and priors of free parameters, for steps in units of the prior sd."""
+
+    def __init__(self, free: Sequence[Free]) -> None:
+        self.mean, self.sd, self.low, self.high = (
+            np.array([getattr(f, a) for f in free], dtype=float) for a in ("mean", "sd", "low", "high")
+        )
+
+    def clipped(self, theta: Array) -> Array:
+        """Within the bounds."""
+        return np.asarray(np.clip(theta, self.low, self.high))
+
+    def stepped(self, theta: Array, J: Array, white: Array, damping: float) -> Array:
+        """After a damped Gauss-Newton step on prior and whitened errors; what wants out of a bound stays at it."""
+        A, g = J.T @ J, -(J.T @ white) - (theta - self.mean) / self.sd
+        free = np.diag(A) > 0.0
+        step = np.zeros(len(g))
+        for _ in range(4):
+            step[:] = 0.0
+            if not free.any():
+                break
+            B = A[np.ix_(free, free)] + np.eye(int(free.sum())) * (1.0 + 10.0 * damping)
+            step[free] = np.linalg.solve(B, g[free])
+            stuck = (step < 0) & (theta <= self.low + 1e-12) | (step > 0) & (theta >= self.high - 1e-12)
+            if not (free & stuck).any():
+                break
+            free &= ~stuck
+        return self.clipped(theta + self.sd * step)
+
+    def covariance(self, information: Array) -> Array:
+        """(F, F) from the information in units of the prior sd."""
+        return np.asarray(np.linalg.inv(information) * np.outer(self.sd, self.sd), dtype=np.float64)
+
+
+def log_prior(free: Sequence[Free], theta: Array) -> float:
+    """Log prior density up to what all hypotheses share; half a normal distribution has twice the density."""
+    found = 0.0
+    for f, x in zip(free, theta, strict=True):
+        found += np.log(2.0) * (f.mean in (f.low, f.high)) - 0.5 * ((float(x) - f.mean) / f.sd) ** 2
+    return found
+
+
+def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit:
+    """Gauss-Newton on prior and whitened prediction errors from `found`, bounds kept; covariance and evidence."""
+    free, levels, space = found.free, found.levels, Space(found.free)
+    on = problem.program.switches(found.suspects)
+    theta = space.clipped(found.theta)
 
     def score(x: Array) -> float:
-        return problem.likelihood(free, x, on, levels) - 0.5 * float(np.sum(((x - mean) / sd) ** 2))
+        return problem.likelihood(free, x, on, levels) + log_prior(free, x)
 
     best, damping = score(theta), 1e-3
     J = np.zeros((1, len(free)))
     for _ in range(iterations):
         white = problem.white()  # at theta: the last pass was a full one there
-        J = _jacobian(problem, free, theta, on, levels, high, sd, white)
-        A, g = J.T @ J, -(J.T @ white) - (theta - mean) / sd
+        J = jacobian(problem, free, theta, on, levels, white)
         step, gain = None, 0.0
         for _ in range(5):
-            trial = np.clip(theta + sd * _bounded_step(A, g, damping, theta, low, high), low, high)
+            trial = space.stepped(theta, J, white, damping)
             value = score(trial)
             if np.isfinite(value) and value > best - 1e-6:
                 step, gain = trial, value - best
@@ -89,43 +115,44 @@ def descend(
         if gain < enough:
             break
     information = np.eye(len(free)) + J.T @ J
-    covariance = np.asarray(np.linalg.inv(information) * np.outer(sd, sd), dtype=np.float64)
-    evidence = best - 0.5 * float(np.linalg.slogdet(information)[1])
-    return Fit(tuple(suspects), free, theta, covariance, levels, evidence)
+    information[np.diag_indices(len(free))] += _curvature(problem, free, theta, on, levels)
+    evidence = best - 0.5 * float(np.linalg.slogdet(information)[1]) + force_prior(problem, levels)
+    return Fit(found.suspects, free, theta, space.covariance(information), levels, evidence)
 
 
-def _jacobian(
-    problem: Problem,
-    free: Sequence[Free],
-    theta: Array,
-    on: Array,
-    levels: Levels,
-    high: Array,
-    sd: Array,
-    white: Array,
+def jacobian(
+    problem: Problem, free: Sequence[Free], theta: Array, on: Array, levels: Levels, white: Array, only: int = 0
 ) -> Array:
-    """Derivative of the whitened errors by theta / sd, forward differences of a hundredth of the prior sd."""
-    J = np.empty((len(white), len(free)))
-    for j in range(len(free)):
+    """Derivative of the whitened errors by theta / sd, forward differences of a hundredth of the prior sd.
+
+    Gains are those of the last full pass. Columns before `only` are left out.
+    """
+    J = np.zeros((len(white), len(free) - only))
+    for j, f in enumerate(free[only:], only):
+        if f.searched:
+            continue
         moved = theta.copy()
-        h = 0.01 * sd[j] if theta[j] + 0.01 * sd[j] <= high[j] else -0.01 * sd[j]
+        h = 0.01 * f.sd if theta[j] + 0.01 * f.sd <= f.high else -0.01 * f.sd
         moved[j] += h
-        J[:, j] = (problem.whitened(free, moved, on, levels) - white) * (sd[j] / h)
+        J[:, j - only] = (problem.whitened(free, moved, on, levels) - white) * (f.sd / h)
     return J
 
 
-def _bounded_step(A: Array, g: Array, damping: float, theta: Array, low: Array, high: Array) -> Array:
-    """Newton step in units of sd; a parameter at its bound that wants out stays."""
-    free = np.ones(len(g), dtype=bool)
-    step = np.zeros(len(g))
-    for _ in range(4):
-        step[:] = 0.0
-        if not free.any():
-            break
-        B = A[np.ix_(free, free)] + np.eye(int(free.sum())) * (1.0 + 10.0 * damping)
-        step[free] = np.linalg.solve(B, g[free])
-        stuck = free & (((step < 0) & (theta <= low + 1e-12)) | ((step > 0) & (theta >= high - 1e-12)))
-        if not stuck.any():
-            break
-        free &= ~stuck
-    return step
+def _curvature(problem: Problem, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> Array:
+    """Information on parameters without a gradient, by second differences of the likelihood half a prior sd wide."""
+    found = np.zeros(len(free))
+    searched = [j for j, f in enumerate(free) if f.searched]
+    if not searched:
+        return found
+    middle = problem.likelihood(free, theta, on, levels)
+    for j in searched:
+        f, moved = free[j], theta.copy()
+        h = 0.5 * f.sd
+        centre = float(np.clip(theta[j], f.low + h, f.high - h)) if f.high - f.low > 2 * h else theta[j]
+        around = []
+        for x in (centre - h, centre, centre + h):
+            moved[j] = x
+            around.append(middle if x == theta[j] else problem.likelihood(free, moved, on, levels))
+        found[j] = max(0.0, (2.0 * around[1] - around[0] - around[2]) / 0.25)
+    problem.likelihood(free, theta, on, levels)
+    return found

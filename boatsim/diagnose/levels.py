@@ -20,16 +20,29 @@ def force_prior(problem: Problem, levels: Levels) -> float:
     return float(np.sum(-0.5 * np.where(over > 0, over / FORCE_PRIOR[1], over / FORCE_PRIOR[0]) ** 2))
 
 
-def fit_force(problem: Problem, found: Fit, step: float = 0.5) -> Levels:
-    """Latent-force level of each axis refitted under a hypothesis: one parabolic search per axis."""
+def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) -> Fit:
+    """A hypothesis with the latent-force level of each axis refitted, and with it the spectra it has (`searched`)."""
     on = problem.program.switches(found.suspects)
-    log_force = np.log(found.levels.force)
+    searched = [j for j, f in enumerate(found.free) if f.searched]
+    low = np.array([found.free[j].low for j in searched])
+    high = np.array([found.free[j].high for j in searched])
+    mean = np.array([found.free[j].mean for j in searched])
+    sd = np.array([found.free[j].sd for j in searched])
+    n = len(found.levels.force)
+
+    def placed(x: Array) -> tuple[Levels, Array]:
+        theta = found.theta.copy()
+        theta[searched] = np.clip(x[n:] * sd, low, high)
+        return replace(found.levels, force=np.exp(x[:n])), theta
 
     def score(x: Array) -> float:
-        levels = replace(found.levels, force=np.exp(x))
-        return problem.likelihood(found.free, found.theta, on, levels) + force_prior(problem, levels)
+        levels, theta = placed(x)
+        prior = -0.5 * float(np.sum(((theta[searched] - mean) / sd) ** 2))
+        return problem.likelihood(found.free, theta, on, levels) + force_prior(problem, levels) + prior
 
-    return replace(found.levels, force=np.exp(_coordinate_search(score, log_force, step, 1)))
+    begin = np.concatenate([np.log(found.levels.force), found.theta[searched] / sd])
+    levels, theta = placed(_coordinate_search(score, begin, step, sweeps))
+    return replace(found, levels=levels, theta=theta)
 
 
 def fit_noise(problem: Problem, sweeps: int = 4) -> Levels:

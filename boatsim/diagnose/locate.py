@@ -45,8 +45,8 @@ def missing_force(problem: Problem, found: Fit, tracks: Sequence[Track]) -> list
     out = []
     for track in tracks:
         means, covariances = track.smoothed(problem.values(track, found.free, found.theta), on, levels)
-        variance = np.diagonal(covariances, axis1=1, axis2=2)[:, 2 * nq :]
-        out.append(Force(track.name, track.times, means[:, 2 * nq :], np.sqrt(np.maximum(variance, 0.0))))
+        variance = np.diagonal(covariances, axis1=1, axis2=2)[:, 2 * nq : 3 * nq]
+        out.append(Force(track.name, track.times, means[:, 2 * nq : 3 * nq], np.sqrt(np.maximum(variance, 0.0))))
     return out
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.base import Array
+from boatsim.base import Array, Unsteady
 from boatsim.diagnose.filter import Levels, Track
 from boatsim.vessel import Vessel
 
@@ -22,6 +22,7 @@ class Free:
     low: float
     high: float
     relative: bool = False
+    searched: bool = False  # moves the spectrum of a random force, not the expected motion: no gradient there
 
 
 @dataclass(frozen=True)
@@ -76,17 +77,16 @@ class Problem:
         self.links = self._links()
 
     def parameters(self, suspects: Sequence[str]) -> tuple[Free, ...]:
-        """Coefficients of the nominal, then everything that the suspects let be fitted."""
+        """Coefficients of the nominal, then everything that the suspects let be fitted, in their order."""
         free = list(self.nuisances)
-        own = len(self.program.vessel.effects)
-        for effect in self.program.effects[own:]:
-            if effect.name() not in suspects:
-                continue
+        effects = {e.name(): e for e in self.program.suspects}
+        for effect in (effects[n] for n in suspects):
             for name, about in type(effect).params().items():
                 if about.fit and (not about.axis or about.axis in self.program.vessel.freedoms):
                     at = self.program.index(effect.name(), name)
                     sd = about.spread * scale_of(about.unit, self.program.vessel)
-                    free.append(Free(effect.name(), name, at, about.absent, sd, about.low, about.high))
+                    searched = isinstance(effect, Unsteady)
+                    free.append(Free(effect.name(), name, at, about.absent, sd, about.low, about.high, False, searched))
         return tuple(free)
 
     def values(self, track: Track, free: Sequence[Free], theta: Array) -> Array:

@@ -4,15 +4,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnose.fit import converge, fit
+from boatsim.diagnose.fit import converge, descend, fit, reduced
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.screen import screen
 
 ENOUGH = 4.0  # [nats] an effect must gain to be named
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
-FRONT, CLOSE = 3, 10.0  # how many candidates, and how near to the first [nats], are looked at more closely
-MOST = 3  # effects in one answer
-UNKNOWN_FACTOR = 2.0  # what is left is judged against this many times the ambient force
+FRONT, CLOSE, MANY = (
+    3,
+    10.0,
+    6,
+)  # candidates fitted in full: the first three, and up to six this near to the first [nats]
+UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
+DWARFED = 0.1  # an effect that gains less than this share of what is left over is not stood for
+UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library
 
 
 @dataclass(frozen=True)
@@ -23,6 +29,7 @@ class Named:
     gain: float  # [nats] on top of the others named
     probability: float
     tied_with: tuple[str, ...]  # look-alikes, at most three
+    rivals: dict[str, Fit]  # fits with the next best suspects in its place
 
 
 @dataclass(frozen=True)
@@ -34,74 +41,107 @@ class Ranking:
     best: Fit
     named: tuple[Named, ...]
     first: dict[str, float]  # gain of every suspect alone over the recalibrated nominal [nats]
-    last: dict[str, Fit]  # every suspect not named, fitted on top of the best set
-    left_over: float  # [nats] that a force beyond twice the ambient one gains after the best set
+    last: dict[str, Fit]  # every suspect not named, on top of the best set
+    left_over: float  # [nats] that a force beyond the tolerated one gains after the best set
+
+    @property
+    def unknown(self) -> bool:
+        """Whether something is left that no entry of the library explains."""
+        return self.left_over > UNKNOWN
 
 
 def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
-    """Forward selection over the candidates, the incumbent converged before each comparison."""
+    """Forward selection over the candidates, the incumbent converged before each comparison.
+
+    Where far more stays unexplained than an effect explains, the tool does not stand for that effect.
+    """
     nominal = replace(problem.nominal(), levels=fit_noise(problem))
-    recalibrated = converge(problem, fit(problem, (), nominal))
-    best = recalibrated
-    first: dict[str, float] = {}
-    for _ in range(2 * MOST):  # additions and prunings together
-        tried = _tried(problem, best, candidates)
-        gains = {n: f.evidence - best.evidence for n, f in tried.items()}
-        first = first or dict(gains)
-        if not tried or len(best.suspects) == MOST or max(gains.values()) < ENOUGH:
-            break
-        name = max(gains, key=lambda n: gains[n])
-        best = _pruned(problem, converge(problem, tried[name]))
-    best, named = _settled(problem, best, candidates)
-    return Ranking(nominal, recalibrated, best, named, first, tried, left_over(problem, best))
+    search = _Search(problem, candidates, converge(problem, descend(problem, nominal, 4, 0.1)))
+    best = search.selected()
+    best, named = search.settled(best)
+    while (left := left_over(problem, best)) > UNKNOWN and (dwarfed := [n for n in named if n.gain < DWARFED * left]):
+        best, named = search.settled(search.without(best, min(dwarfed, key=lambda n: n.gain).name))
+    tried = search.tried(best)
+    first = {n: f.evidence - search.base.evidence for n, f in search.tried(search.base).items()}
+    return Ranking(nominal, search.base, best, named, first, tried, left)
 
 
-def _settled(problem: Problem, best: Fit, candidates: tuple[str, ...]) -> tuple[Fit, tuple[Named, ...]]:
-    """The set without members that gain too little on top of the others, and what is to be said of the rest."""
-    while True:
-        named = tuple(_named(problem, best, n, candidates) for n in best.suspects)
-        weak = [n for n in named if n.gain < ENOUGH]
-        if not weak:
-            return best, named
-        least = min(weak, key=lambda n: n.gain).name
-        best = converge(problem, fit(problem, tuple(n for n in best.suspects if n != least), best))
+class _Search:
+    """Fits of sets of suspects, each made once."""
 
+    def __init__(self, problem: Problem, candidates: tuple[str, ...], base: Fit) -> None:
+        self.problem, self.candidates, self.base = problem, candidates, base
+        self.fits: dict[frozenset[str], Fit] = {frozenset(): base}
+        self.looks: dict[frozenset[str], dict[str, Fit]] = {}
 
-def _tried(problem: Problem, best: Fit, candidates: tuple[str, ...]) -> dict[str, Fit]:
-    """Every other candidate on top of the best set; those in front with the force levels refitted."""
-    tried = {n: fit(problem, (*best.suspects, n), best, rounds=1) for n in candidates if n not in best.suspects}
-    order = sorted(tried, key=lambda n: -tried[n].evidence)
-    front = [n for i, n in enumerate(order) if i < FRONT or tried[n].evidence > tried[order[0]].evidence - CLOSE]
-    return tried | {n: fit(problem, tried[n].suspects, tried[n]) for n in front}
+    def selected(self) -> Fit:
+        """The best set: suspects added one by one, earlier ones dropped that a newer one makes needless."""
+        best, most = self.base, self.problem.program.vessel.diagnosis.most
+        for _ in range(2 * most):  # additions and prunings together
+            tried = self.tried(best)
+            if not tried or len(best.suspects) == most:
+                break
+            name = max(tried, key=lambda n: tried[n].evidence)
+            if tried[name].evidence - best.evidence < ENOUGH:
+                break
+            best = self.pruned(self.converged(tried[name]))
+        return best
 
+    def converged(self, start: Fit) -> Fit:
+        """The fit of a set, kept: made from `start` unless it was made before."""
+        key = frozenset(start.suspects)
+        if key not in self.fits:
+            self.fits[key] = converge(self.problem, start)
+        return self.fits[key]
 
-def _pruned(problem: Problem, best: Fit) -> Fit:
-    """Without the earlier effects that the newest one has made needless."""
-    for name in best.suspects[:-1]:
-        rest = tuple(n for n in best.suspects if n != name)
-        without = converge(problem, fit(problem, rest, best))
-        if without.evidence > best.evidence - ENOUGH:
-            best = without
-    return best
+    def without(self, best: Fit, name: str) -> Fit:
+        """The fit of a set without one of its members."""
+        return self.converged(reduced(self.problem, best, name))
 
+    def tried(self, best: Fit) -> dict[str, Fit]:
+        """Every other candidate on top of a set: a quick look at all, those in front fitted in full."""
+        key = frozenset(best.suspects)
+        if key not in self.looks:
+            tried = screen(self.problem, best, [n for n in self.candidates if n not in best.suspects])
+            order = sorted(tried, key=lambda n: -tried[n].evidence)
+            near = [n for n in order if tried[n].evidence > tried[order[0]].evidence - CLOSE][:MANY]
+            front = [n for n in order if n in order[:FRONT] or n in near]
+            self.looks[key] = tried | {n: fit(self.problem, tried[n]) for n in front}
+        return self.looks[key]
 
-def _named(problem: Problem, best: Fit, name: str, candidates: tuple[str, ...]) -> Named:
-    """Gain of one effect on top of the others, and how its rivals do in its place."""
-    rest = tuple(n for n in best.suspects if n != name)
-    without = converge(problem, fit(problem, rest, best))
-    gain = best.evidence - without.evidence
-    others = {n: fit(problem, (*rest, n), without, rounds=1) for n in candidates if n not in best.suspects}
-    # the first look is without the force levels refitted, which makes a good explanation better: be generous
-    front = sorted(others, key=lambda n: -others[n].evidence)[:FRONT]
-    rivals = {n: converge(problem, others[n]).evidence - without.evidence for n in front}
-    weights = np.exp(np.array([0.0, gain, *rivals.values()]) - max(gain, 0.0, *rivals.values()))
-    order = sorted(rivals, key=lambda n: -rivals[n])
-    tied = tuple(n for n in order if rivals[n] > gain - ALIKE)[:3]
-    return Named(name, gain, float(weights[1] / weights.sum()), tied)
+    def pruned(self, best: Fit) -> Fit:
+        """Without the earlier effects that the newest one has made needless."""
+        for name in best.suspects[:-1]:
+            without = self.without(best, name)
+            if without.evidence > best.evidence - ENOUGH:
+                best = without
+        return best
+
+    def settled(self, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
+        """The set without members that gain too little on top of the others, and what is to be said of the rest."""
+        while True:
+            named = tuple(self.named(best, n) for n in best.suspects)
+            weak = [n for n in named if n.gain < ENOUGH]
+            if not weak:
+                return best, named
+            best = self.without(best, min(weak, key=lambda n: n.gain).name)
+
+    def named(self, best: Fit, name: str) -> Named:
+        """Gain of one effect on top of the others, and how its rivals do in its place."""
+        without = self.without(best, name)
+        gain = best.evidence - without.evidence
+        others = {n: f for n, f in self.tried(without).items() if n not in best.suspects}
+        front = sorted(others, key=lambda n: -others[n].evidence)[:FRONT]
+        rivals = {n: self.converged(others[n]) for n in front if others[n].evidence > without.evidence}
+        gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
+        weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
+        order = sorted(gains, key=lambda n: -gains[n])
+        tied = tuple(n for n in order if gains[n] > gain - ALIKE)[:3]
+        return Named(name, gain, float(weights[1] / weights.sum()), tied, {n: rivals[n] for n in order})
 
 
 def left_over(problem: Problem, best: Fit) -> float:
-    """Nats that the latent force gains beyond twice the ambient level: what nothing in the library explains."""
+    """Nats that the latent force gains beyond the tolerated level: what nothing in the library explains."""
     on = problem.program.switches(best.suspects)
     held = replace(best.levels, force=np.minimum(best.levels.force, UNKNOWN_FACTOR * problem.ambient.force))
     free = problem.likelihood(best.free, best.theta, on, best.levels)

@@ -8,12 +8,11 @@ import numpy as np
 from boatsim.base import Array
 from boatsim.diagnose.filter import Track, segments
 from boatsim.diagnose.findings import FreeRun
-from boatsim.diagnose.fit import converge, fit
+from boatsim.diagnose.fit import converge
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.rank import Ranking
+from boatsim.diagnose.rank import UNKNOWN_FACTOR, Ranking
 from boatsim.recording import Recording
 
-UNEXPLAINED = 6.0  # [nats] a force left over is worth a word beyond this
 MODELS = ("nominal", "recalibrated", "patched")
 FAMILIES = {"position_rms_m": ("x_m", "y_m"), "heading_rms_rad": ("psi_rad",), "roll_rms_rad": ("phi_rad",)}
 
@@ -99,7 +98,7 @@ def by_part(
     out = []
     for track in tracks:
         own = Problem([track], problem.ambient, problem.uncertainty)
-        alone = {"alone": converge(own, fit(own, (), fits["recalibrated"]))}
+        alone = {"alone": converge(own, replace(fits["recalibrated"], evidence=-np.inf))}
         for family, found in errors(free_runs(problem, {**fits, **alone}, [track], horizon)).items():
             out.append((track, family, found))
     return out
@@ -135,10 +134,11 @@ def remarks(
                     f"On unseen data what was added does not help in {what}: {found['patched'] * scale:.3g} {unit}, "
                     f"the recalibrated boat {found['recalibrated'] * scale:.3g} {unit}."
                 )
-    if ranking.left_over > UNEXPLAINED:
+    if ranking.unknown:
         out.append(
             "A force larger than the tolerated one stays unexplained after all this "
-            f"({ranking.left_over:.0f} nats beyond twice the ambient force): none of the entries tried accounts for it."
+            f"({ranking.left_over:.0f} nats beyond {UNKNOWN_FACTOR:g} times the ambient force): "
+            "none of the entries tried accounts for it."
         )
     for track, family, found in parts:
         enough = found["patched"] >= 0.95 * min(found["alone"], found["recalibrated"])

@@ -1,7 +1,8 @@
 """Kalman filter over a recording with one slowly varying unmodelled force per freedom, and its smoother.
 
-State z = (positions, earth-axes rates, body-axes latent forces), n = 3 NQ. Measured channels are coded: 0 .. NQ-1 a
-position, NQ .. 2 NQ-1 a body-axes rate. Measurements are taken one at a time, so any of them may be missing (nan).
+State z = (positions, earth-axes rates, body-axes latent forces), CALM = 3 NQ, then, for vessels that may meet a swell,
+an oscillating force and its rate per axis. Measured channels are coded: 0 .. NQ-1 a position, NQ .. 2 NQ-1 a
+body-axes rate. Measurements are taken one at a time, so any of them may be missing (nan).
 """
 
 from math import cos, exp, log, sin, sqrt
@@ -10,98 +11,168 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from boatsim.base import Array
+from boatsim.base import Array, Shown, Swell
 from boatsim.kernels.common import settle
-from boatsim.kernels.laws import HELD, MEMORY, actuate, pause
-from boatsim.kernels.planar import NQ, K, constants, slopes, step_in_place
+from boatsim.kernels.laws import HELD, MEMORY, SWELLS, actuate, distorted, late, pause, shown, swell
+from boatsim.kernels.planar import NQ, SHOWS, K, constants, force_slopes, moved, slopes, step_in_place
 
 NY = 2 * NQ
-NZ = 3 * NQ
+CALM = 3 * NQ
+NZ = CALM + (2 * NQ if SWELLS else 0)
+SWELL_AXES = (0, 1, 3) if NQ == 3 else (2,)  # entries of `Swell`
 GATE = 5.0  # [sd] a measurement further off is taken for an outlier: no update, a bounded penalty
 IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has lost track and must follow
+INVERT = 10  # rounds of the inversion of what the instruments show, which is never far from the truth
 
 
 @njit(error_model="numpy", cache=True)
 def predict(
-    t: float, h: float, substeps: int, y: Array, command: Array, memory: Array, p: Array, on: Any, k: Array,
-    force: Array, act: Array,
-) -> None:  # fmt: skip
-    """Carry y (2 NQ,) over one sample interval h with the command held and the latent force constant, in place."""
-    done = 0.0
+    times: Array, i: int, lateness: float, row: int, y: Array, commands: Array, memory: Array, max_step: float,
+    p: Array, on: Any, k: Array, force: Array, act: Array,
+) -> int:  # fmt: skip
+    """Carry y (2 NQ,) from row i - 1 to row i in place, the latent force constant.
+
+    The motion of row i happened `lateness` before its time; commands hold from their own times on. `row` is the last
+    command used so far; returns the one used last. No step reaches beyond a change of an actuator's signal.
+    """
+    h = times[i] - times[i - 1]
+    longest = h / max(1, int(np.ceil(h / max_step - 1e-9)))
+    begin, done = times[i - 1] - lateness, 0.0
     while h - done > 1e-9:
-        dt = min(h / substeps, h - done, max(pause(memory, p, on), 1e-9))
-        actuate(command, memory, dt, p, on, act)
-        step_in_place(t + done, y, dt, act, p, on, k, force)
+        while row + 1 < len(times) and times[row + 1] <= begin + done + 1e-9:
+            row += 1
+        dt = min(longest, h - done, max(pause(memory, p, on), 1e-9))
+        if row + 1 < len(times):
+            dt = min(dt, times[row + 1] - begin - done)
+        actuate(commands[row], memory, dt, p, on, act)
+        step_in_place(begin + done, y, dt, act, p, on, k, force)
         done += dt
+    return row
 
 
 @njit(error_model="numpy", cache=True)
 def transition(
-    t: float, h: float, z: Array, act: Array, p: Array, on: Any, k: Array, decay: float, F: Array, work: Array
-) -> None:
-    """Linearised transition F (n, n) over h: third-order exponential of the numerical Jacobian of the accelerations."""
-    base, moved = work[0, :NQ], work[1, :NQ]
-    y, force = z[:NY].copy(), z[NY:].copy()
+    t: float, h: float, n: int, z: Array, act: Array, p: Array, on: Any, k: Array, force: Array, decay: float,
+    s: Swell, F: Array, A: Array, B: Array, y: Array,
+) -> None:  # fmt: skip
+    """Linearised transition F over h: third-order exponential of the numerical Jacobian of the accelerations."""
+    base, other = B[0, :NQ], B[1, :NQ]  # B is free until the products below
+    y[:] = z[:NY]
     slopes(t, y, act, p, on, k, force, base)
-    A, B = np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
+    A[:n, :n] = 0.0
+    step = 1e-6
     for i in range(NQ):
         A[i, NQ + i] = 1.0
-    for j in range(NZ):
-        step = 1e-6
-        if j < NY:
-            y[j] += step
-            slopes(t, y, act, p, on, k, force, moved)
-            y[j] -= step
-        else:
-            # forces enter linearly; a step of their own size would vanish beside large ones
-            step = 1e-3 * (1.0 + abs(force[j - NY]))
-            force[j - NY] += step
-            slopes(t, y, act, p, on, k, force, moved)
-            force[j - NY] -= step
+    for j in range(NY):
+        y[j] += step
+        slopes(t, y, act, p, on, k, force, other)
+        y[j] = z[j]
         for i in range(NQ):
-            A[NQ + i, j] = (moved[i] - base[i]) / step
+            A[NQ + i, j] = (other[i] - base[i]) / step
+    force_slopes(y, k, A, NQ, NY)
     # exp(A h) to third order; only the rows of the rates and, above them, their own integrals are not trivial
-    for i in range(NZ):
-        for j in range(NZ):
+    for i in range(NY):
+        for j in range(CALM):
             A[i, j] *= h
-    multiply(A, A, B)
-    multiply(B, A, F)
-    for i in range(NZ):
-        for j in range(NZ):
+    multiply(A, A, B, CALM)
+    multiply(B, A, F, CALM)
+    for i in range(CALM):
+        for j in range(CALM):
             F[i, j] = A[i, j] + 0.5 * B[i, j] + F[i, j] / 6.0
         F[i, i] += 1.0
-    for i in range(NY, NZ):
+    for i in range(NY, CALM):
         F[i, i] = decay
+    if n > CALM:
+        add_swell(h, s, F)
 
 
 @njit(error_model="numpy", cache=True)
-def multiply(A: Array, B: Array, out: Array) -> None:
+def oscillation(h: float, s: Swell) -> tuple[float, float, float, float, float, float]:
+    """Transition of the oscillator over h, row by row, and its mean force over h per force and rate at the start."""
+    w, damped = s.frequency, s.frequency * sqrt(1.0 - s.damping * s.damping)
+    e, share = exp(-s.damping * w * h), s.damping * w / damped
+    f11, f12 = e * (cos(damped * h) + share * sin(damped * h)), e * sin(damped * h) / damped
+    f21, f22 = -w * w * f12, e * (cos(damped * h) - share * sin(damped * h))
+    mean1 = (-2.0 * s.damping / w * (f11 - 1.0) - f21 / (w * w)) / h
+    mean2 = (-2.0 * s.damping / w * f12 - (f22 - 1.0) / (w * w)) / h
+    return f11, f12, f21, f22, mean1, mean2
+
+
+@njit(error_model="numpy", cache=True)
+def add_swell(h: float, s: Swell, F: Array) -> None:
+    """The oscillators' own rows and what they do to the motion, to F."""
+    f11, f12, f21, f22, mean1, mean2 = oscillation(h, s)
+    F[CALM:, :CALM] = 0.0
+    F[:, CALM:] = 0.0
+    for j in range(NQ):
+        a = CALM + 2 * j
+        for i in range(NY):
+            F[i, a], F[i, a + 1] = F[i, NY + j] * mean1, F[i, NY + j] * mean2
+        F[a, a], F[a, a + 1], F[a + 1, a], F[a + 1, a + 1] = f11, f12, f21, f22
+
+
+@njit(error_model="numpy", cache=True)
+def diffuse(h: float, n: int, sigma: Array, tau: float, s: Swell, P: Array) -> None:
+    """Add to P what the noise behind the latent forces does over h."""
+    decay = exp(-h / tau)
+    for j in range(NQ):
+        P[NY + j, NY + j] += sigma[j] * (1.0 - decay * decay)
+    if n > CALM:
+        f11, f12, f21, f22, _, _ = oscillation(h, s)
+        w2 = s.frequency * s.frequency
+        for j in range(NQ):
+            v, a = s[SWELL_AXES[j]] ** 2, CALM + 2 * j
+            P[a, a] += v * (1.0 - f11 * f11 - w2 * f12 * f12)
+            P[a + 1, a + 1] += v * (w2 - f21 * f21 - w2 * f22 * f22)
+            cross = v * (f11 * f21 + w2 * f12 * f22)
+            P[a, a + 1] -= cross
+            P[a + 1, a] -= cross
+
+
+@njit(error_model="numpy", cache=True)
+def multiply(A: Array, B: Array, out: Array, n: int) -> None:
     """Out = A B for the filter's small matrices, most of A's rows zero: faster here than a library call."""
-    out[:] = 0.0
-    for i in range(NZ):
-        for k in range(NZ):
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = 0.0
+        for k in range(n):
             x = A[i, k]
             if x != 0.0:
-                for j in range(NZ):
+                for j in range(n):
                     out[i, j] += x * B[k, j]
 
 
 @njit(error_model="numpy", cache=True)
-def carry(F: Array, P: Array, work: Array) -> None:
+def carry(F: Array, P: Array, work: Array, n: int) -> None:
     """P = F P F', symmetric, in place."""
-    multiply(F, P, work)
-    for i in range(NZ):
+    multiply(F, P, work, n)
+    for i in range(n):
         for j in range(i + 1):
             x = 0.0
-            for k in range(NZ):
+            for k in range(n):
                 x += work[i, k] * F[j, k]
             P[i, j] = P[j, i] = x
 
 
 @njit(error_model="numpy", cache=True)
-def observe(z: Array, code: int, row: Array) -> float:
+def shows(y: Array, code: int, p: Array, on: Any) -> float:
+    """What the recording shows of one channel in a state y (2 NQ,)."""
+    x, north, psi, phi, u, v, roll_rate, r = moved(y)
+    return float(shown(Shown(x, north, psi, phi, u, v, roll_rate, r), p, on)[SHOWS[code]])
+
+
+@njit(error_model="numpy", cache=True)
+def observe(z: Array, code: int, row: Array, p: Array, on: Any) -> float:
     """Expected value of one channel; fills its row (n,) of the measurement matrix."""
     row[:] = 0.0
+    if distorted(on):
+        y = z[:NY].copy()
+        value, step = shows(y, code, p, on), 1e-6
+        for j in range(NY):
+            y[j] += step
+            row[j] = (shows(y, code, p, on) - value) / step
+            y[j] = z[j]
+        return value
     if code < NQ:
         row[code] = 1.0
         return float(z[code])
@@ -118,15 +189,30 @@ def observe(z: Array, code: int, row: Array) -> float:
 
 
 @njit(error_model="numpy", cache=True)
-def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array) -> float:
+def undistorted(z: Array, p: Array, on: Any) -> None:
+    """Turn positions as recorded into those of the boat, in place."""
+    if distorted(on):
+        recorded = z[:NQ].copy()
+        for _ in range(INVERT):
+            off = recorded.copy()
+            for j in range(NQ):
+                off[j] -= shows(z[:NY], j, p, on)
+            z[:NQ] += off
+
+
+@njit(error_model="numpy", cache=True)
+def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int) -> float:
     """Gain (n,) of one measurement and P row' (n,), in place; returns the inverse sd of its prediction error."""
     variance = noise
-    for a in range(NZ):
+    for a in range(n):
         Ph[a] = 0.0
-        for b in range(NZ):
-            Ph[a] += P[a, b] * row[b]
-        variance += row[a] * Ph[a]
-    for a in range(NZ):
+    for b in range(NY):
+        if row[b] != 0.0:
+            for a in range(n):
+                Ph[a] += P[a, b] * row[b]
+    for b in range(NY):
+        variance += row[b] * Ph[b]
+    for a in range(n):
         gain[a] = Ph[a] / variance
     return float(1.0 / sqrt(variance))
 
@@ -145,10 +231,19 @@ def kalman(
     k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
     settle(commands[0], memory, p, on, act)
-    z, P = z0.copy(), P0.copy()
-    F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((2, NQ)), np.zeros((NZ, NZ))
-    y, force, Ph = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
-    likelihood, outliers = 0.0, np.zeros(measured.shape[1])
+    s, lateness = swell(p, on), late(p, on)
+    n = NZ if s.frequency > 0.0 else CALM
+    z, P = np.zeros(NZ), np.zeros((NZ, NZ))
+    z[:CALM], P[:CALM, :CALM] = z0, P0
+    undistorted(z, p, on)
+    if n > CALM:
+        for j in range(NQ):
+            P[CALM + 2 * j, CALM + 2 * j] = s[SWELL_AXES[j]] ** 2
+            P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[SWELL_AXES[j]]) ** 2
+    F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
+    y, force, Ph, other = np.zeros(NY), np.zeros(NQ), np.zeros(NZ), np.zeros(NY)
+    f11, f12, f21, f22, mean1, mean2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    likelihood, outliers, held = 0.0, np.zeros(measured.shape[1]), 0
     if keep:
         means[0], covariances[0], predicted[0] = z, P, z
     for i in range(1, len(times)):
@@ -158,27 +253,30 @@ def kalman(
             y[a] = z[a]
         for a in range(NQ):
             force[a] = z[NY + a]
-        predict(
-            times[i - 1], h, max(1, int(np.ceil(h / max_step - 1e-9))), y, commands[i - 1], memory, p, on, k, force, act
-        )
+        if n > CALM:
+            f11, f12, f21, f22, mean1, mean2 = oscillation(h, s)
+            for a in range(NQ):
+                force[a] += mean1 * z[CALM + 2 * a] + mean2 * z[CALM + 2 * a + 1]
+        held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, force, act)
         if full:  # linearised about the state before, with the actuators of this interval
-            transition(times[i - 1], h, z, act, p, on, k, decay, F, work)
-            carry(F, P, work2)
-            for j in range(NQ):
-                P[NY + j, NY + j] += sigma[j] * (1.0 - decay * decay)
+            transition(times[i - 1] - lateness, h, n, z, act, p, on, k, force, decay, s, F, work, work2, other)
+            carry(F, P, work2, n)
+            diffuse(h, n, sigma, tau, s, P)
         for a in range(NY):
             z[a] = y[a]
-        for a in range(NY, NZ):
+        for a in range(NY, CALM):
             z[a] *= decay
+        for a in range(CALM, n, 2):
+            z[a], z[a + 1] = f11 * z[a] + f12 * z[a + 1], f21 * z[a] + f22 * z[a + 1]
         if keep:
             predicted[i], transitions[i] = z, F
         for c in range(measured.shape[1]):
             if np.isnan(measured[i, c]):
                 scale[i, c] = white[i, c] = 0.0
                 continue
-            error = measured[i, c] - observe(z, codes[c], row)
+            error = measured[i, c] - observe(z, codes[c], row, p, on)
             if full:
-                scale[i, c] = weigh(P, row, noise[c], gains[i, c], Ph)
+                scale[i, c] = weigh(P, row, noise[c], gains[i, c], Ph, n)
                 likelihood += log(scale[i, c])
                 far = abs(error) * scale[i, c] > GATE and outliers[c] < IN_A_ROW
                 outliers[c] = outliers[c] + 1.0 if far else 0.0
@@ -189,11 +287,11 @@ def kalman(
                 likelihood -= 0.5 * GATE * GATE
                 continue
             likelihood -= 0.5 * white[i, c] ** 2
-            for a in range(NZ):
+            for a in range(n):
                 z[a] += gains[i, c, a] * error
             if full:
-                for a in range(NZ):
-                    for b in range(NZ):
+                for a in range(n):
+                    for b in range(n):
                         P[a, b] -= gains[i, c, a] * Ph[b]
         if keep:
             means[i], covariances[i] = z, P
@@ -202,21 +300,24 @@ def kalman(
 
 @njit(error_model="numpy", cache=True)
 def smooth(
-    means: Array, covariances: Array, transitions: Array, predicted: Array, sigma: Array, times: Array, tau: float
+    means: Array, covariances: Array, transitions: Array, predicted: Array, sigma: Array, times: Array, tau: float,
+    p: Array, on: Any,
 ) -> None:  # fmt: skip
     """Rauch-Tung-Striebel smoother, in place on means (N, n) and covariances (N, n, n)."""
+    s = swell(p, on)
+    n = NZ if s.frequency > 0.0 else CALM
     for i in range(len(times) - 2, -1, -1):
-        F = transitions[i + 1]
-        decay = exp(-(times[i + 1] - times[i]) / tau)
-        ahead = F @ covariances[i] @ F.T
-        for j in range(NQ):
-            ahead[NY + j, NY + j] += sigma[j] * (1.0 - decay * decay)
-        for j in range(NZ):
+        F = np.ascontiguousarray(transitions[i + 1, :n, :n])
+        P = np.ascontiguousarray(covariances[i, :n, :n])
+        ahead = F @ P @ F.T
+        diffuse(times[i + 1] - times[i], n, sigma, tau, s, ahead)
+        for j in range(n):
             ahead[j, j] *= 1.0 + 1e-9  # positions and rates are driven through the force alone: keep it invertible
             ahead[j, j] += 1e-18
-        G = np.linalg.solve(ahead, F @ covariances[i]).T
-        means[i] += G @ (means[i + 1] - predicted[i + 1])
-        covariances[i] += G @ (covariances[i + 1] - ahead) @ G.T
+        G = np.linalg.solve(ahead, F @ P).T
+        means[i, :n] += G @ (means[i + 1, :n] - predicted[i + 1, :n])
+        change = np.ascontiguousarray(covariances[i + 1, :n, :n]) - ahead
+        covariances[i, :n, :n] += G @ change @ G.T
 
 
 @njit(error_model="numpy", cache=True)
@@ -226,26 +327,22 @@ def free_runs(
 ) -> None:  # fmt: skip
     """Free runs from row starts[j] to ends[j] out of states[j] (2 NQ,), driven by the commands alone.
 
-    Actuator memory runs from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ).
+    Actuator memory runs from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ) with every channel
+    as the recording would show it.
     """
     k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
     settle(commands[0], memory, p, on, act)
-    nothing = np.zeros(NQ)
-    saved = np.zeros((len(times), MEMORY))
-    for i in range(len(times) - 1):
-        saved[i] = memory
-        h = times[i + 1] - times[i]
-        n = max(1, int(np.ceil(h / max_step - 1e-9)))
-        for _j in range(n):
-            actuate(commands[i], memory, h / n, p, on, act)
+    nothing, y, lateness, held = np.zeros(NQ), np.zeros(NY), late(p, on), 0
+    saved, rows = np.zeros((len(times), MEMORY)), np.zeros(len(times), dtype=np.int64)
+    for i in range(1, len(times)):  # only for the actuators
+        saved[i - 1], rows[i - 1], y[:] = memory, held, 0.0
+        held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, nothing, act)
     for run in range(len(starts)):
         y = states[run].copy()
-        memory[:] = saved[starts[run]]
-        out[run, starts[run]] = y
-        for i in range(starts[run], ends[run]):
-            h = times[i + 1] - times[i]
-            predict(
-                times[i], h, max(1, int(np.ceil(h / max_step - 1e-9))), y, commands[i], memory, p, on, k, nothing, act
-            )
-            out[run, i + 1] = y
+        memory[:], held = saved[starts[run]], rows[starts[run]]
+        for i in range(starts[run], ends[run] + 1):
+            if i > starts[run]:
+                held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, nothing, act)
+            for code in range(NY):
+                out[run, i, code] = shows(y, code, p, on)

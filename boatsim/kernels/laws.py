@@ -6,10 +6,11 @@ cosine and sine of those that are angles.
 
 from typing import Any
 
-from boatsim.base import Array, Wrench
+from boatsim.base import Array, Shown, Swell, Wrench
 
 HELD = 0  # length of act
 MEMORY = 1  # floats that all channels together remember
+SWELLS = False  # whether any effect of the vessel is a swell
 
 
 def sees(
@@ -42,4 +43,24 @@ def actuate(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: A
 
 def pause(memory: Array, p: Array, on: Any) -> float:
     """Time until a channel's signal jumps of itself [s]; a step must not reach beyond it."""
+    raise NotImplementedError
+
+
+def shown(m: Shown, p: Array, on: Any) -> Shown:
+    """What the recording shows of a motion."""
+    raise NotImplementedError
+
+
+def distorted(on: Any) -> bool:
+    """Whether a recording shows anything but the motion itself."""
+    raise NotImplementedError
+
+
+def late(p: Array, on: Any) -> float:
+    """Time by which the recorded motion is late behind the recorded commands [s]."""
+    raise NotImplementedError
+
+
+def swell(p: Array, on: Any) -> Swell:
+    """The random oscillating force that acts; frequency 0: none."""
     raise NotImplementedError

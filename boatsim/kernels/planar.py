@@ -16,6 +16,7 @@ from boatsim.kernels.laws import flow, inertias, sees, wrench
 NQ = 3  # positions; the state has twice as many
 K = 13  # constants of a pass
 FREEDOMS = (0, 1, 3)  # of (surge, sway, roll, yaw)
+SHOWS = (0, 1, 2, 4, 5, 7)  # entries of `Shown` in the order of a state
 
 
 @njit(error_model="numpy", cache=True)
@@ -106,6 +107,22 @@ def slopes(t: float, y: Array, act: Array, p: Array, on: Any, k: Array, extra: A
     """Accelerations on arrays, for linearisation."""
     z = (y[0], y[1], y[2], y[3], y[4], y[5])
     out[0], out[1], out[2] = accelerations(t, z, act, p, on, k, (extra[0], extra[1], extra[2]))
+
+
+@njit(inline="always", error_model="numpy")
+def force_slopes(y: Array, k: Array, A: Any, row: int, column: int) -> None:
+    """Derivatives of the accelerations by a body force (X, Y, N), to A[row:row + 3, column:column + 3]."""
+    c, s = cos(y[2]), sin(y[2])
+    A[row, column], A[row, column + 1], A[row, column + 2] = c * k[1], -s * k[2], -s * k[3]
+    A[row + 1, column], A[row + 1, column + 1], A[row + 1, column + 2] = s * k[1], c * k[2], c * k[3]
+    A[row + 2, column], A[row + 2, column + 1], A[row + 2, column + 2] = 0.0, k[3], k[4]
+
+
+@njit(inline="always", error_model="numpy")
+def moved(y: Array) -> Any:
+    """What instruments that show the truth would show of a state: x, y, psi, phi, u, v, p, r."""
+    c, s = cos(y[2]), sin(y[2])
+    return y[0], y[1], y[2], 0.0, c * y[3] + s * y[4], c * y[4] - s * y[3], 0.0, y[5]
 
 
 @njit(inline="always", error_model="numpy")

@@ -14,6 +14,7 @@ from boatsim.kernels.laws import inertias, sees, wrench
 NQ = 1
 K = 2
 FREEDOMS = (2,)  # of (surge, sway, roll, yaw)
+SHOWS = (3, 6)  # entries of `Shown` in the order of a state
 
 
 @njit(error_model="numpy", cache=True)
@@ -73,6 +74,18 @@ def forces(t: float, y: Array, act: Array, p: Array, on: Any) -> tuple[float]:
 def slopes(t: float, y: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array) -> None:
     """Accelerations on arrays, for linearisation."""
     out[0] = accelerations(t, (y[0], y[1]), act, p, on, k, (extra[0],))
+
+
+@njit(inline="always", error_model="numpy")
+def force_slopes(y: Array, k: Array, A: Any, row: int, column: int) -> None:
+    """Derivative of the acceleration by a moment (K,), to A[row, column]."""
+    A[row, column] = k[0]
+
+
+@njit(inline="always", error_model="numpy")
+def moved(y: Array) -> Any:
+    """What instruments that show the truth would show of a state: x, y, psi, phi, u, v, p, r."""
+    return 0.0, 0.0, 0.0, y[0], 0.0, 0.0, y[1], 0.0
 
 
 @njit(inline="always", error_model="numpy")

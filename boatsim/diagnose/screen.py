@@ -1,0 +1,113 @@
+"""A quick look at every suspect on top of a fit: Gauss-Newton with the filter's gains and all else linearised."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from boatsim.base import Array, Effect, Unsteady
+from boatsim.diagnose.filter import axes_of
+from boatsim.diagnose.fit import Space, jacobian, log_prior
+from boatsim.diagnose.levels import force_prior
+from boatsim.diagnose.problem import Fit, Problem, scale_of
+
+ROUNDS = 3  # Gauss-Newton steps of a suspect
+SMALL = 0.1  # where a suspect without starts of its own begins, in prior sds
+SWELL_SHARE = 0.7  # of the fitted latent force that a random force is tried with; the latent force keeps as much
+
+
+def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, Fit]:
+    """Each candidate added to `base`: parameters near the best, evidence near enough to choose whom to fit in full."""
+    on = problem.program.switches(base.suspects)
+    problem.likelihood(base.free, base.theta, on, base.levels)  # the gains that all looks share
+    white = problem.white()
+    known = jacobian(problem, base.free, base.theta, on, base.levels, white)
+    before = log_prior(base.free, base.theta) - 0.5 * float(white @ white) - _half_determinant(known)
+    effects = {e.name(): e for e in problem.program.effects}
+    tried = {n: _look(problem, base, effects[n], known, before) for n in candidates if not _random(effects[n])}
+    return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if _random(effects[n])}
+
+
+def _random(effect: Effect) -> bool:
+    return isinstance(effect, Unsteady)
+
+
+def _half_determinant(J: Array) -> float:
+    return 0.5 * float(np.linalg.slogdet(np.eye(J.shape[1]) + J.T @ J)[1])
+
+
+def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
+    """Where the fit of a suspect's parameters begins: its own starts, Froude-scaled, or a little of it."""
+    params, vessel = type(effect).params(), problem.program.vessel
+    default = {}
+    for name, p in params.items():
+        step = SMALL * p.spread * scale_of(p.unit, vessel)
+        default[name] = p.absent + (step if p.absent + step <= p.high else -step)
+    given = [{n: x * scale_of(params[n].unit, vessel) for n, x in s.items()} for s in type(effect).starts] or [{}]
+    return [{**default, **s} for s in given]
+
+
+def _joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -> Fit:
+    """`base` with one more suspect at its start, not yet scored."""
+    suspects = (*base.suspects, name)
+    free = problem.parameters(suspects)
+    known = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
+    theta = np.array([known[f.effect, f.name] if (f.effect, f.name) in known else start[f.name] for f in free])
+    return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf)
+
+
+def _look(problem: Problem, base: Fit, effect: Effect, known: Array, before: float) -> Fit:
+    """One suspect: a first step from each of its starts, the best of them followed further."""
+    begun = [_joined(problem, base, effect.name(), s) for s in starts(problem, effect)]
+    first = [_step(problem, b, known, ROUNDS if len(begun) == 1 else 1) for b in begun]
+    best = max(first, key=lambda f: f[1])
+    if len(begun) > 1:
+        best = _step(problem, best[0], known, ROUNDS - 1)
+    return replace(best[0], evidence=base.evidence + best[1] - before)
+
+
+def _step(problem: Problem, start: Fit, known: Array, rounds: int) -> tuple[Fit, float]:
+    """Gauss-Newton steps; the columns of what was free before stay as they are. Fit and score with its determinant."""
+    free, levels = start.free, start.levels
+    on = problem.program.switches(start.suspects)
+    space = Space(free)
+    theta = space.clipped(start.theta)
+
+    def look(x: Array) -> tuple[Array, float]:
+        white = problem.whitened(free, x, on, levels)
+        return white, log_prior(free, x) - 0.5 * float(white @ white)
+
+    (white, score), damping, J = look(theta), 1e-3, known
+    for _ in range(rounds):
+        J = np.hstack([known, jacobian(problem, free, theta, on, levels, white, known.shape[1])])
+        gain = 0.0
+        for _ in range(3):
+            trial = space.stepped(theta, J, white, damping)
+            after, value = look(trial)
+            if np.isfinite(value) and value > score:
+                theta, white, gain, score = trial, after, value - score, value
+                break
+            damping = max(damping, 1e-2) * 10.0
+        if gain < 0.1:
+            break
+    found = replace(start, theta=theta, covariance=space.covariance(np.eye(len(free)) + J.T @ J))
+    return found, score - _half_determinant(J)
+
+
+def _random_look(problem: Problem, base: Fit, effect: Effect) -> Fit:
+    """A random force takes over a share of the latent one, at each of the frequencies it may have."""
+    on = problem.program.switches((*base.suspects, effect.name()))
+    levels = replace(base.levels, force=SWELL_SHARE * base.levels.force)
+    of_axis = dict(zip(axes_of(problem.program.vessel), levels.force.tolist(), strict=True))
+    best: Fit | None = None
+    for start in starts(problem, effect):
+        rms = {n: of_axis.get(n, 0.0) for n in type(effect).strength}
+        at = replace(_joined(problem, base, effect.name(), {**start, **rms}), levels=levels)
+        score = problem.likelihood(at.free, at.theta, on, levels) + log_prior(at.free, at.theta)
+        if best is None or score > best.evidence:
+            best = replace(at, evidence=score)
+    assert best is not None
+    # the determinant of what was free before is much the same with and without
+    was = problem.likelihood(base.free, base.theta, problem.program.switches(base.suspects), base.levels)
+    was += log_prior(base.free, base.theta) + force_prior(problem, base.levels)
+    return replace(best, evidence=base.evidence + best.evidence + force_prior(problem, levels) - was)
