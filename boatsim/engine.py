@@ -20,6 +20,7 @@ from boatsim.world import Tank
 
 SIGN = {"x": 1.0, "y": -1.0, "psi": -1.0, "phi": 1.0}  # SNAME = sign * z-up, coordinate and rate alike
 SAME = 1e-12  # relative: native and Python callback must agree to this at start-up
+SHORTEST = 1e-9  # [s] of a step; what is left of one below this is rounding
 
 
 class State(NamedTuple):
@@ -109,11 +110,22 @@ class Engine:
         """Step forward with the commands held. Raises BadPhysics if the state is no longer finite."""
         with installed(self.callback):
             for _ in range(steps):
-                self.code.actuate_in_place(self._commands, self._memory, self.step, self._values, self._on, self._act)
-                self.data.userdata[-self.code.HELD :] = self._act
-                mujoco.mj_step(self.model, self.data)
+                self._advance()
         if not np.isfinite(self.data.qpos).all():
             raise BadPhysics(f"{self.vessel.name}: the motion is no longer finite at t = {self.data.time:g} s")
+
+    def _advance(self) -> None:
+        """One step, cut where an actuator's signal jumps."""
+        left = self.step
+        while left > SHORTEST:
+            dt = left
+            if self.code.PAUSES:
+                dt = min(left, max(self.code.pause(self._memory, self._values, self._on), SHORTEST))
+                self.model.opt.timestep = dt
+            self.code.actuate_in_place(self._commands, self._memory, dt, self._values, self._on, self._act)
+            self.data.userdata[-self.code.HELD :] = self._act
+            mujoco.mj_step(self.model, self.data)
+            left -= dt
 
     def coast(self, steps: int) -> None:
         """Many steps inside MuJoCo's own loop with the actuators as they are: what benchmarks measure."""

@@ -173,6 +173,7 @@ def _composition(program: Program) -> str:
         f"E = classes_of({[address(type(e)) for e in program.effects]!r})",
         f"Seen = motion_type({actuators!r})",
         f"HELD, MEMORY = {max(len(held), 1)}, {program.memory_size}",
+        f"PAUSES = {any(isinstance(e, Channel) and type(e).pause is not None for e in program.effects)}",
         f"SWELLS = {any(isinstance(e, Unsteady) for e in program.effects)}",
     ]
     wrench = ["    X = Y = K = N = 0.0"]

@@ -145,5 +145,7 @@ def test_an_unwritable_cache_folder_falls_back(tmp_path: Path, monkeypatch: pyte
     blocked.write_text("not a folder")
     monkeypatch.setenv("BOATSIM_CACHE", str(blocked / "cache"))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    for name in [n for n in sys.modules if n.startswith("boatsim_program_")]:
+        monkeypatch.delitem(sys.modules, name)  # another test may have composed the same program
     boat = vessel.load(str(boats.written(tmp_path, "test_fallback", boats.ROLL)))
     assert str(Program(boat).module.__file__).startswith(str(tmp_path / "boatsim-"))

@@ -65,6 +65,15 @@ def suspects_of(vessel: Vessel, library: Sequence[str], without: Sequence[str]) 
     return tuple(absent(kind).completed(vessel) for kind in tried)
 
 
+def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
+    """A vessel's program as a diagnosis composes it, and which of its suspects act: a patched boat compiles nothing."""
+    own = tuple(e for e in vessel.effects if e.name() not in vessel.diagnosis.suspects)
+    there = {e.name(): e for e in vessel.effects if e not in own}
+    nominal = replace(vessel, effects=own)
+    suspects = tuple(there.get(e.name(), e) for e in suspects_of(nominal, (), ()))
+    return Program(nominal, suspects), tuple(e.name() for e in suspects if e.name() in there)
+
+
 def absent(kind: type[Effect]) -> Effect:
     """An entry at the values at which it does nothing."""
     return kind.from_settings({n: p.absent for n, p in kind.params().items() if p.fit})

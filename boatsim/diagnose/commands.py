@@ -12,14 +12,13 @@ import numpy as np
 from boatsim import scenario as scenarios
 from boatsim.base import Array
 from boatsim.diagnose import patch, report, show
-from boatsim.diagnose.analysis import Diagnosis, open_recording
+from boatsim.diagnose.analysis import Diagnosis, composed, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.findings import FreeRun
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.errors import BadInput, BadPhysics
-from boatsim.program import Program
 from boatsim.recording import Notes, Recording, replacing, write_csv
 from boatsim.vessel import Vessel
 
@@ -147,9 +146,9 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
 
 def _as_written(recording: Recording, boat: Vessel) -> tuple[Problem, Fit]:
     """A vessel file on a recording, nothing fitted but the noise that the smoothed starts need."""
-    program = Program(boat)
+    program, acting = composed(boat)
     problem = Problem([track(recording, program)], nominal_levels(boat, recording), {})
-    return problem, replace(problem.nominal(), levels=fit_noise(problem))
+    return problem, fit_noise(problem, replace(problem.nominal(), suspects=acting))
 
 
 def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:

@@ -17,7 +17,7 @@ from boatsim.recording import FEWEST_ROWS, Recording
 from boatsim.run import commands_of
 from boatsim.vessel import Vessel
 
-MAX_STEP = 0.05  # [s] largest integration step of a free run
+MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
 FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sample
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit

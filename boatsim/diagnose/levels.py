@@ -45,12 +45,11 @@ def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) 
     return replace(found, levels=levels, theta=theta)
 
 
-def fit_noise(problem: Problem, sweeps: int = 4) -> Levels:
-    """Sensor noise and latent-force levels under the nominal model, before anything is named."""
+def fit_noise(problem: Problem, found: Fit, sweeps: int = 4) -> Fit:
+    """A hypothesis with sensor noise and latent-force levels fitted, parameters as they are."""
     families = sorted({f for t in problem.tracks for f in t.families})
     n = len(problem.ambient.force)
-    on = problem.program.switches(())
-    nominal = problem.nominal()
+    on = problem.program.switches(found.suspects)
     stated = np.log([problem.ambient.sensors[f] for f in families])
     rough = np.log([_roughness(problem, f) or problem.ambient.sensors[f] for f in families])
 
@@ -60,10 +59,10 @@ def fit_noise(problem: Problem, sweeps: int = 4) -> Levels:
 
     def score(x: Array) -> float:
         prior = -0.5 * float(np.sum(((x[n:] - stated) / SENSOR_PRIOR) ** 2))
-        return problem.likelihood(nominal.free, nominal.theta, on, levels(x)) + force_prior(problem, levels(x)) + prior
+        return problem.likelihood(found.free, found.theta, on, levels(x)) + force_prior(problem, levels(x)) + prior
 
     begin = np.concatenate([np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)])
-    return levels(_coordinate_search(score, begin, 0.6, sweeps))
+    return replace(found, levels=levels(_coordinate_search(score, begin, 0.6, sweeps)))
 
 
 def fit_time_constant(problem: Problem, found: Fit) -> Levels:

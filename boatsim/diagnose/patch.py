@@ -32,8 +32,8 @@ def patched(vessel: Vessel, found: Fit, kinds: Mapping[str, type[Effect]]) -> st
         for table in (own[free.effect], *_loads(document, free.effect, free.name)):
             table[free.name] = tomlkit.item(_rounded(float(table.get(free.name, nominal)) * float(value)))
             table[free.name].comment(f"recalibrated x {value:.4f}")
-    for name, settings in added.items():
-        tables.append(_effect_table(address(kinds[name]), settings))
+    for name in (n for n in kinds if n in added):  # channels act in the order of the diagnosis
+        tables.append(_effect_table(address(kinds[name]), added[name]))
     return str(tomlkit.dumps(document))
 
 

@@ -55,7 +55,7 @@ def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
 
     Where far more stays unexplained than an effect explains, the tool does not stand for that effect.
     """
-    nominal = replace(problem.nominal(), levels=fit_noise(problem))
+    nominal = fit_noise(problem, problem.nominal())
     search = _Search(problem, candidates, converge(problem, descend(problem, nominal, 4, 0.1)))
     best = search.selected()
     best, named = search.settled(best)

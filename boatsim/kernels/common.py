@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from boatsim.base import Array
-from boatsim.kernels.laws import HELD, actuate
+from boatsim.kernels.laws import HELD, PAUSES, actuate, pause
 from boatsim.kernels.planar import NQ, K, constants, step_in_place
 
 LONG = 1e4  # [s] longer than any actuator takes
@@ -36,6 +36,12 @@ def rollout(
     out[0] = y
     for i in range(commands.shape[0]):
         for j in range(substeps):
-            actuate(commands[i], memory, dt, p, on, act)
-            step_in_place(t0 + (i * substeps + j) * dt, y, dt, act, p, on, k, extra)
+            t, left = t0 + (i * substeps + j) * dt, dt
+            if PAUSES:  # cut the step where an actuator's signal jumps
+                while (part := pause(memory, p, on)) < left - 1e-9:
+                    actuate(commands[i], memory, max(part, 1e-9), p, on, act)
+                    step_in_place(t, y, max(part, 1e-9), act, p, on, k, extra)
+                    t, left = t + max(part, 1e-9), left - max(part, 1e-9)
+            actuate(commands[i], memory, left, p, on, act)
+            step_in_place(t, y, left, act, p, on, k, extra)
         out[i + 1] = y[: 2 * NQ]

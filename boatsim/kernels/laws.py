@@ -10,6 +10,7 @@ from boatsim.base import Array, Shown, Swell, Wrench
 
 HELD = 0  # length of act
 MEMORY = 1  # floats that all channels together remember
+PAUSES = False  # whether the signal of any channel may jump while its command is held
 SWELLS = False  # whether any effect of the vessel is a swell
 
 
