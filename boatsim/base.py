@@ -198,6 +198,7 @@ class Effect(Checked):
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law
     strength: ClassVar[tuple[str, ...]] = ()  # parameters that say how strong it is; empty: all that may be fitted
+    facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # fact in a recording's notes -> the parameters it states
     starts: ClassVar[tuple[Mapping[str, float], ...]] = ()  # where a fit starts; empty: a tenth of each spread
 
     @classmethod

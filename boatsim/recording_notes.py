@@ -44,7 +44,7 @@ class Notes:
     noise: dict[str, float] = field(default_factory=dict)  # names in NOISE, one standard deviation
     ambient: dict[str, Any] = field(default_factory=dict)  # axes, force_rms per axis, time_constant_s
     coefficient_uncertainty: dict[str, float] = field(default_factory=dict)  # relative, one standard deviation
-    facts: dict[str, Any] = field(default_factory=dict)  # forward_speed_mps, walls, fan position, free text
+    facts: dict[str, Any] = field(default_factory=dict)  # forward_speed_mps, walls_m, fan position, free text
 
 
 @dataclass(frozen=True)
@@ -150,6 +150,13 @@ class _Reader:
                 raise inner.bad("force_rms", "a number of at least 0 for each axis")
         return inner.content  # type: ignore[return-value]
 
+    def facts(self) -> dict[str, Any]:
+        walls = self.content.get("walls_m", [-1.0, 1.0, -1.0, 1.0])
+        numeric = isinstance(walls, list) and [type(x) in (int, float) for x in walls] == [True] * 4
+        if not numeric or not (-HUGE <= walls[0] < walls[1] <= HUGE and -HUGE <= walls[2] < walls[3] <= HUGE):
+            raise self.bad("walls_m", "[x_low, x_high, y_low, y_high], four numbers, each low below its high")
+        return dict(self.content)
+
     def notes(self) -> NotesFile:
         settings = self.inner("set")
         known = [key for key in self.content if key in KEYS]
@@ -164,7 +171,7 @@ class _Reader:
             noise={k: v for k, v in self.inner("noise").numbers(low=0.0).items() if k in NOISE},
             ambient={k: v for k, v in self.ambient().items() if k in AMBIENT},
             coefficient_uncertainty=self.inner("coefficient_uncertainty").numbers(low=0.0),
-            facts={**facts, **self.table("facts")},
+            facts=_Reader(self.file, {**facts, **self.table("facts")}, f"{self.prefix}facts.").facts(),
         )
         strange = [self.strange(key, KEYS) for key in self.content if key not in known and key not in facts]
         for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):

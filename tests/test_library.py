@@ -138,7 +138,7 @@ def test_slack_tether_keeps_its_weight_and_its_drag_takes_power_at_the_stern() -
 
 
 def test_wall_effect_halves_with_every_ln2_of_its_reach_and_is_symmetric() -> None:
-    wall = WallEffect(damping_rise=1.5, pull=0.1, half_north=40.0, half_east=30.0).completed(BOAT)
+    wall = WallEffect(damping_rise=1.5, pull=0.1, x_low=-40.0, x_high=40.0, y_low=-30.0, y_high=30.0).completed(BOAT)
     near, far = (wall.wrench(motion(y=30.0 - 0.6 * n * log(2.0), u=0.2, v=0.1, r=0.4)) for n in (1, 2))
     assert near == pytest.approx(2.0 * np.array(far))
     assert near == pytest.approx((-1.5 * 3 * 0.2 / 2, 0.05 - 1.5 * 10 * 0.1 / 2, 0, -1.5 * 1 * 0.4 / 2))

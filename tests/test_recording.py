@@ -276,6 +276,7 @@ def test_notes_come_from_the_nearest_folder_above_and_a_run_overrides_them(tmp_p
         ("set.wind.force_N = 'x'", "set.wind.force_N = 'x'; allowed is a number"),
         ("columns.x_m = 1", "columns.x_m = 1; allowed is a text"),
         ("runs.run = 1", "runs.run = 1; allowed is a table"),
+        ("facts.walls_m = [4, -4, -3, 3]", "facts.walls_m = [4, -4, -3, 3]; allowed is [x_low, x_high, y_low, y_high]"),
     ],
 )
 def test_a_bad_recording_toml_gets_one_line(tmp_path, text, said):

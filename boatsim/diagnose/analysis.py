@@ -149,7 +149,7 @@ def _findings(problem: Problem, ranking: Ranking, unseen: Sequence[Track], vesse
     fits = show.fits_of(problem, ranking)
     everything = [*problem.tracks, *unseen]
     forces = locate.missing_force(problem, ranking.recalibrated, everything)
-    left = locate.missing_force(problem, ranking.best, everything)
+    left = locate.force_left(problem, ranking.best, everything)
     stretches = show.free_runs(problem, fits, unseen, horizon)
     parts = show.by_part(problem, fits, everything, horizon) if ranking.named else []
     table = show.table_of(parts, problem.tracks, horizon)

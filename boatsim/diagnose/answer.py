@@ -45,7 +45,7 @@ def compose(
         "where": {
             "axes": locate.strength(problem, forces),
             "intervals": [vars(i) for i in locate.intervals(problem, forces)],
-            "region": [vars(r) for r in regions(problem, forces, ranking.recalibrated)],
+            "region": [vars(r) for r in regions(problem, ranking.recalibrated)],
         },
         "fit": {
             "horizon_s": horizon,

@@ -65,6 +65,7 @@ class Track:
     values: Array  # nominal parameters of this run
     body: Array
     noise_scale: Mapping[str, float]  # this recording's sensor noise per common one, by family
+    facts: Mapping[str, Any] = field(default_factory=dict)  # what the recording's notes state besides
     start: Array = field(init=False)  # (n,) first state
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
     _store: Any = field(init=False, repr=False, default=None)
@@ -102,14 +103,29 @@ class Track:
 
     def smoothed(self, values: Array, on: Array, levels: Levels) -> tuple[Array, Array]:
         """Smoothed states (N, n) and their covariances (N, n, n)."""
+        means, covariances, _ = self.smoothed_with_gains(values, on, levels)
+        return means, covariances
+
+    def smoothed_with_gains(self, values: Array, on: Array, levels: Levels) -> tuple[Array, Array, Array]:
+        """`smoothed` with the smoother's gains G (N, n, n): the errors of rows i < j covary by G_i ... G_j-1 P_j."""
         n, dim = len(self.times), self.program.module.NZ
         keep = np.zeros((n, dim)), np.zeros((n, dim, dim)), np.zeros((n, dim, dim)), np.zeros((n, dim))
         self._pass(values, on, levels, True, keep)
         means, covariances, transitions, predicted = keep
+        gains = np.zeros_like(transitions)
         self.program.module.smooth(
-            means, covariances, transitions, predicted, levels.force**2, self.times, levels.time_constant, values, on
+            means,
+            covariances,
+            transitions,
+            predicted,
+            gains,
+            levels.force**2,
+            self.times,
+            levels.time_constant,
+            values,
+            on,
         )
-        return means, covariances
+        return means, covariances, gains
 
     def free_runs(self, values: Array, on: Array, levels: Levels, horizon: float) -> list[tuple[int, Array]]:
         """(first row, states (M, 2 NQ)) of free runs of `horizon` s, each started at its smoothed state.
@@ -197,7 +213,7 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     laid = Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
         tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes, np.ascontiguousarray(commands),
-        _without_realisations(program), program.body, scale,
+        stated_values(program, recording.notes.facts), program.body, scale, recording.notes.facts,
     )  # fmt: skip
     if len(axes) == 3 and (speed := float(np.sqrt(laid.spread[3, 3]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
         raise BadInput(
@@ -206,12 +222,18 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     return laid
 
 
-def _without_realisations(program: Program) -> Array:
-    """Parameters with every random force silenced: the filter finds its course, a free run knows none."""
+def stated_values(program: Program, facts: Mapping[str, Any]) -> Array:
+    """Parameters of a program, those that a recording's facts state (`Effect.facts`) put in.
+
+    Every random force is silenced: the filter finds its course, a free run knows none.
+    """
     values = program.values()
     for effect in program.effects:
         if isinstance(effect, Unsteady):
             values[program.index(effect.name(), "realisation")] = 0.0
+        for fact, names in type(effect).facts.items():
+            for name, x in zip(names, facts.get(fact, ()), strict=False):
+                values[program.index(effect.name(), name)] = x
     return values
 
 

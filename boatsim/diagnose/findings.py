@@ -20,7 +20,7 @@ class FreeRun:
 
 @dataclass(frozen=True)
 class Missing:
-    """The force of a run that the recalibrated nominal has no cause for, by axis, and what the patch leaves of it."""
+    """The force of a run that the vessel as written has no cause for, by axis, and what the patch leaves of it."""
 
     run: str  # name of the recording
     t: Array  # (N,) s

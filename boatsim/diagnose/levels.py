@@ -78,7 +78,7 @@ def fit_time_constant(problem: Problem, found: Fit) -> Levels:
         return likelihood + force_prior(problem, levels(x)) + float(prior)
 
     begin = np.append(np.log(found.levels.force), np.log(found.levels.time_constant))
-    return levels(_coordinate_search(score, begin, 0.5, 3))
+    return levels(_coordinate_search(score, begin, 0.7, 2))
 
 
 def _roughness(problem: Problem, family: str) -> float:

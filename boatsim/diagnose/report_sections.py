@@ -36,7 +36,7 @@ GLOSSARY = (
      "The vessel file as given; the same with its own coefficients refitted; and that with the effects found added. "
      "Gains are judged against the recalibrated vessel, because refitting alone takes up part of any misfit."),
     ("missing force",
-     "The force or moment on the hull that the recording shows and the recalibrated vessel has no cause for, estimated "
+     "The force or moment on the hull that the recording shows and the vessel as written has no cause for, estimated "
      "along the run. The band is two standard deviations wide on either side; flagged is where zero lies outside it "
      "and the force is more than the vessel file tolerates."),
     ("unseen data", "Recordings that were kept apart: nothing was fitted to them."),
@@ -151,7 +151,7 @@ def _where(f: Findings) -> Iterator[Block]:
         if share:
             header = [*header, "share of the time flagged"]
             rows = [[*row, f"{100 * share.get(row[0], 0.0):.0f} %"] for row in rows]
-        yield Table("Force and moment that the recalibrated vessel has no cause for", header, rows)
+        yield Table("Force and moment that the vessel as written has no cause for", header, rows)
     if f.missing:
         yield from _missing_figures(f)
     if where["intervals"]:

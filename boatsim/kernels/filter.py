@@ -300,10 +300,10 @@ def kalman(
 
 @njit(error_model="numpy", cache=True)
 def smooth(
-    means: Array, covariances: Array, transitions: Array, predicted: Array, sigma: Array, times: Array, tau: float,
-    p: Array, on: Any,
+    means: Array, covariances: Array, transitions: Array, predicted: Array, gains: Array, sigma: Array, times: Array,
+    tau: float, p: Array, on: Any,
 ) -> None:  # fmt: skip
-    """Rauch-Tung-Striebel smoother, in place on means (N, n) and covariances (N, n, n)."""
+    """Rauch-Tung-Striebel smoother, in place on means (N, n) and covariances (N, n, n); fills its gains (N, n, n)."""
     s = swell(p, on)
     n = NZ if s.frequency > 0.0 else CALM
     for i in range(len(times) - 2, -1, -1):
@@ -315,6 +315,7 @@ def smooth(
             ahead[j, j] *= 1.0 + 1e-9  # positions and rates are driven through the force alone: keep it invertible
             ahead[j, j] += 1e-18
         G = np.linalg.solve(ahead, F @ P).T
+        gains[i, :n, :n] = G
         means[i, :n] += G @ (means[i + 1, :n] - predicted[i + 1, :n])
         change = np.ascontiguousarray(covariances[i + 1, :n, :n]) - ahead
         covariances[i, :n, :n] += G @ change @ G.T
