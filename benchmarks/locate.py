@@ -22,7 +22,7 @@ import json
 import statistics
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -34,10 +34,9 @@ from benchmarks.trials import SHARED
 from boatsim.base import Array
 from boatsim.diagnose.analysis import open_recording, suspects_of
 from boatsim.diagnose.filter import axes_of, nominal_levels, stated_noise, track
-from boatsim.diagnose.fit import converge, fit
-from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.locate import BAND, missing_force
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.rank import baseline
 from boatsim.diagnose.regions import LIKELY, Region, regions
 from boatsim.program import Program
 
@@ -76,7 +75,7 @@ def problem_of(trial: Path) -> Problem:
 
 def recalibrated(problem: Problem) -> Fit:
     """The vessel as written with noise, force levels and its own coefficients fitted."""
-    return converge(problem, fit(problem, (), replace(problem.nominal(), levels=fit_noise(problem))))
+    return baseline(problem)[1]
 
 
 def located(trial: Path) -> Located:

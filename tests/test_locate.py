@@ -14,10 +14,10 @@ from boatsim import vessel
 from boatsim.base import Array
 from boatsim.diagnose.analysis import suspects_of
 from boatsim.diagnose.filter import nominal_levels, track
-from boatsim.diagnose.fit import fit
-from boatsim.diagnose.levels import fit_noise, fit_time_constant
+from boatsim.diagnose.levels import fit_time_constant
 from boatsim.diagnose.locate import BAND, force_left, intervals, missing_force
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.rank import baseline
 from boatsim.diagnose.region_ideas import walls_of
 from boatsim.diagnose.region_tests import Evidence, joint
 from boatsim.diagnose.regions import Region, regions
@@ -205,7 +205,7 @@ def laid(*recordings: Recording) -> tuple[Problem, Fit]:
     problem = Problem(
         [track(r, program) for r in recordings], nominal_levels(BOAT, recordings[0]), {"damping": 0.05, "thrust": 0.05}
     )
-    return problem, fit(problem, (), replace(problem.nominal(), levels=fit_noise(problem)))
+    return problem, baseline(problem)[1]
 
 
 def found_in(missing: Missing, facts: dict[str, Any] | None = None) -> dict[str, Region]:
@@ -356,5 +356,5 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
     rec = Recording("decay", t, {"phi_rad": phi})
     program = Program(ship)
     problem = Problem([track(rec, program)], nominal_levels(ship, rec), {"damping": 0.05, "restoring": 0.02})
-    found = fit(problem, (), replace(problem.nominal(), levels=fit_noise(problem)))
+    found = baseline(problem)[1]
     assert [r.variable for r in regions(problem, found)][: 1 if name else None] == ([name] if name else [])

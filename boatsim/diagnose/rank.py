@@ -55,8 +55,8 @@ def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
 
     Where far more stays unexplained than an effect explains, the tool does not stand for that effect.
     """
-    nominal = fit_noise(problem, problem.nominal())
-    search = _Search(problem, candidates, converge(problem, descend(problem, nominal, 4, 0.1)))
+    nominal, recalibrated = baseline(problem)
+    search = _Search(problem, candidates, recalibrated)
     best = search.selected()
     best, named = search.settled(best)
     while (left := left_over(problem, best)) > UNKNOWN and (dwarfed := [n for n in named if n.gain < DWARFED * left]):
@@ -64,6 +64,12 @@ def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
     tried = search.tried(best)
     first = {n: f.evidence - search.base.evidence for n, f in search.tried(search.base).items()}
     return Ranking(nominal, search.base, best, named, first, tried, left)
+
+
+def baseline(problem: Problem) -> tuple[Fit, Fit]:
+    """The vessel as written with noise and force levels fitted, and recalibrated: its own coefficients refitted."""
+    nominal = fit_noise(problem, problem.nominal())
+    return nominal, converge(problem, descend(problem, nominal, 4, 0.1))
 
 
 class _Search:
