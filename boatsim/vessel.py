@@ -1,7 +1,7 @@
 """A vessel is data: hull, freedoms, effects with values, command channels, loads, and what a diagnosis may assume."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
@@ -34,6 +34,7 @@ class CommandChannel(Table):
     family: str
     side: Literal[-1, 0, 1] = 0  # port, middle, starboard
     actuator: bool = True  # False: only feeds an actuator of the same side (PWM feeds thrust)
+    turns: Literal["", "starboard", "port"] = ""  # what a positive rudder does; recordings that differ are turned
     about: str = ""
 
 
@@ -65,6 +66,8 @@ class VesselFile(Table):
     length: float = Field(gt=0)  # [m]
     beam: float = Field(gt=0)  # [m]
     draught: float = Field(gt=0)  # [m]
+    scale: float | None = Field(default=None, gt=0)  # full scale length / this length
+    scales: dict[str, float] = {}  # vessels that are the same hull at another scale
     body: Body
     geometry: dict[str, float] = {}
     channels: dict[str, CommandChannel] = {}
@@ -94,6 +97,8 @@ class Vessel:
     load: tuple[str, ...]
     loads: tuple[str, ...]  # names of all loads there are
     diagnosis: DiagnosisTable
+    scale: float | None = None  # full scale length / this length
+    scales: Mapping[str, float] = field(default_factory=dict)  # vessels that are the same hull at another scale
 
     @property
     def actuators(self) -> tuple[str, ...]:
@@ -150,6 +155,7 @@ def load(
     vessel = Vessel(
         called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
+        file.scale, file.scales,
     )  # fmt: skip
     return with_effects(with_effects(vessel, file.effect, folder), extra, beside or folder)
 

@@ -16,10 +16,13 @@ from boatsim.diagnose.filter import Track, axes_of, nominal_levels, stated_noise
 from boatsim.diagnose.findings import Findings, Missing
 from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.rank import Ranking, rank
+from boatsim.diagnose.steering_sense import steered
 from boatsim.errors import BadInput, unknown_name
 from boatsim.program import Program
 from boatsim.recording import Recording, read
 from boatsim.vessel import Vessel
+
+SAME_SCALE = 0.01  # scales this close are one
 
 
 @dataclass(frozen=True)
@@ -38,13 +41,21 @@ def vessel_for(recording: Recording, vessel: str | None, load: Sequence[str]) ->
     name = vessel or recording.notes.vessel
     if not name:
         raise BadInput(f"{recording.path}: no vessel given; name one with --vessel or in a recording.toml beside it")
-    return vessels.load(name, load or recording.notes.load, recording.notes.settings)
+    found = vessels.load(name, load or recording.notes.load, recording.notes.settings)
+    wanted = recording.notes.scale
+    if wanted is None or found.scale is None or abs(wanted / found.scale - 1.0) < SAME_SCALE:
+        return found
+    same = next((n for n, scale in found.scales.items() if abs(wanted / scale - 1.0) < SAME_SCALE), None)
+    if vessel or same is None:
+        hint = f"; the vessel at that scale is {same}" if same else ""
+        raise BadInput(f"{recording.path}: scale = {wanted:g}, but {found.name} is at scale {found.scale:g}{hint}")
+    return vessels.load(same, load or recording.notes.load, recording.notes.settings)
 
 
 def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple[Recording, Vessel]:
     """Read a recording twice over: for its vessel, then with that vessel's command limits. Raises BadInput."""
     found = vessel_for(read(path), vessel, load)
-    return read(path, found.limits()).used(), found
+    return steered(read(path, found.limits()).used(), found), found
 
 
 def suspects_of(vessel: Vessel, library: Sequence[str], without: Sequence[str]) -> tuple[Effect, ...]:

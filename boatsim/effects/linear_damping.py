@@ -32,5 +32,5 @@ class LinearDamping(Force):
     sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway")
     yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw")
     roll: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll")
-    sway_by_yaw: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r")
-    yaw_by_sway: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-N_v")
+    sway_by_yaw: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping")
+    yaw_by_sway: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping")

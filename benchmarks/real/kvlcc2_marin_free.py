@@ -1,0 +1,69 @@
+"""A tanker's zig-zags and turning circle (MARIN, full-scale values): `python -m benchmarks.real.kvlcc2_marin_free`.
+
+The nominal is linear about the approach speed with published derivatives (the rigid hull's own centrifugal force, which
+slows it in a turn, is exact), the baseline the same structure with all its coefficients refitted. Fitted on zig-zags
+zz_10, zz_m10, zz_m20, judged on 600 s of the turning circle tc_35 as one free run: speed and yaw rate, since the
+positions have steps of 10 m. The circle goes far below any speed of the fit.
+"""
+
+import numpy as np
+
+from benchmarks.real.common import report, runs_of, table
+from boatsim.base import Array
+from boatsim.diagnose import analysis
+from boatsim.diagnose.analysis import Diagnosis
+from boatsim.diagnose.filter import Track, track
+from boatsim.diagnose.problem import Fit
+from boatsim.diagnose.show import fits_of
+
+NAME = "kvlcc2_marin_free"
+FITTED = ("zz_10", "zz_m10", "zz_m20")
+UNSEEN = "tc_35"
+DURATION = 600.0  # [s]
+GOALS = {"speed [m/s]": 0.35, "yaw rate [deg/s]": 0.09}
+SHARE = 0.15  # of the linear model's error
+
+
+def turn(found: Diagnosis, model: Fit, circle: Track) -> Array:
+    """Rms errors of speed [m/s] and yaw rate [deg/s] over one free run of the circle."""
+    on = found.problem.program.switches(model.suspects)
+    values = found.problem.values(circle, model.free, model.theta)
+    first, y = circle.free_runs(values, on, model.levels, DURATION)[0]
+    recorded = circle.measured[first : first + len(y)]
+    surge = np.cos(y[:, 2]) * y[:, 3] + np.sin(y[:, 2]) * y[:, 4]
+    off = np.column_stack(
+        [surge - recorded[:, circle.signals.index("u_mps")], y[:, 5] - recorded[:, circle.signals.index("r_radps")]]
+    )
+    return np.asarray(np.sqrt(np.mean(off**2, axis=0)) * [1.0, np.degrees(1.0)])
+
+
+def main() -> None:
+    """Diagnose the zig-zags, judge on the circle."""
+    runs = runs_of(NAME)
+    found = analysis.diagnose([runs[n] for n in FITTED], [runs[UNSEEN]])
+    report(found, NAME)
+    recording, boat = analysis.open_recording(runs[UNSEEN], None, ())
+    circle = track(recording.thinned(boat.diagnosis.rate), found.problem.program)
+    nominal, before, after = (turn(found, f, circle) for f in fits_of(found.problem, found.ranking).values())
+    rows = [
+        [what, *(f"{x[i]:.3f}" for x in (nominal, before, after)), f"{after[i] / before[i]:.3f}", f"<= {goal}"]
+        for i, (what, goal) in enumerate(GOALS.items())
+    ]
+    header = [
+        "rms error",
+        "as published",
+        "recalibrated",
+        "patched",
+        "patched / recalibrated",
+        f"goal (and <= {SHARE})",
+    ]
+    table(f"fitted on {', '.join(FITTED)}, unseen {UNSEEN}, one free run of {DURATION:g} s", header, rows)
+    speed = circle.measured[circle.times <= DURATION, circle.signals.index("u_mps")]
+    kept = float(np.sqrt(np.mean((speed - speed[0]) ** 2)))
+    print(f"(a strictly linear hull keeps its approach speed: {kept:.3f} m/s rms)")
+    gains = sorted(found.ranking.named, key=lambda n: -n.gain)
+    table("couplings in order of gain", ["entry", "gain [nats]"], [[n.name, f"{n.gain:.0f}"] for n in gains])
+
+
+if __name__ == "__main__":
+    main()
