@@ -273,14 +273,14 @@ class Channel(Effect):
     compiled `channel(x, side, source, memory, at, dt, values) -> float`: x is the signal so far, side -1 port,
     +1 starboard, 0 middle, source the raw command of the same side in the family `source_family`, memory[at:at +
     slots] this actuator's own memory. The value returned is the mean over the step dt [s] that begins now.
-    `pause(memory, at, values)`, where there is one, says in how many s the signal will jump while its command is held
+    `pause(x, memory, at, values)`, where there is one, says in how many s the signal will jump while its command is held
     (a delayed command arrives): the filter lets no step reach beyond.
     """
 
     acts_on: ClassVar[str] = "thrust"
     source_family: ClassVar[str] = ""
     slots: ClassVar[int] = 0
-    pause: ClassVar[Callable[[Array, int, Any], float] | None] = None
+    pause: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
     channel: ClassVar[Callable[[float, float, float, Array, int, float, Any], float]]
 
 

@@ -20,7 +20,6 @@ from boatsim.world import Tank
 
 SIGN = {"x": 1.0, "y": -1.0, "psi": -1.0, "phi": 1.0}  # SNAME = sign * z-up, coordinate and rate alike
 SAME = 1e-12  # relative: native and Python callback must agree to this at start-up
-SHORTEST = 1e-9  # [s] of a step; what is left of one below this is rounding
 
 
 class State(NamedTuple):
@@ -117,10 +116,12 @@ class Engine:
     def _advance(self) -> None:
         """One step, cut where an actuator's signal jumps."""
         left = self.step
-        while left > SHORTEST:
+        while left > 1e-9:
             dt = left
             if self.code.PAUSES:
-                dt = min(left, max(self.code.pause(self._memory, self._values, self._on), SHORTEST))
+                dt = min(
+                    left, max(self.code.pause(self._commands, self._memory, self._values, self._on), self.code.SHORTEST)
+                )
                 self.model.opt.timestep = dt
             self.code.actuate_in_place(self._commands, self._memory, dt, self._values, self._on, self._act)
             self.data.userdata[-self.code.HELD :] = self._act

@@ -234,7 +234,7 @@ def _composition(program: Program) -> str:
             *_actuate(program),
             "",
             '@njit(inline="always", error_model="numpy")',
-            "def pause(memory, p, on):",
+            "def pause(commands, memory, p, on):",
             *_pause(program),
             "",
             '@njit(inline="always", error_model="numpy")',
@@ -291,7 +291,9 @@ def _pause(program: Program) -> list[str]:
             if not isinstance(effect, Channel) or name not in program.targets(effect):
                 continue
             if type(effect).pause is not None:
-                call = f"left = min(left, pause{i}(memory, {at}, {_call(i, effect, program.offsets[i])}))"
+                call = (
+                    f"left = min(left, pause{i}(commands[{k}], memory, {at}, {_call(i, effect, program.offsets[i])}))"
+                )
                 lines += _guarded(program, i, [call])
             at += type(effect).slots
     return [*lines, "    return left"]

@@ -62,10 +62,12 @@ def test_delay_forgets_what_is_beyond_its_history_without_a_jump() -> None:
 def test_delay_says_when_the_next_command_arrives() -> None:
     memory, dt = np.zeros(CommandDelay.slots), 0.05
     values = CommandDelay(delay=0.12).values()
-    assert CommandDelay.pause(memory, 0, values) == 0.12  # a command given now
-    for i, (command, left) in enumerate([(1.0, 0.07), (1.0, 0.02), (0.5, 0.07), (0.5, 0.02), (0.5, 0.12)]):
+    for i, (command, left) in enumerate([(1.0, 0.12), (1.0, 0.07), (1.0, 0.02), (0.5, 0.12), (0.5, 0.07), (0.5, 0.02)]):
+        assert CommandDelay.pause(command, memory, 0, values) == pytest.approx(left), i
         CommandDelay.channel(command, 1.0, 0.0, memory, 0, dt, values)
-        assert CommandDelay.pause(memory, 0, values) == pytest.approx(left), i
+    CommandDelay.channel(0.5, 1.0, 0.0, memory, 0, dt, values)
+    assert CommandDelay.pause(0.5, memory, 0, values) == np.inf  # nothing is on its way
+    assert CommandDelay.pause(0.7, memory, 0, values) == 0.12
 
 
 def test_play_follows_a_triangle_with_the_loop_of_its_width() -> None:

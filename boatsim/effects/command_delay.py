@@ -47,11 +47,12 @@ def channel(x: float, side: float, source: float, memory: Array, at: int, dt: fl
 
 
 @njit
-def pause(memory: Array, at: int, q: Any) -> float:
+def pause(x: float, memory: Array, at: int, q: Any) -> float:
     """Time until the next command that is on its way arrives; one given now needs the whole delay."""
     if q.delay <= 0.0:
         return inf
-    i, age, left = int(memory[at]), 0.0, q.delay
+    i, age = int(memory[at]), 0.0
+    left = q.delay if x != memory[at + 1 + 2 * i] else inf
     for _ in range(HISTORY):
         age += memory[at + 2 + 2 * i]
         if age >= q.delay - SAME:

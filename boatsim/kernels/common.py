@@ -9,6 +9,7 @@ from boatsim.base import Array
 from boatsim.kernels.laws import HELD, PAUSES, actuate, pause
 from boatsim.kernels.planar import NQ, K, constants, step_in_place
 
+SHORTEST = 1e-3  # [s] of a step; within one, a signal that jumps counts with its mean
 LONG = 1e4  # [s] longer than any actuator takes
 
 
@@ -38,10 +39,10 @@ def rollout(
         for j in range(substeps):
             t, left = t0 + (i * substeps + j) * dt, dt
             if PAUSES:  # cut the step where an actuator's signal jumps
-                while (part := pause(memory, p, on)) < left - 1e-9:
-                    actuate(commands[i], memory, max(part, 1e-9), p, on, act)
-                    step_in_place(t, y, max(part, 1e-9), act, p, on, k, extra)
-                    t, left = t + max(part, 1e-9), left - max(part, 1e-9)
+                while (part := max(pause(commands[i], memory, p, on), SHORTEST)) < left - 1e-9:
+                    actuate(commands[i], memory, part, p, on, act)
+                    step_in_place(t, y, part, act, p, on, k, extra)
+                    t, left = t + part, left - part
             actuate(commands[i], memory, left, p, on, act)
             step_in_place(t, y, left, act, p, on, k, extra)
         out[i + 1] = y[: 2 * NQ]

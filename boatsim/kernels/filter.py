@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from boatsim.base import Array, Shown, Swell
-from boatsim.kernels.common import settle
+from boatsim.kernels.common import SHORTEST, settle
 from boatsim.kernels.laws import HELD, MEMORY, SWELLS, actuate, distorted, late, pause, shown, swell
 from boatsim.kernels.planar import NQ, SHOWS, K, constants, force_slopes, moved, slopes, step_in_place
 
@@ -41,7 +41,7 @@ def predict(
     while h - done > 1e-9:
         while row + 1 < len(times) and times[row + 1] <= begin + done + 1e-9:
             row += 1
-        dt = min(longest, h - done, max(pause(memory, p, on), 1e-9))
+        dt = min(longest, h - done, max(pause(commands[row], memory, p, on), SHORTEST))
         if row + 1 < len(times):
             dt = min(dt, times[row + 1] - begin - done)
         actuate(commands[row], memory, dt, p, on, act)

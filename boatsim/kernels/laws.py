@@ -42,7 +42,7 @@ def actuate(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: A
     raise NotImplementedError
 
 
-def pause(memory: Array, p: Array, on: Any) -> float:
+def pause(commands: Array, memory: Array, p: Array, on: Any) -> float:
     """Time until a channel's signal jumps of itself [s]; a step must not reach beyond it."""
     raise NotImplementedError
 
