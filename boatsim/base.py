@@ -273,8 +273,8 @@ class Channel(Effect):
     compiled `channel(x, side, source, memory, at, dt, values) -> float`: x is the signal so far, side -1 port,
     +1 starboard, 0 middle, source the raw command of the same side in the family `source_family`, memory[at:at +
     slots] this actuator's own memory. The value returned is the mean over the step dt [s] that begins now.
-    `pause(x, memory, at, values)`, where there is one, says in how many s the signal will jump while its command is held
-    (a delayed command arrives): the filter lets no step reach beyond.
+    `pause(x, memory, at, values)`, where there is one, says in how many s the signal will jump while its command x is
+    held (a delayed command arrives): no step reaches beyond.
     """
 
     acts_on: ClassVar[str] = "thrust"

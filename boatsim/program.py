@@ -285,16 +285,14 @@ def _actuate(program: Program) -> list[str]:
 
 def _pause(program: Program) -> list[str]:
     """Body of `pause`: the shortest time until a channel's signal jumps while its command is held."""
-    lines, at = ["    left = np.inf"], 0
+    lines, at, order = ["    left = np.inf"], 0, list(program.vessel.commands)
     for name in program.vessel.actuators:
         for i, effect in enumerate(program.effects):
             if not isinstance(effect, Channel) or name not in program.targets(effect):
                 continue
             if type(effect).pause is not None:
-                call = (
-                    f"left = min(left, pause{i}(commands[{k}], memory, {at}, {_call(i, effect, program.offsets[i])}))"
-                )
-                lines += _guarded(program, i, [call])
+                given = f"commands[{order.index(name)}], memory, {at}, {_call(i, effect, program.offsets[i])}"
+                lines += _guarded(program, i, [f"left = min(left, pause{i}({given}))"])
             at += type(effect).slots
     return [*lines, "    return left"]
 

@@ -1,16 +1,17 @@
 """A whole diagnosis: recordings and a vessel in, findings out."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from boatsim import vessel as vessels
 from boatsim.base import Array, Effect
 from boatsim.content import load_class, names
-from boatsim.diagnose import locate, show
+from boatsim.diagnose import experiment, locate, show
 from boatsim.diagnose.answer import compose
 from boatsim.diagnose.filter import Track, axes_of, nominal_levels, stated_noise, track
 from boatsim.diagnose.findings import Findings, Missing
@@ -23,6 +24,7 @@ from boatsim.recording import Recording, read
 from boatsim.vessel import Vessel
 
 SAME_SCALE = 0.01  # scales this close are one
+NEXT = "next.toml"  # scenario of the next experiment, in the folder of the answer
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,7 @@ class Diagnosis:
     problem: Problem
     ranking: Ranking
     remarks: tuple[str, ...]  # what was read and not used
+    plan: experiment.Plan | None = None  # what to record next
 
 
 def vessel_for(recording: Recording, vessel: str | None, load: Sequence[str]) -> Vessel:
@@ -117,14 +120,16 @@ def diagnose(
     begin = time.perf_counter()
     try:
         ranking = rank(problem, tuple(e.name() for e in problem.program.suspects))
-        findings = _findings(problem, ranking, laid[len(fitted) :], boats[0], note)
+        plan = experiment.next_experiment(problem, *experiment.question(ranking))
+        wanted = experiment.entry(plan, NEXT)
+        findings = _findings(problem, ranking, laid[len(fitted) :], boats[0], note, wanted)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         raise BadInput(
             f"{runs[0]}: {boats[0].name} can not follow this recording ({error}); are its units right?"
         ) from None
     findings.answer["seconds"] = round(time.perf_counter() - begin, 3)
     return Diagnosis(
-        findings, boats[0], problem, ranking, tuple(dict.fromkeys(m for r, _ in opened for m in r.remarks))
+        findings, boats[0], problem, ranking, tuple(dict.fromkeys(m for r, _ in opened for m in r.remarks)), plan
     )
 
 
@@ -153,7 +158,14 @@ def _compile(problem: Problem) -> None:
     track.free_runs(problem.values(track, nominal.free, nominal.theta), on, problem.ambient, float(np.ptp(track.times)))
 
 
-def _findings(problem: Problem, ranking: Ranking, unseen: Sequence[Track], vessel: Vessel, note: str) -> Findings:
+def _findings(
+    problem: Problem,
+    ranking: Ranking,
+    unseen: Sequence[Track],
+    vessel: Vessel,
+    note: str,
+    wanted: Mapping[str, Any],
+) -> Findings:
     """Locate and show, then the answer."""
     longest = max(float(np.ptp(t.times)) for t in unseen)
     horizon = min(vessel.diagnosis.horizon, float(f"{longest:.3g}") if longest < vessel.diagnosis.horizon else np.inf)
@@ -181,7 +193,7 @@ def _findings(problem: Problem, ranking: Ranking, unseen: Sequence[Track], vesse
     }
     held_out = tuple(t.name for t in unseen)
     return Findings(
-        compose(problem, ranking, forces, stretches, held_out, horizon), vessel.name,
+        compose(problem, ranking, forces, stretches, held_out, horizon, wanted), vessel.name,
         tuple(t.name for t in problem.tracks), held_out, note, missing, tuple(stretches),
         tuple(show.remarks(parts, problem.tracks, show.errors(stretches), ranking)), coefficients,
         (table,) if table[2] else (), {type(e).name(): type(e).words for e in problem.program.suspects},

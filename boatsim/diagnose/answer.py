@@ -1,6 +1,6 @@
 """The answer file of a diagnosis: verdict, effects with their parameters, where, limits, fit."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,8 +26,9 @@ def compose(
     stretches: Sequence[FreeRun],
     held_out: Sequence[str],
     horizon: float,
+    wanted: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """diagnosis.json as a dictionary, without the seconds."""
+    """diagnosis.json as a dictionary, without the seconds; `wanted` is what it says of the next experiment."""
     effects = [_effect(problem, ranking.best, n) for n in ranking.named]
     verdict = "ambiguous" if any(e["tied_with"] for e in effects) else "named" if effects else "nothing_missing"
     verdict = "unknown" if ranking.unknown else verdict
@@ -54,7 +55,7 @@ def compose(
             "heading_rms_rad": found.get("heading_rms_rad", none),
             **({"roll_rms_rad": found["roll_rms_rad"]} if "roll_rms_rad" in found else {}),
         },
-        "next_experiment": {},
+        "next_experiment": dict(wanted),
         "patch": "patched.toml",
     }
     answer["sentence"] = report_words.sentence(answer)

@@ -12,8 +12,9 @@ import numpy as np
 from boatsim import scenario as scenarios
 from boatsim.base import Array
 from boatsim.diagnose import patch, report, show
-from boatsim.diagnose.analysis import Diagnosis, composed, open_recording
+from boatsim.diagnose.analysis import NEXT, Diagnosis, composed, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
+from boatsim.diagnose.experiment import scenario_text
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.findings import FreeRun
 from boatsim.diagnose.levels import fit_noise
@@ -57,9 +58,19 @@ def write(found: Diagnosis, out: Path) -> None:
     report.write(found.findings, out)
     kinds = {e.name(): type(e) for e in found.problem.program.suspects}
     patch.write(found.vessel, found.ranking.best, kinds, out / "patched.toml")
+    _write_next(found, out / NEXT)
     overlay(found, out / "diagnosis.rrd")
     with replacing(out / "diagnosis.json") as temporary:
         temporary.write_text(answer, encoding="utf-8")
+
+
+def _write_next(found: Diagnosis, path: Path) -> None:
+    """Scenario of the next experiment; without one, none of an earlier diagnosis is left lying there."""
+    if found.plan is None:
+        path.unlink(missing_ok=True)
+        return
+    with replacing(path) as temporary:
+        temporary.write_text(scenario_text(found.plan, found.vessel), encoding="utf-8")
 
 
 def summary(found: Diagnosis) -> list[str]:
@@ -79,6 +90,9 @@ def summary(found: Diagnosis) -> list[str]:
         if fit.get(key):
             cells = ", ".join(f"{m} {fit[key][m] * scale:.4g}" for m in show.MODELS)
             lines.append(f"  {key.split('_')[0]} rms [{unit}]: {cells}")
+    if wanted := answer["next_experiment"]:
+        names, nats = ", ".join(wanted["separates"]), wanted["expected_gain_nats"]
+        lines.append(f"to record next: {wanted['manoeuvre']} (tells apart {names}; expected gain {nats:.3g} nats)")
     return lines
 
 

@@ -1,5 +1,6 @@
 """Names what is missing: every suspect fitted in the filter, scored by evidence, selected forward, pruned backward."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,7 +30,7 @@ class Named:
     gain: float  # [nats] on top of the others named
     probability: float
     tied_with: tuple[str, ...]  # look-alikes, at most three
-    rivals: dict[str, Fit]  # fits with the next best suspects in its place
+    rivals: Mapping[str, Fit]  # fits with the next best suspects in its place
 
 
 @dataclass(frozen=True)

@@ -47,8 +47,8 @@ def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
     return [{**default, **s} for s in given]
 
 
-def _joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -> Fit:
-    """`base` with one more suspect at its start, not yet scored."""
+def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -> Fit:
+    """`base` with one more suspect at a start of its parameters, not yet scored."""
     suspects = (*base.suspects, name)
     free = problem.parameters(suspects)
     known = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
@@ -58,7 +58,7 @@ def _joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) 
 
 def _look(problem: Problem, base: Fit, effect: Effect, known: Array, before: float) -> Fit:
     """One suspect: a first step from each of its starts, the best of them followed further."""
-    begun = [_joined(problem, base, effect.name(), s) for s in starts(problem, effect)]
+    begun = [joined(problem, base, effect.name(), s) for s in starts(problem, effect)]
     first = [_step(problem, b, known, ROUNDS if len(begun) == 1 else 1) for b in begun]
     best = max(first, key=lambda f: f[1])
     if len(begun) > 1:
@@ -102,7 +102,7 @@ def _random_look(problem: Problem, base: Fit, effect: Effect) -> Fit:
     best: Fit | None = None
     for start in starts(problem, effect):
         rms = {n: of_axis.get(n, 0.0) for n in type(effect).strength}
-        at = replace(_joined(problem, base, effect.name(), {**start, **rms}), levels=levels)
+        at = replace(joined(problem, base, effect.name(), {**start, **rms}), levels=levels)
         score = problem.likelihood(at.free, at.theta, on, levels) + log_prior(at.free, at.theta)
         if best is None or score > best.evidence:
             best = replace(at, evidence=score)

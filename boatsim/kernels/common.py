@@ -39,10 +39,12 @@ def rollout(
         for j in range(substeps):
             t, left = t0 + (i * substeps + j) * dt, dt
             if PAUSES:  # cut the step where an actuator's signal jumps
-                while (part := max(pause(commands[i], memory, p, on), SHORTEST)) < left - 1e-9:
+                part = max(pause(commands[i], memory, p, on), SHORTEST)
+                while part < left - 1e-9:
                     actuate(commands[i], memory, part, p, on, act)
                     step_in_place(t, y, part, act, p, on, k, extra)
                     t, left = t + part, left - part
+                    part = max(pause(commands[i], memory, p, on), SHORTEST)
             actuate(commands[i], memory, left, p, on, act)
             step_in_place(t, y, left, act, p, on, k, extra)
         out[i + 1] = y[: 2 * NQ]
