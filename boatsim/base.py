@@ -100,12 +100,20 @@ def angle_fields(actuators: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"{part}_{name}" for name in actuators if name.endswith("_rad") for part in ("cos", "sin"))
 
 
+def fixed_fields(actuators: tuple[str, ...]) -> dict[str, float]:
+    """cos_steer_port_rad 1, sin_steer_port_rad 0, ...: a thruster without a steering channel points straight ahead."""
+    steers = [n.replace("thrust_", "steer_").removesuffix("_N") + "_rad" for n in actuators if n.startswith("thrust_")]
+    fixed = [steer for steer in steers if steer not in actuators]
+    return {f"{part}_{steer}": value for part, value in (("cos", 1.0), ("sin", 0.0)) for steer in fixed}
+
+
 @cache
 def motion_type(actuators: tuple[str, ...]) -> Any:
-    """NamedTuple type of a vessel: fields of `Motion`, its actuators, then cosine and sine of each angle of them."""
+    """NamedTuple type of a vessel: fields of `Motion`, its actuators, then cosine and sine of each angle."""
     from collections import namedtuple
 
-    return namedtuple("VesselMotion", (*Motion._fields, *actuators, *angle_fields(actuators)))
+    angles = (*angle_fields(actuators), *fixed_fields(actuators))
+    return namedtuple("VesselMotion", (*Motion._fields, *actuators, *angles))
 
 
 def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Any:
@@ -117,6 +125,7 @@ def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Any:
     full["vr"] = given.get("v", 0.0) - (c * current[1] - s * current[0])
     for name in (n for n in actuators if n.endswith("_rad")):
         full[f"cos_{name}"], full[f"sin_{name}"] = math.cos(given[name]), math.sin(given[name])
+    full |= fixed_fields(actuators)
     return motion_type(actuators)(**(full | given))
 
 

@@ -29,6 +29,7 @@ from boatsim.base import (
     Measurement,
     Unsteady,
     angle_fields,
+    fixed_fields,
 )
 from boatsim.content import address, module_at
 from boatsim.errors import BadInput
@@ -163,6 +164,7 @@ def _composition(program: Program) -> str:
     actuators = program.vessel.actuators
     angles = angle_fields(actuators)
     held = [f"act[{i}]" for i in range(len(actuators) + len(angles))]
+    seen = [*held, *map(repr, fixed_fields(actuators).values())]
     head = [
         '"""Effects of a vessel, composed by boatsim.program; not meant to be edited."""',
         "from math import cos, sin",
@@ -213,7 +215,7 @@ def _composition(program: Program) -> str:
             "",
             '@njit(inline="always")',
             "def sees(t, x, y, psi, phi, u, v, p, r, ur, vr, c, s, act):",
-            f"    return Seen({', '.join(['t, x, y, psi, phi, u, v, p, r, ur, vr, c, s', *held])})",
+            f"    return Seen({', '.join(['t, x, y, psi, phi, u, v, p, r, ur, vr, c, s', *seen])})",
             "",
             '@njit(inline="always", error_model="numpy")',
             "def wrench(m, p, on):",

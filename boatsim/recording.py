@@ -73,15 +73,20 @@ class Recording:
         return self.between(*self.notes.use) if self.notes.use else self
 
 
-def read(path: Path | str, channels: Mapping[str, tuple[float, float]] | None = None) -> Recording:
+def read(
+    path: Path | str,
+    channels: Mapping[str, tuple[float, float]] | None = None,
+    columns: Mapping[str, str] | None = None,
+) -> Recording:
     """A recording with the notes of the nearest `recording.toml`.
 
     `channels` are the vessel's command channels with their lowest and highest value; those not among the columns are
-    simply absent. Raises BadInput, one line with file, row and column, for anything that can not be used.
+    simply absent. `columns` says what the vessel's recordings call our names; the notes' own word wins. Raises
+    BadInput, one line with file, row and column, for anything that can not be used.
     """
     path, channels = Path(path), channels or {}
     found = notes_for(path) if path.is_file() else NotesFile()
-    raw = _renamed(_raw(path), found.columns)
+    raw = _renamed(_raw(path), {**(columns or {}), **found.columns})
     needed = [n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or _is_command(n)]
     _check_columns(raw, needed)
     _check_cells(raw, needed)

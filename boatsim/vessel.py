@@ -71,6 +71,7 @@ class VesselFile(Table):
     body: Body
     geometry: dict[str, float] = {}
     channels: dict[str, CommandChannel] = {}
+    columns: dict[str, str] = {}  # our name -> the column of this vessel's recordings, "-" in front flips the sign
     effect: list[dict[str, Any]] = []
     loads: dict[str, dict[str, Any]] = {}
     diagnosis: DiagnosisTable = DiagnosisTable()
@@ -99,6 +100,7 @@ class Vessel:
     diagnosis: DiagnosisTable
     scale: float | None = None  # full scale length / this length
     scales: Mapping[str, float] = field(default_factory=dict)  # vessels that are the same hull at another scale
+    columns: Mapping[str, str] = field(default_factory=dict)  # our name -> column of its recordings, "-" flips the sign
 
     @property
     def actuators(self) -> tuple[str, ...]:
@@ -155,7 +157,7 @@ def load(
     vessel = Vessel(
         called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
-        file.scale, file.scales,
+        file.scale, file.scales, file.columns,
     )  # fmt: skip
     return with_effects(with_effects(vessel, file.effect, folder), extra, beside or folder)
 

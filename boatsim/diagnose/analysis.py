@@ -21,6 +21,7 @@ from boatsim.diagnose.steering_sense import steered
 from boatsim.errors import BadInput, unknown_name
 from boatsim.program import Program
 from boatsim.recording import Recording, read
+from boatsim.recording_notes import notes_for
 from boatsim.vessel import Vessel
 
 SAME_SCALE = 0.01  # scales this close are one
@@ -39,26 +40,27 @@ class Diagnosis:
     plan: experiment.Plan | None = None  # what to record next
 
 
-def vessel_for(recording: Recording, vessel: str | None, load: Sequence[str]) -> Vessel:
+def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
     """The vessel of a recording: the name on the command line, else the one its notes give. Raises BadInput."""
-    name = vessel or recording.notes.vessel
+    notes = notes_for(path).notes
+    name = vessel or notes.vessel
     if not name:
-        raise BadInput(f"{recording.path}: no vessel given; name one with --vessel or in a recording.toml beside it")
-    found = vessels.load(name, load or recording.notes.load, recording.notes.settings)
-    wanted = recording.notes.scale
+        raise BadInput(f"{path}: no vessel given; name one with --vessel or in a recording.toml beside it")
+    found = vessels.load(name, load or notes.load, notes.settings)
+    wanted = notes.scale
     if wanted is None or found.scale is None or abs(wanted / found.scale - 1.0) < SAME_SCALE:
         return found
     same = next((n for n, scale in found.scales.items() if abs(wanted / scale - 1.0) < SAME_SCALE), None)
     if vessel or same is None:
         hint = f"; the vessel at that scale is {same}" if same else ""
-        raise BadInput(f"{recording.path}: scale = {wanted:g}, but {found.name} is at scale {found.scale:g}{hint}")
-    return vessels.load(same, load or recording.notes.load, recording.notes.settings)
+        raise BadInput(f"{path}: scale = {wanted:g}, but {found.name} is at scale {found.scale:g}{hint}")
+    return vessels.load(same, load or notes.load, notes.settings)
 
 
 def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple[Recording, Vessel]:
-    """Read a recording twice over: for its vessel, then with that vessel's command limits. Raises BadInput."""
-    found = vessel_for(read(path), vessel, load)
-    return steered(read(path, found.limits()).used(), found), found
+    """A recording read with its vessel's names of columns and command limits. Raises BadInput."""
+    found = vessel_for(path, vessel, load)
+    return steered(read(path, found.limits(), found.columns).used(), found), found
 
 
 def suspects_of(vessel: Vessel, library: Sequence[str], without: Sequence[str]) -> tuple[Effect, ...]:

@@ -36,9 +36,18 @@ class AddedMass(Inertia, Force):
     inertia: ClassVar = inertia
     law: ClassVar = law
 
-    surge: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-X_udot")
-    sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-Y_vdot")
+    surge: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-X_udot", fit=True, spread=0.5, axis="surge")
+    sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-Y_vdot", fit=True, spread=5.0, axis="sway")
     sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead")
-    yaw: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="-N_rdot about the point where sway acts")
-    roll: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot")
+    yaw: float = param(
+        0.0,
+        low=0.0,
+        high=1e13,
+        unit="kg m^2",
+        words="-N_rdot about the point where sway acts",
+        fit=True,
+        spread=0.7,
+        axis="yaw",
+    )
+    roll: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot", fit=True, spread=0.02, axis="roll")
     coriolis: float = param(1.0, low=0.0, high=1.0, unit="", words="share of the Coriolis force that is modelled")

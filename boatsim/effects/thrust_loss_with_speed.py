@@ -24,7 +24,7 @@ class ThrustLossWithSpeed(Force):
 
     words: ClassVar[str] = "the propellers push less the faster the boat goes"
     shown_by: ClassVar[str] = "the same thrust command from rest and at full speed"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9"
+    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T(J)"
     law: ClassVar = law
 
     loss: float = param(0.0, low=0.0, high=50.0, unit="s/m", words="share lost per speed ahead", fit=True, spread=0.5)
