@@ -19,6 +19,7 @@ from boatsim.vessel import Vessel
 
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
 FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sample
+STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
 CHANNELS = {  # measured signal -> (noise family, freedom, rate or position)
@@ -71,6 +72,8 @@ class Track:
     _store: Any = field(init=False, repr=False, default=None)
 
     def __post_init__(self) -> None:
+        self.rate = quickest(self.program, self.values, self.commands[0])
+        self.step = min(FIT_STEP, STEADY / max(self.rate, 1e-9))
         nq = self.program.module.NQ
         self.start, self.spread = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq))
         self._gains = np.zeros((*self.measured.shape, self.program.module.NZ))
@@ -86,6 +89,11 @@ class Track:
                 self.spread[nq + code, nq + code] = float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
         if nq == 3:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
             self.spread[3, 3] = self.spread[4, 4] = max(self.spread[3, 3], self.spread[4, 4])
+
+    @property
+    def stiff(self) -> bool:
+        """Whether a motion of the hull dies out within a sample: its damping then moves the filter's gains most."""
+        return self.rate * float(np.median(np.diff(self.times))) > 1.0
 
     def likelihood(self, values: Array, on: Array, levels: Levels) -> float:
         """Log likelihood of parameters."""
@@ -157,7 +165,7 @@ class Track:
                 covariance[nq + i, nq + i] = 1.0
         means, covariances, transitions, predicted = keep or self._nothing()
         found = self.program.module.kalman(
-            self.times, self.measured, self.codes, self.commands, FIT_STEP, self.body, values, on, levels.force**2,
+            self.times, self.measured, self.codes, self.commands, self.step, self.body, values, on, levels.force**2,
             levels.time_constant, noise, self.start, covariance, full, self._gains, self._scale, self._white,
             keep is not None, means, covariances, transitions, predicted,
         )  # fmt: skip
@@ -220,6 +228,23 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
             f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of {vessel.length:g} m; are they in m?"
         )
     return laid
+
+
+def quickest(program: Program, values: Array, command: Array) -> float:
+    """Rate [1/s] at which the quickest motion of the nominal hull dies out at rest."""
+    code, on = program.module, program.switches()
+    nq = code.NQ
+    k, act, memory = np.zeros(code.K), np.zeros(code.HELD), np.zeros(program.memory_size)
+    code.constants(program.body, values, on, k)
+    code.settle(command, memory, values, on, act)
+    y, rest, slope = np.zeros(2 * nq), np.zeros(nq), np.zeros((nq, nq))
+    base = np.zeros(nq)
+    code.slopes(0.0, y, act, values, on, k, rest, base)
+    for j in range(nq):
+        y[nq + j], column = 1e-6, np.zeros(nq)
+        code.slopes(0.0, y, act, values, on, k, rest, column)
+        y[nq + j], slope[:, j] = 0.0, (column - base) / 1e-6
+    return float(np.abs(np.linalg.eigvals(slope)).max()) if np.isfinite(slope).all() else 0.0
 
 
 def stated_values(program: Program, facts: Mapping[str, Any]) -> Array:

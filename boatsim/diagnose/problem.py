@@ -106,6 +106,11 @@ class Problem:
         """Whitened prediction errors of all runs with the gains of the last `likelihood`."""
         return np.concatenate([t.whitened(self.values(t, free, theta), on, levels) for t in self.tracks])
 
+    @property
+    def stiff(self) -> bool:
+        """Whether the hull's quickest motion dies out within a sample of any run."""
+        return any(t.stiff for t in self.tracks)
+
     def white(self) -> Array:
         """Whitened prediction errors of all runs, of the last pass."""
         return np.concatenate([t.white for t in self.tracks])

@@ -22,9 +22,12 @@ def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, 
     problem.likelihood(base.free, base.theta, on, base.levels)  # the gains that all looks share
     white = problem.white()
     known = jacobian(problem, base.free, base.theta, on, base.levels, white)
+    # base is a maximum: its gradient is zero, whatever gains held still make of it
+    space = Space(base.free)
+    off = known.T @ white + (base.theta - space.mean) / space.sd
     before = log_prior(base.free, base.theta) - 0.5 * float(white @ white) - _half_determinant(known)
     effects = {e.name(): e for e in problem.program.effects}
-    tried = {n: _look(problem, base, effects[n], known, before) for n in candidates if not _random(effects[n])}
+    tried = {n: _look(problem, base, effects[n], (known, off), before) for n in candidates if not _random(effects[n])}
     return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if _random(effects[n])}
 
 
@@ -56,7 +59,7 @@ def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -
     return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf)
 
 
-def _look(problem: Problem, base: Fit, effect: Effect, known: Array, before: float) -> Fit:
+def _look(problem: Problem, base: Fit, effect: Effect, known: tuple[Array, Array], before: float) -> Fit:
     """One suspect: a first step from each of its starts, the best of them followed further."""
     begun = [joined(problem, base, effect.name(), s) for s in starts(problem, effect)]
     first = [_step(problem, b, known, ROUNDS if len(begun) == 1 else 1) for b in begun]
@@ -66,23 +69,28 @@ def _look(problem: Problem, base: Fit, effect: Effect, known: Array, before: flo
     return replace(best[0], evidence=base.evidence + best[1] - before)
 
 
-def _step(problem: Problem, start: Fit, known: Array, rounds: int) -> tuple[Fit, float]:
-    """Gauss-Newton steps; the columns of what was free before stay as they are. Fit and score with its determinant."""
+def _step(problem: Problem, start: Fit, base: tuple[Array, Array], rounds: int) -> tuple[Fit, float]:
+    """Gauss-Newton steps; the columns of what was free before stay as they are. Fit and score with its determinant.
+
+    `base` holds these columns and the gradient that held gains show where there is none.
+    """
     free, levels = start.free, start.levels
     on = problem.program.switches(start.suspects)
     space = Space(free)
-    theta = space.clipped(start.theta)
+    theta = middle = space.clipped(start.theta)
+    known, off = base[0], np.append(base[1], np.zeros(len(free) - len(base[1])))
 
     def look(x: Array) -> tuple[Array, float]:
         white = problem.whitened(free, x, on, levels)
-        return white, log_prior(free, x) - 0.5 * float(white @ white)
+        return white, log_prior(free, x) - 0.5 * float(white @ white) + float(off @ ((x - middle) / space.sd))
 
     (white, score), damping, J = look(theta), 1e-3, known
     for _ in range(rounds):
         J = np.hstack([known, jacobian(problem, free, theta, on, levels, white, known.shape[1])])
         gain = 0.0
         for _ in range(3):
-            trial = space.stepped(theta, J, white, damping)
+            g = off - J.T @ white - (theta - space.mean) / space.sd
+            trial = space.stepped(theta, J, g, damping)
             after, value = look(trial)
             if np.isfinite(value) and value > score:
                 theta, white, gain, score = trial, after, value - score, value

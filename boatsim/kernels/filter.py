@@ -70,16 +70,26 @@ def transition(
         for i in range(NQ):
             A[NQ + i, j] = (other[i] - base[i]) / step
     force_slopes(y, k, A, NQ, NY)
-    # exp(A h) to third order; only the rows of the rates and, above them, their own integrals are not trivial
+    # exp(A h) to third order of so small a part of h that it converges for a stiff hull too, then squared up again;
+    # only the rows of the rates and, above them, their own integrals are not trivial
+    part, stiffest = h, 0.0
+    for i in range(NQ, NY):
+        stiffest = max(stiffest, abs(A[i, i]))
+    while part * stiffest > 1.0:
+        part *= 0.5
     for i in range(NY):
         for j in range(CALM):
-            A[i, j] *= h
+            A[i, j] *= part
     multiply(A, A, B, CALM)
     multiply(B, A, F, CALM)
     for i in range(CALM):
         for j in range(CALM):
             F[i, j] = A[i, j] + 0.5 * B[i, j] + F[i, j] / 6.0
         F[i, i] += 1.0
+    while part < 0.75 * h:
+        multiply(F, F, B, CALM)
+        F[:CALM, :CALM] = B[:CALM, :CALM]
+        part *= 2.0
     for i in range(NY, CALM):
         F[i, i] = decay
     if n > CALM:
