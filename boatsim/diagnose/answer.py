@@ -90,7 +90,8 @@ def _parameter(best: Fit, kind: type[Effect], name: str) -> dict[str, Any]:
     about = kind.params()[name]
     value, sd = best.value(kind.name(), name)
     if name in (kind.strength or kind.params()):
-        sd = float(np.hypot(sd, SHAPE * abs(value - about.absent)))
+        strength = min(abs(value - about.absent), abs(value) or np.inf)  # some laws are absent at "very fast"
+        sd = float(np.hypot(sd, SHAPE * strength))
     elif about.unit == "rad":
         sd = float(np.hypot(sd, SHAPE))
     return {"value": wrap(value) if about.unit == "rad" else value, "sd": sd, "unit": about.unit}

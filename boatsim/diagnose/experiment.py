@@ -76,12 +76,12 @@ def _plan(course: Course, separates: tuple[str, ...], gains: Mapping[str, float]
 def question(ranking: Ranking) -> tuple[Fit, dict[str, Fit]]:
     """What a ranking leaves to be decided: the winner, and its rivals by name.
 
-    Rivals are the look-alikes of what was named; without any, the nearest ones of the least certain. Where nothing was
+    Rivals are the look-alikes of what was named; without any, the nearest one of the least certain. Where nothing was
     named, the best entry stands against nothing at all and its own look-alikes, if it gains anything.
     """
     tied = [n for n in ranking.named if n.tied_with] or sorted(ranking.named, key=lambda n: n.probability)[:1]
     if tied:
-        rivals = {r: f for n in tied for r, f in n.rivals.items() if r in n.tied_with or not n.tied_with}
+        rivals = {r: n.rivals[r] for n in tied for r in n.tied_with or list(n.rivals)[:1]}
         return ranking.best, rivals
     order = sorted(ranking.last, key=lambda n: -ranking.last[n].evidence)
     hints = [n for n in order if ranking.last[n].evidence > ranking.best.evidence]

@@ -8,7 +8,7 @@ import numpy as np
 from boatsim.base import Array
 from boatsim.diagnose.filter import Track, segments
 from boatsim.diagnose.findings import FreeRun
-from boatsim.diagnose.fit import converge
+from boatsim.diagnose.fit import descend
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.rank import UNKNOWN_FACTOR, Ranking
 from boatsim.recording import Recording
@@ -98,7 +98,7 @@ def by_part(
     out = []
     for track in tracks:
         own = Problem([track], problem.ambient, problem.uncertainty)
-        alone = {"alone": converge(own, replace(fits["recalibrated"], evidence=-np.inf))}
+        alone = {"alone": descend(own, fits["recalibrated"], 6, 0.1)}
         for family, found in errors(free_runs(problem, {**fits, **alone}, [track], horizon)).items():
             out.append((track, family, found))
     return out
