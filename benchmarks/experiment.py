@@ -65,7 +65,7 @@ class Outcome:
 def program() -> Program:
     """The vessel with all its suspects, compiled once for all cases."""
     boat = vessel.load(BOAT)
-    return Program(boat, suspects_of(boat, (), ()))
+    return Program(boat, suspects_of(boat, ()))
 
 
 def drawn(truth: str, rng: np.random.Generator) -> Boat:

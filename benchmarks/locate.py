@@ -65,7 +65,7 @@ def problem_of(trial: Path) -> Problem:
     """The recordings of a trial laid on the vessel's program, as a diagnosis does it."""
     opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
     recordings, boat = [r.thinned(b.diagnosis.rate) for r, b in opened], opened[0][1]
-    program = Program(boat, suspects_of(boat, (), ()))
+    program = Program(boat, suspects_of(boat, ()))
     tracks = [track(r, program, stated_noise(boat, recordings[0])) for r in recordings]
     uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}
     return Problem(

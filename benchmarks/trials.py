@@ -1,17 +1,29 @@
-"""Diagnoses a folder of trials in parallel: `python -m benchmarks.trials TRIALS [--out RESULTS] [--all]`.
+"""Diagnoses a folder of trials: `python -m benchmarks.trials [TRIALS] [--out RESULTS] [--unknowns] [--jobs N]`.
 
 TRIALS/Txxx/ holds run_1.csv, run_2.csv (to diagnose from), run_3.csv (held out) and answer.json. Writes
-RESULTS/Txxx/diagnosis.json and replay.csv of run_3 with the patched vessel, then prints how the answers compare with
-the truth and the seconds per diagnosis. Without --all only trials whose truth is in the vessel's library count.
+RESULTS/Txxx/diagnosis.json, patched.toml and replay.csv (free runs of 6 s over run_3), then prints how the answers
+compare with the truth:
+
+- a trial is exact if every true effect is named and nothing else; an effect counts if it is visible (adds more than
+  6 nats in the program that made the trials);
+- held-out skill is 1 where the patched boat follows run_3 as closely as the fitted true structure, 0 where it is no
+  better than the recalibrated nominal;
+- coverage is the share of true parameters within two stated standard deviations, over exact answers;
+- reliability: of all entries given a probability in some range in trials with one effect or none, how many were true.
+
+--unknowns adds the table made by taking the true entry, what counts as the same and its look-alikes out of the library.
 """
 
 import argparse
 import contextlib
+import csv
 import io
 import json
+import math
 import os
 import statistics
 import time
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
@@ -19,74 +31,183 @@ from typing import Any
 from rich.progress import Progress
 
 SHARED = Path(__file__).parents[2] / "shared" / "recordings" / "trials" / "practice"
+VESSEL, HORIZON = "trial_boat", 6.0  # [s]
+BINS = (0.0, 0.02, 0.1, 0.3, 0.7, 0.95, 1.0)
+Answers = dict[str, dict[str, Any]]  # by trial
+WORTH = 0.15  # share of the recalibrated error that the true structure must save for a skill to be told
 
 
-def diagnose_one(trial: Path, out: Path) -> None:
-    """Diagnose one trial and replay its held-out run with the patched vessel."""
+def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[str, Any]:
+    """Diagnose one trial and replay its held-out run with the patched vessel; the answer."""
     from boatsim.diagnose import analysis, commands, patch
 
-    vessel = "trial_boat"
-    found = analysis.diagnose([trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"], vessel)
+    found = analysis.diagnose(
+        [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"], VESSEL, without=without
+    )
     out.mkdir(parents=True, exist_ok=True)
     kinds = {e.name(): type(e) for e in found.problem.program.suspects}
     patch.write(found.vessel, found.ranking.best, kinds, out / "patched.toml")
     with contextlib.redirect_stdout(io.StringIO()):
-        commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], 6.0, out)
+        commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], HORIZON, out)
     (out / "diagnosis.json").write_text(json.dumps(found.findings.answer, indent=1))
+    return dict(found.findings.answer)
 
 
-def in_library(answer: dict[str, Any]) -> bool:
-    """Whether the tool has a name for every concealed effect."""
-    from boatsim import vessel
+def all_of(jobs: int, todo: dict[str, tuple[Path, Path, tuple[str, ...]]], what: str) -> Answers:
+    """Answers of many diagnoses, by name."""
+    with ProcessPoolExecutor(jobs) as pool, Progress() as progress:
+        task = progress.add_task(what, total=len(todo))
+        waiting = {pool.submit(diagnose_one, *args): name for name, args in todo.items()}
+        done = {}
+        for future in as_completed(waiting):
+            done[waiting[future]] = future.result()
+            progress.advance(task)
+    return dict(sorted(done.items()))
 
-    known = set(vessel.load("trial_boat").diagnosis.suspects)
-    return all(e["name"] in known for e in answer["effects"])
+
+# ---- one trial
 
 
-def compare(answer: dict[str, Any], found: dict[str, Any]) -> dict[str, Any]:
-    """One trial's row: what was there, what was said."""
-    truth = {e["name"] for e in answer["effects"]}
-    said = {e["name"] for e in found["effects"]} - set(answer.get("tolerated", []))
+def truth_of(answer: dict[str, Any]) -> set[str]:
+    """Names that would be exactly right."""
+    return {"unknown"} if answer["kind"] == "unknown" else {e["name"] for e in answer["effects"]}
+
+
+def said_of(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
+    """Names the tool stands for, in the answer's own names where several count as the same."""
+    truth = truth_of(answer)
     same = {other: name for name, others in answer.get("equivalent", {}).items() for other in others}
-    said = {n if n in truth else same.get(n, n) for n in said}
+    said = {e["name"] for e in found["effects"]} - set(answer.get("tolerated", []))
+    return {n if n in truth else same.get(n, n) for n in said} | ({"unknown"} if found["unknown"]["flag"] else set())
+
+
+def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:
+    """Errors of the parameters that can be compared, in stated standard deviations."""
+    out = []
+    stated = {e["name"]: e["parameters"] for e in found["effects"]}
+    for effect in answer["effects"]:
+        for key, true in (effect.get("parameters") or {}).items():
+            fitted = stated.get(effect["name"], {}).get(key)
+            if fitted is None or isinstance(true, bool) or key in effect.get("not_compared", []):
+                continue
+            error = fitted["value"] - true
+            error = math.remainder(error, 2 * math.pi) if key == "toward_rad" else error
+            out.append(abs(error) / fitted["sd"])
+    return out
+
+
+def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
+    """Share of the error that the true structure saves on run_3 and the patched boat too; None if it saves none."""
+    reference = answer.get("reference_position_rms_m", {})
+    recalibrated, true = reference.get("recalibrated"), reference.get("true_structure")
+    if recalibrated is None or true is None or recalibrated - true <= max(1e-3, WORTH * recalibrated):
+        return None
+    with (trial / "run_3.csv").open() as file:
+        recorded = {round(float(row["t_s"]), 3): row for row in csv.DictReader(file)}
+    with (out / "replay.csv").open() as file:
+        rows = [(row, recorded[round(float(row["t_s"]), 3)]) for row in csv.DictReader(file)]
+    squares = [(float(a[c]) - float(b[c])) ** 2 for a, b in rows for c in ("x_m", "y_m")]
+    patched = math.sqrt(sum(squares) / len(squares))
+    return max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
+
+
+# ---- all trials
+
+
+def share(rows: Sequence[bool]) -> str:
+    """5/6 of the rows."""
+    return f"{sum(rows)}/{len(rows)}" if rows else "none there"
+
+
+def quantile(values: Sequence[float], q: float) -> float:
+    """The value below which a share q of them lies."""
+    return sorted(values)[int(q * (len(values) - 1))]
+
+
+def figures(answers: Answers, found: Answers) -> dict[str, str]:
+    """Names right and wrong, by kind of trial."""
+    kind = {k: [n for n in found if answers[n]["kind"] == k] for k in ("none", "single", "pair", "unknown")}
+    visible = {
+        k: [n for n in v if answers[n].get("visible") and not answers[n].get("borderline")] for k, v in kind.items()
+    }
+    said = {n: said_of(answers[n], found[n]) for n in found}
+    exact = {n: said[n] == truth_of(answers[n]) for n in found}
+    wrong = {n: said[n] - truth_of(answers[n]) - {"unknown"} for n in found}
+    concealed = [n for n in visible["single"] if answers[n]["concealed"]]
+    known = [*kind["none"], *kind["single"], *kind["pair"]]
+    unknown = {c: [n for n in visible["unknown"] if answers[n]["concealed"] is c] for c in (False, True)}
     return {
-        "kind": answer["kind"],
-        "visible": answer.get("visible", True) and not answer.get("borderline", False),
-        "concealed": answer["concealed"],
-        "truth": truth,
-        "said": said,
-        "named": bool(said),
-        "exact": said == truth,
-        "wrong": bool(said - truth),
-        "seconds": found["seconds"],
+        "false alarms among nothing-missing trials": share([bool(said[n]) for n in kind["none"]]),
+        "visible single effects, exactly named": share([exact[n] for n in visible["single"]]),
+        "  of these concealed by the tracker": share([exact[n] for n in concealed]),
+        "visible pairs, both named and nothing else": share([exact[n] for n in visible["pair"]]),
+        "wrong names (none, singles, pairs)": share(
+            [bool(said[n] - truth_of(answers[n]) - {"unknown"}) for n in known]
+        ),
+        "visible unknown cause flagged, pilot": share(["unknown" in said[n] for n in unknown[False]]),
+        "visible unknown cause flagged, concealed": share(["unknown" in said[n] for n in unknown[True]]),
+        "known cause called unknown": share(["unknown" in said[n] for n in (*kind["single"], *kind["pair"])]),
     }
 
 
-def share(rows: list[dict[str, Any]], key: str) -> str:
-    """5/6 of the rows have the property."""
-    return f"{sum(bool(r[key]) for r in rows)}/{len(rows)}"
+def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> dict[str, str]:
+    """Held-out skill, parameters, seconds."""
+    skills = [s for n in found if answers[n]["kind"] in ("single", "pair")
+              and (s := skill(trials / n, out / n, answers[n])) is not None]  # fmt: skip
+    exact = [n for n in found if said_of(answers[n], found[n]) == truth_of(answers[n])]
+    z = [x for n in exact for x in deviations(answers[n], found[n])]
+    seconds = [f["seconds"] for f in found.values()]
+    table = {"seconds per diagnosis, median / p95": f"{statistics.median(seconds):.2f} / {quantile(seconds, 0.95):.2f}"}
+    if skills:
+        tenth = f"{statistics.median(skills):.3f} / {sorted(skills)[len(skills) // 10]:.3f} ({len(skills)} trials)"
+        table["held-out skill, median / lowest tenth"] = tenth
+    if z:
+        table["true parameters within 2 sd"] = f"{sum(x <= 2 for x in z) / len(z):.3f} of {len(z)}"
+        table["median error of a parameter in sd"] = f"{statistics.median(z):.2f}"
+    return table
 
 
-def print_figures(rows: dict[str, dict[str, Any]]) -> None:
-    """Figures and every trial that is not exactly right."""
-    by = {k: [r for r in rows.values() if r["kind"] == k] for k in ("none", "single", "pair")}
-    singles, pairs = ([r for r in by[k] if r["visible"]] for k in ("single", "pair"))
-    seconds = sorted(r["seconds"] for r in rows.values())
-    figures = {
-        "false alarms among nothing-missing trials": share(by["none"], "named"),
-        "visible single effects, exactly named": share(singles, "exact"),
-        "  of these concealed by the tracker": share([r for r in singles if r["concealed"]], "exact"),
-        "visible pairs, both named and nothing else": share(pairs, "exact"),
-        "wrong names (none, singles, pairs)": share([r for k in by for r in by[k]], "wrong"),
-        "seconds per diagnosis, median": f"{statistics.median(seconds):.2f}",
-        "seconds per diagnosis, p95": f"{seconds[int(0.95 * (len(seconds) - 1))]:.2f}",
-    }
-    for what, value in figures.items():
-        print(f"{what:44s} {value}")
-    for name, r in sorted(rows.items()):
-        if not r["exact"]:
-            seen_words = "" if r["visible"] else " (invisible: adds less than 6 nats)"
-            print(f"  {name} {r['kind']}: truth {sorted(r['truth'])}, said {sorted(r['said'])}{seen_words}")
+def reliability(answers: Answers, found: Answers) -> list[tuple[str, int, float, float]]:
+    """(range, entries, mean stated probability, share true) over trials with one effect or none."""
+    pairs = []
+    for n, f in found.items():
+        if answers[n]["kind"] not in ("none", "single") or answers[n].get("tolerated"):
+            continue
+        truth = truth_of(answers[n])
+        same = truth | {o for t in truth for o in answers[n].get("equivalent", {}).get(t, [])}
+        stated = {c["name"]: c["probability"] for c in f["candidates"]}
+        together = sum(stated.pop(name, 0.0) for name in same)
+        pairs += [(p, False) for p in stated.values()]
+        pairs += [(together, True)] if truth else []
+        pairs.append((max(0.0, 1.0 - sum(stated.values()) - together), not truth))
+    table = []
+    for low, high in zip(BINS[:-1], BINS[1:], strict=True):
+        inside = [(p, true) for p, true in pairs if low <= p < high or p == high == 1.0]
+        if inside:
+            mean = statistics.mean(p for p, _ in inside)
+            table.append((f"{low:.2f} to {high:.2f}", len(inside), mean, statistics.mean(float(t) for _, t in inside)))
+    return table
+
+
+def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answers) -> None:
+    """Every visible single effect once more, with its entry and the look-alikes taken out of the library."""
+    left_out = {}
+    for n, answer in answers.items():
+        if n in found and answer["kind"] == "single" and answer.get("visible"):
+            (name,) = truth_of(answer)
+            alike = [t for e in found[n]["effects"] if e["name"] == name for t in e["tied_with"]]
+            left_out[n] = tuple(dict.fromkeys((name, *answer.get("equivalent", {}).get(name, []), *alike)))
+    todo = {n: (trials / n, out / "unknowns" / n, names) for n, names in left_out.items()}
+    again = all_of(jobs, todo, "without the truth")
+    flagged = {n: f["unknown"]["flag"] for n, f in again.items()}
+    print("\nunknowns: the true entry and its look-alikes taken out of the library")
+    for what, concealed in (("pilot", False), ("concealed", True)):
+        print(f"  flagged, {what:10s} {share([flagged[n] for n in again if answers[n]['concealed'] is concealed])}")
+    print(f"  flagged, or nothing named  {share([flagged[n] or not f['effects'] for n, f in again.items()])}")
+    for n, f in again.items():
+        instead = [f"{e['name']} ({e['gain_nats']:.0f} nats)" for e in f["effects"]]
+        said = ", ".join([*(["unknown"] if flagged[n] else []), *instead]) or "nothing missing"
+        print(f"    {n} without {', '.join(left_out[n])}: {said}")
 
 
 def main() -> None:
@@ -94,24 +215,27 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("trials", type=Path, nargs="?", default=SHARED)
     parser.add_argument("--out", type=Path, default=Path("out/trials"))
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--all", action="store_true", help="also trials whose truth is not in the library")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--unknowns", action="store_true", help="also the table of unknowns")
     args = parser.parse_args()
     answers = {t.name: json.loads((t / "answer.json").read_text()) for t in sorted(args.trials.glob("T*"))}
-    chosen = [n for n, a in answers.items() if args.all or in_library(a)]
-    if not chosen:
+    if not answers:
         raise SystemExit(f"{args.trials}: no trials there")
     begin = time.time()
-    with ProcessPoolExecutor(args.jobs) as pool, Progress() as progress:
-        task = progress.add_task("diagnosing", total=len(chosen))
-        waiting = [pool.submit(diagnose_one, args.trials / n, args.out / n) for n in chosen]
-        for done in as_completed(waiting):
-            done.result()
-            progress.advance(task)
-    took = time.time() - begin
-    print(f"{len(chosen)} trials of {len(answers)} in {took:.0f} s on {args.jobs} processes; answers in {args.out}")
-    found = {n: json.loads((args.out / n / "diagnosis.json").read_text()) for n in chosen}
-    print_figures({n: compare(answers[n], found[n]) for n in chosen})
+    found = all_of(args.jobs, {n: (args.trials / n, args.out / n, ()) for n in answers}, "diagnosing")
+    print(f"{len(found)} trials in {time.time() - begin:.0f} s on {args.jobs} processes; answers in {args.out}")
+    for what, value in {**figures(answers, found), **fit_figures(args.trials, args.out, answers, found)}.items():
+        print(f"{what:44s} {value}")
+    for n, f in found.items():
+        said, truth = said_of(answers[n], f), truth_of(answers[n])
+        if said != truth:
+            seen = "" if answers[n].get("visible", True) else " (invisible: adds less than 6 nats)"
+            print(f"  {n} {answers[n]['kind']}: truth {sorted(truth)}, said {sorted(said)}{seen}")
+    print("\nreliability: entries by stated probability, in trials with one effect or none")
+    for span, count, mean, true in reliability(answers, found):
+        print(f"  {span}   {count:5d} entries, mean {mean:.3f}, true {true:.3f}")
+    if args.unknowns:
+        unknowns(args.trials, args.out, args.jobs, answers, found)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ CONFUSABLE = {  # truth with its values, rival, first recording in which the two
 @cache
 def program() -> Program:
     boat = vessel.load("trial_boat")
-    return Program(boat, suspects_of(boat, (), ()))
+    return Program(boat, suspects_of(boat, ()))
 
 
 def recorded(name: str, settings: dict[str, float], script: tuple[manoeuvres.Step, ...]) -> Recording:

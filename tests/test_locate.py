@@ -201,7 +201,7 @@ def nothing(t: float, y: Array, command: Array) -> Array:
 
 
 def laid(*recordings: Recording) -> tuple[Problem, Fit]:
-    program = Program(BOAT, suspects_of(BOAT, (), ()))
+    program = Program(BOAT, suspects_of(BOAT, ()))
     problem = Problem(
         [track(r, program) for r in recordings], nominal_levels(BOAT, recordings[0]), {"damping": 0.05, "thrust": 0.05}
     )
@@ -329,7 +329,7 @@ def test_walls_pull_and_drag_where_the_recording_says_they_are() -> None:
 def test_walls_stated_in_a_recording_are_those_of_the_library_entry_too() -> None:
     still = {n: np.zeros(30) for n in ("x_m", "y_m", "psi_rad", *COMMANDS)}
     stated = Recording("stated", np.arange(30) / RATE, still, Notes(facts={"walls_m": [-1.0, 2.0, -3.0, 5.0]}))
-    program = Program(BOAT, suspects_of(BOAT, (), ()))
+    program = Program(BOAT, suspects_of(BOAT, ()))
     own, other = track(replace(stated, notes=Notes()), program), track(stated, program)
     at = [program.index("wall_effect", n) for n in ("x_low", "x_high", "y_low", "y_high")]
     assert other.values[at] == pytest.approx([-1.0, 2.0, -3.0, 5.0]) == walls_of(other)

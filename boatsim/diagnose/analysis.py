@@ -63,8 +63,8 @@ def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple
     return steered(read(path, found.limits(), found.columns).used(), found), found
 
 
-def suspects_of(vessel: Vessel, library: Sequence[str], without: Sequence[str]) -> tuple[Effect, ...]:
-    """Entries to try: the vessel's list and --library, less --without and what the vessel already has.
+def suspects_of(vessel: Vessel, library: Sequence[str]) -> tuple[Effect, ...]:
+    """Entries there are: the vessel's list and --library, less what the vessel already has.
 
     The vessel's own list may name files beside it, --library files from the working directory. Raises BadInput.
     """
@@ -74,11 +74,16 @@ def suspects_of(vessel: Vessel, library: Sequence[str], without: Sequence[str]) 
         if not any(p.fit for p in kind.params().values()):
             raise BadInput(f"{name}: this effect has no parameter that a diagnosis may fit (fit=True)")
         kinds[kind.name()] = kind
+    return tuple(absent(kind).completed(vessel) for n, kind in kinds.items() if vessel.effect(n) is None)
+
+
+def tried(suspects: Sequence[Effect], without: Sequence[str]) -> tuple[str, ...]:
+    """Names of the suspects less those taken out; they stay composed, so nothing is compiled anew. Raises BadInput."""
+    there = [e.name() for e in suspects]
     for name in without:
-        if name not in kinds and name not in names("effect"):
-            raise BadInput(unknown_name("--without", name, kinds))
-    tried = [k for n, k in kinds.items() if n not in without and vessel.effect(n) is None]
-    return tuple(absent(kind).completed(vessel) for kind in tried)
+        if name not in there and name not in names("effect"):
+            raise BadInput(unknown_name("--without", name, there))
+    return tuple(n for n in there if n not in without)
 
 
 def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
@@ -86,7 +91,7 @@ def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     own = tuple(e for e in vessel.effects if e.name() not in vessel.diagnosis.suspects)
     there = {e.name(): e for e in vessel.effects if e not in own}
     nominal = replace(vessel, effects=own)
-    suspects = tuple(there.get(e.name(), e) for e in suspects_of(nominal, (), ()))
+    suspects = tuple(there.get(e.name(), e) for e in suspects_of(nominal, ()))
     return Program(nominal, suspects), tuple(e.name() for e in suspects if e.name() in there)
 
 
@@ -109,7 +114,7 @@ def diagnose(
     boats = [boat for _, boat in opened]
     if len({(b.file, b.freedoms) for b in boats}) > 1:
         raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}")
-    programs = {r.path: Program(b, suspects_of(b, library, without)) for r, b in opened}
+    programs = {r.path: Program(b, suspects_of(b, library)) for r, b in opened}
     thin = [r.thinned(b.diagnosis.rate) for r, b in opened]
     named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
     fitted, unseen, note = show.split(named[: len(runs)], named[len(runs) :])
@@ -118,10 +123,11 @@ def diagnose(
     uncertainty = {str(k): sd for k, sd in boats[0].diagnosis.coefficient_uncertainty.items()}
     uncertainty |= fitted[0].notes.coefficient_uncertainty
     problem = Problem(laid[: len(fitted)], nominal_levels(boats[0], fitted[0]), uncertainty)
+    candidates = tried(problem.program.suspects, without)
     _compile(problem)
     begin = time.perf_counter()
     try:
-        ranking = rank(problem, tuple(e.name() for e in problem.program.suspects))
+        ranking = rank(problem, candidates)
         plan = experiment.next_experiment(problem, *experiment.question(ranking))
         wanted = experiment.entry(plan, NEXT)
         findings = _findings(problem, ranking, laid[len(fitted) :], boats[0], note, wanted)
