@@ -141,9 +141,7 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
         "visible single effects, exactly named": share([exact[n] for n in visible["single"]]),
         "  of these concealed by the tracker": share([exact[n] for n in concealed]),
         "visible pairs, both named and nothing else": share([exact[n] for n in visible["pair"]]),
-        "wrong names (none, singles, pairs)": share(
-            [bool(said[n] - truth_of(answers[n]) - {"unknown"}) for n in known]
-        ),
+        "wrong names (none, singles, pairs)": share([bool(wrong[n]) for n in known]),
         "visible unknown cause flagged, pilot": share(["unknown" in said[n] for n in unknown[False]]),
         "visible unknown cause flagged, concealed": share(["unknown" in said[n] for n in unknown[True]]),
         "known cause called unknown": share(["unknown" in said[n] for n in (*kind["single"], *kind["pair"])]),
