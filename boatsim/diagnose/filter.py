@@ -77,6 +77,7 @@ class Track:
         nq = self.program.module.NQ
         self.start, self.spread = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq))
         self._gains = np.zeros((*self.measured.shape, self.program.module.NZ))
+        self._linear = np.zeros((len(self.times), 3 * nq, 3 * nq))
         self._scale, self._white = np.zeros(self.measured.shape), np.zeros(self.measured.shape)
         for c, code in enumerate(self.codes):
             good = np.isfinite(self.measured[:, c])
@@ -95,9 +96,9 @@ class Track:
         """Whether a motion of the hull dies out within a sample: its damping then moves the filter's gains most."""
         return self.rate * float(np.median(np.diff(self.times))) > 1.0
 
-    def likelihood(self, values: Array, on: Array, levels: Levels) -> float:
-        """Log likelihood of parameters."""
-        return self._pass(values, on, levels, True, None)
+    def likelihood(self, values: Array, on: Array, levels: Levels, fresh: bool = True) -> float:
+        """Log likelihood of parameters; not `fresh`: linearised where the last fresh one was, for other levels."""
+        return self._pass(values, on, levels, True, None, fresh)
 
     def whitened(self, values: Array, on: Array, levels: Levels) -> Array:
         """Whitened prediction errors (N * C,) with gains, outliers and scale of the last `likelihood`."""
@@ -152,7 +153,7 @@ class Track:
         )
         return [(a, out[i, a : b + 1]) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
 
-    def _pass(self, values: Array, on: Array, levels: Levels, full: bool, keep: Any) -> float:
+    def _pass(self, values: Array, on: Array, levels: Levels, full: bool, keep: Any, fresh: bool = True) -> float:
         nq = self.program.module.NQ
         noise = np.array([(levels.sensors[f] * self.noise_scale[f]) ** 2 for f in self.families])
         covariance = self.spread.copy()
@@ -166,8 +167,8 @@ class Track:
         means, covariances, transitions, predicted = keep or self._nothing()
         found = self.program.module.kalman(
             self.times, self.measured, self.codes, self.commands, self.step, self.body, values, on, levels.force**2,
-            levels.time_constant, noise, self.start, covariance, full, self._gains, self._scale, self._white,
-            keep is not None, means, covariances, transitions, predicted,
+            levels.time_constant, noise, self.start, covariance, full, fresh, self._linear, self._gains, self._scale,
+            self._white, keep is not None, means, covariances, transitions, predicted,
         )  # fmt: skip
         return float(found)
 

@@ -13,11 +13,11 @@ SETTLED = 0.3  # [nats] a refit that gains less changes nothing
 NEW_SWEEPS = 3  # rounds in which a new random force takes over from the latent one
 
 
-def fit(problem: Problem, found: Fit) -> Fit:
-    """Parameters, then force levels (with the spectra of random forces), then parameters again."""
+def fit(problem: Problem, found: Fit, settled: bool = False) -> Fit:
+    """Parameters (unless settled), then force levels with the spectra of random forces, then parameters again."""
     variance = np.diag(found.covariance)
     new = any(f.searched and v == f.sd**2 for f, v in zip(found.free, variance, strict=True))  # never fitted
-    if not new:
+    if not new and not settled:
         found = descend(problem, found, iterations=4, enough=SETTLED)
     found = fit_force(problem, found, sweeps=NEW_SWEEPS if new else 1)
     return descend(problem, found, iterations=3, enough=0.1)
@@ -25,8 +25,8 @@ def fit(problem: Problem, found: Fit) -> Fit:
 
 def converge(problem: Problem, found: Fit, most: int = 4) -> Fit:
     """Refit until parameters and force levels agree, so that a later gain is not the gain of a refit."""
-    for _ in range(most):
-        again = fit(problem, found)
+    for i in range(most):
+        again = fit(problem, found, settled=i > 0)
         gain = again.evidence - found.evidence
         if gain > 0:
             found = again
@@ -73,9 +73,19 @@ class Space:
             free &= ~stuck
         return self.clipped(theta + self.sd * step)
 
+    def promised(self, J: Array, g: Array, before: Array, after: Array) -> float:
+        """Gain of the score that the quadratic model promises for a step."""
+        s = (after - before) / self.sd
+        return float(g @ s - 0.5 * (s @ s + np.sum((J @ s) ** 2)))
+
     def covariance(self, information: Array) -> Array:
         """(F, F) from the information in units of the prior sd."""
         return np.asarray(np.linalg.inv(information) * np.outer(self.sd, self.sd), dtype=np.float64)
+
+
+def as_promised(gain: float, promised: float) -> bool:
+    """Whether a step did what the quadratic model said: the next one would gain next to nothing."""
+    return abs(gain - promised) < 0.1 + 0.02 * abs(promised)
 
 
 def log_prior(free: Sequence[Free], theta: Array) -> float:
@@ -115,8 +125,9 @@ def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit
         if step is None:
             score(theta)
             break
+        kept = as_promised(gain, space.promised(J, g, theta, step))
         theta, best, damping = step, best + gain, damping / 10.0
-        if gain < enough:
+        if gain < enough or kept:
             break
     information = np.eye(len(free)) + J.T @ J
     information[np.diag_indices(len(free))] += _curvature(problem, free, theta, on, levels)

@@ -38,8 +38,9 @@ def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) 
     def score(x: Array) -> float:
         levels, theta = placed(x)
         prior = -0.5 * float(np.sum(((theta[searched] - mean) / sd) ** 2))
-        return problem.likelihood(found.free, theta, on, levels) + force_prior(problem, levels) + prior
+        return problem.likelihood(found.free, theta, on, levels, fresh=False) + force_prior(problem, levels) + prior
 
+    problem.likelihood(found.free, found.theta, on, found.levels)
     begin = np.concatenate([np.log(found.levels.force), found.theta[searched] / sd])
     levels, theta = placed(_coordinate_search(score, begin, step, sweeps))
     return replace(found, levels=levels, theta=theta)
@@ -57,12 +58,16 @@ def fit_noise(problem: Problem, found: Fit, sweeps: int = 4) -> Fit:
         sensors = {**problem.ambient.sensors, **dict(zip(families, np.exp(x[n:]).tolist(), strict=True))}
         return replace(problem.ambient, force=np.exp(x[:n]), sensors=sensors)
 
-    def score(x: Array) -> float:
+    def score(x: Array, fresh: bool = False) -> float:
         prior = -0.5 * float(np.sum(((x[n:] - stated) / SENSOR_PRIOR) ** 2))
-        return problem.likelihood(found.free, found.theta, on, levels(x)) + force_prior(problem, levels(x)) + prior
+        likelihood = problem.likelihood(found.free, found.theta, on, levels(x), fresh)
+        return likelihood + force_prior(problem, levels(x)) + prior
 
-    begin = np.concatenate([np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)])
-    return replace(found, levels=levels(_coordinate_search(score, begin, 0.6, sweeps)))
+    x = np.concatenate([np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)])
+    for step, rounds in ((0.6, 1), (0.42, sweeps - 1)):
+        score(x, fresh=True)
+        x = _coordinate_search(score, x, step, rounds)
+    return replace(found, levels=levels(x))
 
 
 def fit_time_constant(problem: Problem, found: Fit) -> Levels:
@@ -74,9 +79,10 @@ def fit_time_constant(problem: Problem, found: Fit) -> Levels:
 
     def score(x: Array) -> float:
         prior = -0.5 * ((x[-1] - np.log(problem.ambient.time_constant)) / TIME_PRIOR) ** 2
-        likelihood = problem.likelihood(found.free, found.theta, on, levels(x))
+        likelihood = problem.likelihood(found.free, found.theta, on, levels(x), fresh=False)
         return likelihood + force_prior(problem, levels(x)) + float(prior)
 
+    problem.likelihood(found.free, found.theta, on, found.levels)
     begin = np.append(np.log(found.levels.force), np.log(found.levels.time_constant))
     return levels(_coordinate_search(score, begin, 0.7, 2))
 

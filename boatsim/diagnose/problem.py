@@ -98,9 +98,9 @@ class Problem:
             p[to] = p[source]
         return p
 
-    def likelihood(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> float:
-        """Log likelihood of all runs."""
-        return sum(t.likelihood(self.values(t, free, theta), on, levels) for t in self.tracks)
+    def likelihood(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels, fresh: bool = True) -> float:
+        """Log likelihood of all runs; not `fresh`: linearised where the last fresh one was, for other levels."""
+        return sum(t.likelihood(self.values(t, free, theta), on, levels, fresh) for t in self.tracks)
 
     def whitened(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> Array:
         """Whitened prediction errors of all runs with the gains of the last `likelihood`."""

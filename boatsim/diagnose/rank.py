@@ -12,11 +12,11 @@ from boatsim.diagnose.screen import screen
 
 ENOUGH = 4.0  # [nats] an effect must gain to be named
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
-FRONT, CLOSE, MANY = (
-    3,
-    10.0,
-    6,
-)  # candidates fitted in full: the first three, and up to six this near to the first [nats]
+CLOSE, HALF = (
+    5.0,
+    0.5,
+)  # candidates this near to the first [nats], or with this share of its gain, are looked at closely
+MANY, RIVALS = 5, 3  # and no more of them than this; rivals of what was named
 UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
 DWARFED = 0.1  # an effect that gains less than this share of what is left over is not stood for
 UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library
@@ -110,9 +110,7 @@ class _Search:
         key = frozenset(best.suspects)
         if key not in self.looks:
             tried = screen(self.problem, best, [n for n in self.candidates if n not in best.suspects])
-            order = sorted(tried, key=lambda n: -tried[n].evidence)
-            near = [n for n in order if tried[n].evidence > tried[order[0]].evidence - CLOSE][:MANY]
-            front = [n for n in order if n in order[:FRONT] or n in near]
+            front = _front(tried, best)[:MANY]
             self.looks[key] = tried | {n: fit(self.problem, tried[n]) for n in front}
         return self.looks[key]
 
@@ -138,13 +136,20 @@ class _Search:
         without = self.without(best, name)
         gain = best.evidence - without.evidence
         others = {n: f for n, f in self.tried(without).items() if n not in best.suspects}
-        front = sorted(others, key=lambda n: -others[n].evidence)[:FRONT]
-        rivals = {n: self.converged(others[n]) for n in front if others[n].evidence > without.evidence}
+        rivals = {n: self.converged(others[n]) for n in _front(others, without)[:RIVALS]}
         gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
         weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
         order = sorted(gains, key=lambda n: -gains[n])
         tied = tuple(n for n in order if gains[n] > gain - ALIKE)[:3]
         return Named(name, gain, float(weights[1] / weights.sum()), tied, {n: rivals[n] for n in order})
+
+
+def _front(tried: Mapping[str, Fit], base: Fit) -> list[str]:
+    """Candidates that may yet turn out the best, the best first: a quick look leaves out what the force levels take."""
+    gains = {n: f.evidence - base.evidence for n, f in tried.items()}
+    order = sorted(gains, key=lambda n: -gains[n])
+    reach = max(CLOSE, HALF * gains[order[0]]) if order else 0.0
+    return [n for n in order if gains[n] > gains[order[0]] - reach]
 
 
 def left_over(problem: Problem, best: Fit) -> float:

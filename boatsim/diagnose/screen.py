@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.base import Array, Effect, Unsteady
 from boatsim.diagnose.filter import axes_of
-from boatsim.diagnose.fit import Space, jacobian, log_prior
+from boatsim.diagnose.fit import Space, as_promised, jacobian, log_prior
 from boatsim.diagnose.levels import force_prior
 from boatsim.diagnose.problem import Fit, Problem, scale_of
 
@@ -87,16 +87,17 @@ def _step(problem: Problem, start: Fit, base: tuple[Array, Array], rounds: int) 
     (white, score), damping, J = look(theta), 1e-3, known
     for _ in range(rounds):
         J = np.hstack([known, jacobian(problem, free, theta, on, levels, white, known.shape[1])])
-        gain = 0.0
+        gain, kept = 0.0, False
         for _ in range(3):
             g = off - J.T @ white - (theta - space.mean) / space.sd
             trial = space.stepped(theta, J, g, damping)
             after, value = look(trial)
             if np.isfinite(value) and value > score:
+                kept = as_promised(value - score, space.promised(J, g, theta, trial))
                 theta, white, gain, score = trial, after, value - score, value
                 break
             damping = max(damping, 1e-2) * 10.0
-        if gain < 0.1:
+        if gain < 0.1 or kept:
             break
     found = replace(start, theta=theta, covariance=space.covariance(np.eye(len(free)) + J.T @ J))
     return found, score - _half_determinant(J)

@@ -52,14 +52,14 @@ def predict(
 
 @njit(error_model="numpy", cache=True)
 def transition(
-    t: float, h: float, n: int, z: Array, act: Array, p: Array, on: Any, k: Array, force: Array, decay: float,
-    s: Swell, F: Array, A: Array, B: Array, y: Array,
+    t: float, h: float, z: Array, act: Array, p: Array, on: Any, k: Array, force: Array, F: Array, A: Array, B: Array,
+    y: Array,
 ) -> None:  # fmt: skip
-    """Linearised transition F over h: third-order exponential of the numerical Jacobian of the accelerations."""
+    """Linearised transition F of motion and lasting forces over h: exponential of the Jacobian of the accelerations."""
     base, other = B[0, :NQ], B[1, :NQ]  # B is free until the products below
     y[:] = z[:NY]
     slopes(t, y, act, p, on, k, force, base)
-    A[:n, :n] = 0.0
+    A[:CALM, :CALM] = 0.0
     step = 1e-6
     for i in range(NQ):
         A[i, NQ + i] = 1.0
@@ -90,10 +90,6 @@ def transition(
         multiply(F, F, B, CALM)
         F[:CALM, :CALM] = B[:CALM, :CALM]
         part *= 2.0
-    for i in range(NY, CALM):
-        F[i, i] = decay
-    if n > CALM:
-        add_swell(h, s, F)
 
 
 @njit(error_model="numpy", cache=True)
@@ -230,13 +226,14 @@ def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int) ->
 @njit(error_model="numpy", cache=True)
 def kalman(
     times: Array, measured: Array, codes: Any, commands: Array, max_step: float, body: Array, p: Array, on: Any,
-    sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, full: bool, gains: Array, scale: Array, white: Array,
-    keep: bool, means: Array, covariances: Array, transitions: Array, predicted: Array,
+    sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, full: bool, fresh: bool, linear: Array, gains: Array,
+    scale: Array, white: Array, keep: bool, means: Array, covariances: Array, transitions: Array, predicted: Array,
 ) -> float:  # fmt: skip
     """One pass. measured (N, C), nan where missing; noise (C,) and sigma (NQ,) are variances of sensors and force.
 
     full: compute gains (N, C, n) and inverse innovation sd `scale` (N, C), 0 where missing or an outlier; otherwise
-    reuse them. white (N, C) gets the whitened innovations. keep: store what the smoother needs. Returns log likelihood.
+    reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM); otherwise take it from there. white (N, C)
+    gets the whitened innovations. keep: store what the smoother needs. Returns log likelihood.
     """
     k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
@@ -269,7 +266,15 @@ def kalman(
                 force[a] += mean1 * z[CALM + 2 * a] + mean2 * z[CALM + 2 * a + 1]
         held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, force, act)
         if full:  # linearised about the state before, with the actuators of this interval
-            transition(times[i - 1] - lateness, h, n, z, act, p, on, k, force, decay, s, F, work, work2, other)
+            if fresh:
+                transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, work, work2, other)
+                linear[i] = F[:CALM, :CALM]
+            else:
+                F[:CALM, :CALM] = linear[i]
+            for a in range(NY, CALM):
+                F[a, a] = decay
+            if n > CALM:
+                add_swell(h, s, F)
             carry(F, P, work2, n)
             diffuse(h, n, sigma, tau, s, P)
         for a in range(NY):
