@@ -12,6 +12,7 @@ TIMELINE = "sim_time"
 SIGNALS = "signals"
 WORLD = "world"
 MISSING = {"force_X_N": "surge", "force_Y_N": "sway", "force_K_Nm": "roll", "force_N_Nm": "yaw"}
+TITLES = {"off_m": "distance from the recording [m]"}
 Colour = tuple[int, int, int]
 PALETTE: tuple[Colour, ...] = (
     (31, 119, 180),
@@ -38,16 +39,22 @@ def style(name: str, number: int, boat: str = "", colour: Colour | None = None) 
     """Name, colour and width of a curve."""
     bound = name.endswith(("_low", "_high"))
     chosen = colour or _colour(name, number)
-    label = f"{boat} {words(name)}".strip()
-    return rr.SeriesLines(colors=[chosen], widths=[1.0 if bound else 2.0], names=[label])
+    return rr.SeriesLines(colors=[chosen], widths=[1.0 if bound else 2.0], names=[boat or words(name)])
+
+
+def dots(boat: str, colour: Colour) -> rr.SeriesPoints:
+    """Samples of a recording: dots, under which the curves of the models stay visible."""
+    return rr.SeriesPoints(colors=[colour], markers=["circle"], marker_sizes=[2.0], names=[boat])
 
 
 def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
     """Curve of a missing force, its band, or the part of it that was flagged."""
-    if name.endswith("_flagged"):
-        return rr.SeriesLines(colors=[flagged], widths=[4.0], names=["flagged"])
-    bound = name.endswith(("_low", "_high"))
-    return rr.SeriesLines(colors=[GREY if bound else PALETTE[0]], widths=[1.0 if bound else 2.0], names=[words(name)])
+    for end, (label, colour, width) in {
+        "_flagged": ("flagged", flagged, 4.0), "_low": ("- 2 sd", GREY, 1.0), "_high": ("+ 2 sd", GREY, 1.0),
+    }.items():  # fmt: skip
+        if name.endswith(end):
+            return rr.SeriesLines(colors=[colour], widths=[width], names=[label])
+    return rr.SeriesLines(colors=[SKY], widths=[2.0], names=["missing"])
 
 
 def words(name: str) -> str:
@@ -73,21 +80,35 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
 
 
 def of_overlay(
-    scene: Scene, boats: Sequence[str], names: Iterable[str], missing: Mapping[str, object]
+    scene: Scene,
+    boats: Sequence[str],
+    names: Iterable[str],
+    missing: Mapping[str, object],
+    span: tuple[float, float],
 ) -> rrb.Blueprint:
-    """Layout of a diagnosis: all boats, their motion in tabs, and the missing force per axis."""
-    moved = [n for n in ("x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "r_radps", "p_radps") if n in set(names)]
-    motion = [_plot(words(n), [f"{boat}/{n}" for boat in boats]) for n in moved]
+    """Layout of a diagnosis: all boats seen from above, their motion in tabs, and the missing force per axis.
+
+    `span` is the time [s] that all plots show, so that what is above one another happens at once.
+    """
+    moved = [n for n in ("off_m", "x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "r_radps", "p_radps")
+             if n in set(names)]  # fmt: skip
+    motion = [_plot(TITLES.get(n, words(n)), [f"{boat}/{n}" for boat in boats], span=span) for n in moved]
     forces = [
         _plot(
-            f"Missing {axis} {'force' if axis in ('surge', 'sway') else 'moment'}",
+            f"Missing {axis} {'force [N]' if axis in ('surge', 'sway') else 'moment [N m]'}",
             [n for n in (name, f"{name}_low", f"{name}_high", f"{name}_flagged")],
             "missing",
+            span,
         )
         for name, axis in MISSING.items()
         if name in missing
     ]
-    return _layout(_view(scene, [f"paths/{boat}" for boat in boats]), rrb.Tabs(*motion), *forces)
+    length, width, x, y = scene.tank
+    eye = (x - 0.2 * length, -y, 0.65 * max(length, width))
+    if "x_m" not in set(names):  # it only rolls: seen from astern
+        eye = (-1.2 * scene.length, 0.0, 0.4 * scene.length)
+    view = _view(scene, [f"paths/{boat}" for boat in boats], eye, f"{scene.vessel}: {', '.join(boats)}")
+    return _layout(view, rrb.Tabs(*motion), *forces)
 
 
 def _layout(scene: rrb.View | rrb.Container, *plots: rrb.View | rrb.Container) -> rrb.Blueprint:
@@ -101,8 +122,10 @@ def _layout(scene: rrb.View | rrb.Container, *plots: rrb.View | rrb.Container) -
     )
 
 
-def _view(scene: Scene, trails: Sequence[str]) -> rrb.Spatial3DView:
-    """The scene seen from astern and above; trails show everything up to the time cursor."""
+def _view(
+    scene: Scene, trails: Sequence[str], eye: tuple[float, float, float] | None = None, title: str = ""
+) -> rrb.Spatial3DView:
+    """The scene seen from astern and above, or from `eye`; trails show everything up to the time cursor."""
     length, width, x, y = scene.tank
     size = max(length, width)
     so_far = rrb.VisibleTimeRanges(
@@ -110,11 +133,11 @@ def _view(scene: Scene, trails: Sequence[str]) -> rrb.Spatial3DView:
     )
     return rrb.Spatial3DView(
         origin=WORLD,
-        name=f"{scene.vessel} in its tank",
+        name=title or f"{scene.vessel} in its tank",
         background=SKY,
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
-            position=(x - 0.6 * size, -y, 0.6 * size), look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0)
+            position=eye or (x - 0.6 * size, -y, 0.6 * size), look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0)
         ),
         overrides={f"{WORLD}/{trail}": so_far for trail in trails},
     )
@@ -137,12 +160,16 @@ def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
     return [_plot(title, members) for title, members in groups.items() if members]
 
 
-def _plot(title: str, names: Sequence[str], under: str = SIGNALS) -> rrb.TimeSeriesView:
+def _plot(
+    title: str, names: Sequence[str], under: str = SIGNALS, span: tuple[float, float] | None = None
+) -> rrb.TimeSeriesView:
+    ends = [rrb.TimeRangeBoundary.absolute(seconds=end) for end in span or ()]
     return rrb.TimeSeriesView(
         origin="/",
         name=title,
         contents=[f"/{under}/{name}" for name in names],
         plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop),
+        axis_x=rrb.TimeAxis(view_range=rrb.TimeRange(start=ends[0], end=ends[1])) if ends else None,
     )
 
 

@@ -41,12 +41,13 @@ COLOURS = {
     "water": (150, 190, 215),
     "flagged": (230, 0, 40),
 }
-BOATS = {
-    "recording": (50, 100, 230),
-    "nominal": (200, 60, 50),
-    "recalibrated": (235, 150, 20),
-    "patched": (20, 150, 90),
+BOATS = {  # as in the report; told apart by colour-blind readers too, on dark plots and on the light scene
+    "recording": (165, 173, 180),
+    "nominal": (230, 105, 25),
+    "recalibrated": (45, 140, 225),
+    "patched": (0, 165, 120),
 }
+PARTING = 1e-9  # [s] between the end of one stretch, a gap, and the begin of the next at the same time
 
 
 class RunLog:
@@ -143,34 +144,44 @@ def last_time(path: Path | str) -> float:
 
 def log_overlay(
     path: Path | str,
-    boats: Mapping[str, Recording],
+    boats: Mapping[str, Sequence[Recording]],
     missing: Recording | None,
     intervals: Sequence[Mapping[str, Any]],
     scene: Scene,
 ) -> None:
     """diagnosis.rrd: all boats in one scene on one time line, the missing force per axis with its band.
 
-    `boats` are "recording", "nominal", "recalibrated", "patched". `missing` has `force_X_N` (and `_Y_N`, `_K_Nm`,
-    `_N_Nm`) with `..._low` and `..._high`; `intervals` are `where.intervals` of diagnosis.json (from_s, to_s, axis).
+    `boats` are "recording", "nominal", "recalibrated", "patched", the first of them drawn as a hull and the others as
+    its outline, so that boats a few centimetres apart can be told; each comes in stretches, and nothing is drawn from
+    the end of one to the begin of the next. `missing` has `force_X_N` (and `_Y_N`, `_K_Nm`, `_N_Nm`) with `..._low`
+    and `..._high`; `intervals` are `where.intervals` of diagnosis.json (from_s, to_s, axis).
     """
     stream = rr.RecordingStream("boatsim_diagnosis", send_properties=False)
     _open(stream, path, live=False)
     _draw_tank(stream, scene)
-    for number, (boat, run) in enumerate(boats.items()):
+    for number, (boat, stretches) in enumerate(boats.items()):
         colour = BOATS.get(boat, blueprint.PALETTE[number % len(blueprint.PALETTE)])
-        _draw_hull(stream, scene, f"boats/{boat}", colour)
-        _move(stream, run, scene, f"boats/{boat}")
-        _log_path(stream, run, f"paths/{boat}", colour, None)
-        for name in run.signals:
-            stream.log(f"{SIGNALS}/{boat}/{name}", blueprint.style(name, number, boat, colour), static=True)
-        _log_signals(stream, run, f"{SIGNALS}/{boat}")
+        if number == 0:
+            _draw_hull(stream, scene, f"boats/{boat}", colour)
+        _draw_outline(stream, scene, boat, number, colour)
+        apart = _apart(stretches)
+        for stretch in apart:
+            _move(stream, stretch, scene, f"boats/{boat}")
+            _log_path(stream, stretch, f"paths/{boat}", colour, None, _above(scene, number))
+        for name in stretches[0].signals:
+            look = blueprint.dots(boat, colour) if number == 0 else blueprint.style(name, number, boat, colour)
+            stream.log(f"{SIGNALS}/{boat}/{name}", look, static=True)
+        _log_signals(stream, _with_gaps(apart), f"{SIGNALS}/{boat}")
     if missing is not None:
         marked = replace(missing, signals={**missing.signals, **_flagged(missing, intervals)})
         for name in marked.signals:
             stream.log(f"missing/{name}", blueprint.band_style(name, COLOURS["flagged"]), static=True)
         _log_signals(stream, marked, "missing")
-    names = {name for run in boats.values() for name in run.signals}
-    stream.send_blueprint(blueprint.of_overlay(scene, list(boats), names, missing.signals if missing else {}))
+    names = [name for run in reversed(list(boats.values())) for name in run[0].signals]
+    times = [r.t for run in boats.values() for r in run] + ([missing.t] if missing is not None else [])
+    span = min((float(t[0]) for t in times), default=0.0), max((float(t[-1]) for t in times), default=1.0)
+    forces = missing.signals if missing is not None else {}
+    stream.send_blueprint(blueprint.of_overlay(scene, list(boats), names, forces, span))
     _end(stream)
 
 
@@ -240,6 +251,21 @@ def _joined(parts: Sequence[Recording]) -> Recording:
     return Recording(parts[0].name, np.concatenate([p.t for p in parts]), signals, Notes())
 
 
+def _apart(stretches: Sequence[Recording]) -> list[Recording]:
+    """Stretches whose ends come just before the begin of the next one, which may have the same time."""
+    ends = [next_one.t[0] - 2 * PARTING for next_one in stretches[1:]]
+    times = [np.append(s.t[:-1], min(s.t[-1], end)) for s, end in zip(stretches, ends, strict=False)]
+    return [replace(s, t=t) for s, t in zip(stretches, [*times, stretches[-1].t], strict=True)]
+
+
+def _with_gaps(stretches: Sequence[Recording]) -> Recording:
+    """Stretches as one recording, with a row of nan before each begin but the first: curves break there."""
+    parts = [stretches[0]]
+    for stretch in stretches[1:]:
+        parts += [Recording("", stretch.t[:1] - PARTING, {n: np.full(1, np.nan) for n in stretch.signals}), stretch]
+    return _joined(parts)
+
+
 def _when(t: Array) -> list[rr.TimeColumn]:
     return [rr.TimeColumn(TIMELINE, duration=np.round(t * 1e9).astype("timedelta64[ns]"))]
 
@@ -295,6 +321,27 @@ def _draw_hull(stream: rr.RecordingStream, scene: Scene, boat: str, tint: tuple[
     for thruster in scene.thrusters:
         at = rr.Transform3D(translation=(thruster.x, -thruster.y, 0.0))
         stream.log(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", at, static=True)
+
+
+def _above(scene: Scene, number: int) -> float:
+    """Height [m] above everything on the hull, a little more for each boat: lines of different boats do not flicker."""
+    top = max((float(s.vertices[:, 2].max()) for s in scene.solids if s.part != "tank"), default=0.0)
+    return top + (5 + number) * 0.002 * scene.length
+
+
+def _draw_outline(
+    stream: rr.RecordingStream, scene: Scene, boat: str, number: int, colour: tuple[int, int, int]
+) -> None:
+    """Outline of the hull from above with a line from its middle to the bow, and its name on one of its sides."""
+    ring = scene.outline()
+    height, bow, stern = _above(scene, number), float(ring[:, 0].max()), float(ring[:, 0].min())
+    side = float(np.abs(ring[:, 1]).max())
+    edge, middle = np.column_stack([ring, np.full(len(ring), height)]), np.array([(0, 0, height), (bow, 0, height)])
+    entity = f"{WORLD}/boats/{boat}/outline"
+    stream.log(entity, rr.LineStrips3D([edge, middle], colors=[colour], radii=[-1.5]), static=True)
+    place = [(stern, 0.0), (bow, side), (bow, -side), (stern, side)][number % 4]
+    name = rr.Points3D([(*place, height)], colors=[colour], radii=[-2.0], labels=[boat])
+    stream.log(f"{entity}/name", name, static=True)
 
 
 def _surface(solid: Solid) -> Solid:
@@ -376,12 +423,13 @@ def _log_path(
     name: str,
     colour: tuple[int, int, int],
     last: tuple[float, Array] | None,
+    height: float = ABOVE,
 ) -> tuple[float, Array] | None:
     """One short line for each step; the view shows all up to its time. Returns the last point's time and place."""
     if not {"x_m", "y_m"} <= rows.signals.keys():
         return last
     due = np.unique(np.floor(rows.t / TRAIL_STEP + 1e-6), return_index=True)[1]
-    t, points = rows.t[due], _flat(rows["x_m"][due], rows["y_m"][due], ABOVE)
+    t, points = rows.t[due], _flat(rows["x_m"][due], rows["y_m"][due], height)
     if last is not None:
         t, points = np.append(last[0], t), np.vstack([last[1], points])
     entity = f"{WORLD}/{name}"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from boatsim.base import Array
 
@@ -53,6 +54,12 @@ class Scene:
     solids: tuple[Solid, ...] = ()
     thrusters: tuple[Thruster, ...] = ()
     reach: float = 0.3  # [m/N] length of an arrow per newton
+
+    def outline(self) -> Array:
+        """(V, 2) m, closed, of what is drawn of the hull, seen from above (its convex hull)."""
+        points = np.concatenate([s.vertices[:, :2] for s in self.solids if s.part == "hull"])
+        corners = ConvexHull(points).vertices
+        return np.asarray(points[np.append(corners, corners[0])], dtype=float)
 
 
 def scene_from(model: Any, vessel: "Vessel", tank: Any) -> Scene:

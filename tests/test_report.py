@@ -10,9 +10,20 @@ import pytest
 
 from boatsim.diagnose import report
 from boatsim.diagnose.findings import Findings, FreeRun, Missing
-from boatsim.diagnose.report_figures import thinned, ticks
+from boatsim.diagnose.report_figures import closer, thinned, ticks
 from boatsim.diagnose.report_sections import sections_of
-from boatsim.diagnose.report_words import alike, number, parameter, percent, quantity, spread
+from boatsim.diagnose.report_words import (
+    alike,
+    limit,
+    nats,
+    number,
+    parameter,
+    percent,
+    quantity,
+    readable,
+    shown,
+    spread,
+)
 
 VOID = {"meta", "br", "hr", "img", "input", "link"}
 MODELS = ("nominal", "recalibrated", "patched")
@@ -237,11 +248,11 @@ def expected_numbers(answer) -> list[str]:
     """Every number of the answer as a reader meets it."""
     found: list[str] = []  # all but the seconds, which would make the same diagnosis differ from run to run
     for e in answer["effects"]:
-        found += [number(e["gain_nats"]), percent(e["probability"])]
-        found += [quantity(p["value"], parameter(k, p["unit"])[1], p["sd"]) for k, p in e["parameters"].items()]
+        found += [nats(e["gain_nats"]), percent(e["probability"])]
+        found += [shown(k, p["value"], p["unit"], p["sd"])[1] for k, p in e["parameters"].items()]
     for c in answer["candidates"]:
-        found += [number(c["gain_nats"]), percent(c["probability"])]
-    found += [quantity(v, parameter(k)[1]) for e in answer["upper_limits"].values() for k, v in e.items()]
+        found += [nats(c["gain_nats"]), percent(c["probability"])]
+    found += [limit(k, v)[1] for e in answer["upper_limits"].values() for k, v in e.items()]
     for a in answer["where"]["axes"].values():
         found += alike([a["rms"], a["sd"]], a["unit"])
     found += [f"{i[k]:.1f}" for i in answer["where"]["intervals"] for k in ("from_s", "to_s")]
@@ -249,8 +260,8 @@ def expected_numbers(answer) -> list[str]:
     for key, unit in (("position_rms_m", "m"), ("heading_rms_rad", "rad"), ("roll_rms_rad", "rad")):
         rms = answer["fit"].get(key, {})
         found += alike([rms[m] for m in MODELS], unit) if rms else []
-    found += [number(answer["next_experiment"]["expected_gain_nats"])] if answer["next_experiment"] else []
-    return found + ([number(answer["unknown"]["gain_nats"])] if answer["unknown"]["flag"] else [])
+    found += [nats(answer["next_experiment"]["expected_gain_nats"])] if answer["next_experiment"] else []
+    return found + ([nats(answer["unknown"]["gain_nats"])] if answer["unknown"]["flag"] else [])
 
 
 def test_every_number_of_the_answer_and_every_remark_is_in_both_texts(written):
@@ -311,29 +322,114 @@ def test_nothing_missing_says_so_and_gives_the_upper_limits(tmp_path):
     report.write(f, tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
     assert text.startswith("# Nothing is missing") and "**Nothing missing.**" in text
-    assert "## Upper limits" in text and "## What to record next" not in text and "smaller)" not in text
+    assert (
+        "## Upper limits of what was not found" in text
+        and "## What to record next" not in text
+        and "smaller)" not in text
+    )
 
 
 def test_sentence_is_made_of_the_words_of_the_effects():
     assert planar().answer["sentence"] == (
         "The model leaves out one thing: the propellers push less astern than commanded (astern factor 0.694 ± 0.012); "
-        "but these recordings can not tell weak reverse from prop walk."
+        "but these recordings cannot tell weak reverse from prop walk."
     )
     roll = rolling().answer
     assert roll["sentence"].startswith(
         "The model leaves out two things: damping grows with the square of the speed (roll "
     )
-    assert "can not tell" not in roll["sentence"]
-    late = {"name": "clock_offset", "kind": "measurement", "words": "the poses are recorded late", "tied_with": [],
-            "parameters": {"pose_late_s": {"value": 0.21, "sd": 0.013, "unit": "s"}}}  # fmt: skip
-    alone = report.sentence(roll | {"effects": [late]})
+    assert "cannot tell" not in roll["sentence"] and "N m s²), and the righting arm" in roll["sentence"]
+
+
+LATE = {
+    "name": "clock_offset", "kind": "measurement", "words": "the clock runs late (not physics)", "tied_with": [],
+    "probability": 0.99, "gain_nats": 80.0, "parameters": {"pose_late_s": {"value": 0.21, "sd": 0.013, "unit": "s"}},
+}  # fmt: skip
+MEANT = {"clock_offset.pose_late_s": "poses late by"}
+DAMPED = {
+    "name": "quadratic_damping", "kind": "physics", "words": "damping grows", "tied_with": [], "parameters": {},
+    "probability": 0.99, "gain_nats": 80.0,
+}  # fmt: skip
+CLOCK = "the clock runs late (poses late by 0.210 ± 0.013 s)"
+MISSING = "Something is missing that no entry of the library explains (0.21 N rms in surge)"
+
+
+@pytest.mark.parametrize(
+    ("verdict", "effects", "text"),
+    [
+        ("named", [DAMPED], "The model leaves out one thing: damping grows."),
+        ("named", [DAMPED] * 3, "The model leaves out three things: damping grows, damping grows, and damping grows."),
+        ("named", [DAMPED] * 4, "The model leaves out four things: " + "damping grows, " * 3 + "and damping grows."),
+        ("named", [LATE], f"The measurement is off, not the physics: {CLOCK}."),
+        ("named", [DAMPED, LATE], "The model leaves out one thing: damping grows; the measurement is off as well, "
+         f"which is not physics: {CLOCK}."),
+        ("ambiguous", [DAMPED | {"tied_with": ["cubic_damping", "damping_error"]}], "The model leaves out one thing: "
+         "damping grows; but these recordings cannot tell quadratic damping from cubic damping or damping error."),
+        ("unknown", [], f"{MISSING}."),
+        ("unknown", [DAMPED], f"{MISSING}; besides, the model leaves out one thing: damping grows."),
+        ("unknown", [LATE], f"{MISSING}; the measurement is off as well, which is not physics: {CLOCK}."),
+        ("unknown", [DAMPED | {"tied_with": ["wind"]}], f"{MISSING}; besides, the model leaves out one thing: damping "
+         "grows; but these recordings cannot tell quadratic damping from wind."),
+        ("nothing_missing", [], "Nothing is missing that these recordings could show: the vessel explains them to "
+         "within their noise."),
+    ],
+)  # fmt: skip
+def test_every_verdict_is_one_sentence(verdict, effects, text):
+    where = {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}}
+    assert report.sentence({"verdict": verdict, "effects": effects, "where": where}, MEANT) == text
+
+
+def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_numbers():
+    values = {"surge_N": 0.2, "sway_N": 0.001, "yaw_Nm": 0.1, "north_mps": 0.3, "east_mps": 0.3, "astern_factor": 0.005}
+    effect = DAMPED | {"parameters": {k: {"value": v, "sd": 0.01, "unit": parameter(k)[1]} for k, v in values.items()}}
+    said = report.sentence({"verdict": "named", "effects": [effect], "where": {"axes": {}}})
+    assert "surge 0.200 ± 0.010 N, yaw" in said and "north" in said and "sway" not in said and "east" not in said
+    effect["parameters"] = {"astern_factor": effect["parameters"]["astern_factor"]}  # a factor is something at zero too
+    assert "astern factor 0.005 ± 0.010" in report.sentence({"verdict": "named", "effects": [effect]})
+
+
+def test_an_error_of_measurement_is_told_from_physics(tmp_path):
+    f = planar()
+    answer = f.answer | {"verdict": "named", "effects": [LATE], "sentence": ""}
+    report.write(replace(f, answer=answer, words=f.words | MEANT), tmp_path)
+    text = (tmp_path / "report.md").read_text("utf-8")
+    assert text.startswith("# The measurement is off, not the physics: the clock runs late (poses late by 0.210")
+    assert "**Measurement, not physics.**" in text and "a measurement error, not physics" in text
+    assert "These forces are not real" in text
+
+
+def test_what_is_tied_has_no_upper_limit_and_what_has_none_is_said(tmp_path):
+    f = planar()
+    limits = f.answer["upper_limits"] | {"prop_walk": {"side_force_per_thrust": 0.77}, "tether": {}}
+    report.write(replace(f, answer=f.answer | {"upper_limits": limits}), tmp_path)
+    text = (tmp_path / "report.md").read_text("utf-8")
+    assert "0.77" not in text and "How strong tether could be at most: no limit could be worked out" in text
+
+
+def test_the_next_experiment_says_what_to_command_and_how_to_run_it(tmp_path):
+    steps = ((0.0, {"thrust_port_N": -0.4, "steer_port_rad": 0.0}), (6.0, {"thrust_port_N": -0.9}), (9.0, {}))
+    report.write(replace(planar(), steps=steps), tmp_path)
+    text = (tmp_path / "report.md").read_text("utf-8")
+    assert "**Tells apart**: Weak reverse or prop walk." in text and "boatsim run next.toml" in text
+    assert re.search(r"\| 0 s \| −0\.4\d* N \| 0° \|\n\| 6 s \| −0\.9\d* N \|  \|\n\| 9 s \| end \|  \|", text)
+
+
+def test_how_a_deviation_is_made_is_said_once(written):
+    findings, html, text = written
+    said = "holds 5 % of the effect's own size"
     assert (
-        alone
-        == "The physics is right, the measurement is not: the poses are recorded late (pose late 0.210 ± 0.013 s)."
+        text.count(said)
+        == html.replace("\u00a0", " ").count(said.replace("'", "&#39;"))
+        == bool(findings.answer["effects"])
     )
-    both = report.sentence(roll | {"effects": [roll["effects"][0], late]})
-    assert "one thing: damping grows" in both and "in the measurement and not in the physics: the poses" in both
-    assert report.sentence(unknown().answer).startswith("Something is missing that no entry of the library explains")
+
+
+def test_a_roll_decay_is_drawn_where_the_model_errs_most_and_not_as_a_comb():
+    run = rolling().free_runs[0]
+    look = closer(run, "phi_rad")
+    error = np.abs(run.channels["recalibrated"]["phi_rad"] - run.channels["recorded"]["phi_rad"])
+    assert look.t[0] <= run.t[error.argmax()] <= look.t[-1] and np.ptp(look.t) < 0.7 * np.ptp(run.t)
+    assert np.count_nonzero(np.diff(np.sign(look.channels["recorded"]["phi_rad"]))) <= 15
 
 
 def test_an_rms_by_run_is_that_of_the_coordinates_as_in_the_answer():
@@ -392,9 +488,16 @@ def test_nothing_is_written_as_minus_nothing():
 
 
 def test_readers_get_degrees_and_handy_units():
-    assert quantity(np.pi / 2, "rad", 0.01) == "(90.00 ± 0.57)°"
+    assert quantity(np.pi / 2, "rad", 0.01) == "90.00° ± 0.57°"
+    assert quantity(0.0434, "m", 0.0078) == "4.34 ± 0.78 cm" and quantity(0.00392, "m/s", digits=2) == "3.9 mm/s"
+    assert shown("toward_rad", -0.1076, "rad", 0.052) == ("toward", "353.8° ± 3.0°")
+    assert shown("x_fraction", -0.0884, "", 0.0098) == ("x", "−8.84 ± 0.98 %")
+    assert shown("frequency_radps", 2.0, "rad/s", 0.1)[1] == "2.00 ± 0.10 rad/s, a period of 3.14 s"
+    assert limit("astern_factor", 0.0301) == ("astern factor", "3.0 %") and limit("delay_s", 0.0533)[1] == "53 ms"
     assert alike([0.142, 0.0139], "m") == ["14.2 cm", "1.39 cm"]
     assert alike([2.4e6, 1e5], "N m") == ["2.40 MN m", "0.100 MN m"]
+    assert readable("it stays behind as with 0.1 rad of play; p = 0.008") == "it stays behind as with 5.7° of play"
+    assert readable("0.075 N toward 353 deg; p < 1e-6") == "0.075 N toward 353°" and readable("2 rad/s") == "2 rad/s"
     assert (percent(0.99999), percent(0.973), percent(1e-9), percent(0.004)) == ("> 99.9 %", "97 %", "< 0.1 %", "0.4 %")
     assert parameter("toward_rad", "rad") == ("toward", "rad") and parameter("astern_factor") == ("astern factor", "")
     assert parameter("roll_Nms3") == ("roll", "N m s^3") and parameter("x_Ns2pm2") == ("x", "N s^2/m^2")

@@ -126,7 +126,7 @@ def test_the_log_of_a_diagnosis_has_all_boats_the_missing_force_and_what_was_fla
     pose = Recording("x", run.t, {n: run[n] for n in ("x_m", "y_m", "psi_rad")})
     force = np.sin(run.t)
     missing = Recording("m", run.t, {"force_X_N": force, "force_X_N_low": force - 1, "force_X_N_high": force + 1})
-    boats = dict.fromkeys(("recording", "nominal", "recalibrated", "patched"), pose)
+    boats = dict.fromkeys(("recording", "nominal", "recalibrated", "patched"), [pose])
     flagged = [{"run": "run", "from_s": 2.0, "to_s": 3.0, "axis": "surge"}]
     log_overlay(tmp_path / "diagnosis.rrd", boats, missing, flagged, SCENE)
     rows = entities(tmp_path / "diagnosis.rrd")
@@ -135,6 +135,35 @@ def test_the_log_of_a_diagnosis_has_all_boats_the_missing_force_and_what_was_fla
     assert len(RrdReader(tmp_path / "diagnosis.rrd").blueprints()) == 1
     with pytest.raises(BadInput, match="is not the log of a boatsim run"):
         read(tmp_path / "diagnosis.rrd")
+
+
+def test_between_two_free_runs_nothing_is_drawn(tmp_path):
+    """The second starts where the recording is, at the time at which the first ends a metre beside it."""
+    t = np.arange(0.0, 3.01, 0.1)
+    first = Recording("patched", t, {"x_m": 0.1 * t, "y_m": t / 3.0})
+    second = Recording("patched", t + 3.0, {"x_m": 0.1 * t + 0.3, "y_m": 0 * t})
+    whole = Recording("recording", np.append(t, t[1:] + 3.0), {n: np.zeros(2 * len(t) - 1) for n in ("x_m", "y_m")})
+    log_overlay(tmp_path / "d.rrd", {"recording": [whole], "patched": [first, second]}, None, [], SCENE)
+    lines, curve = [], {}
+    for chunk in RrdReader(tmp_path / "d.rrd").stream():
+        batch, name = chunk.to_record_batch(), chunk.entity_path.strip("/")
+        if name == "world/paths/patched" and not chunk.is_static:
+            lines += [strip for row in batch.column("LineStrips3D:strips").to_pylist() for strip in row]
+        if name == "signals/patched/y_m" and not chunk.is_static:
+            times = batch.column("sim_time").cast("int64").to_pylist()
+            curve |= dict(zip(times, batch.column("Scalars:scalars").to_pylist(), strict=True))
+    assert len(lines) == 2 * (len(t) - 1)
+    assert max(np.linalg.norm(np.subtract(b, a)) for a, b in lines) < 0.05
+    values = np.array([curve[k][0] for k in sorted(curve)])
+    assert len(values) == 2 * len(t) + 1 and np.flatnonzero(np.isnan(values)).tolist() == [len(t)]
+    assert values[len(t) - 1] == pytest.approx(1.0) and values[len(t) + 1] == 0.0
+
+
+def test_the_outline_is_that_of_the_hull_from_above():
+    ring = SCENE.outline()
+    np.testing.assert_array_equal(ring[0], ring[-1])
+    x, y = ring.T
+    assert 0.5 * abs(np.dot(x[:-1], y[1:]) - np.dot(y[:-1], x[1:])) == pytest.approx(0.875 * 1.2 * 0.3)
 
 
 def test_a_run_goes_on_where_no_viewer_can_be_shown(tmp_path, monkeypatch):

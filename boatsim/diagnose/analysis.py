@@ -1,10 +1,9 @@
 """A whole diagnosis: recordings and a vessel in, findings out."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from boatsim import vessel as vessels
 from boatsim.base import Array, Effect
 from boatsim.content import load_class, names
 from boatsim.diagnose import experiment, locate, show
-from boatsim.diagnose.answer import compose
+from boatsim.diagnose.answer import compose, meanings
 from boatsim.diagnose.filter import Track, axes_of, nominal_levels, stated_noise, track
 from boatsim.diagnose.findings import Findings, Missing
 from boatsim.diagnose.problem import Problem
@@ -129,8 +128,7 @@ def diagnose(
     try:
         ranking = rank(problem, candidates)
         plan = experiment.next_experiment(problem, *experiment.question(ranking))
-        wanted = experiment.entry(plan, NEXT)
-        findings = _findings(problem, ranking, laid[len(fitted) :], boats[0], note, wanted)
+        findings = _findings(problem, ranking, laid[len(fitted) :], boats[0], note, plan)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         raise BadInput(
             f"{runs[0]}: {boats[0].name} can not follow this recording ({error}); are its units right?"
@@ -172,7 +170,7 @@ def _findings(
     unseen: Sequence[Track],
     vessel: Vessel,
     note: str,
-    wanted: Mapping[str, Any],
+    plan: experiment.Plan | None,
 ) -> Findings:
     """Locate and show, then the answer."""
     longest = max(float(np.ptp(t.times)) for t in unseen)
@@ -201,8 +199,8 @@ def _findings(
     }
     held_out = tuple(t.name for t in unseen)
     return Findings(
-        compose(problem, ranking, forces, stretches, held_out, horizon, wanted), vessel.name,
+        compose(problem, ranking, forces, stretches, held_out, horizon, experiment.entry(plan, NEXT)), vessel.name,
         tuple(t.name for t in problem.tracks), held_out, note, missing, tuple(stretches),
         tuple(show.remarks(parts, problem.tracks, show.errors(stretches), ranking)), coefficients,
-        (table,) if table[2] else (), {type(e).name(): type(e).words for e in problem.program.suspects},
+        (table,) if table[2] else (), meanings(problem.program.suspects), experiment.steps(plan),
     )  # fmt: skip

@@ -1,6 +1,6 @@
 """The answer file of a diagnosis: verdict, effects with their parameters, where, limits, fit."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -58,8 +58,15 @@ def compose(
         "next_experiment": dict(wanted),
         "patch": "patched.toml",
     }
-    answer["sentence"] = report_words.sentence(answer)
+    answer["sentence"] = report_words.sentence(answer, meanings(problem.program.suspects))
     return answer
+
+
+def meanings(suspects: Iterable[Effect]) -> dict[str, str]:
+    """What each entry says, by name, and each of its fitted parameters, by "entry.parameter" as in the answer."""
+    kinds = [type(e) for e in suspects]
+    fitted = ((kind.name(), name, p) for kind in kinds for name, p in kind.params().items() if p.fit)
+    return {k.name(): k.words for k in kinds} | {f"{k}.{key_of(name, p.unit)}": p.words for k, name, p in fitted}
 
 
 def key_of(name: str, unit: str) -> str:

@@ -101,8 +101,9 @@ def overlay(found: Diagnosis, path: Path) -> None:
     from boatsim import rerun_log
 
     stretches = [s for s in found.findings.free_runs if s.run == found.findings.free_runs[0].run]
-    boats = {m: _joined(stretches, m) for m in ("recorded", *show.MODELS)} if stretches else {}
-    boats = {"recording" if m == "recorded" else m: r for m, r in boats.items()}
+    boats = {m: [_of_model(s, m) for s in stretches] for m in show.MODELS} if stretches else {}
+    if stretches:
+        boats = {"recording": [_whole(stretches)], **boats}
     chosen = next((m for m in found.findings.missing if stretches and m.run == stretches[0].run), None)
     missing = None
     if chosen is not None:
@@ -111,7 +112,7 @@ def overlay(found: Diagnosis, path: Path) -> None:
             name, sd = FORCE_NAMES[axis], chosen.sd[axis]
             signals |= {name: mean, f"{name}_low": mean - 2 * sd, f"{name}_high": mean + 2 * sd}
         missing = Recording(chosen.run, chosen.t, signals)
-    scene = _water_around(found.vessel, boats.get("recording"))
+    scene = _water_around(found.vessel, *boats.get("recording", ()))
     intervals = [
         i for i in found.findings.answer["where"]["intervals"] if chosen is not None and i["run"] == chosen.run
     ]
@@ -119,8 +120,8 @@ def overlay(found: Diagnosis, path: Path) -> None:
         rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
 
 
-def _water_around(boat: Vessel, path: Recording | None) -> Any:
-    """Scene of a boat in open water that reaches two boat lengths beyond where it went."""
+def _water_around(boat: Vessel, path: Recording | None = None) -> Any:
+    """Scene of a boat in open water that reaches one and a half boat lengths beyond where it went."""
     from boatsim import world
     from boatsim.rerun_scene import scene_from
 
@@ -128,19 +129,26 @@ def _water_around(boat: Vessel, path: Recording | None) -> Any:
     for name in ("x_m", "y_m"):
         where = path.signals[name] if path is not None and name in path.signals else np.zeros(1)
         spans.append((float(np.nanmin(where)), float(np.nanmax(where))))
-    length, width = (high - low + 4 * boat.length for low, high in spans)
+    length, width = (high - low + 3 * boat.length for low, high in spans)
     centre = (sum(spans[0]) / 2, sum(spans[1]) / 2)
     tank = world.Tank(length, width, boat.draught * 2, walls=False, centre=centre)
     return scene_from(world.build(boat, tank), boat, tank)
 
 
-def _joined(stretches: Sequence[FreeRun], model: str) -> Recording:
-    """Consecutive free runs of one model as one recording."""
-    t = np.concatenate([s.t[:-1] for s in stretches] + [stretches[-1].t[-1:]])
-    names = list(stretches[0].channels[model])
-    cut = [{n: s.channels[model][n][:-1] for n in names} for s in stretches]
-    cut.append({n: stretches[-1].channels[model][n][-1:] for n in names})
-    return Recording(model, t, {n: np.concatenate([c[n] for c in cut]) for n in names})
+def _whole(stretches: Sequence[FreeRun]) -> Recording:
+    """The recording under consecutive free runs, which share their ends."""
+    t, rows = np.unique(np.concatenate([s.t for s in stretches]), return_index=True)
+    names = stretches[0].channels["recorded"]
+    joined = {n: np.concatenate([s.channels["recorded"][n] for s in stretches])[rows] for n in names}
+    return Recording("recording", t, joined)
+
+
+def _of_model(stretch: FreeRun, model: str) -> Recording:
+    """A free run of one model, with its distance from the recording."""
+    signals, recorded = dict(stretch.channels[model]), stretch.channels["recorded"]
+    if {"x_m", "y_m"} <= signals.keys():
+        signals["off_m"] = np.hypot(signals["x_m"] - recorded["x_m"], signals["y_m"] - recorded["y_m"])
+    return Recording(model, stretch.t, signals)
 
 
 def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:
@@ -219,6 +227,6 @@ def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Any
     from boatsim import rerun_log
 
     measured = Recording("recording", recording.t, {n: recording.signals[n] for n in simulated})
-    boats = {"recording": measured, "simulated": Recording("simulated", recording.t, dict(simulated))}
+    boats = {"recording": [measured], "simulated": [Recording("simulated", recording.t, dict(simulated))]}
     with replacing(path) as temporary:
         rerun_log.log_overlay(temporary, boats, None, [], _water_around(boat, measured))

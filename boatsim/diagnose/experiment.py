@@ -104,6 +104,14 @@ def entry(plan: Plan | None, scenario: str) -> dict[str, Any]:
     }
 
 
+def steps(plan: Plan | None) -> tuple[tuple[float, Mapping[str, float]], ...]:
+    """From which time [s] on each command has which value; last, without commands, the end. Empty without a plan."""
+    if plan is None:
+        return ()
+    told = [(t, level) for t, level in zip(plan.times, plan.levels, strict=True) if level]
+    return (*told, (plan.duration, {})) if told else ()
+
+
 def scenario_text(plan: Plan, vessel: Vessel) -> str:
     """A scenario file that plays the plan on the vessel that was diagnosed."""
     step = min(float(f"{STEP * scale_of('s', vessel):.1g}"), 1.0)

@@ -1,5 +1,6 @@
 """What a diagnosis hands to those who show it: the answer, and the curves behind it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -45,3 +46,4 @@ class Findings:
     coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)  # recalibrated coefficient -> factor, sd
     extra_tables: tuple[tuple[str, list[str], list[list[str]]], ...] = ()  # title, header, rows
     words: dict[str, str] = field(default_factory=dict)  # what a library entry says, by name; also "entry.parameter"
+    steps: tuple[tuple[float, Mapping[str, float]], ...] = ()  # commands of the next experiment from each time [s] on

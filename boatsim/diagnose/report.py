@@ -19,6 +19,9 @@ VERDICTS = {
 }
 
 
+NOT_PHYSICS = "Measurement, not physics"  # if all that was named is of that kind
+
+
 def write(findings: Findings, folder: Path) -> None:
     """Write report.html (one page, nothing fetched) and report.md (the same in text). Raises OSError."""
     sections = [s for s in sections_of(findings) if s.blocks]
@@ -33,18 +36,22 @@ def page(findings: Findings, sections: Sequence[Section]) -> str:
 
     template = (Path(__file__).parent / "templates" / "report.html.j2").read_text(encoding="utf-8")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters["held"] = lambda words: words.replace(" ± ", "\u00a0±\u00a0")  # no line ends within
+    environment.filters["held"] = _held
     answer = findings.answer
     return environment.from_string(template).render(
-        f=findings, verdict=VERDICTS[answer["verdict"]], answer=answer, headline=_headline(findings), sections=sections,
+        f=findings, verdict=_verdict(findings), answer=answer, headline=_headline(findings), sections=sections,
         proof=proof(findings), facts=_facts(findings),
     )  # fmt: skip
 
 
+def _held(words: str) -> str:
+    """No line ends within a value."""
+    return words.replace(" ± ", "\u00a0±\u00a0").replace(" %", "\u00a0%")
+
+
 def markdown(findings: Findings, sections: Sequence[Section]) -> str:
     """The same as text."""
-    verdict = VERDICTS[findings.answer["verdict"]]
-    lines = [f"# {safe(_headline(findings))}", "", f"**{verdict}.** {safe(proof(findings))}", ""]
+    lines = [f"# {safe(_headline(findings))}", "", f"**{_verdict(findings)}.** {safe(proof(findings))}", ""]
     lines += [f"- {name}: {safe(value)}" for name, value in _facts(findings)]
     for section in sections:
         lines += ["", f"## {section.title}"]
@@ -54,7 +61,14 @@ def markdown(findings: Findings, sections: Sequence[Section]) -> str:
 
 
 def _headline(f: Findings) -> str:
-    return str(f.answer["sentence"]) or sentence(f.answer)
+    return str(f.answer["sentence"]) or sentence(f.answer, f.words)
+
+
+def _verdict(f: Findings) -> str:
+    """The verdict in a word or two."""
+    effects, verdict = f.answer["effects"], f.answer["verdict"]
+    measured = verdict == "named" and all(e["kind"] == "measurement" for e in effects)
+    return NOT_PHYSICS if measured else VERDICTS[verdict]
 
 
 def _facts(f: Findings) -> list[tuple[str, str]]:

@@ -41,6 +41,7 @@ class Table:
     prose: tuple[int, ...] = ()
     bars: tuple[float, ...] = ()  # share of a row's bar, 0 to 1, behind its second column
     folded: bool = False  # on the page, shown on request
+    aside: bool = False  # the last column is left out where the screen is narrow
 
 
 def without_empty(table: Table) -> Table:
@@ -48,7 +49,8 @@ def without_empty(table: Table) -> Table:
     kept = [i for i in range(len(table.header)) if i not in table.prose or any(row[i] for row in table.rows)]
     prose = tuple(new for new, old in enumerate(kept) if old in table.prose)
     header, *rows = ([row[i] for i in kept] for row in (table.header, *table.rows))
-    return replace(table, header=header, rows=rows, prose=prose)
+    aside = table.aside and len(table.header) - 1 in kept
+    return replace(table, header=header, rows=rows, prose=prose, aside=aside)
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from boatsim.diagnose.report_words import handy, number
 
 GRID = 2000  # units of the drawing along each edge; whole ones are finer than a pixel
 POINTS = 500  # of a line; more are not seen
+SWINGS = 14  # zero crossings of roll that are drawn
 BAND = 2.0  # [sd] zero outside this band counts as missing
 TIMES, SQUARE = 3.2, 1.25  # width of a curve over time and of a map by its height
 SIGNALS = {"psi_rad": "heading", "phi_rad": "roll"}
@@ -174,7 +175,8 @@ def _missing_panel(
     rms = number(float(np.sqrt(np.nanmean(force**2))))
     about = f"Missing force in {axis} over {m.run}: rms {rms} {unit}; flagged in {len(flags)} intervals."
     band, x = (m.t, force - BAND * sd, force + BAND * sd), (float(m.t[0]), float(m.t[-1]))
-    return Panel(f"{axis} [{unit}]", tuple(lines), x, y, "time [s]", band, flags, about=about)
+    kind = "force" if axis in ("surge", "sway") else "moment"
+    return Panel(f"{axis} {kind} [{unit}]", tuple(lines), x, y, "time [s]", band, flags, about=about)
 
 
 def free_run_figures(runs: Sequence[FreeRun]) -> list[str]:
@@ -187,14 +189,32 @@ def free_run_figures(runs: Sequence[FreeRun]) -> list[str]:
         found.append(figure([_map(runs)], f"{name}: {whole}"))
         if len(runs) > 1:
             worst = max(runs, key=lambda r: float(np.nanmax(position_error(r, "recalibrated"), initial=0.0)))
-            where = f"{number(worst.t[0])} to {number(worst.t[-1])} s"
+            where = f"{worst.t[0]:.4g} to {worst.t[-1]:.4g}\u00a0s"
             found.append(figure([_map([worst])], f"{name}: where the recalibrated boat errs most, {where}"))
     errors = [_error_panel(runs, "position")] if {"x_m", "y_m"} <= signals.keys() else []
     errors += [_error_panel(runs, s) for s in SIGNALS if s in signals]
     if "phi_rad" in signals:
-        found.append(figure([_signal_panel(runs, "phi_rad")], f"{name}: roll, recorded and run freely", wide=True))
+        worst = max(runs, key=lambda r: float(np.nanmax(np.abs(error_of(r, "recalibrated", "phi_rad")), initial=0.0)))
+        look = closer(worst, "phi_rad")
+        where = f"{look.t[0]:.4g} to {look.t[-1]:.4g}\u00a0s"
+        title = f"{name}: roll, where the recalibrated boat errs most, {where}"
+        found.append(figure([_signal_panel([look], "phi_rad")], title, wide=True))
     found.append(figure(errors, f"{name}: error of the free runs", wide=True))
     return found
+
+
+def closer(run: FreeRun, signal: str) -> FreeRun:
+    """The few swings of a signal about the largest error of the recalibrated boat: more of them only make a comb."""
+    recorded = np.nan_to_num(run.channels["recorded"][signal])
+    crossings = np.flatnonzero(np.diff(np.sign(recorded - recorded.mean())))
+    edges = np.concatenate([[0], crossings, [len(recorded) - 1]])
+    if len(edges) <= SWINGS + 1:
+        return run
+    worst = int(np.nanargmax(np.abs(error_of(run, "recalibrated", signal))))
+    first = int(np.clip(np.searchsorted(edges, worst) - SWINGS // 2, 0, len(edges) - SWINGS - 1))
+    begin, end = int(edges[first]), int(edges[first + SWINGS]) + 1
+    channels = {m: {n: v[begin:end] for n, v in c.items()} for m, c in run.channels.items()}
+    return FreeRun(run.run, float(run.t[begin]), run.t[begin:end], channels)
 
 
 def models_in(run: FreeRun) -> list[str]:

@@ -9,28 +9,37 @@ from typing import Any
 import numpy as np
 
 from boatsim.diagnose import report_figures as figures
+from boatsim.diagnose.answer import SHAPE
+from boatsim.diagnose.experiment import WORTH
 from boatsim.diagnose.findings import Findings, FreeRun, Missing
+from boatsim.diagnose.rank import ALIKE, UNKNOWN, UNKNOWN_FACTOR
 from boatsim.diagnose.report_blocks import Block, Figures, Heading, Items, Section, Table, Text, without_empty
 from boatsim.diagnose.report_words import (
     alike,
     capital,
+    limit,
     listed,
+    nats,
     number,
     parameter,
     percent,
     plain,
-    quantity,
+    readable,
+    said,
+    shown,
     spread,
 )
 
 PICTURES = 6  # runs whose missing force is drawn; the strongest ones
 UNSEEN_PICTURES = 3  # unseen runs that are drawn
+RANKED = 8  # entries of the ranking, and of the limits, that are seen without asking for the rest
 FAMILIES = {  # key of `fit` -> what it is the error of, unit, signal of a free run
     "position_rms_m": ("position", "m", "position"),
     "heading_rms_rad": ("heading", "rad", "psi_rad"),
     "roll_rms_rad": ("roll", "rad", "phi_rad"),
 }
 MODELS = ("nominal", "recalibrated", "patched")
+HELPS = 1.1  # times that an error on unseen data must get smaller for a finding to be more than a hint
 GLOSSARY = (
     ("nominal, recalibrated, patched",
      "The vessel file as given; the same with its own coefficients refitted; and that with the effects found added. "
@@ -50,7 +59,7 @@ GLOSSARY = (
      "parameters paid for. 1 nat is a factor of 2.7, 3 nats 20, 4 nats 55. An effect is named from 4 nats on; entries "
      "within 3 nats of it are its look-alikes."),
     ("probability", "Share of belief that the evidence gives an entry among its rivals and nothing at all."),
-    ("\u00b1", "One standard deviation: the true value lies within twice this in 95 of 100 cases."),
+    ("\u00b1", "One standard deviation: the true value is expected within twice this in 95 of 100 cases."),
     ("surge, sway, roll, yaw", "Forward, to starboard, starboard side down, bow to starboard."),
 )  # fmt: skip
 
@@ -69,9 +78,10 @@ def proof(f: Findings) -> str:
         errors = listed(f"{before} in {words}" for words, before, *_ in parts)
         return f"In free runs of {stretch} over unseen data the recalibrated vessel has an rms error of {errors}."
     compared = (f"of {after} in {words} instead of {before} ({_times(gain)})" for words, before, after, gain in parts)
+    hint = "" if max(gain for *_, gain in parts) > HELPS else "Take it for a hint: on unseen data it hardly helps. "
     return (
-        f"With this in the model, free runs of {stretch} over unseen data have an rms error {listed(compared)}; the "
-        "comparison is with the same vessel after its own coefficients were refitted."
+        f"{hint}With this in the model, free runs of {stretch} over unseen data have an rms error {listed(compared)}; "
+        "the comparison is with the same vessel after its own coefficients were refitted."
     )
 
 
@@ -84,15 +94,14 @@ def _times(gain: float) -> str:
 def sections_of(f: Findings) -> list[Section]:
     """The whole report in order; sections that have nothing to say are empty."""
     return [
-        Section("what", "What was left out", list(_what(f))),
+        Section("what", "What was found", list(_what(f))),
         Section("where", "Where it shows", list(_where(f))),
-        Section("proof", "Before and after on unseen data", list(_proof(f))),
         Section("ranking", "Ranking", list(_ranking(f))),
-        Section("limits", "Upper limits", list(_limits(f))),
-        Section("coefficients", "Refitted coefficients", list(_coefficients(f))),
+        Section("proof", "Before and after on unseen data", list(_proof(f))),
         Section("next", "What to record next", list(_next(f))),
-        Section("cannot", "What this can not tell", list(_cannot(f))),
-        Section("more", "Further tables", [Table(t, h, r, _prose(r)) for t, h, r in f.extra_tables]),
+        Section("cannot", "What the data cannot tell", list(_cannot(f))),
+        Section("limits", "Upper limits of what was not found", list(_limits(f))),
+        Section("coefficients", "Refitted coefficients", list(_coefficients(f))),
         Section("files", "Files", list(_files(f))),
         Section("reading", "How to read this", [Items(GLOSSARY)]),
     ]
@@ -105,24 +114,27 @@ def _prose(rows: Sequence[Sequence[str]]) -> tuple[int, ...]:
 
 
 def _what(f: Findings) -> Iterator[Block]:
+    noted = False
     for e in f.answer["effects"]:
         measured = "a measurement error, not physics" if e["kind"] == "measurement" else "physics"
-        facts = (
-            f"{e['name']} · {measured} · probability {percent(e['probability'])} · gain {number(e['gain_nats'])} nats"
-        )
-        yield Heading(capital(e["words"]), facts)
+        facts = f"{e['name']} · {measured} · probability {percent(e['probability'])} · gain {nats(e['gain_nats'])} nats"
+        yield Heading(capital(said(e["words"])), facts)
         if e["parameters"]:
             header = ["parameter", "value ± deviation", "meaning"]
             yield without_empty(Table("Fitted values", header, _values(f, e), prose=(2,)))
+            if not noted:
+                yield Text(_about_deviations(e))
+            noted = True
         if e["tied_with"]:
-            rivals = (plain(n) + (f" ({f.words[n]})" if n in f.words else "") for n in e["tied_with"])
-            yield Text(f"Looks alike in these recordings: {listed(rivals, 'or')}.")
+            rivals = (plain(n) + (f" ({_beside(f.words[n])})" if n in f.words else "") for n in e["tied_with"])
+            yield Text(f"These recordings cannot tell it from {listed(rivals, 'or')}.")
     unknown = f.answer["unknown"]
     if unknown["flag"]:
-        yield Heading("Something that no entry of the library explains", f"gain {number(unknown['gain_nats'])} nats")
+        yield Heading("Something that no entry of the library explains", f"gain {nats(unknown['gain_nats'])} nats")
         yield Text(
-            "After the best set of entries, a force of twice the tolerated size is still not enough: the recordings "
-            f"call for more, by {number(unknown['gain_nats'])} nats (said from 6 on). Where it acts is shown below."
+            f"After the best set of entries, a random force of {UNKNOWN_FACTOR:g} times the tolerated size is not "
+            f"enough: the recordings call for more, by {nats(unknown['gain_nats'])} nats (said from {UNKNOWN:g} on). "
+            "Where and when it acts is shown below."
         )
     elif not f.answer["effects"]:
         yield Text(
@@ -131,18 +143,34 @@ def _what(f: Findings) -> Iterator[Block]:
         )
 
 
+def _beside(words: str) -> str:
+    """What an entry says, in brackets."""
+    return said(words) + ("" if words == said(words) else ", not physics")
+
+
 def _values(f: Findings, effect: dict[str, Any]) -> list[list[str]]:
     rows = []
     for key, p in effect["parameters"].items():
-        name, unit = parameter(key, p["unit"])
-        rows.append([name, quantity(p["value"], unit, p["sd"]), f.words.get(f"{effect['name']}.{key}", "")])
+        name, text = shown(key, p["value"], p["unit"], p["sd"])
+        meaning = f.words.get(f"{effect['name']}.{key}", "")
+        rows.append([name, text, "" if meaning == name else meaning])
     return rows
+
+
+def _about_deviations(effect: dict[str, Any]) -> str:
+    """What is behind the deviations that are printed."""
+    turned = any(p["unit"] == "rad" for p in effect["parameters"].values())
+    direction = f" ({math.degrees(SHAPE):.1f}° of a direction)" if turned else ""
+    return (
+        f"± is one standard deviation. Beside what the noise leaves open it holds {100 * SHAPE:g} % of the effect's "
+        f"own size{direction}, because the law of an entry never has exactly nature's shape."
+    )
 
 
 def _where(f: Findings) -> Iterator[Block]:
     where = f.answer["where"]
     if where["region"]:
-        rows = [[r["statement"], number(r["p_value"], 1)] for r in where["region"]]
+        rows = [[capital(readable(r["statement"])), number(r["p_value"], 1)] for r in where["region"]]
         yield Table("When it acts", ["finding", "chance of seeing this by accident (p)"], rows)
     if where["axes"]:
         header = ["axis", "missing, rms", "its uncertainty, rms"]
@@ -152,9 +180,17 @@ def _where(f: Findings) -> Iterator[Block]:
             header = [*header, "share of the time flagged"]
             rows = [[*row, f"{100 * share.get(row[0], 0.0):.0f} %"] for row in rows]
         yield Table("Force and moment that the vessel as written has no cause for", header, rows)
+        if f.answer["verdict"] == "named" and all(e["kind"] == "measurement" for e in f.answer["effects"]):
+            yield Text("These forces are not real: they are what the error of measurement looks like.")
     if f.missing:
         yield from _missing_figures(f)
     if where["intervals"]:
+        if f.answer["verdict"] == "nothing_missing":
+            yield Text(
+                "Stretches are flagged one by one, wherever the force leaves what the vessel file tolerates. Together "
+                "they are not enough for a verdict: no entry explains them clearly better, and a cause outside the "
+                f"library would gain {nats(f.answer['unknown']['gain_nats'])} nats (said from {UNKNOWN:g} on)."
+            )
         rows = [[i["run"], i["axis"], *(f"{i[k]:.1f}" for k in ("from_s", "to_s"))] for i in where["intervals"]]
         header = ["run", "axis", "from [s]", "to [s]"]
         yield Table(f"All {len(rows)} flagged intervals", header, rows, (1,), folded=True)
@@ -191,18 +227,25 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
 
 def _proof(f: Findings) -> Iterator[Block]:
     fit = f.answer["fit"]
+    models = MODELS if f.answer["effects"] else MODELS[:2]  # a patch that adds nothing is no boat of its own
+    header = [*models, "better by"] if f.answer["effects"] else list(models)
     rows = [_compared(words, fit[key], unit) for key, (words, unit, _) in FAMILIES.items() if fit.get(key)]
     if rows:
         caption = f"rms error of free runs of {fit['horizon_s']:g} s over {listed(fit['held_out'])}"
-        yield Table(caption, ["error in", *MODELS, "better by"], rows)
-    runs = [list(group) for _, group in groupby(f.free_runs, key=lambda r: r.run)]
+        yield Table(caption, ["error in", *header], [row[: len(header) + 1] for row in rows])
+    free_runs = [replace(r, channels={m: c for m, c in r.channels.items() if m in ("recorded", *models)})
+                 for r in f.free_runs]  # fmt: skip
+    runs = [list(group) for _, group in groupby(free_runs, key=lambda r: r.run)]
     if len(runs) > 1:
-        yield Table("The same, run by run", ["run", *MODELS, "better by"], _by_run(runs))
+        each = [list(group) for _, group in groupby(f.free_runs, key=lambda r: r.run)]
+        yield Table("The same, run by run", ["run", *header], [row[: len(header) + 1] for row in _by_run(each)])
     if runs:
         looks = {m: m for m in runs[0][0].channels}
         yield Figures(figures.legend(looks), [p for r in runs[:UNSEEN_PICTURES] for p in figures.free_run_figures(r)])
     if len(runs) > UNSEEN_PICTURES:
         yield Text(f"Drawn are the first {UNSEEN_PICTURES} of {len(runs)} unseen runs.")
+    for title, names, cells in f.extra_tables:
+        yield Table(title, names, cells, _prose(cells), folded=True)
 
 
 def _compared(words: str, rms: dict[str, float], unit: str) -> list[str]:
@@ -230,32 +273,55 @@ def _ranking(f: Findings) -> Iterator[Block]:
     candidates = f.answer["candidates"]
     if not candidates:
         return
-    status = {n: f"looks like {plain(e['name'])}" for e in f.answer["effects"] for n in e["tied_with"]}
+    status = {n: f"not to be told from {plain(e['name'])}" for e in f.answer["effects"] for n in e["tied_with"]}
     status |= {e["name"]: "named" for e in f.answer["effects"]}
     rows = [
-        [plain(name), number(c["gain_nats"]), percent(c["probability"]), status.get(name, ""), f.words.get(name, "")]
+        [plain(name), nats(c["gain_nats"]), percent(c["probability"]), status.get(name, ""), f.words.get(name, "")]
         for c in candidates
         for name in [c["name"]]
     ]
     most = max(max(c["gain_nats"] for c in candidates), 1e-9)
     bars = tuple(max(0.0, c["gain_nats"]) / most for c in candidates)
     caption = (
-        "Each entry alone, before any is named: how much better than the recalibrated vessel it explains the fit. "
+        "Each entry alone, before any is named: how much better than the recalibrated vessel it explains the runs. "
         "The gain of a named effect above is on top of the others named, all refitted, and so differs"
     )
-    header = ["entry", "gain [nats]", "probability", "verdict", "it would mean"]
-    yield without_empty(Table(caption, header, rows, (3, 4), bars))
+    header = ["entry", "gain alone [nats]", "probability alone", "verdict", "it would mean"]
+    first = max([RANKED, *(i + 1 for i, row in enumerate(rows) if row[3])])
+    yield without_empty(Table(caption, header, rows[:first], (3, 4), bars[:first], aside=True))
+    if rest := rows[first:]:
+        one = "The other entry tried" if len(rest) == 1 else f"The other {len(rest)} entries tried"
+        yield without_empty(Table(one, header, rest, (3, 4), bars[first:], folded=True, aside=True))
 
 
 def _limits(f: Findings) -> Iterator[Block]:
     rows = []
-    for name, values in f.answer["upper_limits"].items():
+    for name, values in _not_found(f).items():
+        told = []
         for key, value in values.items():
-            words, unit = parameter(key)
-            rows.append([plain(name), words, quantity(value, unit)])
+            words, text = limit(key, value)
+            told.append(f"{_meant(f, name, key) or words} {text}")
+        if told:
+            rows.append([plain(name), ", ".join(told), f.words.get(name, "")])
     if rows:
-        caption = "What was not found: how far from not acting at all the recordings still allow it to be (95 %)"
-        yield Table(caption, ["entry", "parameter", "off by at most"], rows, (1,))
+        caption = (
+            "How far each can be from not acting at all, with 95 % confidence; a factor or share counts from what the "
+            "vessel file has"
+        )
+        header, folded = ["entry", "at most", "it would mean"], f.answer["verdict"] != "nothing_missing"
+        yield without_empty(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
+
+
+def _meant(f: Findings, name: str, key: str) -> str:
+    """What a parameter of a measurement entry means, which says more than its name: "cos" of a compass."""
+    words = f.words.get(name, "")
+    return f.words.get(f"{name}.{key}", "") if words != said(words) else ""
+
+
+def _not_found(f: Findings) -> dict[str, dict[str, float]]:
+    """Upper limits without those of look-alikes: what may be there in another's place has none."""
+    tied = {n for e in f.answer["effects"] for n in e["tied_with"]}
+    return {n: values for n, values in f.answer["upper_limits"].items() if n not in tied}
 
 
 def _coefficients(f: Findings) -> Iterator[Block]:
@@ -270,12 +336,36 @@ def _coefficients(f: Findings) -> Iterator[Block]:
 def _next(f: Findings) -> Iterator[Block]:
     wanted = f.answer["next_experiment"]
     if not wanted:
+        if f.answer["effects"]:
+            yield Text(
+                f"No manoeuvre tried is expected to bring more than {WORTH:g} nat of evidence on what is named and "
+                "what could be taken for it."
+            )
         return
-    yield Text(
-        f"{capital(wanted['manoeuvre'])}. It separates {listed(map(plain, wanted['separates']))}: expected evidence "
-        f"{number(wanted['expected_gain_nats'])} nats, that is {_odds(wanted['expected_gain_nats'])} for the right one."
-    )
-    yield Text(f"The manoeuvre is {wanted['scenario']} beside this report; boatsim run {wanted['scenario']} plays it.")
+    gain, scenario = wanted["expected_gain_nats"], wanted["scenario"]
+    apart = ["nothing at all" if n == "nothing" else plain(n) for n in wanted["separates"]]
+    given = "the commands below" if f.steps else "the start it states"
+    yield Items((
+        ("Manoeuvre", f"{capital(readable(wanted['manoeuvre']))}."),
+        ("Tells apart", f"{capital(listed(apart, 'or'))}."),
+        ("Expected evidence", f"{nats(gain)} nats: {_odds(gain)} for the right one, against the hardest rival."),
+        ("How to run it", f"boatsim run {scenario} plays it on the vessel as written (it lies beside this report). "
+         f"Give the real boat {given}, record it, and diagnose all runs together."),
+    ))  # fmt: skip
+    yield from _commands(f)
+
+
+def _commands(f: Findings) -> Iterator[Block]:
+    """When the next experiment commands what; the last row is its end."""
+    if not f.steps:
+        return
+    names = {name: parameter(name) for _, level in f.steps for name in level}
+    header = ["from", *(words for words, _ in names.values())]
+    rows = []
+    for t, level in f.steps:
+        cells = (shown(n, level[n], unit)[1] if n in level else "" for n, (_, unit) in names.items())
+        rows.append([f"{t:g} s", *(cells if level else ["end", *[""] * (len(names) - 1)])])
+    yield Table("Commands of the next experiment", header, rows, folded=True)
 
 
 def _odds(nats: float) -> str:
@@ -286,19 +376,23 @@ def _odds(nats: float) -> str:
 def _cannot(f: Findings) -> Iterator[Block]:
     lines = [
         f"Whether it is {listed(map(plain, (e['name'], *e['tied_with'])), 'or')}: they explain these recordings about "
-        "equally well (within a factor of 20)."
+        f"equally well (within {ALIKE:g} nats, a factor of {math.exp(ALIKE):.0f})."
         for e in f.answer["effects"]
         if e["tied_with"]
     ]
     if not f.answer["fit"].get("held_out"):
         lines.append("Whether the finding holds on other data: nothing was kept unseen.")
+    if silent := [plain(n) for n, values in _not_found(f).items() if not values]:
+        lines.append(f"How strong {listed(silent, 'or')} could be at most: no limit could be worked out.")
     if lines or f.remarks:
-        yield Items(tuple(("", line) for line in (*lines, *f.remarks)))
+        yield Items(tuple(("", line) for line in (*lines, *map(readable, f.remarks))))
 
 
 def _files(f: Findings) -> Iterator[Block]:
     lines = {"diagnosis.json": "all of this as data"}
     if patch := f.answer["patch"]:
         lines[patch] = f"the vessel with what was found; boatsim replay takes it as --vessel {patch}"
+    if wanted := f.answer["next_experiment"]:
+        lines[wanted["scenario"]] = "the manoeuvre to record next; boatsim run plays it"
     lines["diagnosis.rrd"] = "recording, nominal, recalibrated and patched boat in one scene, for the rerun viewer"
     yield Items(tuple(lines.items()))

@@ -10,7 +10,13 @@ from boatsim.recording_notes import unit_of
 DEGREE = 180.0 / math.pi
 IN_DEGREES = {"rad": "°", "rad/s": "°/s", "rad/s^2": "°/s²"}
 FORCES = ((1e6, 1e6, "M"), (1e3, 1e3, "k"), (1e-2, 1.0, ""), (0.0, 1e-3, "m"))  # from this size on, factor, prefix
-LENGTHS = ((1.0, 1.0, "m"), (1e-2, 1e-2, "cm"), (0.0, 1e-3, "mm"))
+STEPS = {  # unit -> from this size on, size of the unit taken instead, its name
+    "m": ((1.0, 1.0, "m"), (1e-2, 1e-2, "cm"), (0.0, 1e-3, "mm")),
+    "m/s": ((0.1, 1.0, "m/s"), (1e-2, 1e-2, "cm/s"), (0.0, 1e-3, "mm/s")),
+    "s": ((0.1, 1.0, "s"), (0.0, 1e-3, "ms")),
+} | {unit: tuple((least, size, name + unit) for least, size, name in FORCES) for unit in ("N", "N m")}
+COUNTS = ("nothing", "one thing", "two things", "three things", "four things", "five things", "six things")
+MOST = 3  # numbers of one effect in the sentence; the table has all of them
 FACTOR = "(kg|rad|N|m|s)([2-9]?)"
 UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")  # how keys spell a unit
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -49,6 +55,11 @@ def number(value: float, digits: int = 3) -> str:
     return text.replace("-", "−")
 
 
+def nats(gain: float) -> str:
+    """A gain in nats; tenths are enough to judge by."""
+    return f"{gain:.{1 if abs(gain) < 100.0 else 0}f}".replace("-", "−").replace("−0.0", "0.0")
+
+
 def spread(value: float, sd: float) -> str:
     """Value ± standard deviation, both to the digits the deviation allows: 0.694 ± 0.012."""
     if not (math.isfinite(value) and math.isfinite(sd) and sd > 0.0):
@@ -68,13 +79,39 @@ def unit_words(unit: str) -> str:
     return unit
 
 
-def quantity(value: float, unit: str, sd: float = 0.0) -> str:
-    """Value ± deviation with its unit; angles in degrees."""
-    if unit in IN_DEGREES:
-        value, sd, unit = value * DEGREE, sd * DEGREE, IN_DEGREES[unit]
-    gap = "" if unit.startswith("°") or not unit else " "
-    text = spread(value, sd)
-    return f"({text}){gap}{unit}" if gap == "" and unit and "±" in text else f"{text}{gap}{unit_words(unit)}"
+def quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -> str:
+    """Value ± deviation in a handy unit; angles in degrees. Without a deviation, to so many digits."""
+    name, factor = handy(unit, max((abs(v) for v in (value, sd) if math.isfinite(v)), default=0.0))
+    text = spread(value * factor, sd * factor) if sd > 0.0 else number(value * factor, digits)
+    if name.startswith("°"):
+        return f"{text.replace(' ± ', f'{name} ± ') if '×' not in text else text}{name}"
+    return f"{text} {name}".rstrip()
+
+
+def shown(key: str, value: float, unit: str = "", sd: float = 0.0) -> tuple[str, str]:
+    """(name, value ± deviation) of a parameter as people say it: shares in %, bearings from 0 to 360°."""
+    name, unit = parameter(key, unit)
+    if name.endswith("fraction") and not unit:
+        return name.removesuffix("fraction").strip() or name, f"{spread(100.0 * value, 100.0 * sd)} %"
+    if name == "toward" and unit == "rad":
+        value %= 2.0 * math.pi
+    if name == "frequency" and unit == "rad/s" and value > 0.0:  # of a wave, which nobody counts in degrees
+        return name, f"{spread(value, sd)} rad/s, a period of {number(2.0 * math.pi / value)} s"
+    return name, quantity(value, unit, sd)
+
+
+def limit(key: str, value: float) -> tuple[str, str]:
+    """(name, largest strength) of a parameter that was not found: 3.9 mm/s; factors and shares in %."""
+    name, unit = parameter(key)
+    if not unit and name.endswith(("factor", "fraction")):
+        return name.removesuffix("fraction").strip() or name, f"{number(100.0 * value, 2)} %"
+    return name, quantity(value, unit, digits=2)
+
+
+def readable(words: str) -> str:
+    """A sentence of the answer for people: degrees by their sign, no p-value at its end (the table has it)."""
+    words = re.sub(r"([\d.]+) rad(?![/\w])", lambda found: f"{float(found[1]) * DEGREE:.2g}°", words)
+    return re.sub(r"(\d) deg\b", r"\1°", re.sub(r"; p [<=] \S+$", "", words))
 
 
 def parameter(key: str, unit: str = "") -> tuple[str, str]:
@@ -111,10 +148,9 @@ def handy(unit: str, largest: float) -> tuple[str, float]:
     """(unit, factor) that make a number of this size readable: m -> cm, N -> kN, rad -> °."""
     if unit in IN_DEGREES:
         return IN_DEGREES[unit], DEGREE
-    if unit in ("m", "N", "N m"):
-        steps = LENGTHS if unit == "m" else FORCES
-        _, size, name = next((s for s in steps if largest >= s[0]), steps[-1])
-        return name if unit == "m" else name + unit, 1.0 / size
+    if unit in STEPS and largest > 0.0:
+        _, size, name = next(s for s in STEPS[unit] if largest >= s[0])
+        return name, 1.0 / size
     return unit_words(unit), 1.0
 
 
@@ -125,38 +161,62 @@ def alike(values: Sequence[float], unit: str) -> list[str]:
     return [f"{number(v * factor)}{gap}{name}" for v in values]
 
 
-def parameters(effect: Mapping[str, Any]) -> str:
-    """The fitted numbers of an effect in a row: astern factor 0.694 ± 0.012; without those that may well be zero."""
-    found = [(p["value"], p["sd"], *parameter(key, p["unit"])) for key, p in effect["parameters"].items()]
-    return ", ".join(f"{name} {quantity(value, unit, sd)}" for value, sd, name, unit in found if abs(value) > sd)
+def said(words: str) -> str:
+    """What an entry says; that it is not physics is said once, not in every clause."""
+    return words.removesuffix(" (not physics)")
 
 
-def sentence(answer: Mapping[str, Any]) -> str:
-    """The verdict of a diagnosis in one sentence, made of the words of the effects it names."""
+def parameters(effect: Mapping[str, Any], words: Mapping[str, str]) -> str:
+    """The fitted numbers of an effect in a row: astern factor 0.694 ± 0.012; the first few, none that may be zero."""
+    found = []
+    for key, p in effect["parameters"].items():
+        name, text = shown(key, p["value"], p["unit"], p["sd"])
+        if effect["kind"] == "measurement":  # "cos" says little, "error heading north" does
+            name = words.get(f"{effect['name']}.{key}", name)
+        if abs(p["value"]) > p["sd"] or "factor" in key:
+            found.append(f"{name} {text}")
+    return ", ".join(found[:MOST])
+
+
+def sentence(answer: Mapping[str, Any], words: Mapping[str, str] | None = None) -> str:
+    """The verdict of a diagnosis in one sentence, made of the words of the effects it names.
+
+    `words` is what parameters mean, by "effect.parameter".
+    """
     effects = answer["effects"]
-    physics = [_clause(e) for e in effects if e["kind"] != "measurement"]
-    measured = [_clause(e) for e in effects if e["kind"] == "measurement"]
-    named = ""
+    physics = [_clause(e, words or {}) for e in effects if e["kind"] != "measurement"]
+    measured = [_clause(e, words or {}) for e in effects if e["kind"] == "measurement"]
+    unknown = answer["verdict"] == "unknown"
+    parts = [f"something is missing that no entry of the library explains{_sizes(answer)}"] if unknown else []
     if physics:
-        count = {1: "one thing", 2: "two things", 3: "three things"}.get(len(physics), f"{len(physics)} things")
-        named = f"the model leaves out {count}: {listed(physics)}"
+        count = COUNTS[len(physics)] if len(physics) < len(COUNTS) else f"{len(physics)} things"
+        parts.append(f"the model leaves out {count}: {_clauses(physics)}")
     if measured:
-        alone = "the physics is right, the measurement is not: "
-        named += ("; beside it, in the measurement and not in the physics: " if named else alone) + listed(measured)
-    if answer["verdict"] == "unknown":
-        strong = [f"{a['rms']:.2g} {a['unit']} rms in {axis}" for axis, a in answer["where"]["axes"].items()]
-        size = f" ({listed(strong)})" if strong else ""
-        beside = f"; beside it, {named}" if named else ""
-        return f"Something is missing that no entry of the library explains{size}{beside}."
-    if not named:
+        also, only = "the measurement is off as well, which is not physics", "the measurement is off, not the physics"
+        parts.append(f"{also if parts else only}: {_clauses(measured)}")
+    if not parts:
         return "Nothing is missing that these recordings could show: the vessel explains them to within their noise."
-    ties = [e for e in effects if e["tied_with"]]
-    doubt = "; but these recordings can not tell " + listed(
-        f"{plain(e['name'])} from {listed(map(plain, e['tied_with']), 'or')}" for e in ties
-    )
-    return capital(named) + (doubt if ties else "") + "."
+    if unknown and physics:
+        parts[1] = f"besides, {parts[1]}"
+    ties = [f"{plain(e['name'])} from {listed(map(plain, e['tied_with']), 'or')}" for e in effects if e["tied_with"]]
+    if ties:
+        parts.append(f"but these recordings cannot tell {listed(ties)}")
+    return f"{capital('; '.join(parts))}."
 
 
-def _clause(effect: Mapping[str, Any]) -> str:
-    numbers = parameters(effect)
-    return f"{effect['words']} ({numbers})" if numbers else str(effect["words"])
+def _sizes(answer: Mapping[str, Any]) -> str:
+    """How large what is missing is, per axis; in brackets."""
+    axes = answer["where"]["axes"]
+    sizes = [f"{quantity(a['rms'], a['unit'], digits=2)} rms in {axis}" for axis, a in axes.items()]
+    return f" ({listed(sizes)})" if sizes else ""
+
+
+def _clause(effect: Mapping[str, Any], words: Mapping[str, str]) -> str:
+    numbers = parameters(effect, words)
+    return said(effect["words"]) + (f" ({numbers})" if numbers else "")
+
+
+def _clauses(clauses: Sequence[str]) -> str:
+    """A, B, and C: clauses have commas of their own."""
+    *head, tail = clauses
+    return f"{', '.join(head)}, and {tail}" if head else tail

@@ -140,14 +140,17 @@ def remarks(
             f"({ranking.left_over:.0f} nats beyond {UNKNOWN_FACTOR:g} times the ambient force): "
             "none of the entries tried accounts for it."
         )
-    for track, family, found in parts:
-        enough = found["patched"] >= 0.95 * min(found["alone"], found["recalibrated"])
-        if enough and any(t is track for t in fitted):
-            what, unit, scale = _readable(family)
+    for track in fitted:
+        own = [(family, found) for part, family, found in parts if part is track]
+        if own and all(f["patched"] >= 0.95 * min(f["alone"], f["recalibrated"]) for _, f in own):
+            told = []
+            for family, found in own:
+                what, unit, scale = _readable(family)
+                errors = (f"{found[m] * scale:.2g} {unit}" for m in ("alone", "patched"))
+                told.append("the {} to {} (patched boat: {})".format(what, *errors))
             out.append(
-                f"{track.name}: the nominal structure, refitted to this part alone, already gives the {what} to "
-                f"{found['alone'] * scale:.2g} {unit} (patched boat: {found['patched'] * scale:.2g} {unit}). "
-                "This part alone does not show what is missing."
+                f"{track.name}: the nominal structure, refitted to this part alone, already gives "
+                f"{' and '.join(told)}. This part alone does not show what is missing."
             )
     return out
 

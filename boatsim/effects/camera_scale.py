@@ -18,7 +18,7 @@ def shown(m: Shown, q: Any) -> Shown:
 class CameraScale(Measurement):
     """Positions stretched along the axes of the tank."""
 
-    words: ClassVar[str] = "the camera's length scale is off: recorded positions are stretched (not physics)"
+    words: ClassVar[str] = "the camera's length scale is off, so recorded positions are stretched (not physics)"
     shown_by: ClassVar[str] = "the same straight run along x and along y"
     shown: ClassVar = shown
 
