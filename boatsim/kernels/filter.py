@@ -57,10 +57,12 @@ def transition(
 ) -> None:  # fmt: skip
     """Linearised transition F of motion and lasting forces over h: exponential of the Jacobian of the accelerations."""
     base, other = B[0, :NQ], B[1, :NQ]  # B is free until the products below
-    y[:] = z[:NY]
+    copy(z, y)
     slopes(t, y, act, p, on, k, force, base)
-    A[:CALM, :CALM] = 0.0
     step = 1e-6
+    for i in range(CALM):
+        for j in range(CALM):
+            A[i, j] = 0.0
     for i in range(NQ):
         A[i, NQ + i] = 1.0
     for j in range(NY):
@@ -88,7 +90,7 @@ def transition(
         F[i, i] += 1.0
     while part < 0.75 * h:
         multiply(F, F, B, CALM)
-        F[:CALM, :CALM] = B[:CALM, :CALM]
+        copy_square(B, F, CALM)
         part *= 2.0
 
 
@@ -108,8 +110,9 @@ def oscillation(h: float, s: Swell) -> tuple[float, float, float, float, float, 
 def add_swell(h: float, s: Swell, F: Array) -> None:
     """The oscillators' own rows and what they do to the motion, to F."""
     f11, f12, f21, f22, mean1, mean2 = oscillation(h, s)
-    F[CALM:, :CALM] = 0.0
-    F[:, CALM:] = 0.0
+    for i in range(NZ):
+        for j in range(CALM, NZ):
+            F[i, j] = F[j, i] = 0.0
     for j in range(NQ):
         a = CALM + 2 * j
         for i in range(NY):
@@ -133,6 +136,21 @@ def diffuse(h: float, n: int, sigma: Array, tau: float, s: Swell, P: Array) -> N
             cross = v * (f11 * f21 + w2 * f12 * f22)
             P[a, a + 1] -= cross
             P[a + 1, a] -= cross
+
+
+@njit(error_model="numpy", cache=True)
+def copy(source: Array, out: Array) -> None:
+    """Fill a vector from the beginning of another. Assigning slices would take numba seconds to compile."""
+    for i in range(len(out)):
+        out[i] = source[i]
+
+
+@njit(error_model="numpy", cache=True)
+def copy_square(source: Array, out: Array, n: int) -> None:
+    """Fill the first n rows and columns of a matrix from those of another."""
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = source[i, j]
 
 
 @njit(error_model="numpy", cache=True)
@@ -170,9 +188,11 @@ def shows(y: Array, code: int, p: Array, on: Any) -> float:
 @njit(error_model="numpy", cache=True)
 def observe(z: Array, code: int, row: Array, p: Array, on: Any) -> float:
     """Expected value of one channel; fills its row (n,) of the measurement matrix."""
-    row[:] = 0.0
+    for j in range(NZ):
+        row[j] = 0.0
     if distorted(on):
-        y = z[:NY].copy()
+        y = np.zeros(NY)
+        copy(z, y)
         value, step = shows(y, code, p, on), 1e-6
         for j in range(NY):
             y[j] += step
@@ -198,12 +218,13 @@ def observe(z: Array, code: int, row: Array, p: Array, on: Any) -> float:
 def undistorted(z: Array, p: Array, on: Any) -> None:
     """Turn positions as recorded into those of the boat, in place."""
     if distorted(on):
-        recorded = z[:NQ].copy()
+        recorded, y = np.zeros(NQ), np.zeros(NY)
+        copy(z, recorded)
+        copy(z, y)
         for _ in range(INVERT):
-            off = recorded.copy()
             for j in range(NQ):
-                off[j] -= shows(z[:NY], j, p, on)
-            z[:NQ] += off
+                z[j] += recorded[j] - shows(y, j, p, on)
+            copy(z, y)
 
 
 @njit(error_model="numpy", cache=True)
@@ -241,7 +262,9 @@ def kalman(
     s, lateness = swell(p, on), late(p, on)
     n = NZ if s.frequency > 0.0 else CALM
     z, P = np.zeros(NZ), np.zeros((NZ, NZ))
-    z[:CALM], P[:CALM, :CALM] = z0, P0
+    for a in range(CALM):
+        z[a] = z0[a]
+    copy_square(P0, P, CALM)
     undistorted(z, p, on)
     if n > CALM:
         for j in range(NQ):
@@ -252,7 +275,9 @@ def kalman(
     f11, f12, f21, f22, mean1, mean2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     likelihood, outliers, held = 0.0, np.zeros(measured.shape[1]), 0
     if keep:
-        means[0], covariances[0], predicted[0] = z, P, z
+        copy(z, means[0])
+        copy(z, predicted[0])
+        copy_square(P, covariances[0], NZ)
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
         decay = exp(-h / tau)
@@ -268,9 +293,9 @@ def kalman(
         if full:  # linearised about the state before, with the actuators of this interval
             if fresh:
                 transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, work, work2, other)
-                linear[i] = F[:CALM, :CALM]
+                copy_square(F, linear[i], CALM)
             else:
-                F[:CALM, :CALM] = linear[i]
+                copy_square(linear[i], F, CALM)
             for a in range(NY, CALM):
                 F[a, a] = decay
             if n > CALM:
@@ -284,7 +309,8 @@ def kalman(
         for a in range(CALM, n, 2):
             z[a], z[a + 1] = f11 * z[a] + f12 * z[a + 1], f21 * z[a] + f22 * z[a + 1]
         if keep:
-            predicted[i], transitions[i] = z, F
+            copy(z, predicted[i])
+            copy_square(F, transitions[i], NZ)
         for c in range(measured.shape[1]):
             if np.isnan(measured[i, c]):
                 scale[i, c] = white[i, c] = 0.0
@@ -309,7 +335,8 @@ def kalman(
                     for b in range(n):
                         P[a, b] -= gains[i, c, a] * Ph[b]
         if keep:
-            means[i], covariances[i] = z, P
+            copy(z, means[i])
+            copy_square(P, covariances[i], NZ)
     return likelihood
 
 
@@ -352,11 +379,15 @@ def free_runs(
     nothing, y, lateness, held = np.zeros(NQ), np.zeros(NY), late(p, on), 0
     saved, rows = np.zeros((len(times), MEMORY)), np.zeros(len(times), dtype=np.int64)
     for i in range(1, len(times)):  # only for the actuators
-        saved[i - 1], rows[i - 1], y[:] = memory, held, 0.0
+        copy(memory, saved[i - 1])
+        rows[i - 1] = held
+        for j in range(NY):
+            y[j] = 0.0
         held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, nothing, act)
     for run in range(len(starts)):
-        y = states[run].copy()
-        memory[:], held = saved[starts[run]], rows[starts[run]]
+        copy(states[run], y)
+        copy(saved[starts[run]], memory)
+        held = rows[starts[run]]
         for i in range(starts[run], ends[run] + 1):
             if i > starts[run]:
                 held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, nothing, act)
