@@ -34,7 +34,7 @@ def run_into(
     `folder` is as it was.
     """
     runner = Runner(scenario, seed)
-    with _interrupts() as ignore, _filling(folder) as new, _log(new / "run.rrd", runner, live) as log:
+    with _interrupts() as ignore, filling(folder) as new, _log(new / "run.rrd", runner, live) as log:
         runner.listen = log.chunk
         run = runner.run(progress)
         ignore()  # a second Ctrl-C must not cost the files of a run that the first one ended
@@ -87,10 +87,10 @@ def _log(path: Path, runner: Runner, live: bool) -> Any:
 
 
 @contextmanager
-def _filling(folder: Path) -> Iterator[Path]:
+def filling(folder: Path) -> Iterator[Path]:
     """A new folder beside `folder`, whose files move into it once all of them are whole."""
     if folder.exists() and not folder.is_dir():
-        raise BadInput(f"{folder}: is a file; the files of a run need a folder")
+        raise BadInput(f"{folder}: is a file; what is written needs a folder")
     folder.parent.mkdir(parents=True, exist_ok=True)
     new = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     try:

@@ -9,7 +9,9 @@ import hashlib
 import os
 import sys
 import tempfile
+import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from inspect import getsourcefile
@@ -37,6 +39,7 @@ from boatsim.recording import replacing
 from boatsim.vessel import Vessel
 
 KERNELS = Path(__file__).parent / "kernels"
+KEPT = 90 * 86400.0  # [s] after its last use that a composed program stays in the cache
 
 
 @dataclass(frozen=True)
@@ -100,9 +103,13 @@ class Program:
         folder = _cache_folder()
         stamp = _stamp(self, source)
         path = folder / f"program_{stamp}.py"
-        if not path.exists():
+        if path.exists():
+            with suppress(OSError):
+                os.utime(path)  # it is in use; numba goes by the content
+        else:
             with replacing(path) as temporary:
                 temporary.write_text(source)
+            _prune(folder)
         return module_at(path, f"boatsim_program_{stamp}")
 
 
@@ -117,6 +124,19 @@ def _cache_folder() -> Path:
         except OSError:
             continue
     raise BadInput(f"{wanted}: no folder to keep compiled programs in; set BOATSIM_CACHE to one that can be written")
+
+
+def _prune(folder: Path) -> None:
+    """Remove programs that nobody has used for long, with numba's files of them.
+
+    Safe beside other processes: one that has loaded a program needs its files no more, one that finds them gone writes
+    them anew.
+    """
+    for old in folder.glob("program_*.py"):
+        with suppress(OSError):  # another process may be as quick
+            if time.time() - old.stat().st_mtime > KEPT:
+                for file in (*folder.glob(f"__pycache__/{old.stem}.*"), old):
+                    file.unlink(missing_ok=True)
 
 
 def _stamp(program: Program, source: str) -> str:

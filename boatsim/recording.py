@@ -24,6 +24,7 @@ OWN = re.compile(r"(actual|sensed|camera|estimate|reference|force|wind)_")
 # what command channels of boats are called; others are known by the vessel
 COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|n)_(?!.*(sd|rate))")
 HUGE = 1e12  # no time, place, speed or command here is anywhere near
+GAP = 60.0  # [s] between two rows; over a longer one no boat here can be followed
 ROUNDING = 1e-3  # share of a channel's range by which a command rounded for the file may pass its limit
 
 
@@ -190,6 +191,12 @@ def _check_time(raw: Raw) -> None:
     if stuck.any():
         index = int(np.argmax(stuck)) + 1
         message = f"time {t[index]:g} s after {t[index - 1]:g} s; it must increase from row to row"
+        raise refuse(raw.path, message, raw.rows[index], "t_s")
+    if (apart := np.diff(t) > GAP).any():
+        index = int(np.argmax(apart)) + 1
+        message = (
+            f"{t[index] - t[index - 1]:g} s after the row before, at most {GAP:g} s are allowed; is it in seconds?"
+        )
         raise refuse(raw.path, message, raw.rows[index], "t_s")
 
 

@@ -144,6 +144,8 @@ def load(
     for one in loads:
         if one not in known:
             raise BadInput(unknown_name(f"{label}: load", one, known))
+    _check_apart(loads, known, label)
+    for one in dict.fromkeys(loads):
         raw = _overlaid(raw, known[one], label)
     raw = _overlaid(raw, dict(settings or {}), label)
     file = checked(VesselFile, raw, label)
@@ -153,19 +155,27 @@ def load(
             raise BadInput(
                 f"{table['use']} is one of {called}'s own effects; change its values in [set.{table['use']}]"
             )
-    folder = find("vessel", file.based_on, path.parent).parent if file.based_on else path.parent
+    folder = _base(file.based_on, path, label)
     vessel = Vessel(
         called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
         file.scale, file.scales, file.columns,
     )  # fmt: skip
-    return with_effects(with_effects(vessel, file.effect, folder), extra, beside or folder)
+    return with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
 
 
-def with_effects(vessel: Vessel, tables: Sequence[Mapping[str, Any]], folder: Path) -> Vessel:
-    """The vessel with the effects of [[effect]] tables added, each completed by those before it."""
+def _base(name: str, path: Path, label: str) -> Path:
+    """Folder of hull and own effects: the vessel file's, or that of the vessel it is based on."""
+    try:
+        return find("vessel", name, path.parent).parent if name else path.parent
+    except BadInput as error:
+        raise BadInput(f"{label}: based_on: {error}") from None
+
+
+def with_effects(vessel: Vessel, tables: Sequence[Mapping[str, Any]], folder: Path, label: str | None = None) -> Vessel:
+    """The vessel with the effects of [[effect]] tables of a file added, each completed by those before it."""
     for table in tables:
-        vessel = added(vessel, effect_from(table, vessel.name, folder))
+        vessel = added(vessel, effect_from(table, label or vessel.name, folder))
     return vessel
 
 
@@ -180,11 +190,30 @@ def effect_from(table: Mapping[str, Any], file: str, folder: Path) -> Effect:
     """An effect from its [[effect]] table; raises BadInput naming the file."""
     if not isinstance(table.get("use"), str):
         raise BadInput(f"{file}: an [[effect]] needs use = its name")
-    kind: type[Effect] = load_class("effect", table["use"], folder)
     try:
+        kind: type[Effect] = load_class("effect", table["use"], folder)
         return kind.from_settings({k: v for k, v in table.items() if k != "use"})
     except BadInput as error:
         raise BadInput(f"{file}: {error}") from None
+
+
+def _check_apart(loads: Sequence[str], known: Mapping[str, Mapping[str, Any]], label: str) -> None:
+    """Two loads that change the same value contradict each other: which one counts must not depend on their order."""
+    changed: dict[str, tuple[str, Any]] = {}
+    for one in dict.fromkeys(loads):
+        for key, value in _flat(known[one]).items():
+            other, before = changed.setdefault(key, (one, value))
+            if before != value:
+                raise BadInput(
+                    f"{label}: loads {other} ({key} = {before}) and {one} ({key} = {value}) exclude each other"
+                )
+
+
+def _flat(table: Mapping[str, Any]) -> dict[str, Any]:
+    """`length` and `body.mass` of a load's tables, with their values."""
+    inner = {k: v for k, v in table.items() if isinstance(v, Mapping)}
+    flat = {k: v for k, v in table.items() if k not in inner}
+    return flat | {f"{k}.{name}": v for k, values in inner.items() for name, v in values.items()}
 
 
 def _overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) -> dict[str, Any]:

@@ -1,7 +1,9 @@
 """Composition: an edited law is compiled anew, a suspect that is off does nothing, a user's own effect works."""
 
+import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import boats
@@ -149,3 +151,27 @@ def test_an_unwritable_cache_folder_falls_back(tmp_path: Path, monkeypatch: pyte
         monkeypatch.delitem(sys.modules, name)  # another test may have composed the same program
     boat = vessel.load(str(boats.written(tmp_path, "test_fallback", boats.ROLL)))
     assert str(Program(boat).module.__file__).startswith(str(tmp_path / "boatsim-"))
+
+
+def test_programs_not_used_for_90_days_are_removed_when_a_new_one_is_composed(tmp_path, monkeypatch):
+    monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
+    compiled = tmp_path / "cache" / "__pycache__"
+    compiled.mkdir(parents=True)
+    used = time.time() - 91 * 86400.0
+    for name, age in (("program_old", used), ("program_recent", time.time() - 89 * 86400.0)):
+        source = tmp_path / "cache" / f"{name}.py"
+        for file in (source, compiled / f"{name}.forces-1.py311.nbi", compiled / f"{name}.forces-1.py311.1.nbc"):
+            file.write_text("")
+        os.utime(source, (age, age))
+    program = Program(boats_own_roller(tmp_path))
+    stamp = program.module.__name__.removeprefix("boatsim_program_")
+    left = {file.stem.split(".")[0] for file in (tmp_path / "cache").rglob("*.*")}
+    assert left == {"program_recent", f"program_{stamp}"}
+    source = tmp_path / "cache" / f"program_{stamp}.py"
+    os.utime(source, (used, used))
+    assert Program(program.vessel).module is program.module and source.stat().st_mtime > used + 86400.0
+
+
+def boats_own_roller(folder: Path) -> vessel.Vessel:
+    """A vessel whose program no other test composes."""
+    return vessel.load(str(boats.written(folder, "roller", boats.ROLL + '[[effect]]\nuse = "wind"\n')))

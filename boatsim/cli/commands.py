@@ -1,21 +1,40 @@
 """The commands and their options; what they do is imported when they are called, so that `--help` is quick."""
 
 import functools
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal, ParamSpec
+from typing import Annotated, Any, Literal, NoReturn, ParamSpec
 
 import typer
+from typer.core import TyperGroup
 
 import boatsim
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 
 P = ParamSpec("P")
+UsageError: Any = typer.BadParameter.__base__  # of all mistakes on the command line typer gives a name to this one only
+
+
+class OneLine(TyperGroup):
+    """The program as a whole: a mistake on its command line is one line too, and no arguments ask for help."""
+
+    def main(self, args: Sequence[str] | None = None, *_: Any, **options: Any) -> NoReturn:
+        """Run the program and leave with its exit code."""
+        given = list(sys.argv[1:] if args is None else args)
+        try:
+            code = super().main(given or ["--help"], **{**options, "standalone_mode": False})
+        except UsageError as error:
+            asked = error.ctx.command_path if error.ctx else "boatsim"
+            complain(f"{' '.join(error.format_message().split()).rstrip('.')}; see {asked} --help")
+            code = Exit.BAD_INPUT
+        sys.exit(code)
+
 
 app = typer.Typer(
     name="boatsim",
+    cls=OneLine,
     help="Small-boat motion and control on MuJoCo, and what a simulation of a real boat has left out.",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -26,7 +45,9 @@ OneRun = Annotated[Path, typer.Argument(metavar="RUN", help="A recording: .csv, 
 VesselName = Annotated[
     str | None, typer.Option("--vessel", metavar="NAME|FILE", help="Nominal vessel, instead of recording.toml's.")
 ]
-Load = Annotated[str, typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide.")]
+Load = Annotated[
+    list[str] | None, typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide.")
+]
 
 
 def guarded(command: Callable[P, int | None]) -> Callable[P, None]:
@@ -112,7 +133,7 @@ def compare(
         "out/compare"
     ),
     vessel: VesselName = None,
-    load: Load = "",
+    load: Load = None,
     scenario: Annotated[
         str | None, typer.Option(metavar="NAME|FILE", help="Simulate this, not the recorded commands.")
     ] = None,
@@ -129,7 +150,7 @@ def replay(
     run: OneRun,
     out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for replay.csv.")] = Path("out/replay"),
     vessel: VesselName = None,
-    load: Load = "",
+    load: Load = None,
     horizon: Annotated[float, typer.Option(min=0.1, metavar="S", help="Length of each free run [s].")] = 6.0,
 ) -> int:
     """Simulate a recording in free runs, each driven by the recorded commands alone."""
@@ -149,7 +170,7 @@ def diagnose(
         list[Path] | None, typer.Option(metavar="RUN", help="Judge the result on this one, unseen; may be repeated.")
     ] = None,
     vessel: VesselName = None,
-    load: Load = "",
+    load: Load = None,
     library: Annotated[
         list[str] | None, typer.Option(metavar="NAME|FILE", help="Try this effect too; may be repeated.")
     ] = None,
@@ -163,8 +184,8 @@ def diagnose(
     return commands.diagnose(runs, hold_out or [], vessel, _loads(load), out, library or [], without or [])
 
 
-def _loads(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",") if name.strip()]
+def _loads(given: list[str] | None) -> list[str]:
+    return [name.strip() for text in given or [] for name in text.split(",") if name.strip()]
 
 
 def main() -> Any:

@@ -45,7 +45,11 @@ def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
     name = vessel or notes.vessel
     if not name:
         raise BadInput(f"{path}: no vessel given; name one with --vessel or in a recording.toml beside it")
-    found = vessels.load(name, load or notes.load, notes.settings)
+    try:
+        found = vessels.load(name, load or notes.load, notes.settings)
+    except BadInput as error:
+        by_notes = not vessel or notes.settings or (notes.load and not load)
+        raise BadInput(f"{path} by its recording.toml: {error}" if by_notes else str(error)) from None
     wanted = notes.scale
     if wanted is None or found.scale is None or abs(wanted / found.scale - 1.0) < SAME_SCALE:
         return found

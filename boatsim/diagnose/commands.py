@@ -20,6 +20,7 @@ from boatsim.diagnose.findings import FreeRun
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.errors import BadInput, BadPhysics
+from boatsim.outputs import filling
 from boatsim.recording import Notes, Recording, replacing, write_csv
 from boatsim.vessel import Vessel
 
@@ -47,30 +48,23 @@ def _say(remarks: Sequence[str]) -> None:
 
 
 def write(found: Diagnosis, out: Path) -> None:
-    """All files of a diagnosis, the answer last, so that where it lies the others are whole."""
+    """All files of a diagnosis, or none."""
     try:
         answer = json.dumps(found.findings.answer, indent=1, allow_nan=False) + "\n"
     except ValueError:
         raise BadPhysics(
             f"{found.vessel.name}: a fitted boat diverges; are the units of the recording right?"
         ) from None
-    out.mkdir(parents=True, exist_ok=True)
-    report.write(found.findings, out)
-    kinds = {e.name(): type(e) for e in found.problem.program.suspects}
-    patch.write(found.vessel, found.ranking.best, kinds, out / "patched.toml")
-    _write_next(found, out / NEXT)
-    overlay(found, out / "diagnosis.rrd")
-    with replacing(out / "diagnosis.json") as temporary:
-        temporary.write_text(answer, encoding="utf-8")
-
-
-def _write_next(found: Diagnosis, path: Path) -> None:
-    """Scenario of the next experiment; without one, none of an earlier diagnosis is left lying there."""
-    if found.plan is None:
-        path.unlink(missing_ok=True)
-        return
-    with replacing(path) as temporary:
-        temporary.write_text(scenario_text(found.plan, found.vessel), encoding="utf-8")
+    with filling(out) as new:
+        report.write(found.findings, new)
+        kinds = {e.name(): type(e) for e in found.problem.program.suspects}
+        patch.write(found.vessel, found.ranking.best, kinds, new / "patched.toml")
+        if found.plan is not None:
+            (new / NEXT).write_text(scenario_text(found.plan, found.vessel), encoding="utf-8")
+        overlay(found, new / "diagnosis.rrd")
+        (new / "diagnosis.json").write_text(answer, encoding="utf-8")
+    if found.plan is None:  # that of an earlier diagnosis
+        (out / NEXT).unlink(missing_ok=True)
 
 
 def summary(found: Diagnosis) -> list[str]:
@@ -196,14 +190,16 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
         only = show.free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[0]
         simulated = only.channels["simulated"]
     signals: dict[str, Array] = {}
-    print(f"{'signal':10s} {'rms error':>12s} {'largest':>12s}   of a range of")
+    lines = [f"{'signal':10s} {'rms error':>12s} {'largest':>12s}   of a range of"]
     for name, value in simulated.items():
         off = value - recording.signals[name]
         signals |= {f"recorded_{name}": recording.signals[name], f"simulated_{name}": value, f"error_{name}": off}
         reach = float(np.nanmax(recording.signals[name]) - np.nanmin(recording.signals[name]))
-        print(f"{name:10s} {_rms(off):12.5g} {np.nanmax(np.abs(off)):12.5g}   {reach:.5g}")
-    write_csv(Recording(recording.name, recording.t, signals, Notes()), out / "compare.csv")
-    _compare_rrd(boat, recording, simulated, out / "compare.rrd")
+        lines.append(f"{name:10s} {_rms(off):12.5g} {np.nanmax(np.abs(off)):12.5g}   {reach:.5g}")
+    with filling(out) as new:
+        write_csv(Recording(recording.name, recording.t, signals, Notes()), new / "compare.csv")
+        _compare_rrd(boat, recording, simulated, new / "compare.rrd")
+    print("\n".join(lines))
     print(f"written to {out}: compare.csv, compare.rrd")
     return 0
 

@@ -13,10 +13,11 @@ import numpy as np
 from boatsim.base import AXES, Array, Channel, Unsteady
 from boatsim.errors import BadInput
 from boatsim.program import Program
-from boatsim.recording import FEWEST_ROWS, Recording
+from boatsim.recording import FEWEST_ROWS, HUGE, Recording
 from boatsim.run import commands_of
 from boatsim.vessel import Vessel
 
+FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into thirds
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
 FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sample
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
@@ -151,7 +152,7 @@ class Track:
         self.program.module.free_runs(
             self.times, self.commands, MAX_STEP, self.body, values, on, np.array(starts), np.array(ends), states, out
         )
-        return [(a, out[i, a : b + 1]) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
+        return [(a, out[i, a : b + 1].copy()) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
 
     def _pass(self, values: Array, on: Array, levels: Levels, full: bool, keep: Any, fresh: bool = True) -> float:
         nq = self.program.module.NQ
@@ -204,7 +205,7 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     """
     vessel = program.vessel
     axes = axes_of(vessel)
-    where = recording.path or recording.name
+    where = _called(recording)
     found = [(n, *CHANNELS[n]) for n in CHANNELS if n in recording.signals and CHANNELS[n][1] in axes]
     needed = ["psi_rad"] if "yaw" in axes else ["phi_rad"]
     missing = [n for n in needed if n not in recording.signals] or _unfed(recording, vessel)
@@ -212,8 +213,10 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
         raise BadInput(
             f"{where}: column {(missing or ['x_m'])[0]} is missing, without which {vessel.name} can not be followed"
         )
-    if len(recording) < FEWEST_ROWS:
-        raise BadInput(f"{where}: {recording.name} has {len(recording)} rows to use; at least {FEWEST_ROWS} are needed")
+    if len(recording) < FEWEST_IN_PART:
+        raise BadInput(
+            f"{where}: {recording.name} has {len(recording)} rows to use; at least {FEWEST_IN_PART} are needed"
+        )
     codes = np.array([axes.index(axis) + rate * len(axes) for _, _, axis, rate in found])
     measured = np.column_stack([recording.signals[n] for n, *_ in found])
     own = stated_noise(vessel, recording)
@@ -278,9 +281,19 @@ def _feeds(vessel: Vessel, actuator: str, command: str) -> bool:
 
 
 def stated_noise(vessel: Vessel, recording: Recording) -> dict[str, float]:
-    """Sensor noise by family: the recording's word, else the vessel's, else a general one."""
+    """Sensor noise by family: the recording's word, else the vessel's, else a general one. Raises BadInput."""
     of_vessel = {str(family): sd for family, sd in vessel.diagnosis.noise.items()}
-    return {**NOISE, **of_vessel, **recording.notes.noise}
+    noise = {**NOISE, **of_vessel, **recording.notes.noise}
+    if wrong := [n for n, sd in noise.items() if not 0 < sd < HUGE]:
+        raise BadInput(
+            f"{_called(recording)}: noise {wrong[0]} = {noise[wrong[0]]:g}; allowed is more than 0, at most {HUGE:g}"
+        )
+    return noise
+
+
+def _called(recording: Recording) -> str:
+    """The file of a recording, or its name."""
+    return str(recording.path or recording.name)
 
 
 def nominal_levels(vessel: Vessel, recording: Recording) -> Levels:
@@ -293,11 +306,15 @@ def nominal_levels(vessel: Vessel, recording: Recording) -> Levels:
     force = np.array([float(given.get(a, ambient.get(a, 0.0))) for a in axes])
     time_constant = float(recording.notes.ambient.get("time_constant_s", vessel.diagnosis.time_constant))
     noise = stated_noise(vessel, recording)
-    if not (force > 0).all():
-        axis = axes[int(np.argmin(force))]
-        raise BadInput(f"{vessel.name}: ambient force in {axis} = {force.min():g}; allowed is more than 0")
-    if not time_constant > 0:
-        raise BadInput(f"{recording.name}: ambient time_constant_s = {time_constant:g}; allowed is more than 0 s")
-    if zero := [n for n, sd in noise.items() if not sd > 0]:
-        raise BadInput(f"{recording.name}: noise {zero[0]} = {noise[zero[0]]:g}; allowed is more than 0")
+    for axis, rms in zip(axes, force.tolist(), strict=True):
+        if not 0 < rms < HUGE:
+            raise BadInput(
+                f"{_called(recording)} on {vessel.name}: ambient force in {axis} = {rms:g}; allowed is more than 0, "
+                f"at most {HUGE:g}"
+            )
+    if not 0 < time_constant < HUGE:
+        raise BadInput(
+            f"{_called(recording)}: ambient time_constant_s = {time_constant:g}; allowed is more than 0, "
+            f"at most {HUGE:g}"
+        )
     return Levels(force, time_constant, noise)

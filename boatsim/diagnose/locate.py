@@ -71,6 +71,13 @@ def _latent(problem: Problem, found: Fit, theta: Array, track: Track, levels: Le
     return running_average(states[:, latent], rows), variance, states[:, : 2 * nq]
 
 
+def _average(problem: Problem, found: Fit, theta: Array, track: Track, levels: Levels) -> Array:
+    """Averages of the smoothed latent force (N, axes) alone: their variance costs far more."""
+    on, nq = problem.program.switches(found.suspects), problem.program.module.NQ
+    states, _ = track.smoothed(problem.values(track, found.free, theta), on, levels)
+    return running_average(states[:, 2 * nq : 3 * nq], averaged_rows(track.times, problem.ambient.time_constant))
+
+
 def _on_the_nominal(problem: Problem, found: Fit, track: Track, levels: Levels) -> Force:
     """What a recalibrated vessel leaves over and what the recalibration changed."""
     left, variance, states = _latent(problem, found, found.theta, track, levels)
@@ -81,7 +88,7 @@ def _on_the_nominal(problem: Problem, found: Fit, track: Track, levels: Levels) 
         mean += (found.theta[j] - 1.0) * part
         moved = found.theta.copy()
         moved[j] += STEP * free.sd
-        slopes[j] = part + (_latent(problem, found, moved, track, levels)[0] - left) / (STEP * free.sd)
+        slopes[j] = part + (_average(problem, found, moved, track, levels) - left) / (STEP * free.sd)
     variance = variance + np.einsum("ita,ij,jta->ta", slopes, found.covariance, slopes)
     return _with_ambient(problem, track, mean, variance)
 

@@ -1,0 +1,95 @@
+"""What a diagnosis costs: `python -m benchmarks.cost [--quick]`.
+
+CPU seconds and peak memory of whole commands `boatsim diagnose`, files read and written, each in a process of its own,
+on runs of trial_boat: multi-level random joystick steps on the project's own twin, with camera noise. `analysis` is
+wall time without start and files. The last rows are a program's first diagnosis, which compiles everything into an
+empty cache, and the same one again.
+"""
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from boatsim import vessel
+from boatsim.recording import Recording, write_csv
+from boatsim.twin import Twin
+
+BOAT, HELD, STEP = "trial_boat", 5 / 6, 1 / 60  # vessel, [s] between joystick steps, [s] of integration
+NOISE = (0.003, 0.003, 0.012)  # [m, m, rad] of camera and compass
+TRIAL = (80.0, 6.0)  # [s], [Hz] of a practice trial
+COLUMNS = {"cpu": "CPU [s]", "wall": "analysis [s]", "peak": "peak RAM [MB]", "written": "files [MB]"}
+
+
+def simulated(seconds: float, rate: float, seed: int) -> Recording:
+    """A run of random joystick steps, seen by a camera."""
+    rng = np.random.default_rng(seed)
+    boat = vessel.load(BOAT)
+    steps = rng.uniform(-1.0, 1.0, (int(seconds / HELD) + 1, 4)) * (0.9, 0.9, 0.6, 0.6)
+    t = np.arange(0.0, seconds, 1.0 / rate)
+    commands = steps[(t / HELD + 1e-9).astype(int)]
+    states = Twin(boat, STEP if rate < 10 else 1.0 / rate).rollout([0.0] * 6, commands, 1.0 / rate)[:-1]
+    pose = states[:, :3] + rng.standard_normal((len(t), 3)) * NOISE
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True))
+    return Recording(f"{seed}", t, signals | dict(zip(boat.commands, commands.T, strict=True)))
+
+
+def one(run: str, out: str) -> None:
+    """Diagnose in this process and print its cost as JSON."""
+    from boatsim.cli import app
+
+    try:
+        app(["diagnose", run, "--vessel", BOAT, "--out", out])
+    except SystemExit as left:
+        rss = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024  # Linux counts in KiB
+        written = sum(f.stat().st_size for f in Path(out).iterdir()) / 2**20
+        cost = {"cpu": time.process_time(), "peak": rss, "code": left.code, "written": written}
+        print(json.dumps(cost))
+
+
+def cost(run: Recording, folder: Path, cache: Path | None = None) -> dict[str, float]:
+    """CPU [s], peak memory and files [MB] of one command."""
+    write_csv(run, folder / "run.csv")
+    environment = os.environ | ({"BOATSIM_CACHE": str(cache)} if cache else {})
+    command = [sys.executable, "-m", "benchmarks.cost", "--one", str(folder / "run.csv"), str(folder / "out")]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    answer = json.loads((folder / "out" / "diagnosis.json").read_text(encoding="utf-8"))
+    return found | {"wall": answer["seconds"]}
+
+
+def show(name: str, found: dict[str, float]) -> None:
+    """A row of the table, as soon as it is known."""
+    print(f"{name:28s}" + "".join(f"{found[key]:14.1f}" for key in COLUMNS), flush=True)
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="the shortest runs only, and no cold start")
+    parser.add_argument("--one", nargs=2, metavar=("RUN", "OUT"), help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.one:
+        return one(*given.one)
+    print(" " * 28 + "".join(f"{heading:>14s}" for heading in COLUMNS.values()))
+    with TemporaryDirectory() as base:
+        folder = Path(base)
+        cost(simulated(*TRIAL, 0), folder)  # compiles, if nobody has yet
+        for rate in (6.0, 20.0):
+            for minutes in (1,) if given.quick else (1, 2, 5, 10):
+                run = simulated(60.0 * minutes, rate, minutes)
+                show(f"{minutes} min at {rate:g} Hz", cost(run, folder))
+        for state in () if given.quick else ("empty", "filled"):
+            run = simulated(*TRIAL, 0)
+            show(f"{TRIAL[0]:g} s, {state} cache", cost(run, folder, folder / "cache"))
+
+
+if __name__ == "__main__":
+    main()
