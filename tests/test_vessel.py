@@ -80,7 +80,10 @@ def test_what_the_vessel_is_asked_for() -> None:
         (('"yaw"]', '"jaw"]'), r"freedoms\.2 = 'jaw'; input should be 'surge', 'sway', 'roll' or 'yaw'"),
         (("side = -1", "side = 2"), r"channels\.thrust_port_N\.side = 2"),
         (('use = "current"', 'use = "curent"'), "effect 'curent' does not exist; did you mean 'current'"),
-        (("sway = 3.0", "swai = 3.0"), "test_boat/vessel.toml: AddedMass: setting 'swai' does not exist; did you mean 'sway'"),
+        (
+            ("sway = 3.0", "swai = 3.0"),
+            "test_boat/vessel.toml: AddedMass: setting 'swai' does not exist; did you mean 'sway'",
+        ),
         (
             ("surge = 0.6", "surge = -0.6"),
             r"test_boat/vessel.toml: AddedMass\.surge = -0\.6 kg; allowed 0 to 1e\+09 kg \(-X_udot\)",

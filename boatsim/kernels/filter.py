@@ -82,15 +82,16 @@ def transition(
     for i in range(NY):
         for j in range(CALM):
             A[i, j] *= part
-    multiply(A, A, B, CALM)
-    multiply(B, A, F, CALM)
+    n = np.int64(CALM)
+    multiply(A, A, B, n)
+    multiply(B, A, F, n)
     for i in range(CALM):
         for j in range(CALM):
             F[i, j] = A[i, j] + 0.5 * B[i, j] + F[i, j] / 6.0
         F[i, i] += 1.0
     while part < 0.75 * h:
-        multiply(F, F, B, CALM)
-        copy_square(B, F, CALM)
+        multiply(F, F, B, n)
+        copy_square(B, F, n)
         part *= 2.0
 
 
@@ -273,7 +274,8 @@ def kalman(
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
     y, force, Ph, other = np.zeros(NY), np.zeros(NQ), np.zeros(NZ), np.zeros(NY)
     f11, f12, f21, f22, mean1, mean2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    likelihood, outliers, held = 0.0, np.zeros(measured.shape[1]), 0
+    likelihood, outliers = 0.0, np.zeros(measured.shape[1])
+    held = np.int64(0)  # a plain 0 would have `predict` compiled twice
     if keep:
         copy(z, means[0])
         copy(z, predicted[0])
@@ -348,19 +350,49 @@ def smooth(
     """Rauch-Tung-Striebel smoother, in place on means (N, n) and covariances (N, n, n); fills its gains (N, n, n)."""
     s = swell(p, on)
     n = NZ if s.frequency > 0.0 else CALM
+    ahead, cross, G, work = np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
+    off = np.zeros(NZ)
     for i in range(len(times) - 2, -1, -1):
-        F = np.ascontiguousarray(transitions[i + 1, :n, :n])
-        P = np.ascontiguousarray(covariances[i, :n, :n])
-        ahead = F @ P @ F.T
+        multiply(transitions[i + 1], covariances[i], cross, n)  # F P
+        copy_square(covariances[i], ahead, n)
+        carry(transitions[i + 1], ahead, work, n)
         diffuse(times[i + 1] - times[i], n, sigma, tau, s, ahead)
         for j in range(n):
             ahead[j, j] *= 1.0 + 1e-9  # positions and rates are driven through the force alone: keep it invertible
             ahead[j, j] += 1e-18
-        G = np.linalg.solve(ahead, F @ P).T
-        gains[i, :n, :n] = G
-        means[i, :n] += G @ (means[i + 1, :n] - predicted[i + 1, :n])
-        change = np.ascontiguousarray(covariances[i + 1, :n, :n]) - ahead
-        covariances[i, :n, :n] += G @ change @ G.T
+        copy_square(ahead, work, n)
+        solve(work, cross, n)
+        for j in range(n):
+            off[j] = means[i + 1, j] - predicted[i + 1, j]
+            for k in range(n):
+                G[j, k] = gains[i, j, k] = cross[k, j]
+                ahead[j, k] = covariances[i + 1, j, k] - ahead[j, k]
+        carry(G, ahead, work, n)
+        for j in range(n):
+            for k in range(n):
+                means[i, j] += G[j, k] * off[k]
+                covariances[i, j, k] += ahead[j, k]
+
+
+@njit(error_model="numpy", cache=True)
+def solve(A: Array, B: Array, n: int) -> None:
+    """B = A^-1 B in place for a symmetric positive definite A (n, n), which is overwritten by its Cholesky factor."""
+    for j in range(n):
+        for k in range(j):
+            for i in range(j, n):
+                A[i, j] -= A[i, k] * A[j, k]
+        root = sqrt(max(A[j, j], 1e-300))
+        for i in range(j, n):
+            A[i, j] /= root
+    for c in range(n):
+        for i in range(n):
+            for k in range(i):
+                B[i, c] -= A[i, k] * B[k, c]
+            B[i, c] /= A[i, i]
+        for i in range(n - 1, -1, -1):
+            for k in range(i + 1, n):
+                B[i, c] -= A[k, i] * B[k, c]
+            B[i, c] /= A[i, i]
 
 
 @njit(error_model="numpy", cache=True)
@@ -376,7 +408,7 @@ def free_runs(
     k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
     settle(commands[0], memory, p, on, act)
-    nothing, y, lateness, held = np.zeros(NQ), np.zeros(NY), late(p, on), 0
+    nothing, y, lateness, held = np.zeros(NQ), np.zeros(NY), late(p, on), np.int64(0)
     saved, rows = np.zeros((len(times), MEMORY)), np.zeros(len(times), dtype=np.int64)
     for i in range(1, len(times)):  # only for the actuators
         copy(memory, saved[i - 1])
