@@ -9,7 +9,7 @@ from benchmarks.real.common import report, runs_of, table
 from boatsim.diagnose import analysis, show
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, track
-from boatsim.diagnose.fit import converge, fit
+from boatsim.diagnose.fit import converge, descend
 from boatsim.diagnose.problem import Fit, Problem
 
 NAME = "kvlcc2_hsva_zigzag"
@@ -65,8 +65,9 @@ def print_left_out(found: Diagnosis, tracks: list[Track]) -> None:
     rows, ahead = [], [0, 0]
     for out in tracks:
         problem = Problem([t for t in tracks if t is not out], found.problem.ambient, found.problem.uncertainty)
-        before = converge(problem, fit(problem, (), found.ranking.recalibrated))
-        after = converge(problem, fit(problem, found.ranking.best.suspects, found.ranking.best))
+        before, after = (
+            converge(problem, descend(problem, f, 4, 0.1)) for f in (found.ranking.recalibrated, found.ranking.best)
+        )
         unseen = errors(problem, dict(zip(MODELS, (before, after), strict=True)), [out])
         ahead = [n + (unseen[f]["patched"] < unseen[f]["recalibrated"]) for n, f in zip(ahead, UNITS, strict=True)]
         rows.append([out.name, *cells(unseen)])

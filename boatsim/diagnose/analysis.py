@@ -117,30 +117,46 @@ def diagnose(
     boats = [boat for _, boat in opened]
     if len({(b.file, b.freedoms) for b in boats}) > 1:
         raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}")
-    programs = {r.path: Program(b, suspects_of(b, library)) for r, b in opened}
     thin = [r.thinned(b.diagnosis.rate) for r, b in opened]
     named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
     fitted, unseen, note = show.split(named[: len(runs)], named[len(runs) :])
-    stated = stated_noise(boats[0], fitted[0])
+    remarks = tuple(dict.fromkeys(m for r, _ in opened for m in r.remarks))
+    vessels_of = {r.path: b for r, b in opened}
+    return diagnose_recordings(fitted, unseen, vessels_of, note, library, without, remarks)
+
+
+def diagnose_recordings(
+    fitted: Sequence[Recording],
+    unseen: Sequence[Recording],
+    boats: Mapping[Path | None, Vessel],
+    note: str,
+    library: Sequence[str] = (),
+    without: Sequence[str] = (),
+    remarks: tuple[str, ...] = (),
+) -> Diagnosis:
+    """The same for recordings that are already opened, thinned and split: `boats` is the vessel of each file.
+
+    `note` says in words what was kept unseen. Raises BadInput.
+    """
+    programs = {path: Program(b, suspects_of(b, library)) for path, b in boats.items()}
+    boat = boats[fitted[0].path]
+    stated = stated_noise(boat, fitted[0])
     laid = [track(r, programs[r.path], stated) for r in (*fitted, *unseen)]
-    uncertainty = {str(k): sd for k, sd in boats[0].diagnosis.coefficient_uncertainty.items()}
+    uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}
     uncertainty |= fitted[0].notes.coefficient_uncertainty
-    problem = Problem(laid[: len(fitted)], nominal_levels(boats[0], fitted[0]), uncertainty)
+    problem = Problem(laid[: len(fitted)], nominal_levels(boat, fitted[0]), uncertainty)
     candidates = tried(problem.program.suspects, without)
     _compile(problem)
     begin = time.perf_counter()
     try:
         ranking = rank(problem, candidates)
         plan = experiment.next_experiment(problem, *experiment.question(ranking))
-        findings = _findings(problem, ranking, laid[len(fitted) :], boats[0], note, plan)
+        findings = _findings(problem, ranking, laid[len(fitted) :], boat, note, plan)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
-        raise BadInput(
-            f"{runs[0]}: {boats[0].name} can not follow this recording ({error}); are its units right?"
-        ) from None
+        where = fitted[0].path or fitted[0].name
+        raise BadInput(f"{where}: {boat.name} can not follow this recording ({error}); are its units right?") from None
     findings.answer["seconds"] = round(time.perf_counter() - begin, 3)
-    return Diagnosis(
-        findings, boats[0], problem, ranking, tuple(dict.fromkeys(m for r, _ in opened for m in r.remarks)), plan
-    )
+    return Diagnosis(findings, boat, problem, ranking, remarks, plan)
 
 
 def _check_apart(paths: Sequence[Path]) -> None:

@@ -1,0 +1,192 @@
+"""The thesis' eight tests as functions of what its model may have left out: fast closed-loop runs on the compiled twin.
+
+The scenarios, controllers, sensors, camera and norms are those of `boatsim run`; only walls and log are left out. At
+the rate of the published turns the thesis' program runs in open loop: steering straight, the port motor at 104 or 105
+of 255 by the noise of its sensors. So a turn's commands can be played to boats that turn about as fast (`played`).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from boatsim import scenario
+from boatsim.base import Array
+from boatsim.content import find
+from boatsim.control import Sense
+from boatsim.files import read_toml
+from boatsim.metrics import SCORED, Film, sway_values, yaw_values
+from boatsim.program import Program
+from boatsim.scenario import Scenario
+from boatsim.twin import body_rates
+
+TESTS = ("sway_1", "sway_2", "sway_3", "sway_4", "yaw_1", "yaw_2", "yaw_3", "yaw_4")
+WINDY = ("yaw_2", "yaw_4")  # T18
+
+
+@dataclass(frozen=True)
+class Knob:
+    """One strength: where it acts, the value at which it does nothing, prior sd and bounds."""
+
+    effect: str  # of the vessel, or "controller", "camera", "body"
+    name: str
+    unit: str
+    mean: float  # absent
+    sd: float
+    low: float
+    high: float
+    how: str = "set"  # or "add" to the scenario's own value, or "times" it
+    tests: tuple[str, ...] = TESTS
+
+    @property
+    def label(self) -> str:
+        """Name for tables."""
+        of = " and ".join(sorted({t.split("_")[0] for t in self.tests}))
+        return f"{self.effect}.{self.name}" + (f" ({of})" if self.effect == "pwm_thrust" else "")
+
+    def applied(self, own: float, x: float) -> float:
+        """The value that goes into the run."""
+        return {"set": x, "add": own + x, "times": own * x}[self.how]
+
+
+class Bench:
+    """A test of the thesis, ready to run with any knobs."""
+
+    def __init__(
+        self,
+        name: str,
+        extra: Sequence[Mapping[str, Any]] = (),
+        nominal: Mapping[str, Any] | None = None,
+        played: bool = False,
+    ) -> None:
+        """`extra` effects replace the scenario's own of these names; `nominal` are [set] tables.
+
+        `played`: every boat gets the commands that the scenario's own boat gets.
+        """
+        raw = read_toml(find("scenario", f"joystick_boat/{name}"))
+        own = [t for t in raw.get("effect", []) if t["use"] not in {e["use"] for e in extra}]
+        wind: dict[str, Any] = next((t for t in raw.get("effect", []) if t["use"] == "fan_wind"), {})
+        told = [{**wind, **e} if e["use"] == "fan_wind" else dict(e) for e in extra]
+        settings = {k: {**raw.get("set", {}).get(k, {}), **v} for k, v in (nominal or {}).items()}
+        over = {"tank": None, "effect": [*own, *told], "set": {**raw.get("set", {}), **settings}}
+        self.scenario: Scenario = scenario.load(f"joystick_boat/{name}", over)
+        self.name, self.measure = name, self.scenario.file.measure
+        self.program = Program(self.scenario.vessel)
+        self.published = {n: t.published for n, t in self.scenario.file.norms.items() if t.published is not None}
+        self._links = _links(self.program)
+        self._own = Bench(name) if played else None
+        self._played: dict[int, Array] = {}  # seed -> commands (N, C), one row a step
+
+    def norms(self, knobs: Sequence[Knob], values: Sequence[float], seeds: Sequence[int]) -> dict[str, float]:
+        """Mean norms over seeds; empty where a run never got as far as they ask."""
+        found = [self._norms(self._film(knobs, values, seed)) for seed in seeds]
+        return {n: float(np.mean([f[n] for f in found])) for n in found[0]} if all(found) else {}
+
+    def _norms(self, film: Film) -> dict[str, float]:
+        return sway_values(film) if self.measure == "sway" else yaw_values(film)
+
+    def _film(self, knobs: Sequence[Knob], values: Sequence[float], seed: int) -> Film:
+        """What the camera sees of one run."""
+        p, body = self.program.values(), self.program.body.copy()
+        controller, camera = self.scenario.controller, self.scenario.camera
+        own = dict(vars(controller))
+        for knob, x in zip(knobs, values, strict=True):
+            if knob.effect == "controller":
+                setattr(controller, knob.name, knob.applied(getattr(controller, knob.name), x))
+            elif knob.effect == "camera":
+                camera = replace(camera, **{knob.name: knob.applied(getattr(camera, knob.name), x)})
+            elif knob.effect == "body":
+                body[2] = knob.applied(body[2], x)
+            else:
+                at = self.program.index(knob.effect, knob.name)
+                p[at] = knob.applied(p[at], x)
+        for to, source in self._links:
+            p[to] = p[source]
+        imu, marks = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(2))
+        if self._own is None:
+            t, y = self._run(p, body, imu)
+        else:
+            if seed not in self._played:
+                self._played[seed] = self._own.commands(imu)
+            t, y = self._play(p, body, self._played[seed])
+        for name, value in own.items():
+            setattr(controller, name, value)
+        every = round(camera.rate / SCORED)
+        frames = np.arange(0.0, t[-1] + 1e-9, 1.0 / camera.rate)
+        noise = camera.mark_sd * marks.standard_normal((len(frames), 4))[::every]
+        frames = frames[::every]
+        place, psi = np.stack([np.interp(frames, t, y[:, i]) for i in (0, 1)], axis=-1), np.interp(frames, t, y[:, 2])
+        ahead = np.stack([np.cos(psi), np.sin(psi)], axis=-1)
+        light = place + camera.led_ahead * ahead + noise[:, :2]
+        return Film(frames, light, place + camera.button_ahead * ahead + noise[:, 2:], place, psi)
+
+    def commands(self, rng: np.random.Generator) -> Array:
+        """Commands of every step of the boat without knobs, the last ones held until the duration is over."""
+        given: list[Array] = []
+        self._run(self.program.values(), self.program.body, rng, given)
+        found, file = np.concatenate(given), self.scenario.file
+        return np.concatenate([found, np.tile(found[-1], (round(file.duration / file.step) - len(found), 1))])
+
+    def _play(self, p: Array, body: Array, commands: Array) -> tuple[Array, Array]:
+        """Times (N,) and states (N, 6) in earth axes of a run with given commands."""
+        code, on, y, step = self.program.module, self.program.switches(), np.zeros(6), self.scenario.file.step
+        memory, act, out = np.zeros(self.program.memory_size), np.zeros(code.HELD), np.zeros((len(commands) + 1, 6))
+        start = _row(self.scenario.controller.initial_commands(), list(self.scenario.vessel.commands))
+        code.settle(start, memory, p, on, act)
+        code.rollout(0.0, y, commands, memory, step, 1, body, p, on, np.zeros(3), out)
+        return np.asarray(step * np.arange(len(out)), float), np.asarray(out, float)
+
+    def _run(
+        self, p: Array, body: Array, rng: np.random.Generator, given: list[Array] | None = None
+    ) -> tuple[Array, Array]:
+        """Times (N,) and states (N, 6) in earth axes of one run to its end; `given` gets the commands of every step."""
+        told, code = self.scenario, self.program.module
+        controller, file, sensors = told.controller, told.file, told.sensors
+        controller.reset()
+        names = list(told.vessel.commands)
+        period = round(controller.period / file.step)
+        memory, act, on, none = (
+            np.zeros(self.program.memory_size), np.zeros(code.HELD), self.program.switches(), np.zeros(3)
+        )  # fmt: skip
+        code.settle(_row(controller.initial_commands(), names), memory, p, on, act)
+        y, out, pull = np.zeros(6), np.zeros((period + 1, 6)), (0.0, 0.0)
+        parts, t = [np.zeros((1, 6))], 0.0
+        while t < file.duration - 1e-9 and not _over(file.until, y):
+            x, east, psi, *_ = y.tolist()
+            u, v, r = body_rates(y)[3:].tolist()
+            sense: Sense = sensors.feel(t, (x, east, psi), (u, v, r), pull, rng)
+            commands = np.tile(_row(controller.step(sense, told.goal_at(t)), names), (period, 1))
+            code.rollout(t, y, commands, memory, file.step, 1, body, p, on, none, out)
+            if given is not None:
+                given.append(commands)
+            a, b = (out[-1, i] - out[-2, i] for i in (3, 4))  # over the last step
+            c, s = np.cos(y[2]), np.sin(y[2])
+            pull = ((c * a + s * b) / file.step, (c * b - s * a) / file.step)
+            parts.append(out[1:].copy())
+            t += period * file.step
+        states = np.concatenate(parts)
+        return np.asarray(file.step * np.arange(len(states)), float), states
+
+
+def _row(commands: Mapping[str, float], names: Sequence[str]) -> Array:
+    return np.array([commands.get(n, 0.0) for n in names])
+
+
+def _over(until: Any, y: Array) -> bool:
+    """Whether the run is at its end."""
+    return bool(
+        (until.starboard is not None and y[1] >= until.starboard)
+        or (until.turned is not None and abs(y[2]) >= until.turned)
+    )
+
+
+def _links(program: Program) -> list[tuple[int, int]]:
+    """Positions of parameters that are those of another effect: (copy, source)."""
+    found, there = [], {e.name() for e in program.effects}
+    for effect in program.effects:
+        for name, about in type(effect).params().items():
+            owner, _, key = about.follows.partition(".")
+            if owner in there:
+                found.append((program.index(effect.name(), name), program.index(owner, key)))
+    return found
