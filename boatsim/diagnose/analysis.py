@@ -1,7 +1,7 @@
 """A whole diagnosis: recordings and a vessel in, findings out."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
