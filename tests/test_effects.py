@@ -69,8 +69,13 @@ def drawn_motion(seed: int) -> dict[str, float]:
     return found | {"n_rps": float(rng.uniform(0.0, 2.0))}
 
 
+WALLS = {"y_low": "y_high", "y_high": "y_low"}  # change place and sign
+
+
 def swapped(name: str) -> str:
     """The other side's name."""
+    if name in WALLS:
+        return WALLS[name]
     if "port" in name:
         return name.replace("port", "starboard")
     return name.replace("starboard", "port")
@@ -87,7 +92,7 @@ def mirrored(effect: Any) -> Any:
     image = {}
     for name in kind.params():
         steers = swapped(name) != name and getattr(kind, "acts_on", "") == "steer"
-        turns = steers or not TO_STARBOARD.isdisjoint({name, f"{kind.name()}.{name}"})
+        turns = steers or name in WALLS or not TO_STARBOARD.isdisjoint({name, f"{kind.name()}.{name}"})
         image[swapped(name)] = (-1.0 if turns else 1.0) * getattr(effect, name)
     return replace(effect, **image)
 
