@@ -46,7 +46,7 @@ def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) 
     return replace(found, levels=levels, theta=theta)
 
 
-def fit_noise(problem: Problem, found: Fit, sweeps: int = 4) -> Fit:
+def fit_noise(problem: Problem, found: Fit, sweeps: int = 3) -> Fit:
     """A hypothesis with sensor noise and latent-force levels fitted, parameters as they are."""
     families = sorted({f for t in problem.tracks for f in t.families})
     n = len(problem.ambient.force)
