@@ -10,6 +10,8 @@ from scipy.integrate import solve_ivp
 from boatsim import recording, vessel
 from boatsim.base import motion
 from boatsim.diagnose import analysis, commands
+from boatsim.effects.added_mass import AddedMass
+from boatsim.effects.sway_yaw_coupling import SwayYawCoupling
 from boatsim.errors import BadInput
 
 DATA = Path(__file__).parent / "data" / "twin_usv_paths"
@@ -91,6 +93,21 @@ def test_a_run_in_the_columns_of_the_lake_is_replayed_right(tmp_path: Path, caps
     said = dict(line.split(":") for line in capsys.readouterr().out.splitlines()[:2])
     assert float(said["position_rms_m"].split()[0]) < 0.1  # it goes some 15 m in 10 s
     assert float(said["heading_rms_rad"].split()[0]) < 0.02
+
+
+def test_the_munk_moment_is_a_coupling_of_yaw_to_sway() -> None:
+    added = AddedMass(surge=1.0, sway=12.0, yaw=0.5)
+    at = {"u": 1.3, "v": -0.4, "r": 0.0}
+    munk = added.wrench(motion(**at)).N
+    assert SwayYawCoupling(yaw=12.0 - 1.0).wrench(motion(**at)).N == pytest.approx(munk)
+    assert SwayYawCoupling(yaw=11.0).wrench(motion(u=-1.3, v=-0.4)).N == pytest.approx(-munk)
+
+
+def test_a_boat_that_turns_without_slipping_has_its_side_force_from_the_coupling() -> None:
+    u, r = 1.5, 0.6
+    wrench = SwayYawCoupling(sway=-MASS).wrench(motion(u=u, r=r))
+    assert wrench.Y == pytest.approx(MASS * u * r)  # centripetal force of a circle at the speed u
+    assert wrench.X == wrench.K == wrench.N == 0.0
 
 
 def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> None:

@@ -92,6 +92,24 @@ def test_one_outlier_moves_neither_states_nor_evidence_much():
     assert np.abs(first[:, 0] - second[:, 0]).max() < 2e-3
 
 
+def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
+    boat = vessel.load("kvlcc2_roll")
+    levels = Levels(np.array([0.2]), 1.5, {"roll_sd_rad": 1e-3})
+    program = Program(boat)
+
+    def likelihood(off: float) -> float:
+        spoilt = roll_recording()
+        spoilt = replace(spoilt, signals={"phi_rad": spoilt["phi_rad"].copy()})
+        spoilt["phi_rad"][20] += off
+        return track(spoilt, program).likelihood(program.values(), program.switches(), levels)
+
+    off = np.linspace(0.004, 0.02, 161)  # through the gate, which is at 5 sd
+    found = np.array([likelihood(x) for x in off])
+    assert found[0] - found[-1] > 5.0
+    # half the way, half the difference: over a step it would stay what it is
+    assert np.abs(np.diff(found)).max() < 0.6 * np.abs(np.diff(found[::2])).max()
+
+
 def test_free_runs_start_every_horizon_and_leave_a_shorter_rest_out():
     starts, ends = segments(np.arange(0, 20.01, 0.5), 6.0)
     assert [(0.5 * a, 0.5 * b) for a, b in zip(starts, ends, strict=True)] == [(0, 6), (6, 12), (12, 18)]

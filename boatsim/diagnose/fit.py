@@ -10,6 +10,7 @@ from boatsim.diagnose.levels import fit_force, force_prior
 from boatsim.diagnose.problem import Fit, Free, Problem
 
 SETTLED = 0.3  # [nats] a refit that gains less changes nothing
+HALVINGS = 6  # of the way from a start at which the boat runs away to the boat with nothing missing
 NEW_SWEEPS = 3  # rounds in which a new random force takes over from the latent one
 
 
@@ -36,11 +37,16 @@ def converge(problem: Problem, found: Fit, most: int = 4) -> Fit:
 
 
 def reduced(problem: Problem, found: Fit, without: str) -> Fit:
-    """The start of a fit without one of the suspects."""
+    """The start of a fit without one of the suspects, nearer to nothing missing where the boat would run away."""
     suspects = tuple(n for n in found.suspects if n != without)
     free = problem.parameters(suspects)
     known = {(f.effect, f.name): x for f, x in zip(found.free, found.theta, strict=True)}
-    theta = np.array([known[f.effect, f.name] for f in free])
+    theta, nothing = np.array([known[f.effect, f.name] for f in free]), np.array([f.mean for f in free])
+    on = problem.program.switches(suspects)
+    for _ in range(HALVINGS):
+        if np.isfinite(problem.likelihood(free, theta, on, found.levels)):
+            break
+        theta = 0.5 * (theta + nothing)
     return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), found.levels, -np.inf)
 
 

@@ -67,6 +67,12 @@ def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
     return Ranking(nominal, search.base, best, named, first, tried, left)
 
 
+def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:
+    """The recalibrated nominal and the best set on top of it, and no more: for cross-validation."""
+    _, recalibrated = baseline(problem)
+    return recalibrated, _Search(problem, candidates, recalibrated).selected()
+
+
 def baseline(problem: Problem) -> tuple[Fit, Fit]:
     """The vessel as written with noise and force levels fitted, and recalibrated: its own coefficients refitted."""
     nominal = fit_noise(problem, problem.nominal())

@@ -1,7 +1,7 @@
 """A quick look at every suspect on top of a fit: Gauss-Newton with the filter's gains and all else linearised."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,8 +12,18 @@ from boatsim.diagnose.levels import force_prior
 from boatsim.diagnose.problem import Fit, Problem, scale_of
 
 ROUNDS = 3  # Gauss-Newton steps of a suspect
+HALVINGS, TOO_STRONG = 8, 30.0  # of a start that lies this far below nothing missing [nats]
 SMALL = 0.1  # where a suspect without starts of its own begins, in prior sds
 SWELL_SHARE = 0.7  # of the fitted latent force that a random force is tried with; the latent force keeps as much
+
+
+@dataclass(frozen=True)
+class Begin:
+    """What all looks share: the fit they are on top of, linearised with the gains held."""
+
+    columns: Array  # (rows, F) derivatives of the whitened errors by its parameters
+    slope: Array  # (F,) gradient that held gains show where there is none
+    score: float
 
 
 def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, Fit]:
@@ -25,9 +35,10 @@ def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, 
     # base is a maximum: its gradient is zero, whatever gains held still make of it
     space = Space(base.free)
     off = known.T @ white + (base.theta - space.mean) / space.sd
-    before = log_prior(base.free, base.theta) - 0.5 * float(white @ white) - _half_determinant(known)
+    score = log_prior(base.free, base.theta) - 0.5 * float(white @ white)
+    begin = Begin(known, off, score)
     effects = {e.name(): e for e in problem.program.effects}
-    tried = {n: _look(problem, base, effects[n], (known, off), before) for n in candidates if not _random(effects[n])}
+    tried = {n: _look(problem, base, effects[n], begin) for n in candidates if not _random(effects[n])}
     return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if _random(effects[n])}
 
 
@@ -59,32 +70,38 @@ def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -
     return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf)
 
 
-def _look(problem: Problem, base: Fit, effect: Effect, known: tuple[Array, Array], before: float) -> Fit:
+def _look(problem: Problem, base: Fit, effect: Effect, begin: Begin) -> Fit:
     """One suspect: a first step from each of its starts, the best of them followed further."""
     begun = [joined(problem, base, effect.name(), s) for s in starts(problem, effect)]
-    first = [_step(problem, b, known, ROUNDS if len(begun) == 1 else 1) for b in begun]
+    first = [_step(problem, b, begin, ROUNDS if len(begun) == 1 else 1) for b in begun]
     best = max(first, key=lambda f: f[1])
     if len(begun) > 1:
-        best = _step(problem, best[0], known, ROUNDS - 1)
-    return replace(best[0], evidence=base.evidence + best[1] - before)
+        best = _step(problem, best[0], begin, ROUNDS - 1)
+    return replace(best[0], evidence=base.evidence + best[1] - begin.score + _half_determinant(begin.columns))
 
 
-def _step(problem: Problem, start: Fit, base: tuple[Array, Array], rounds: int) -> tuple[Fit, float]:
-    """Gauss-Newton steps; the columns of what was free before stay as they are. Fit and score with its determinant.
-
-    `base` holds these columns and the gradient that held gains show where there is none.
-    """
+def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit, float]:
+    """Gauss-Newton steps; the columns of what was free before stay as they are. Fit and score with its determinant."""
     free, levels = start.free, start.levels
     on = problem.program.switches(start.suspects)
     space = Space(free)
     theta = middle = space.clipped(start.theta)
-    known, off = base[0], np.append(base[1], np.zeros(len(free) - len(base[1])))
+    known, off = begin.columns, np.append(begin.slope, np.zeros(len(free) - len(begin.slope)))
 
     def look(x: Array) -> tuple[Array, float]:
         white = problem.whitened(free, x, on, levels)
         return white, log_prior(free, x) - 0.5 * float(white @ white) + float(off @ ((x - middle) / space.sd))
 
-    (white, score), damping, J = look(theta), 1e-3, known
+    white, score = look(theta)
+    own = np.arange(len(free)) >= len(begin.slope)
+    for _ in range(HALVINGS):  # a start far too strong for this boat is brought nearer to nothing missing
+        if np.isfinite(score) and score > begin.score - TOO_STRONG:
+            break
+        theta = np.where(own, 0.5 * (theta + space.mean), theta)
+        white, score = look(theta)
+    if not np.isfinite(score):  # the boat runs away
+        return start, -np.inf
+    damping, J = 1e-3, known
     for _ in range(rounds):
         J = np.hstack([known, jacobian(problem, free, theta, on, levels, white, known.shape[1])])
         gain, kept = 0.0, False

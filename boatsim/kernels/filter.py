@@ -20,7 +20,9 @@ NY = 2 * NQ
 CALM = 3 * NQ
 NZ = CALM + (2 * NQ if SWELLS else 0)
 SWELL_AXES = (0, 1, 3) if NQ == 3 else (2,)  # entries of `Swell`
-GATE = 5.0  # [sd] a measurement further off is taken for an outlier: no update, a bounded penalty
+# [sd] a measurement further off is taken for an outlier: its pull falls with its distance, its penalty grows with the
+# logarithm (as of a Cauchy distribution), neither with a jump at which a fit would get stuck
+GATE = 5.0
 IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has lost track and must follow
 INVERT = 10  # rounds of the inversion of what the instruments show, which is never far from the truth
 
@@ -253,9 +255,9 @@ def kalman(
 ) -> float:  # fmt: skip
     """One pass. measured (N, C), nan where missing; noise (C,) and sigma (NQ,) are variances of sensors and force.
 
-    full: compute gains (N, C, n) and inverse innovation sd `scale` (N, C), 0 where missing or an outlier; otherwise
-    reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM); otherwise take it from there. white (N, C)
-    gets the whitened innovations. keep: store what the smoother needs. Returns log likelihood.
+    full: compute gains (N, C, n) and inverse innovation sd `scale` (N, C), 0 where missing, both less for an outlier;
+    otherwise reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM); otherwise take it from there.
+    white (N, C) gets the whitened innovations. keep: store what the smoother needs. Returns log likelihood.
     """
     k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
@@ -324,11 +326,12 @@ def kalman(
                 far = abs(error) * scale[i, c] > GATE and outliers[c] < IN_A_ROW
                 outliers[c] = outliers[c] + 1.0 if far else 0.0
                 if far:
-                    scale[i, c] = 0.0
+                    share = GATE / (abs(error) * scale[i, c])
+                    likelihood += GATE * GATE * log(share)
+                    scale[i, c] *= share
+                    for a in range(n):
+                        gains[i, c, a] *= share * share
             white[i, c] = error * scale[i, c]
-            if scale[i, c] == 0.0:
-                likelihood -= 0.5 * GATE * GATE
-                continue
             likelihood -= 0.5 * white[i, c] ** 2
             for a in range(n):
                 z[a] += gains[i, c, a] * error
