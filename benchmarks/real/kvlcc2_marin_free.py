@@ -30,9 +30,8 @@ def turn(found: Diagnosis, model: Fit, circle: Track) -> Array:
     values = found.problem.values(circle, model.free, model.theta)
     first, y = circle.free_runs(values, on, model.levels, DURATION)[0]
     recorded = circle.measured[first : first + len(y)]
-    surge = np.cos(y[:, 2]) * y[:, 3] + np.sin(y[:, 2]) * y[:, 4]
     off = np.column_stack(
-        [surge - recorded[:, circle.signals.index("u_mps")], y[:, 5] - recorded[:, circle.signals.index("r_radps")]]
+        [y[:, 3] - recorded[:, circle.signals.index("u_mps")], y[:, 5] - recorded[:, circle.signals.index("r_radps")]]
     )
     return np.asarray(np.sqrt(np.mean(off**2, axis=0)) * [1.0, np.degrees(1.0)])
 

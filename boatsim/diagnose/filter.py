@@ -138,7 +138,7 @@ class Track:
         return means, covariances, gains
 
     def free_runs(self, values: Array, on: Array, levels: Levels, horizon: float) -> list[tuple[int, Array]]:
-        """(first row, states (M, 2 NQ)) of free runs of `horizon` s, each started at its smoothed state.
+        """Free runs of `horizon` s, each started at its smoothed state: (first row, channels (M, 2 NQ) as recorded).
 
         Starts lie every horizon from the first row; a rest shorter than the horizon is left out.
         """

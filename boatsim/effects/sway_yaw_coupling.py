@@ -20,9 +20,7 @@ class SwayYawCoupling(Force):
 
     words: ClassVar[str] = "a hull with way on feels a side force when it turns and a moment when it drifts"
     shown_by: ClassVar[str] = "the same turns at two speeds ahead, and astern"
-    source: ClassVar[str] = (
-        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 6: terms of second order in speed"
-    )
+    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 6"
     law: ClassVar = law
 
     sway: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="-Y_ur", fit=True, spread=5.0)

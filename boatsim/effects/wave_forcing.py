@@ -56,9 +56,9 @@ class WaveForcing(Unsteady):
     strength: ClassVar = ("surge", "sway", "yaw")
     starts: ClassVar = tuple({"frequency": w} for w in (1.5, 2.2, 3.2, 4.5, 6.5))
 
-    surge: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms surge force", fit=True, spread=0.1)
-    sway: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms sway force", fit=True, spread=0.1)
-    yaw: float = param(0.0, low=0.0, high=1e9, unit="N m", words="rms yaw moment", fit=True, spread=0.03)
+    surge: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms surge force", fit=True, spread=0.2)
+    sway: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms sway force", fit=True, spread=0.2)
+    yaw: float = param(0.0, low=0.0, high=1e9, unit="N m", words="rms yaw moment", fit=True, spread=0.06)
     frequency: float = param(
         3.0, low=0.05, high=20.0, unit="rad/s", words="of encounter", fit=True, spread=1.5, absent=3.0
     )
