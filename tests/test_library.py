@@ -205,3 +205,14 @@ def test_concealed_effects_are_named_with_their_values(tmp_path: Path, real: Rea
         for key, true in wanted[effect["name"]].items():
             found = effect["parameters"][key]
             assert abs(found["value"] - true) < 3.5 * found["sd"] and found["sd"] < 0.3 * abs(true), key
+
+
+def test_late_commands_and_an_early_clock_are_told_to_be_the_same_in_open_loop(tmp_path: Path) -> None:
+    files = [tmp_path / f"{seed}.csv" for seed in (1, 2, 3)]
+    for seed, file in enumerate(files, 1):
+        recording.write_csv(recorded(Real(late=0.25), seed), file)
+    answer = analysis.diagnose(files[:2], files[2:], "trial_boat").findings.answer
+    assert answer["verdict"] == "ambiguous" and answer["effects"][0]["tied_with"] == ["clock_offset"]
+    assert answer["sentence"].count("clock") == 1
+    without = analysis.diagnose(files[:2], files[2:], "trial_boat", without=["clock_offset"]).findings.answer
+    assert without["verdict"] == "named" and [e["name"] for e in without["effects"]] == ["command_delay"]
