@@ -10,7 +10,7 @@ import numpy as np
 from boatsim import vessel as vessels
 from boatsim.base import Array, Effect
 from boatsim.content import load_class, names
-from boatsim.diagnose import experiment, locate, show
+from boatsim.diagnose import experiment, hull_forces, locate, show
 from boatsim.diagnose.answer import compose, meanings
 from boatsim.diagnose.filter import Track, axes_of, nominal_levels, stated_noise, track
 from boatsim.diagnose.findings import Findings, Missing
@@ -182,6 +182,8 @@ def _compile(problem: Problem) -> None:
     nominal, on = problem.nominal(), problem.program.switches()
     track = problem.tracks[0]
     track.free_runs(problem.values(track, nominal.free, nominal.theta), on, problem.ambient, float(np.ptp(track.times)))
+    rest = np.zeros((1, 2 * problem.program.module.NQ))
+    hull_forces.along(track, rest, hull_forces.actuators(track)[:1], track.values)
 
 
 def _findings(
