@@ -23,6 +23,7 @@ FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sampl
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
+NOTHING = np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))  # where no pass is kept
 CHANNELS = {  # measured signal -> (noise family, freedom, rate or position)
     "x_m": ("position_sd_m", "surge", 0),
     "y_m": ("position_sd_m", "sway", 0),
@@ -70,7 +71,6 @@ class Track:
     facts: Mapping[str, Any] = field(default_factory=dict)  # what the recording's notes state besides
     start: Array = field(init=False)  # (n,) first state
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
-    _store: Any = field(init=False, repr=False, default=None)
 
     def __post_init__(self) -> None:
         self.rate = quickest(self.program, self.values, self.commands[0])
@@ -124,17 +124,9 @@ class Track:
         means, covariances, transitions, predicted = keep
         gains = np.zeros_like(transitions)
         self.program.module.smooth(
-            means,
-            covariances,
-            transitions,
-            predicted,
-            gains,
-            levels.force**2,
-            self.times,
-            levels.time_constant,
-            values,
-            on,
-        )
+            means, covariances, transitions, predicted, gains, levels.force**2, self.times, levels.time_constant,
+            values, on,
+        )  # fmt: skip
         return means, covariances, gains
 
     def free_runs(self, values: Array, on: Array, levels: Levels, horizon: float) -> list[tuple[int, Array]]:
@@ -165,18 +157,13 @@ class Track:
             covariance[2 * nq + i, 2 * nq + i] = levels.force[i] ** 2
             if covariance[nq + i, nq + i] == 0.0:
                 covariance[nq + i, nq + i] = 1.0
-        means, covariances, transitions, predicted = keep or self._nothing()
+        means, covariances, transitions, predicted = keep or NOTHING
         found = self.program.module.kalman(
             self.times, self.measured, self.codes, self.commands, self.step, self.body, values, on, levels.force**2,
             levels.time_constant, noise, self.start, covariance, full, fresh, self._linear, self._gains, self._scale,
             self._white, keep is not None, means, covariances, transitions, predicted,
         )  # fmt: skip
         return float(found)
-
-    def _nothing(self) -> Any:
-        if self._store is None:
-            self._store = np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))
-        return self._store
 
 
 def segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:

@@ -12,11 +12,10 @@ from boatsim.diagnose.screen import screen
 
 ENOUGH = 4.0  # [nats] an effect must gain to be named
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
-CLOSE, HALF = (
-    5.0,
-    0.5,
-)  # candidates this near to the first [nats], or with this share of its gain, are looked at closely
-MANY, RIVALS = 5, 3  # and no more of them than this; rivals of what was named
+CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
+HALF = 0.5  # and those with this share of its gain
+MANY = 5  # but no more of them than this
+RIVALS = 3  # fitted in the place of what was named
 UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
 DWARFED = 0.1  # an effect that gains less than this share of what is left over is not stood for
 UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library
