@@ -241,6 +241,10 @@ class Effect(Checked):
                 taken[name] = getattr(own, key)
         return replace(self, **taken)
 
+    def seeded(self, seed: int) -> Self:
+        """The effect with its random course, if it has one, drawn from a scenario's seed."""
+        return self
+
 
 @dataclass(frozen=True)
 class Force(Effect):

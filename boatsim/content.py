@@ -12,6 +12,7 @@ from typing import Any
 
 from boatsim.errors import BadInput, unknown_name
 
+PACKAGES = {"effect": "effects", "measure": "measures"}  # kinds that are modules of ours, one a file
 KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
 
 
@@ -23,9 +24,9 @@ def root() -> Path:
 
 
 def names(kind: str) -> list[str]:
-    """Every vessel, controller, effect or scenario there is; scenarios are named folder/file."""
-    if kind == "effect":
-        return sorted(p.stem for p in (Path(__file__).parent / "effects").glob("[!_]*.py"))
+    """Every vessel, controller, effect, measure or scenario there is; scenarios are named folder/file."""
+    if kind in PACKAGES:
+        return sorted(p.stem for p in (Path(__file__).parent / PACKAGES[kind]).glob("[!_]*.py"))
     folder = root() / KINDS[kind]
     if kind == "vessel":
         return sorted(p.parent.name for p in folder.glob("*/vessel.toml"))
@@ -87,14 +88,14 @@ def camel_case(name: str) -> str:
 
 
 def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
-    """The class of an effect or controller: CamelCase of its file's name. Raises BadInput for a name not found."""
-    if kind == "effect" and name in names("effect"):
-        module = importlib.import_module(f"boatsim.effects.{name}")
-    elif kind == "effect":
+    """The class of an effect, measure or controller: CamelCase of its file's name. Raises BadInput where not found."""
+    if kind in PACKAGES and name in names(kind):
+        module = importlib.import_module(f"boatsim.{PACKAGES[kind]}.{name}")
+    elif kind in PACKAGES:
         file = name if name.endswith(".py") else f"{name}.py"
         path = next((p for p in ((beside or Path()) / file, Path(file)) if p.is_file()), None)
         if path is None:
-            raise BadInput(unknown_name("effect", name, names("effect")))
+            raise BadInput(unknown_name(kind, name, names(kind)))
         name, module = path.stem, _own_module(path)
     else:
         path = find("controller", name, beside)

@@ -5,7 +5,7 @@ A controller works in plain floats and knows nothing of the simulator, so it cou
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import exp, pi
+from math import exp, nan, pi
 from typing import ClassVar, NamedTuple
 
 from boatsim.base import Checked, param
@@ -24,6 +24,8 @@ class Sense:
     v: float  # [m/s] sway velocity
     x: float  # [m] position in start axes
     y: float  # [m]
+    phi: float = nan  # [rad] roll
+    p: float = nan  # [rad/s] roll rate
 
 
 class Estimate(NamedTuple):

@@ -151,11 +151,13 @@ class Engine:
     def wrench(self) -> tuple[float, float, float, float]:
         """Sum of all force laws (X, Y, K, N) in body axes at the present state [N, N m]."""
         s = self.state
-        planar = self.code.NQ == 3
-        c, n = np.cos(s.psi), np.sin(s.psi)
-        y = np.array([s.x, s.y, s.psi, c * s.u - n * s.v, n * s.u + c * s.v, s.r] if planar else [s.phi, s.p])
-        w = self.code.forces(s.t, y, self._act, self._values, self._on)
-        return (w[0], w[1], 0.0, w[2]) if planar else (0.0, 0.0, w[0], 0.0)
+        q, qd = self.data.qpos, self.data.qvel
+        y = np.array([SIGN[n] * x for values in (q, qd) for n, x in zip(self.joints, values, strict=True)])
+        total = [0.0] * 4
+        found = self.code.forces(s.t, y, self._act, self._values, self._on)
+        for axis, force in zip(self.code.FREEDOMS, found, strict=True):
+            total[axis] = force
+        return total[0], total[1], total[2], total[3]
 
     def acceleration(self) -> tuple[float, float]:
         """Acceleration of the CG over ground along body x and y [m/s^2], as an accelerometer there feels it."""

@@ -1,4 +1,4 @@
-"""Error norms of a run, each defined once: yaw rate of a sway, light on its circle in a turn, return to a berth.
+"""Error norms of a run, each defined once: yaw rate of a sway, light on its circle in a turn, the log's own measures.
 
 Sway and turn are measured as the thesis did, from camera frames: 3 Hz is scored, 6 Hz stands beside (the thesis writes
 6 Hz, but only 3 Hz can give its tables). Norms are printed in the thesis' units, deg/s and deg, for people read them.
@@ -6,13 +6,12 @@ Sway and turn are measured as the thesis did, from camera frames: 3 Hz is scored
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from math import degrees, hypot, inf, log, pi, sqrt
+from math import inf, log, pi, sqrt
 from typing import Any
 
 import numpy as np
 
 from boatsim.base import Array
-from boatsim.control import wrap
 from boatsim.errors import BadInput, unknown_name
 from boatsim.recording import Recording
 from boatsim.run import Run
@@ -29,7 +28,7 @@ CLIP = 3.0  # largest residual that counts in J
 SCALE = {"heading_at_0.9m": 10.0, "moved": 0.1}  # [deg], [m] for these errors in J; all others are log ratios
 UNITS = {
     "yaw_rate_inf": "deg/s", "yaw_rate_l2": "deg/s", "yaw_rate_rms": "deg/s", "yaw_rate_l1": "deg/s",
-    "heading_at_0.9m": "deg", "time_to_0.9m": "s", "turn_time": "s", "return_heading": "deg", "wall_contacts": "",
+    "heading_at_0.9m": "deg", "time_to_0.9m": "s", "turn_time": "s",
 }  # fmt: skip  # all others are lengths
 
 
@@ -72,9 +71,9 @@ def norms(run: Run) -> dict[str, Norm]:
         floor = noise_floor(file.measure, round(values["frames"]), SCORED, camera) if values else {}
         for name in NORMS[file.measure]:
             found[name] = _judged(run, name, values.get(name), beside.get(name), floor.get(name))
-    elif file.measure == "berth":
-        values = berth_values(run.recording)
-        found = {name: _judged(run, name, values[name]) for name in NORMS["berth"]}
+    elif measure := run.scenario.measure:
+        values = measure.values(run.recording)
+        found = {name: _judged(run, name, values.get(name), unit=unit) for name, unit in type(measure).units.items()}
     return found | {f"{c.signal}_{c.norm}": _checked(run.recording, c) for c in file.check}
 
 
@@ -198,17 +197,7 @@ def _first(reached: Any, least: int = 0) -> int | None:
     return max(int(np.argmax(reached)), least)
 
 
-# Berth and checks -------------------------------------------------------------------------------------------------
-
-
-def berth_values(log: Recording) -> dict[str, float]:
-    """How far from its first place and on what other heading a boat ended that was to turn half round and come back."""
-    x, y, psi = (log[name][-1] - log[name][0] for name in ("x_m", "y_m", "psi_rad"))
-    return {
-        "return_distance": hypot(x, y),  # of the CG
-        "return_heading": abs(degrees(wrap(psi - pi))),  # beside the half turn
-        "wall_contacts": float(np.count_nonzero(log["contacts"])),  # steps in which the hull touched a wall
-    }
+# Checks ---------------------------------------------------------------------------------------------------------------
 
 
 def signal_norm(t: Array, x: Array, kind: str) -> float:
@@ -235,10 +224,17 @@ def _checked(log: Recording, check: CheckTable) -> Norm:
     return Norm(value, unit.strip(), None, {"low": None, "high": check.below}, value < check.below)
 
 
-def _judged(run: Run, name: str, value: float | None, at_6hz: float | None = None, floor: float | None = None) -> Norm:
+def _judged(
+    run: Run,
+    name: str,
+    value: float | None,
+    at_6hz: float | None = None,
+    floor: float | None = None,
+    unit: str | None = None,
+) -> Norm:
     """The norm beside what the scenario says of it; its bar may be widened by the noise floor."""
     table = run.scenario.file.norms.get(name)
-    unit = UNITS.get(name, "m")
+    unit = UNITS.get(name, "m") if unit is None else unit
     if table is None:
         return Norm(value, unit, at_6hz=at_6hz, noise_floor=floor)
     low, high = table.low, table.high

@@ -39,6 +39,11 @@ from boatsim.recording import replacing
 from boatsim.vessel import Vessel
 
 KERNELS = Path(__file__).parent / "kernels"
+FREE_IN = {  # freedoms -> kernel
+    frozenset({"surge", "sway", "yaw"}): "planar",
+    frozenset({"surge", "sway", "yaw", "roll"}): "heel",
+    frozenset({"roll"}): "roll",
+}
 KEPT = 90 * 86400.0  # [s] after its last use that a composed program stays in the cache
 
 
@@ -158,10 +163,11 @@ def _kernel(name: str) -> str:
 
 def _source(program: Program) -> str:
     """The whole program as Python source."""
-    kernel = {("surge", "sway", "yaw"): "planar", ("roll",): "roll"}.get(tuple(program.vessel.freedoms))
+    kernel = FREE_IN.get(frozenset(program.vessel.freedoms))
     if kernel is None:
         found = ", ".join(program.vessel.freedoms)
-        raise BadInput(f"{program.vessel.name}: freedoms = {found}; allowed are surge, sway, yaw, or roll alone")
+        allowed = "surge, sway, yaw, with or without roll, or roll alone"
+        raise BadInput(f"{program.vessel.name}: freedoms = {found}; allowed are {allowed}")
     return "\n\n".join(
         [_composition(program), _kernel(kernel), _kernel("common"), _kernel("filter"), _kernel("callback")]
     )

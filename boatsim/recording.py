@@ -22,7 +22,7 @@ FEWEST_ROWS = 20
 # columns of our own runs beside pose, rates and commands; a sensor the boat has not got is nan
 OWN = re.compile(r"(actual|sensed|camera|estimate|reference|force|wind)_")
 # what command channels of boats are called; others are known by the vessel
-COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|n)_(?!.*(sd|rate))")
+COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))")
 HUGE = 1e12  # no time, place, speed or command here is anywhere near
 GAP = 60.0  # [s] between two rows; over a longer one no boat here can be followed
 ROUNDING = 1e-3  # share of a channel's range by which a command rounded for the file may pass its limit

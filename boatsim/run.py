@@ -1,7 +1,7 @@
 """Runs a scenario: every period sensors, controller, commands; every step actuators and physics; all of it logged."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan
 from typing import Any
 
@@ -64,18 +64,20 @@ class Runner:
         self.scenario, self.listen = scenario, listen
         self.seed = file.seed if seed is None else seed
         tank = Tank(**file.tank.model_dump()) if file.tank else None
-        self.engine = Engine(scenario.vessel, tank, file.step)
+        vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
+        self.engine = Engine(vessel, tank, file.step)
         self._imu, self._marks = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
-        vessel = scenario.vessel
         self._pose = [n for n, axis in POSE.items() if axis in vessel.freedoms]
         self._rates = [n for n, axis in RATES.items() if axis in vessel.freedoms]
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
         self._actuators = vessel.actuators
-        self._winds = [e for e in scenario.vessel.effects if e.name() in ("fan_wind", "wind")]
+        self._winds = [e for e in vessel.effects if e.name() in ("fan_wind", "wind")]
         self._commands: dict[str, float] = {}
         self._sense: Sense | None = None
         self._frame = 0
+        self._frames: list[Frame] = []
         self._due = 0.0
+        self._row_due = 0.0
         self._sent = 0
 
     def run(self, progress: Callable[[float], None] | None = None) -> Run:
@@ -109,11 +111,13 @@ class Runner:
         self._control()
         self._estimates = list(controller.estimates())
         duration = self.scenario.file.duration
-        self.log = Log(self._columns(), round(duration / self.scenario.file.step) + 2)
+        between = max(self.scenario.file.log, self.scenario.file.step)
+        self.log = Log(self._columns(), round(duration / between) + 3)
         seen = ["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self._sent_channels]
         self._film = Log(seen, round(duration * self.scenario.camera.rate) + 2)
         self._average: list[list[float]] = []
-        self._write_row(self._shoot(state, state))
+        self._frames = self._shoot(state, state)
+        self._write_row()
 
     def _columns(self) -> list[str]:
         limits = [f"{name}{end}" for name in self._adaptive() for end in ("", "_low", "_high")]
@@ -133,15 +137,16 @@ class Runner:
         return [n for n in self._estimates if not n.startswith("reference_")]
 
     def _advance(self) -> None:
-        """One step of physics from the commands in force, then control at its end if it is due, then a row."""
+        """One step of physics from the commands in force, then control at its end and a row, if they are due."""
         before = self._state
         self._average.append(self._sent_now())
         self.engine.command(self._commands)
         self.engine.advance()
         self._state = self.engine.state
-        frames = self._shoot(before, self._state)
+        self._frames += self._shoot(before, self._state)
         self._control()
-        self._write_row(frames)
+        if self._state.t >= self._row_due - 1e-9 or self._finished():
+            self._write_row()
 
     def _control(self) -> None:
         """Sensors and controller, once a period."""
@@ -150,8 +155,9 @@ class Runner:
             return
         self._due += controller.period
         self._sense = self.scenario.sensors.feel(
-            state.t, (state.x, state.y, state.psi), (state.u, state.v, state.r), self.engine.acceleration(), self._imu
-        )
+            state.t, (state.x, state.y, state.psi), (state.u, state.v, state.r), self.engine.acceleration(), self._imu,
+            (state.phi, state.p),
+        )  # fmt: skip
         self._commands = controller.step(self._sense, self.scenario.goal_at(state.t))
 
     def _shoot(self, before: State, after: State) -> list[Frame]:
@@ -178,8 +184,9 @@ class Runner:
             self._film.columns[1 + len(CAMERA) :, self._film.count - 1] = np.mean(self._average, axis=0)
         self._average.clear()
 
-    def _write_row(self, frames: list[Frame]) -> None:
-        s, engine, sense = self._state, self.engine, self._sense
+    def _write_row(self) -> None:
+        s, engine, sense, frames = self._state, self.engine, self._sense, self._frames
+        self._frames, self._row_due = [], self._row_due + self.scenario.file.log
         assert sense is not None
         estimates = self.scenario.controller.estimates()
         axes = [axis in self.scenario.vessel.freedoms for axis in COMPONENTS]

@@ -1,26 +1,29 @@
 """A scenario is a file: which vessel, where, steered by what, towards what, for how long, and how it is judged."""
 
+from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from math import pi, sin
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import Field
 
 from boatsim import vessel as vessels
-from boatsim.content import find, load_class, root
+from boatsim.content import find, load_class, names, root
 from boatsim.control import Controller
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, checked, read_toml
+from boatsim.measure import Measure
 from boatsim.sensors import Camera, Sensors
 from boatsim.vessel import Vessel
 
-NORMS = {  # what is measured -> norms that [norms] may name; `boatsim.metrics` defines them
+NORMS = {  # measured on camera frames -> norms that [norms] may name; `boatsim.metrics` defines them
     "sway": (
         "yaw_rate_inf", "yaw_rate_l2", "yaw_rate_rms", "yaw_rate_l1", "heading_at_0.9m", "surge_offset", "time_to_0.9m",
     ),
     "yaw": ("position_inf", "position_rms", "position_l1", "moved", "turn_time", "excursion"),
-    "berth": ("return_distance", "return_heading", "wall_contacts"),
 }  # fmt: skip
 
 
@@ -70,6 +73,19 @@ class CheckTable(Table):
     source: str = ""
 
 
+class CourseTable(Table):
+    """A goal that moves: mean + slope tau + amplitude sin(2 pi tau / period), tau [s] since the goal began."""
+
+    mean: float = 0.0
+    slope: float = 0.0  # [1/s]
+    amplitude: float = 0.0
+    period: float = Field(default=1.0, gt=0)  # [s]
+
+    def at(self, tau: float) -> float:
+        """Its value."""
+        return self.mean + self.slope * tau + self.amplitude * sin(2.0 * pi * tau / self.period)
+
+
 class ScenarioFile(Table):
     """The content of a scenario .toml."""
 
@@ -85,10 +101,11 @@ class ScenarioFile(Table):
     controller: dict[str, Any]
     sensors: dict[str, Any] = {}
     camera: dict[str, Any] = {}
-    goal: list[dict[str, float]] = []
+    goal: list[dict[str, float | CourseTable]] = []
     set: dict[str, dict[str, Any]] = {}
     effect: list[dict[str, Any]] = []
-    measure: Literal["sway", "yaw", "berth"] | None = None
+    measure: str | dict[str, Any] | None = None
+    log: float = Field(default=0.0, ge=0)  # [s] between rows of the log; 0: every step
     norms: dict[str, NormTable] = {}
     noise_widens_bars: bool = False
     check: list[CheckTable] = []
@@ -104,11 +121,19 @@ class Scenario:
     controller: Controller
     sensors: Sensors
     camera: Camera
+    measure: Measure | None = None  # on the log; those on camera frames are in `boatsim.metrics`
+
+    @cached_property
+    def _begins(self) -> list[float]:
+        return [_begin(g) for g in self.file.goal]
 
     def goal_at(self, t: float) -> Mapping[str, float]:
         """Goals in force at time t [s]: the last [[goal]] that has begun."""
-        begun = [g for g in self.file.goal if g.get("from", 0.0) <= t + 1e-9]
-        return {k: v for k, v in begun[-1].items() if k != "from"} if begun else {}
+        at = bisect_right(self._begins, t + 1e-9) - 1
+        if at < 0:
+            return {}
+        begin, goal = self._begins[at], self.file.goal[at]
+        return {k: v.at(t - begin) if isinstance(v, CourseTable) else v for k, v in goal.items() if k != "from"}
 
 
 def load(name: str, overrides: Mapping[str, Any] | None = None) -> Scenario:
@@ -128,12 +153,13 @@ def from_table(raw: dict[str, Any], path: Path) -> Scenario:
         vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent)
         controller = _made("controller", file.controller, path.parent)
         sensors, camera = _settings(Sensors, file.sensors, "sensors"), _settings(Camera, file.camera, "camera")
+        measure = _measure(file.measure, path.parent)
         _check_goals(file, vessel, controller)
         _check_shape(file, controller)
-        _check_norms(file, camera)
+        _check_norms(file, camera, measure)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
-    return Scenario(_name(path), file, vessel, controller, sensors, camera)
+    return Scenario(_name(path), file, vessel, controller, sensors, camera, measure)
 
 
 def _name(path: Path) -> str:
@@ -148,6 +174,25 @@ def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
         raise BadInput(f"[{kind}] needs use = its name")
     found = load_class(kind, table["use"], folder)
     return found.from_settings({k: v for k, v in table.items() if k != "use"})
+
+
+def _measure(given: str | Mapping[str, Any] | None, folder: Path) -> Measure | None:
+    """The measure on the log that a scenario asks for."""
+    if given is None or given in NORMS:
+        return None
+    table = {"use": given} if isinstance(given, str) else given
+    if isinstance(use := table.get("use"), str) and use not in names("measure") and not use.endswith(".py"):
+        raise BadInput(unknown_name("measure", use, [*NORMS, *names("measure")]))
+    made: Measure = _made("measure", table, folder)
+    return made
+
+
+def _begin(goal: Mapping[str, float | CourseTable]) -> float:
+    """When a goal begins [s]."""
+    begin = goal.get("from", 0.0)
+    if isinstance(begin, CourseTable):
+        raise BadInput("[[goal]] from is a table; allowed is a time in s")
+    return begin
 
 
 def _settings(kind: Any, table: Mapping[str, Any], key: str) -> Any:
@@ -165,10 +210,10 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
         for key in goal:
             if key != "from" and key not in allowed:
                 raise BadInput(unknown_name("[[goal]] key", key, ["from", *allowed]))
-            channel = vessel.commands.get(key)
-            if channel and not channel.low <= goal[key] <= channel.high:
-                raise BadInput(f"[[goal]] {key} = {goal[key]:g}; allowed {channel.low:g} to {channel.high:g}")
-    starts = [g.get("from", 0.0) for g in file.goal]
+            channel, value = vessel.commands.get(key), goal[key]
+            if channel and isinstance(value, float) and not channel.low <= value <= channel.high:
+                raise BadInput(f"[[goal]] {key} = {value:g}; allowed {channel.low:g} to {channel.high:g}")
+    starts = [_begin(g) for g in file.goal]
     if starts != sorted(starts):
         raise BadInput(f"[[goal]] from = {starts}; allowed are times in ascending order")
     if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
@@ -185,9 +230,10 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
             raise BadInput(f"start x, y = {file.start.x:g}, {file.start.y:g} m lies outside the tank")
 
 
-def _check_norms(file: ScenarioFile, camera: Camera) -> None:
+def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) -> None:
     """Only norms of what is measured are judged, and the frames they need are taken."""
-    allowed = NORMS[file.measure] if file.measure else ()
+    on_film = NORMS[str(file.measure)] if file.measure in ("sway", "yaw") else ()
+    allowed = tuple(type(measure).units) if measure else on_film
     for name in file.norms:
         if name not in allowed:
             raise BadInput(unknown_name("[norms] key", name, allowed))

@@ -26,12 +26,15 @@ class Sensors(Checked):
     acceleration_bias: float = param(0.01, low=-5.0, high=5.0, unit="m/s^2", words="accelerometer bias")
     speed_sd: float = param(-1.0, low=-1.0, high=1.0, unit="m/s", words="surge speed noise; below 0: no such sensor")
     position_sd: float = param(-1.0, low=-1.0, high=10.0, unit="m", words="position fix noise; below 0: none")
+    ideal: bool = False  # all of the motion is known as it is, roll too, whatever the noise stated above
 
     def feel(
         self, t: float, pose: tuple[float, float, float], velocity: tuple[float, float, float],
-        acceleration: tuple[float, float], rng: np.random.Generator,
+        acceleration: tuple[float, float], rng: np.random.Generator, roll: tuple[float, float] = (nan, nan),
     ) -> Sense:  # fmt: skip
-        """One sample at a true pose (x, y, psi), body velocity (u, v, r) and body acceleration (ax, ay)."""
+        """One sample at a true pose (x, y, psi), body velocity (u, v, r), body acceleration (ax, ay), roll (phi, p)."""
+        if self.ideal:
+            return Sense(t, pose[2], velocity[2], *acceleration, velocity[0], velocity[1], pose[0], pose[1], *roll)
         n = rng.standard_normal(7).tolist()
         log, fix = self.speed_sd >= 0.0, self.position_sd >= 0.0
         return Sense(

@@ -14,25 +14,31 @@ from boatsim.vessel import Vessel
 
 
 def body_rates(y: Array) -> Array:
-    """States (..., 6) of planar kernels with earth-axes velocities, as (..., 6) with u, v, r."""
-    out = np.array(y, dtype=float)
-    c, s = np.cos(y[..., 2]), np.sin(y[..., 2])
-    out[..., 3] = c * y[..., 3] + s * y[..., 4]
-    out[..., 4] = c * y[..., 4] - s * y[..., 3]
+    """States (..., 2 NQ) of kernels, earth-axes velocities x', y' replaced by u, v; roll alone as it is."""
+    out, nq = np.array(y, dtype=float), y.shape[-1] // 2
+    if nq > 1:
+        c, s = np.cos(y[..., 2]), np.sin(y[..., 2])
+        out[..., nq] = c * y[..., nq] + s * y[..., nq + 1]
+        out[..., nq + 1] = c * y[..., nq + 1] - s * y[..., nq]
     return out
 
 
 def earth_rates(y: Array) -> Array:
     """The inverse of `body_rates`."""
-    out = np.array(y, dtype=float)
-    c, s = np.cos(y[..., 2]), np.sin(y[..., 2])
-    out[..., 3] = c * y[..., 3] - s * y[..., 4]
-    out[..., 4] = s * y[..., 3] + c * y[..., 4]
+    out, nq = np.array(y, dtype=float), y.shape[-1] // 2
+    if nq > 1:
+        c, s = np.cos(y[..., 2]), np.sin(y[..., 2])
+        out[..., nq] = c * y[..., nq] - s * y[..., nq + 1]
+        out[..., nq + 1] = s * y[..., nq] + c * y[..., nq + 1]
     return out
 
 
 class Twin:
-    """One vessel without walls. States are (x, y, psi, u, v, r) [m, rad, m/s, rad/s] or (phi, p), SNAME."""
+    """One vessel without walls.
+
+    States, SNAME [m, rad, m/s, rad/s], are (x, y, psi, u, v, r), with roll (x, y, psi, phi, u, v, r, p), or (phi, p)
+    for roll alone.
+    """
 
     def __init__(self, vessel: Vessel, step: float = 0.02) -> None:
         """`step` is the integration step in s."""
@@ -40,12 +46,12 @@ class Twin:
         self.program = Program(vessel)
         self.code = self.program.module
         self._values, self._on = self.program.values(), self.program.switches()
-        self._none = np.zeros(3)
+        self._none = np.zeros(4)
 
     def rollout(
         self, start: Sequence[float], commands: Array, interval: float, values: Array | None = None, t0: float = 0.0
     ) -> Array:
-        """Free run: row i of commands (N, C), in the vessel's order, is held for `interval` s; states (N + 1, 6 or 2).
+        """Free run: row i of commands (N, C), in the vessel's order, is held for `interval` s; states (N + 1, 2 NQ).
 
         Actuators start settled at the first row. Raises BadInput unless the step divides the interval.
         """
@@ -56,14 +62,13 @@ class Twin:
         memory, act = np.zeros(self.program.memory_size), np.zeros(self.code.HELD)
         commands = np.ascontiguousarray(commands, dtype=float)
         self.code.settle(commands[0], memory, p, self._on, act)
-        planar = self.code.NQ == 3
-        y = np.array(start, dtype=float)
+        y = earth_rates(np.array(start, dtype=float))
         out = np.empty((len(commands) + 1, len(y)))
         self.code.rollout(
-            t0, earth_rates(y) if planar else y, commands, memory, self.step, substeps, self.program.body, p, self._on,
+            t0, y, commands, memory, self.step, substeps, self.program.body, p, self._on,
             self._none, out,
         )  # fmt: skip
-        return body_rates(out) if planar else out
+        return body_rates(out)
 
     def coast(self, start: Sequence[float], commands: Mapping[str, float], steps: int) -> Array:
         """State after many steps with constant commands and settled actuators: what benchmarks measure."""
@@ -71,7 +76,6 @@ class Twin:
         memory = np.zeros(self.program.memory_size)
         self.code.settle(self.program.command_array(commands), memory, self._values, self._on, act)
         self.code.constants(self.program.body, self._values, self._on, k)
-        y = np.array(start, dtype=float)
-        y = earth_rates(y) if self.code.NQ == 3 else y
+        y = earth_rates(np.array(start, dtype=float))
         self.code.steps(0.0, y, self.step, steps, act, self._values, self._on, k)
-        return body_rates(y) if self.code.NQ == 3 else y
+        return body_rates(y)

@@ -9,7 +9,7 @@ import pytest
 LAYERS = (  # a module may import from its own layer and from the lines above it
     "__init__ errors",
     "base files content recording recording_files recording_notes recording_units",
-    "effects kernels control adaptive allocation hullform",
+    "effects kernels control adaptive allocation hullform measure measures",
     "vessel scenario sensors margins",
     "program world native",
     "engine twin",

@@ -53,11 +53,14 @@ def held_commands(boat: Vessel, rows: int, seed: int) -> Array:
 
 def pose_and_rates(boat: Vessel, s: State) -> list[float]:
     """A state as the twin has it."""
-    return [s.x, s.y, s.psi, s.u, s.v, s.r] if "yaw" in boat.freedoms else [s.phi, s.p]
+    if "yaw" not in boat.freedoms:
+        return [s.phi, s.p]
+    heel = "roll" in boat.freedoms
+    return [s.x, s.y, s.psi, *([s.phi] if heel else []), s.u, s.v, s.r, *([s.p] if heel else [])]
 
 
 def sailed(engine: Engine, rows: Array, steps: int, start: State = START) -> Array:
-    """(rows + 1, 6 or 2) states; each row of commands is held for some steps."""
+    """(rows + 1, 2 NQ) states; each row of commands is held for some steps."""
     commands = [dict(zip(engine.vessel.commands, row, strict=True)) for row in rows]
     engine.reset(start, commands[0])
     out = [pose_and_rates(engine.vessel, engine.state)]

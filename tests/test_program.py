@@ -135,10 +135,10 @@ def test_commands_that_are_not_given_are_zero(tmp_path: Path) -> None:
         program.command_array({"steer": 0.1})
 
 
-def test_roll_together_with_yaw_is_refused(tmp_path: Path) -> None:
-    text = boats.PLANAR.replace('"yaw"]', '"yaw", "roll"]')
+def test_freedoms_that_no_kernel_has_are_refused(tmp_path: Path) -> None:
+    text = boats.PLANAR.replace('"yaw"]', '"roll"]')
     boat = vessel.load(str(boats.written(tmp_path, "test_boat", text)))
-    with pytest.raises(BadInput, match="allowed are surge, sway, yaw, or roll alone"):
+    with pytest.raises(BadInput, match="allowed are surge, sway, yaw, with or without roll, or roll alone"):
         _ = Program(boat).module
 
 

@@ -46,7 +46,7 @@ def laid(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Course | None:
 def walls(problem: Problem) -> Array | None:
     """Where walls stand, plus and minus (x, y) [m], if the library that is tried knows of any."""
     program = problem.program
-    if program.module.NQ != 3 or not any(e.name() == "wall_effect" for e in program.effects):
+    if program.module.NQ == 1 or not any(e.name() == "wall_effect" for e in program.effects):
         return None
     names = ("x_low", "x_high", "y_low", "y_high")
     x_low, x_high, y_low, y_high = problem.tracks[0].values[[program.index("wall_effect", n) for n in names]]
@@ -114,14 +114,15 @@ def _start(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Array:
     if problem.program.module.NQ == 1:
         return np.array([manoeuvre.heel, 0.0])
     first = problem.tracks[0]
-    state = np.zeros(6)
+    nq = problem.program.module.NQ
+    state = np.zeros(2 * nq)
     for c, code in enumerate(first.codes):
         if code < 2:
             state[code] = round(float(np.nanmean(first.measured[:, c])), 2)
     if manoeuvre.under_way:
         values, on = problem.values(first, found.free, found.theta), problem.program.switches(found.suspects)
         states, _ = first.smoothed(values, on, found.levels)
-        state[3] = float(f"{np.median(np.hypot(states[:, 3], states[:, 4])):.3g}")
+        state[nq] = float(f"{np.median(np.hypot(states[:, nq], states[:, nq + 1])):.3g}")
     return state
 
 

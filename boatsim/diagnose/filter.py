@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.base import AXES, Array, Channel, Unsteady
+from boatsim.base import Array, Channel, Unsteady
 from boatsim.errors import BadInput
 from boatsim.program import Program
 from boatsim.recording import FEWEST_ROWS, HUGE, Recording
@@ -89,8 +89,9 @@ class Track:
                 far = gap > np.arange(len(t))
                 speed = (y[gap] - y)[far] / (t[gap] - t)[far]
                 self.spread[nq + code, nq + code] = float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
-        if nq == 3:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
-            self.spread[3, 3] = self.spread[4, 4] = max(self.spread[3, 3], self.spread[4, 4])
+        if nq > 1:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
+            fastest = max(self.spread[nq, nq], self.spread[nq + 1, nq + 1])
+            self.spread[nq, nq] = self.spread[nq + 1, nq + 1] = fastest
 
     @property
     def stiff(self) -> bool:
@@ -182,7 +183,7 @@ def segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
 
 def axes_of(vessel: Vessel) -> tuple[str, ...]:
     """Names of the freedoms in the filter's order."""
-    return tuple(a for a in AXES if a in vessel.freedoms)
+    return tuple(a for a in ("surge", "sway", "yaw", "roll") if a in vessel.freedoms)
 
 
 def track(recording: Recording, program: Program, stated: Mapping[str, float] | None = None) -> Track:
@@ -214,7 +215,8 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
         tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes, np.ascontiguousarray(commands),
         stated_values(program, recording.notes.facts), program.body, scale, recording.notes.facts,
     )  # fmt: skip
-    if len(axes) == 3 and (speed := float(np.sqrt(laid.spread[3, 3]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
+    nq = len(axes)
+    if nq > 1 and (speed := float(np.sqrt(laid.spread[nq, nq]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
         raise BadInput(
             f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of {vessel.length:g} m; are they in m?"
         )

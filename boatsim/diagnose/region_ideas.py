@@ -9,6 +9,7 @@ import numpy as np
 from boatsim.base import Array, angle_fields
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.hull_forces import actuators, along
+from boatsim.twin import body_rates
 
 FAMILY = "thrust"  # of actuators whose value is a force
 PLAY = 0.1  # [rad] between a steering command and the angle it stands for; the force hardly depends on it beyond scale
@@ -30,17 +31,19 @@ def ideas(track: Track, states: Array, damping: Array) -> list[Idea]:
     """Everything tried on a run; `states` (N, 2 NQ) are smoothed, `damping` (N, axes) is the vessel's own."""
     if track.program.module.NQ == 1:
         return list(_rolling(track, states))
-    return [*_planar(states), *_astern(track), *_reversals(track), *_walls(track, states, damping)]
+    return [*_moving(states), *_astern(track), *_reversals(track), *_walls(track, states, damping)]
 
 
-def _planar(states: Array) -> Iterator[Idea]:
+def _moving(states: Array) -> Iterator[Idea]:
     """A direction of the world, the square of each speed."""
-    c, s, none = np.cos(states[:, 2]), np.sin(states[:, 2]), np.zeros(len(states))
-    north, east = np.column_stack([c, -s, none]), np.column_stack([s, c, none])
+    axes = np.eye(states.shape[1] // 2)
+    c, s = np.cos(states[:, 2]), np.sin(states[:, 2])
+    north, east = np.outer(c, axes[0]) - np.outer(s, axes[1]), np.outer(s, axes[0]) + np.outer(c, axes[1])
     yield Idea("heading in the world", (north, east), _direction)
-    speeds = (c * states[:, 3] + s * states[:, 4], c * states[:, 4] - s * states[:, 3], states[:, 5])
-    for axis, (name, w) in enumerate(zip(("surge", "sway", "yaw"), speeds, strict=True)):
-        yield Idea(f"{name} speed", (np.outer(w * np.abs(w), np.eye(3)[axis]),), _square(f"{name} speed"))
+    rates = body_rates(states)[:, len(axes) :]
+    for axis, name in enumerate(("surge", "sway", "yaw", "roll")[: len(axes)]):
+        w = rates[:, axis]
+        yield Idea(f"{name} speed", (np.outer(w * np.abs(w), axes[axis]),), _square(f"{name} speed"))
 
 
 def _rolling(track: Track, states: Array) -> Iterator[Idea]:
@@ -99,7 +102,8 @@ def _walls(track: Track, states: Array, damping: Array) -> Iterator[Idea]:
     )
     c, s = np.cos(states[:, 2]), np.sin(states[:, 2])
     north, east = (high - low).T
-    pull = np.column_stack([c * north + s * east, c * east - s * north, np.zeros(len(states))])
+    pull = np.column_stack([c * north + s * east, c * east - s * north])
+    pull = np.pad(pull, ((0, 0), (0, states.shape[1] // 2 - 2)))
     near = (high + low).sum(axis=1, keepdims=True)
     yield Idea("distance to the walls", (pull, near * damping), _near(reach))
 

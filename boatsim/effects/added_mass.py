@@ -10,8 +10,11 @@ from boatsim.base import Force, Inertia, Mass, Wrench, param
 
 @njit(inline="always")
 def inertia(q: Any) -> Mass:
-    """Sway mass acts at its own centre, so it couples into yaw."""
-    return Mass(q.surge, q.sway, q.sway * q.sway_at, q.yaw + q.sway * q.sway_at * q.sway_at, 0.0, q.roll, 0.0)
+    """Sway mass acts at its own centre, ahead and below, so it couples into yaw and roll."""
+    a, z = q.sway_at, q.sway_below
+    return Mass(
+        q.surge, q.sway, q.sway * a, q.yaw + q.sway * a * a, -q.sway * z, q.roll + q.sway * z * z, -q.sway * z * a
+    )
 
 
 @njit(inline="always")
@@ -19,7 +22,7 @@ def law(m: Any, q: Any) -> Wrench:
     """Coriolis force -C_A(nu_r) nu_r of the added mass, Munk moment included (Fossen 2021, eq. 6.42)."""
     b = q.sway * q.sway_at
     along = q.surge * m.ur  # [kg m/s] added momentum in surge
-    across = q.sway * m.vr + b * m.r
+    across = q.sway * (m.vr - q.sway_below * m.p) + b * m.r
     return Wrench(
         q.coriolis * across * m.r, -q.coriolis * along * m.r, 0.0, q.coriolis * (across * -m.ur + along * m.vr)
     )
@@ -39,6 +42,7 @@ class AddedMass(Inertia, Force):
     surge: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-X_udot", fit=True, spread=0.5, axis="surge")
     sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-Y_vdot", fit=True, spread=5.0, axis="sway")
     sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead")
+    sway_below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="sway added mass acts this far below")
     yaw: float = param(
         0.0,
         low=0.0,
@@ -49,5 +53,7 @@ class AddedMass(Inertia, Force):
         spread=0.7,
         axis="yaw",
     )
-    roll: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot", fit=True, spread=0.02, axis="roll")
+    roll: float = param(
+        0.0, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot about that point", fit=True, spread=0.02, axis="roll"
+    )
     coriolis: float = param(1.0, low=0.0, high=1.0, unit="", words="share of the Coriolis force that is modelled")

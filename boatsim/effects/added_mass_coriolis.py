@@ -12,7 +12,7 @@ from boatsim.base import Force, Wrench, param
 def law(m: Any, q: Any) -> Wrench:
     """A fraction of -C_A(nu_r) nu_r, the Munk moment (X_udot - Y_vdot) u v in it."""
     along = q.fraction * q.surge * m.ur  # [kg m/s] momentum of the water in surge
-    across = q.fraction * q.sway * (m.vr + q.sway_at * m.r)
+    across = q.fraction * q.sway * (m.vr + q.sway_at * m.r - q.sway_below * m.p)
     return Wrench(across * m.r, -along * m.r, 0.0, along * m.vr - across * m.ur)
 
 
@@ -31,3 +31,6 @@ class AddedMassCoriolis(Force):
     surge: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the vessel's -X_udot", follows="added_mass.surge")
     sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the vessel's -Y_vdot", follows="added_mass.sway")
     sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="where it acts", follows="added_mass.sway_at")
+    sway_below: float = param(
+        0.0, low=-100.0, high=100.0, unit="m", words="how far below", follows="added_mass.sway_below"
+    )

@@ -13,8 +13,9 @@ from boatsim.effects import added_mass, cross_flow_drag
 def inertia(q: Any) -> Mass:
     """(factor - 1) times the sway and yaw added mass."""
     k = q.factor - 1.0
-    b = k * q.sway * q.sway_at
-    return Mass(0.0, k * q.sway, b, k * q.yaw + b * q.sway_at, 0.0, 0.0, 0.0)
+    a, z = q.sway_at, q.sway_below
+    b = k * q.sway * a
+    return Mass(0.0, k * q.sway, b, k * q.yaw + b * a, -k * q.sway * z, k * q.sway * z * z, -b * z)
 
 
 @njit(inline="always")
@@ -41,6 +42,9 @@ class ShallowWater(Inertia, Force):
     surge: float = param(0.0, low=0.0, high=0.0, unit="kg", words="surge added mass is not raised")
     sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the vessel's -Y_vdot", follows="added_mass.sway")
     sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="where it acts", follows="added_mass.sway_at")
+    sway_below: float = param(
+        0.0, low=-100.0, high=100.0, unit="m", words="how far below", follows="added_mass.sway_below"
+    )
     yaw: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="the vessel's -N_rdot", follows="added_mass.yaw")
     coriolis: float = param(1.0, low=0.0, high=1.0, unit="", words="the vessel's share", follows="added_mass.coriolis")
     section_drag_coefficient: float = param(

@@ -14,12 +14,11 @@ from numba import njit
 from boatsim.base import Array, Shown, Swell
 from boatsim.kernels.common import SHORTEST, settle
 from boatsim.kernels.laws import HELD, MEMORY, SWELLS, actuate, distorted, late, pause, shown, swell
-from boatsim.kernels.planar import NQ, SHOWS, K, constants, force_slopes, moved, slopes, step_in_place
+from boatsim.kernels.planar import FREEDOMS, NQ, SHOWS, K, constants, force_slopes, moved, slopes, step_in_place
 
 NY = 2 * NQ
 CALM = 3 * NQ
 NZ = CALM + (2 * NQ if SWELLS else 0)
-SWELL_AXES = (0, 1, 3) if NQ == 3 else (2,)  # entries of `Swell`
 # [sd] a measurement further off is taken for an outlier: its pull falls with its distance, its penalty grows with the
 # logarithm (as of a Cauchy distribution), neither with a jump at which a fit would get stuck
 GATE = 5.0
@@ -133,7 +132,7 @@ def diffuse(h: float, n: int, sigma: Array, tau: float, s: Swell, P: Array) -> N
         f11, f12, f21, f22, _, _ = oscillation(h, s)
         w2 = s.frequency * s.frequency
         for j in range(NQ):
-            v, a = s[SWELL_AXES[j]] ** 2, CALM + 2 * j
+            v, a = s[FREEDOMS[j]] ** 2, CALM + 2 * j
             P[a, a] += v * (1.0 - f11 * f11 - w2 * f12 * f12)
             P[a + 1, a + 1] += v * (w2 - f21 * f21 - w2 * f22 * f22)
             cross = v * (f11 * f21 + w2 * f12 * f22)
@@ -205,7 +204,7 @@ def observe(z: Array, code: int, row: Array, p: Array, on: Any) -> float:
     if code < NQ:
         row[code] = 1.0
         return float(z[code])
-    if NQ == 1 or code == NY - 1:
+    if NQ == 1 or code > NQ + 1:
         row[code] = 1.0
         return float(z[code])
     c, s = cos(z[2]), sin(z[2])
@@ -271,8 +270,8 @@ def kalman(
     undistorted(z, p, on)
     if n > CALM:
         for j in range(NQ):
-            P[CALM + 2 * j, CALM + 2 * j] = s[SWELL_AXES[j]] ** 2
-            P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[SWELL_AXES[j]]) ** 2
+            P[CALM + 2 * j, CALM + 2 * j] = s[FREEDOMS[j]] ** 2
+            P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[FREEDOMS[j]]) ** 2
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
     y, force, Ph, other = np.zeros(NY), np.zeros(NQ), np.zeros(NZ), np.zeros(NY)
     f11, f12, f21, f22, mean1, mean2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

@@ -1,0 +1,1 @@
+"""What a scenario measures on its log: one measure a file, its name the file's name."""
