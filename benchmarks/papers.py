@@ -1,0 +1,154 @@
+"""Every published figure beside ours: docs/papers.md from docs/papers/*.toml and the norms pinned in tests/golden.
+
+python -m benchmarks.papers            whether docs/papers.md is up to date; exit 1 if it is not
+python -m benchmarks.papers --update   write it
+
+A paper's file has `title`, `source`, [[scenario]] tables (`name`, and what holds for all its published norms) and
+[[row]] tables. Ours is the pinned `norm` of a `scenario`, a `figure` of a `module` here, or a number `ours` that
+`command` prints. `within` is the share of the published figure that still counts as reproduced; where it is more, `reason` says why.
+"""
+
+import argparse
+import importlib
+import json
+import sys
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from boatsim.errors import BadInput
+from boatsim.files import read_toml
+
+HOME = Path(__file__).parents[1]
+OUT = HOME / "docs" / "papers.md"
+WITHIN = 0.10
+VERDICTS = ("reproduced", "corrected", "can't be")
+KEYS = {"what", "unit", "published", "within", "verdict", "reason"}
+OURS = ({"scenario", "norm"}, {"module", "figure"}, {"ours", "command"}, set[str]())
+
+
+@dataclass(frozen=True)
+class Row:
+    """One published figure. A figure is a number, or a word where the paper only says so."""
+
+    what: str
+    published: float | str
+    ours: float | str | None
+    unit: str
+    verdict: str
+    reason: str
+    command: str
+
+    def line(self) -> str:
+        """Row of the table."""
+        shown = [_shown(self.published, self.unit), _shown(self.ours, self.unit)]
+        return f"| {self.what} | {' | '.join(shown)} | {self.verdict} | {self.reason} | {self.command} |"
+
+
+def rows(file: Path) -> Iterator[Row]:
+    """The figures of one paper. Raises BadInput for a key or a norm that does not exist."""
+    paper = read_toml(file)
+    for table in paper.get("scenario", []):
+        name = table["name"]
+        for norm, value in _golden(name).items():
+            if value["published"] is not None and norm not in table.get("but", []):
+                given = {k: v for k, v in table.items() if k in KEYS} | table.get(norm, {})
+                what = f"{table.get('what', name.rpartition('/')[2])}: {norm.replace('_', ' ')}"
+                yield _row({**given, "what": what, "scenario": name, "norm": norm}, file)
+    for table in paper.get("row", []):
+        yield _row(table, file)
+
+
+def _row(table: Mapping[str, Any], file: Path) -> Row:
+    found = set(table) - KEYS
+    if found not in OURS:
+        raise BadInput(f"{file.name}: {table.get('what')}: has {sorted(found)}; allowed are {[*map(sorted, OURS)]}")
+    ours, published, unit, command = table.get("ours"), table.get("published"), table.get("unit"), ""
+    if "norm" in table:
+        values = _golden(table["scenario"])
+        if table["norm"] not in values:
+            raise BadInput(f"{file.name}: {table['scenario']} has no norm {table['norm']}; it has {[*values]}")
+        pinned = values[table["norm"]]
+        ours, command = pinned["today"], f"`boatsim run {table['scenario']}`"
+        published, unit = pinned["published"] if published is None else published, unit or pinned["unit"]
+    elif "figure" in table:
+        ours, command = _figures(table["module"])[table["figure"]], f"`python -m {table['module']}`"
+    elif "command" in table:
+        command = f"`{table['command']}`"
+    if published is None:
+        raise BadInput(f"{file.name}: {table['what']}: nothing published to compare with")
+    within = table.get("within", WITHIN)
+    verdict = table.get("verdict") or _verdict(published, ours, within)
+    if verdict not in VERDICTS:
+        raise BadInput(f"{file.name}: {table['what']}: verdict = {verdict!r}; allowed are {', '.join(VERDICTS)}")
+    reason = table.get("reason", "")
+    if verdict != "reproduced" and not reason:
+        raise BadInput(f"{file.name}: {table['what']}: {published} against {ours} needs a reason")
+    if verdict == "reproduced":
+        reason = f"within {within:.1%}" if within < 0.01 else f"within {within:.0%}"
+    return Row(table["what"], published, ours, unit or "", verdict, reason, command)
+
+
+def _verdict(published: Any, ours: Any, within: float) -> str:
+    """Reproduced if close enough; a figure that is not must say itself what it is."""
+    if isinstance(published, str) or isinstance(ours, str):
+        return "reproduced" if published == ours else "can't be"
+    close = ours is not None and abs(abs(ours) - abs(published)) <= within * abs(published) + 1e-12
+    return "reproduced" if close else "can't be"
+
+
+@cache
+def _golden(scenario: str) -> dict[str, Any]:
+    path = HOME / "tests" / "golden" / f"{scenario}.json"
+    if not path.is_file():
+        raise BadInput(f"{scenario}: no norms pinned; python -m benchmarks.golden --update pins them")
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))["norms"]
+    return found
+
+
+@cache
+def _figures(module: str) -> dict[str, float]:
+    found: dict[str, float] = importlib.import_module(module).figures()
+    return found
+
+
+def _shown(value: float | str | None, unit: str) -> str:
+    if value is None:
+        return "never reached"
+    return value if isinstance(value, str) else f"{value:.4g} {unit}".strip()
+
+
+def document() -> str:
+    """The whole of docs/papers.md."""
+    parts = [
+        "# The papers' figures beside ours\n\nMade by `python -m benchmarks.papers --update`; not meant to be edited."
+    ]
+    counts: Counter[str] = Counter()
+    for file in sorted((HOME / "docs" / "papers").glob("*.toml")):
+        paper, found = read_toml(file), list(rows(file))
+        counts.update(r.verdict for r in found)
+        head = "| figure | published | ours | verdict | reason | from |\n| --- | --- | --- | --- | --- | --- |"
+        parts.append(f"## {paper['title']}\n\n{paper['source']}\n\n{head}\n" + "\n".join(r.line() for r in found))
+    parts.insert(1, ", ".join(f"{counts[v]} {v}" for v in VERDICTS) + ".")
+    return "\n\n".join(parts) + "\n"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """0 up to date or written, 1 out of date."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.papers", description="Published figures beside ours.")
+    parser.add_argument("--update", action="store_true", help="write docs/papers.md")
+    given = parser.parse_args(arguments)
+    text = document()
+    if given.update:
+        OUT.write_text(text, encoding="utf-8")
+    same = OUT.is_file() and OUT.read_text(encoding="utf-8") == text
+    print(text.splitlines()[4])
+    print("docs/papers.md is up to date" if same else "docs/papers.md is out of date: --update writes it")
+    return int(not same)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

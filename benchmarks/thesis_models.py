@@ -1,0 +1,95 @@
+"""Figures of the thesis that need no run: reference models (T7, T8), neutral steering angles (F8), derivatives (T27).
+
+python -m benchmarks.thesis_models
+"""
+
+from math import degrees, pi, sqrt
+
+import numpy as np
+from scipy.optimize import brentq
+
+from boatsim import vessel
+from boatsim.adaptive import LinearSystem, step_response
+from boatsim.base import Array, motion
+from boatsim.effects.outboards import Outboards
+
+STEP = 1e-3  # [s]
+SURGE = np.array([[-1.4]])
+SWAY_YAW = np.array([[0.0, -1.0], [1.0, -1.4]])  # states v, r; inputs sway force, yaw moment
+RESPONSES = {  # name -> model, input, state
+    "u from surge force": (SURGE, 0, 0),
+    "v from sway force": (SWAY_YAW, 0, 0),
+    "v from yaw moment": (SWAY_YAW, 1, 0),
+    "r from sway force": (SWAY_YAW, 0, 1),
+    "r from yaw moment": (SWAY_YAW, 1, 1),
+}
+LENGTH, BEAM, DRAUGHT, BLOCK = 1.2, 0.30, 0.06, 0.86  # [m] and block coefficient as T27 has them
+SWAY = 0.07  # [m/s] speed commanded in the sway tests
+GRAVITY = 9.81  # [m/s^2]
+ARM = {"light": 0.60, "heavy": 0.64}  # [m] motors to centre of lateral resistance, T10 to T14
+
+
+def figures() -> dict[str, float]:
+    """Every figure by name: times in s, angles in deg."""
+    found = {}
+    for name, (model, force, state) in RESPONSES.items():
+        rise, peak, settling = response(model, force, state)
+        found |= {f"{name}: rise": rise, f"{name}: peak": peak, f"{name}: settling": settling}
+    for load in ARM:
+        for spacing in ("narrow", "wide"):
+            found[f"neutral angle {load} {spacing}"] = neutral_angle(load, spacing)
+    return found | derivatives() | {"Froude number of the sway tests": SWAY / sqrt(GRAVITY * LENGTH)}
+
+
+def derivatives() -> dict[str, float]:
+    """T27's derivatives: Clarke's regressions (1983) over -pi (T/L)^2."""
+    b, t, h = BEAM / LENGTH, BEAM / DRAUGHT, DRAUGHT / LENGTH
+    return {
+        "Y_vdot": 1.0 + 0.16 * BLOCK * t - 5.1 * b**2,
+        "Y_rdot": 0.67 * b - 0.0033 * t**2,
+        "N_vdot": 1.1 * b - 0.041 * t,
+        "N_rdot": 1.0 / 12.0 + 0.017 * BLOCK * t - 0.33 * b,
+        "Y_v": 1.0 + 0.4 * BLOCK * t,
+        "Y_r": -0.5 + 2.2 * b - 0.08 * t,
+        "N_v": 0.5 + 2.4 * h,
+        "N_r": 0.25 + 0.039 * t - 0.56 * b,
+    }
+
+
+def response(model: Array, force: int, state: int) -> tuple[float, float, float]:
+    """Rise (10 to 90 %), peak and settling (2 %) of one state after a unit step of one force, b = I.
+
+    Where the last value is zero there is no rise, and settling is 2 % of the peak.
+    """
+    n = len(model)
+    x = step_response(LinearSystem(model, np.eye(n)[:, [force]], np.eye(n)[[state]]), STEP, 30_000)[:, 0]
+    peak = float(x[np.argmax(np.abs(x))])
+    last = float(x[-1]) if abs(x[-1]) > 1e-6 else 0.0
+    rise = _crossing(x / last, 0.9) - _crossing(x / last, 0.1) if last else 0.0
+    off = np.abs(x - last) > 0.02 * abs(last or peak)
+    return rise, peak, STEP * float(len(x) - np.argmax(off[::-1]))
+
+
+def _crossing(x: Array, level: float) -> float:
+    """Time [s] at which a rising signal first reaches a level."""
+    i = int(np.argmax(x >= level))
+    return float(STEP * (i - 1 + (level - x[i - 1]) / (x[i] - x[i - 1])))
+
+
+def neutral_angle(load: str, spacing: str) -> float:
+    """Inward angle [deg] at which thrust ahead on one side and astern on the other turn the boat neither way."""
+    outboards = vessel.load("joystick_boat", [load, spacing]).effect("outboards")
+    assert isinstance(outboards, Outboards)
+    resistance = outboards.x + ARM[load]  # [m] centre of lateral resistance ahead of the CG
+
+    def moment(angle: float) -> float:
+        boat = motion(thrust_port_N=1.0, thrust_starboard_N=-1.0, steer_port_rad=angle, steer_starboard_rad=-angle)
+        wrench = outboards.wrench(boat)
+        return float(wrench.N - resistance * wrench.Y)
+
+    return degrees(brentq(moment, 0.0, pi / 4))
+
+
+if __name__ == "__main__":
+    for name, value in figures().items():
+        print(f"{name:32} {value:8.3f}")
