@@ -5,7 +5,8 @@ python -m benchmarks.papers --update   write it
 
 A paper's file has `title`, `source`, [[scenario]] tables (`name`, and what holds for all its published norms) and
 [[row]] tables. Ours is the pinned `norm` of a `scenario`, a `figure` of a `module` here, or a number `ours` that
-`command` prints. `within` is the share of the published figure that still counts as reproduced; where it is more, `reason` says why.
+`command` prints. `within` is the share of the published figure that still counts as reproduced; where ours is further
+off, `reason` says why.
 """
 
 import argparse
