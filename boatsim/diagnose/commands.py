@@ -37,7 +37,8 @@ def diagnose(
     write(found, out)
     for line in summary(found):
         print(line)
-    print(f"written to {out}: report.html, report.md, diagnosis.json, patched.toml, diagnosis.rrd")
+    files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *([NEXT] if found.plan else []), "diagnosis.rrd"]
+    print(f"written to {out}: {', '.join(files)}")
     return 0
 
 
