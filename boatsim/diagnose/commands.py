@@ -37,7 +37,8 @@ def diagnose(
     write(found, out)
     for line in summary(found):
         print(line)
-    files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *([NEXT] if found.plan else []), "diagnosis.rrd"]
+    plan = [NEXT] if found.plan else []
+    files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *plan, "diagnosis.rrd"]
     print(f"written to {out}: {', '.join(files)}")
     return 0
 
