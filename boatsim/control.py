@@ -4,7 +4,7 @@ A controller works in plain floats and knows nothing of the simulator, so it cou
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import exp, nan, pi
 from typing import ClassVar, NamedTuple
 
@@ -60,6 +60,52 @@ class Controller(Checked):
     def estimates(self) -> dict[str, Estimate]:
         """Adaptive estimates with their bounds, and the reference model's states where there is one, for the log."""
         return {}
+
+    @property
+    def done(self) -> bool:
+        """Whether all it was to do is done, so that the run may end."""
+        return False
+
+
+@dataclass
+class Steered(Controller):
+    """Base of controllers that play a standard manoeuvre: the ship goes ahead, then an angle is demanded of its helm.
+
+    `ahead` are the commands of the approach, `steer` the command per rad of helm (positive turns to starboard). The
+    angle in force is logged as `reference_helm_rad`.
+    """
+
+    angle: float = param(0.35, low=-1.6, high=1.6, unit="rad", words="helm angle, positive to starboard")
+    execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the manoeuvre begins")
+    ahead: dict[str, float] = field(default_factory=dict)
+    steer: dict[str, float] = field(default_factory=dict)
+    _helm: float = field(default=0.0, init=False)
+
+    def reset(self) -> None:
+        """Helm midships."""
+        self._helm = 0.0
+
+    def initial_commands(self) -> dict[str, float]:
+        """Those of the approach."""
+        return self.commanded(0.0)
+
+    def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
+        """Approach until it is time, then the manoeuvre."""
+        self._helm = self.helm(sense) if sense.t >= self.execute - 1e-9 else 0.0
+        return self.commanded(self._helm)
+
+    def helm(self, sense: Sense) -> float:
+        """Helm angle [rad] of the manoeuvre now."""
+        raise NotImplementedError
+
+    def commanded(self, helm: float) -> dict[str, float]:
+        """Commands with which the ship goes ahead at a helm angle."""
+        turned = {name: self.ahead.get(name, 0.0) + per_rad * helm for name, per_rad in self.steer.items()}
+        return {**self.ahead, **turned}
+
+    def estimates(self) -> dict[str, Estimate]:
+        """The helm angle, for the log."""
+        return {"reference_helm_rad": Estimate(self._helm, nan, nan)}
 
 
 def clip(value: float, low: float, high: float) -> float:

@@ -230,7 +230,7 @@ class Runner:
 
     def _finished(self) -> bool:
         file, s = self.scenario.file, self._state
-        if s.t >= file.duration - 1e-9:
+        if s.t >= file.duration - 1e-9 or self.scenario.controller.done:
             return True
         c, n = np.cos(file.start.psi), np.sin(file.start.psi)
         starboard = c * (s.y - file.start.y) - n * (s.x - file.start.x)

@@ -55,6 +55,15 @@ class DiagnosisTable(Table):
     noise: dict[Noise, PositiveFloat] = {}  # sensor noise where a recording states none
 
 
+class ManoeuvringTable(Table):
+    """How the vessel is handled in a standard manoeuvre; what is left out follows from its channels."""
+
+    ahead: dict[str, float] = {}  # commands of the approach
+    astern: dict[str, float] = {}  # commands of a crash stop
+    steer: dict[str, float] = {}  # command per rad of helm
+    speed: float | None = Field(default=None, gt=0)  # [m/s] at which the approach begins
+
+
 class VesselFile(Table):
     """The content of a vessel.toml."""
 
@@ -75,6 +84,7 @@ class VesselFile(Table):
     effect: list[dict[str, Any]] = []
     loads: dict[str, dict[str, Any]] = {}
     diagnosis: DiagnosisTable = DiagnosisTable()
+    manoeuvring: ManoeuvringTable = ManoeuvringTable()
 
 
 @dataclass(frozen=True)
@@ -101,6 +111,7 @@ class Vessel:
     scale: float | None = None  # full scale length / this length
     scales: Mapping[str, float] = field(default_factory=dict)  # vessels that are the same hull at another scale
     columns: Mapping[str, str] = field(default_factory=dict)  # our name -> column of its recordings, "-" flips the sign
+    manoeuvring: ManoeuvringTable = ManoeuvringTable()
 
     @property
     def actuators(self) -> tuple[str, ...]:
@@ -159,7 +170,7 @@ def load(
     vessel = Vessel(
         called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
-        file.scale, file.scales, file.columns,
+        file.scale, file.scales, file.columns, file.manoeuvring,
     )  # fmt: skip
     return with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
 
@@ -224,12 +235,13 @@ def _overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) ->
         mine = next((t for t in effects if t.get("use") == key), None)
         if mine is not None:
             mine.update(value)
-        elif isinstance(value, dict) and key in ("body", "geometry"):
+        elif isinstance(value, dict) and key in ("body", "geometry", "manoeuvring"):
             out[key] = {**raw.get(key, {}), **value}
         elif key in ("length", "beam", "draught"):
             out[key] = value
         else:
-            names = [*(str(t.get("use")) for t in effects), "body", "geometry", "length", "beam", "draught"]
+            tables = ("body", "geometry", "manoeuvring", "length", "beam", "draught")
+            names = [*(str(t.get("use")) for t in effects), *tables]
             raise BadInput(unknown_name(f"{label}: table to change", key, names))
     out["effect"] = effects
     return out

@@ -7,12 +7,13 @@ from pathlib import Path
 import pytest
 
 LAYERS = (  # a module may import from its own layer and from the lines above it
-    "__init__ errors",
+    "__init__ errors imo",
     "base files content recording recording_files recording_notes recording_units",
     "effects kernels control adaptive allocation hullform measure measures",
     "vessel scenario sensors margins",
     "program world native",
     "engine twin",
+    "manoeuvre",
     "run metrics rerun_log rerun_scene blueprint env outputs",
     "diagnose",
     "cli __main__",

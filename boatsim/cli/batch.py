@@ -14,6 +14,7 @@ from boatsim import scenario as scenarios
 from boatsim.cli import show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput
+from boatsim.scenario import Scenario
 
 POLL = 0.1  # [s] between two looks at the processes
 
@@ -68,6 +69,16 @@ def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None,
         kept = any(outcome.content for outcome in outcomes)
         complain("interrupted; what was logged is kept" if kept else "interrupted before anything was logged")
     return max(outcome.code for outcome in outcomes)
+
+
+def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
+    """Run a standard manoeuvre and print its figures; the limits beside them are a yardstick, not a test."""
+    from boatsim.outputs import run_into
+
+    with show.progress([(scenario.name, scenario.file.duration)]) as report:
+        content = run_into(folder, scenario, progress=lambda t: report(0, t))
+    show.norms(content, folder)
+    return Exit.MET if content["complete"] else Exit.INTERRUPTED
 
 
 def plan(names: Sequence[str], out: Path | None, seed: int | None, live: bool) -> list[Task]:

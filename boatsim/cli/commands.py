@@ -102,6 +102,29 @@ def run(
     return run_all(scenarios, out, jobs, seed, live)
 
 
+@app.command()
+@guarded
+def manoeuvre(
+    name: Annotated[
+        str,
+        typer.Argument(metavar="MANOEUVRE", help="turning_circle, zigzag, pull_out, spiral, crash_stop or roll_decay."),
+    ],
+    vessel: Annotated[str, typer.Option("--vessel", metavar="NAME|FILE", help="What does it.")],
+    load: Load = None,
+    angle: Annotated[
+        float | None, typer.Option(metavar="DEG", help="Helm angle, heel of a roll decay; negative to port.")
+    ] = None,
+    speed: Annotated[float | None, typer.Option(min=1e-3, metavar="M/S", help="Where the approach begins.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder for the files.")] = None,
+) -> int:
+    """Run a standard manoeuvre of a vessel: its figures beside the limits of the IMO, and the files of a run."""
+    from boatsim.cli.batch import run_manoeuvre
+    from boatsim.manoeuvre import scenario_of
+
+    made = scenario_of(name, vessel, _loads(load), angle, speed)
+    return run_manoeuvre(made, out or Path("out") / f"{made.vessel.name}_{name}")
+
+
 @app.command("list")
 @guarded
 def list_(

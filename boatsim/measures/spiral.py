@@ -1,0 +1,44 @@
+"""Spiral: rates of turn at each helm angle on the way out and back; a ship that is not course-stable has two."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.measure import Measure
+from boatsim.recording import Recording
+
+SAME = 1e-6  # [rad] between two helm angles that are one
+
+
+@dataclass(frozen=True)
+class Spiral(Measure):
+    """The loop of the curve rate over helm angle."""
+
+    words: ClassVar[str] = "height and width of the loop in the curve of rate of turn over helm angle"
+    units: ClassVar = {
+        "loop_height": "deg/s",
+        "loop_width": "deg",
+        "rate_at_largest": "deg/s",
+        "rate_midships": "deg/s",
+    }
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Loop height at midships, width over all angles at which the two rates have opposite signs, two rates."""
+        helm = log["reference_helm_rad"]
+        begin = int(np.argmax(helm != 0.0))
+        ends = np.array([*(begin + np.flatnonzero(np.abs(np.diff(helm[begin:])) > SAME)), len(helm) - 1])
+        angles, rates = helm[ends], np.degrees(log["r_radps"][ends])
+        turn = int(np.argmin(angles))
+        out, back = slice(0, turn + 1), slice(turn, len(ends))
+        both = sorted(a for a in angles[out] if np.abs(angles[back] - a).min() < SAME)
+        there = np.array([rates[out][np.argmin(np.abs(angles[out] - a))] for a in both])
+        again = np.array([rates[back][np.argmin(np.abs(angles[back] - a))] for a in both])
+        middle = int(np.argmin(np.abs(both)))
+        loop = [a for a, x, y in zip(both, there, again, strict=True) if x * y < 0.0]
+        return {
+            "loop_height": float(abs(there[middle] - again[middle])),
+            "loop_width": float(np.degrees(max(loop) - min(loop))) if loop else 0.0,
+            "rate_at_largest": float(rates[int(np.argmax(angles))]),
+            "rate_midships": float(there[middle]),
+        }

@@ -1,0 +1,59 @@
+"""Turning circle: advance, transfer, tactical diameter, and the steady turn at the end (ITTC 7.5-04-02-01)."""
+
+from dataclasses import dataclass
+from math import pi
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.base import param
+from boatsim.measure import Measure
+from boatsim.recording import Recording
+
+
+@dataclass(frozen=True)
+class TurningCircle(Measure):
+    """Distances in lengths, from where the helm was put over, along and across the approach course."""
+
+    words: ClassVar[str] = "advance, transfer, tactical diameter and steady turn of a turning circle"
+    units: ClassVar = {
+        "advance": "L", "transfer": "L", "tactical_diameter": "L", "steady_radius": "L", "steady_speed": "m/s",
+        "steady_rate": "deg/s", "steady_drift": "deg", "time_to_90": "s",
+    }  # fmt: skip
+
+    execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the helm was put over")
+    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """What the turn reached."""
+        begin = int(np.searchsorted(log.t, self.execute - 1e-9))
+        psi0 = log["psi_rad"][begin]
+        dx, dy = (log[n][begin:] - log[n][begin] for n in ("x_m", "y_m"))
+        ahead, aside = np.cos(psi0) * dx + np.sin(psi0) * dy, np.cos(psi0) * dy - np.sin(psi0) * dx
+        side = float(np.sign(log["psi_rad"][-1] - psi0))
+        turned = side * (log["psi_rad"][begin:] - psi0)
+        found = {}
+        if turned.max() >= pi / 2:
+            found = {
+                "advance": _at(pi / 2, turned, ahead) / self.length,
+                "transfer": side * _at(pi / 2, turned, aside) / self.length,
+                "time_to_90": _at(pi / 2, turned, log.t[begin:]) - float(log.t[begin]),
+            }
+        if turned.max() >= pi:
+            u, v, r = (float(log[n][-1]) for n in ("u_mps", "v_mps", "r_radps"))
+            speed = float(np.hypot(u, v))
+            found |= {
+                "tactical_diameter": side * _at(pi, turned, aside) / self.length,
+                "steady_radius": speed / abs(r) / self.length,
+                "steady_speed": speed,
+                "steady_rate": abs(float(np.degrees(r))),
+                "steady_drift": side * float(np.degrees(np.arctan2(-v, u))),
+            }
+        return found
+
+
+def _at(angle: float, turned: np.ndarray, values: np.ndarray) -> float:
+    """Value at which the ship had turned by an angle for the first time, between the rows."""
+    i = int(np.argmax(turned >= angle))
+    share = (angle - turned[i - 1]) / (turned[i] - turned[i - 1])
+    return float(values[i - 1] + share * (values[i] - values[i - 1]))

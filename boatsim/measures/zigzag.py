@@ -1,0 +1,50 @@
+"""Zig-zag: overshoots, when they come, and the track to the first reversal of the helm (ITTC 7.5-04-02-01)."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.base import param
+from boatsim.measure import Measure
+from boatsim.recording import Recording
+
+COUNT = ("first", "second", "third")
+
+
+@dataclass(frozen=True)
+class Zigzag(Measure):
+    """An overshoot is the largest heading after a reversal, less the heading at which the helm is reversed."""
+
+    words: ClassVar[str] = "overshoots of a zig-zag and the track to the first reversal"
+    units: ClassVar = {
+        **{f"{n}_overshoot": "deg" for n in COUNT},
+        **{f"{n}_overshoot_at": "s" for n in COUNT},
+        "time_to_reversal": "s",
+        "track_to_reversal": "L",
+    }
+
+    execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the helm was first put over")
+    heading: float = param(0.175, low=0.001, high=3.0, unit="rad", words="heading change at which it is reversed")
+    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Of as many reversals as there were."""
+        begin = int(np.searchsorted(log.t, self.execute - 1e-9))
+        helm, psi = log["reference_helm_rad"], log["psi_rad"] - log["psi_rad"][begin]
+        reversals = begin + 1 + np.flatnonzero(np.diff(np.sign(helm[begin:])))
+        reversals = reversals[helm[reversals - 1] != 0.0]
+        if not len(reversals):
+            return {}
+        path = np.hypot(np.diff(log["x_m"][begin:]), np.diff(log["y_m"][begin:]))
+        first = int(reversals[0])
+        found = {
+            "time_to_reversal": float(log.t[first] - log.t[begin]),
+            "track_to_reversal": float(path[: first - begin].sum()) / self.length,
+        }
+        for name, start, end in zip(COUNT, reversals, reversals[1:], strict=False):
+            part = float(np.sign(helm[start - 1])) * psi[start : end + 1]
+            row = int(np.argmax(part))
+            found[f"{name}_overshoot"] = float(np.degrees(part[row] - self.heading))
+            found[f"{name}_overshoot_at"] = float(log.t[start + row] - log.t[begin])
+        return found

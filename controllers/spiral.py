@@ -1,0 +1,23 @@
+"""Spiral: the helm goes in steps from one side to the other and back, each step held until the turn is steady."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from boatsim.base import param
+from boatsim.control import Sense, Steered
+
+
+@dataclass
+class Spiral(Steered):
+    """Dieudonne's manoeuvre: it shows whether a ship has two rates of turn at one helm angle."""
+
+    words: ClassVar[str] = "standard manoeuvre: helm in steps from side to side and back (Dieudonne)"
+
+    hold: float = param(60.0, low=0.1, high=1e5, unit="s", words="time for which each angle is held")
+    steps: int = 4  # from midships to the largest angle
+
+    def helm(self, sense: Sense) -> float:
+        """The angle of this step."""
+        n = min(int((sense.t - self.execute) / self.hold + 1e-6), 4 * self.steps)
+        down = self.steps - n  # in steps of angle: +steps .. -steps, then up again
+        return self.angle * (down if down >= -self.steps else -2 * self.steps - down) / self.steps

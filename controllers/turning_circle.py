@@ -1,0 +1,17 @@
+"""Turning circle: the helm is put over and held."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from boatsim.control import Sense, Steered
+
+
+@dataclass
+class TurningCircle(Steered):
+    """Holds the helm angle to the end of the run."""
+
+    words: ClassVar[str] = "standard manoeuvre: puts the helm over and holds it"
+
+    def helm(self, sense: Sense) -> float:
+        """The angle."""
+        return self.angle
