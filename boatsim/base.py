@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
+from operator import attrgetter
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -142,7 +143,7 @@ class Param:
     axis: str = ""  # freedom it belongs to ("roll", ...); fitted only on vessels that have it
     absent: float = 0.0  # value at which the effect is not there
     calibrates: str = ""  # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
-    follows: str = ""  # "linear_damping.surge" of the vessel, or "vessel.length" where none is given
+    follows: str = ""  # "linear_damping.surge" of the vessel, or "vessel.body.mass" where none is given
 
 
 def param(
@@ -233,7 +234,7 @@ class Effect(Checked):
         for name, about in type(self).params().items():
             owner, _, key = about.follows.partition(".")
             if owner == "vessel":
-                taken[name] = getattr(self, name) or getattr(vessel, key)
+                taken[name] = getattr(self, name) or attrgetter(key)(vessel)
             elif owner:
                 own = vessel.effect(owner)
                 if own is None:

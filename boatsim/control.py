@@ -5,7 +5,7 @@ A controller works in plain floats and knows nothing of the simulator, so it cou
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import exp, nan, pi
+from math import exp, isnan, nan, pi
 from typing import ClassVar, NamedTuple
 
 from boatsim.base import Checked, param
@@ -80,10 +80,11 @@ class Steered(Controller):
     ahead: dict[str, float] = field(default_factory=dict)
     steer: dict[str, float] = field(default_factory=dict)
     _helm: float = field(default=0.0, init=False)
+    _course: float = field(default=nan, init=False)  # [rad] heading at the start of the run
 
     def reset(self) -> None:
         """Helm midships."""
-        self._helm = 0.0
+        self._helm, self._course = 0.0, nan
 
     def initial_commands(self) -> dict[str, float]:
         """Those of the approach."""
@@ -91,6 +92,7 @@ class Steered(Controller):
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Approach until it is time, then the manoeuvre."""
+        self._course = sense.psi if isnan(self._course) else self._course
         self._helm = self.helm(sense) if sense.t >= self.execute - 1e-9 else 0.0
         return self.commanded(self._helm)
 

@@ -22,14 +22,19 @@ class TurningCircle(Measure):
     }  # fmt: skip
 
     execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the helm was put over")
+    course: float = param(
+        -1.0, low=-1.0, high=1e6, unit="s", words="when the ship was on the approach course; below 0: at execute"
+    )
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
 
     def values(self, log: Recording) -> dict[str, float]:
         """What the turn reached."""
         begin = int(np.searchsorted(log.t, self.execute - 1e-9))
-        psi0 = log["psi_rad"][begin]
-        dx, dy = (log[n][begin:] - log[n][begin] for n in ("x_m", "y_m"))
-        ahead, aside = np.cos(psi0) * dx + np.sin(psi0) * dy, np.cos(psi0) * dy - np.sin(psi0) * dx
+        line = begin if self.course < 0.0 else int(np.searchsorted(log.t, self.course - 1e-9))
+        x, y, psi0 = log["x_m"], log["y_m"], log["psi_rad"][line]
+        c, s = np.cos(psi0), np.sin(psi0)
+        ahead = c * (x[begin:] - x[begin]) + s * (y[begin:] - y[begin])
+        aside = c * (y[begin:] - y[line]) - s * (x[begin:] - x[line])
         side = float(np.sign(log["psi_rad"][-1] - psi0))
         turned = side * (log["psi_rad"][begin:] - psi0)
         found = {}

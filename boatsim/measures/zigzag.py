@@ -31,7 +31,7 @@ class Zigzag(Measure):
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many reversals as there were."""
         begin = int(np.searchsorted(log.t, self.execute - 1e-9))
-        helm, psi = log["reference_helm_rad"], log["psi_rad"] - log["psi_rad"][begin]
+        helm, psi = log["reference_helm_rad"], log["psi_rad"] - log["psi_rad"][0]
         reversals = begin + 1 + np.flatnonzero(np.diff(np.sign(helm[begin:])))
         reversals = reversals[helm[reversals - 1] != 0.0]
         if not len(reversals):
