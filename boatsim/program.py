@@ -7,6 +7,7 @@ content of every law in it, so that numba's cache can never return the number of
 
 import hashlib
 import os
+import re
 import sys
 import tempfile
 import time
@@ -157,8 +158,8 @@ def _stamp(program: Program, source: str) -> str:
 
 def _kernel(name: str) -> str:
     """Source of a kernel without its imports of other kernels, whose text stands above it."""
-    lines = (KERNELS / f"{name}.py").read_text().splitlines(keepends=True)
-    return "".join(line for line in lines if not line.startswith("from boatsim.kernels"))
+    text = (KERNELS / f"{name}.py").read_text()
+    return re.sub(r"^from boatsim\.kernels\S* import (\([^)]*\)|.*)\n", "", text, flags=re.MULTILINE)
 
 
 def _source(program: Program) -> str:
@@ -168,9 +169,8 @@ def _source(program: Program) -> str:
         found = ", ".join(program.vessel.freedoms)
         allowed = "surge, sway, yaw, with or without roll, or roll alone"
         raise BadInput(f"{program.vessel.name}: freedoms = {found}; allowed are {allowed}")
-    return "\n\n".join(
-        [_composition(program), _kernel(kernel), _kernel("common"), _kernel("filter"), _kernel("callback")]
-    )
+    kernels = [_kernel(name) for name in (kernel, "common", "filter", "callback")]
+    return "\n\n".join([_kernel("compiling"), _composition(program), *kernels])
 
 
 def _call(i: int, effect: Effect, offset: int) -> str:
@@ -195,7 +195,6 @@ def _composition(program: Program) -> str:
         '"""Effects of a vessel, composed by boatsim.program; not meant to be edited."""',
         "from math import cos, sin",
         "import numpy as np",
-        "from numba import njit",
         "from boatsim.base import Shown, Swell, Wrench, motion_type",
         "from boatsim.program import classes_of",
         f"E = classes_of({[address(type(e)) for e in program.effects]!r})",
@@ -239,47 +238,47 @@ def _composition(program: Program) -> str:
         [
             *head,
             "",
-            '@njit(inline="always")',
+            "@inlined",
             "def sees(t, x, y, psi, phi, u, v, p, r, ur, vr, c, s, act):",
             f"    return Seen({', '.join(['t, x, y, psi, phi, u, v, p, r, ur, vr, c, s', *seen])})",
             "",
-            '@njit(inline="always", error_model="numpy")',
+            "@merged",
             "def wrench(m, p, on):",
             *wrench,
             "    return Wrench(X, Y, K, N)",
             "",
-            '@njit(inline="always")',
+            "@inlined",
             "def flow(p, on):",
             *flow,
             "    return north, east",
             "",
-            '@njit(inline="always")',
+            "@inlined",
             "def inertias(p, on, water, hull):",
             *inertias,
             "",
-            '@njit(inline="always", error_model="numpy")',
+            "@inlined",
             "def actuate(commands, memory, dt, p, on, act):",
             *_actuate(program),
             "",
-            '@njit(inline="always", error_model="numpy")',
+            "@inlined",
             "def pause(commands, memory, p, on):",
             *_pause(program),
             "",
-            '@njit(inline="always", error_model="numpy")',
+            "@inlined",
             "def shown(m, p, on):",
             *shown,
             "    return m",
             "",
-            '@njit(inline="always")',
+            "@inlined",
             "def distorted(on):",
             f"    return {_distorted(program)}",
             "",
-            '@njit(inline="always")',
+            "@inlined",
             "def late(p, on):",
             *late,
             "    return seconds",
             "",
-            '@njit(inline="always")',
+            "@inlined",
             "def swell(p, on):",
             *swell,
             "    return w",
@@ -300,8 +299,8 @@ def _actuate(program: Program) -> list[str]:
             kind = type(effect)
             other = program.vessel.beside(name, kind.source_family) if kind.source_family else None
             source = f"commands[{order.index(other)}]" if other else "0.0"
-            call = _call(i, effect, program.offsets[i])
-            lines += _guarded(program, i, [f"x = channel{i}(x, {command.side}, {source}, memory, {at}, dt, {call})"])
+            given = f"x, {float(command.side)}, {source}, memory, np.int64({at}), dt"  # plain integers count as types
+            lines += _guarded(program, i, [f"x = channel{i}({given}, {_call(i, effect, program.offsets[i])})"])
             at += kind.slots
         lines.append(f"    act[{k}] = x")
     for k, name in enumerate(angle_fields(program.vessel.actuators)):
@@ -319,7 +318,7 @@ def _pause(program: Program) -> list[str]:
             if not isinstance(effect, Channel) or name not in program.targets(effect):
                 continue
             if type(effect).pause is not None:
-                given = f"commands[{order.index(name)}], memory, {at}, {_call(i, effect, program.offsets[i])}"
+                given = f"commands[{order.index(name)}], memory, np.int64({at}), {_call(i, effect, program.offsets[i])}"
                 lines += _guarded(program, i, [f"left = min(left, pause{i}({given}))"])
             at += type(effect).slots
     return [*lines, "    return left"]

@@ -70,6 +70,17 @@ def _code(command: Callable[[], int]) -> int:
     except KeyboardInterrupt:
         complain("interrupted")
         return Exit.INTERRUPTED
+    except Exception as error:
+        if not type(error).__module__.startswith("numba."):
+            raise
+        complain(f"the law of an effect can not be compiled: {_said(error)}; a law takes floats and allocates nothing")
+        return Exit.BAD_INPUT
+
+
+def _said(error: Exception) -> str:
+    """What numba says of a law, the first of its lines that says something."""
+    lines = [" ".join(line.split()) for line in str(error).splitlines()]
+    return next((line.rstrip(":") for line in lines[1:] if line), type(error).__name__)
 
 
 def _version(asked: bool) -> None:

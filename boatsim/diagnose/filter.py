@@ -230,13 +230,9 @@ def quickest(program: Program, values: Array, command: Array) -> float:
     k, act, memory = np.zeros(code.K), np.zeros(code.HELD), np.zeros(program.memory_size)
     code.constants(program.body, values, on, k)
     code.settle(command, memory, values, on, act)
-    y, rest, slope = np.zeros(2 * nq), np.zeros(nq), np.zeros((nq, nq))
-    base = np.zeros(nq)
-    code.slopes(0.0, y, act, values, on, k, rest, base)
-    for j in range(nq):
-        y[nq + j], column = 1e-6, np.zeros(nq)
-        code.slopes(0.0, y, act, values, on, k, rest, column)
-        y[nq + j], slope[:, j] = 0.0, (column - base) / 1e-6
+    slopes = np.zeros((nq, 2 * nq))
+    code.slopes(0.0, np.zeros(2 * nq), act, values, on, k, np.zeros(nq), slopes)
+    slope = slopes[:, nq:]
     return float(np.abs(np.linalg.eigvals(slope)).max()) if np.isfinite(slope).all() else 0.0
 
 

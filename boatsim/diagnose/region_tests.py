@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from boatsim.base import Array
 from boatsim.diagnose.smoothing import information
@@ -74,7 +74,8 @@ class Evidence:
         factors = np.zeros(len(a))
         factors[clear] = np.linalg.solve(left[np.ix_(clear, clear)], score[clear])
         squares = np.array([factors @ s[np.ix_(a, a)] @ factors for s in self.squares])
-        return Result(factors, float(chi2.sf(score @ factors, int(clear.sum()))), np.sqrt(squares / self.rows))
+        p_value = float(chdtrc(int(clear.sum()), max(0.0, float(score @ factors))))
+        return Result(factors, p_value, np.sqrt(squares / self.rows))
 
 
 def joint(several: Sequence[Evidence], names: Sequence[str]) -> Evidence:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import f as f_distribution
+from scipy.special import fdtrc
 
 from boatsim.base import Array
 
@@ -50,7 +50,7 @@ def rhythm(runs: Sequence[tuple[Array, Array]]) -> Rhythm | None:
 def _stands_out(here: Array, below: Array, above: Array) -> float:
     """p-value of a band with no more power than a smooth spectrum through its neighbours has there."""
     smooth = max(np.sqrt(below.mean() * above.mean()), 1e-300)
-    return float(f_distribution.sf(here.mean() / smooth, 2 * here.size, 2 * (below.size + above.size)))
+    return float(fdtrc(2 * here.size, 2 * (below.size + above.size), here.mean() / smooth))
 
 
 def _periodogram(t: Array, errors: Array) -> tuple[Array, Array]:

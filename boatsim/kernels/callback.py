@@ -7,11 +7,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import carray, cfunc, njit, types
+from numba import carray, cfunc, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
 from boatsim.base import Array
+from boatsim.kernels.compiling import lean
 from boatsim.kernels.laws import HELD
 from boatsim.kernels.planar import NQ, K, add_to_mujoco
 
@@ -19,7 +20,7 @@ NM = NQ * (NQ + 1) // 2  # stored entries of MuJoCo's joint-space inertia
 factor_mass = types.ExternalFunction("mj_factorM", types.void(types.voidptr, types.voidptr))
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def passive_in_place(t: float, q: Array, qd: Array, user: Array, f: Array, M: Array) -> None:
     """What the native callback does, for the callback written in Python."""
     n = user.size - HELD - K

@@ -3,9 +3,9 @@
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from boatsim.base import Array
+from boatsim.kernels.compiling import compiled, lean
 from boatsim.kernels.laws import HELD, PAUSES, actuate, pause
 from boatsim.kernels.planar import NQ, K, constants, step_in_place
 
@@ -13,20 +13,20 @@ SHORTEST = 1e-3  # [s] of a step; within one, a signal that jumps counts with it
 LONG = 1e4  # [s] longer than any actuator takes
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def actuate_in_place(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array) -> None:
     """One step of all channels."""
     actuate(commands, memory, dt, p, on, act)
 
 
-@njit(error_model="numpy", cache=True)
+@compiled
 def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> None:
     """Let the actuators reach their commands: a few steps far longer than any actuator takes, in place."""
     for _ in range(3):
-        actuate(commands, memory, LONG, p, on, act)
+        actuate_in_place(commands, memory, LONG, p, on, act)
 
 
-@njit(error_model="numpy", cache=True)
+@compiled
 def rollout(
     t0: float, y: Array, commands: Array, memory: Array, dt: float, substeps: int, body: Array, p: Array, on: Any,
     extra: Array, out: Array,
@@ -41,10 +41,10 @@ def rollout(
             if PAUSES:  # cut the step where an actuator's signal jumps
                 part = max(pause(commands[i], memory, p, on), SHORTEST)
                 while part < left - 1e-9:
-                    actuate(commands[i], memory, part, p, on, act)
+                    actuate_in_place(commands[i], memory, part, p, on, act)
                     step_in_place(t, y, part, act, p, on, k, extra)
                     t, left = t + part, left - part
                     part = max(pause(commands[i], memory, p, on), SHORTEST)
-            actuate(commands[i], memory, left, p, on, act)
+            actuate_in_place(commands[i], memory, left, p, on, act)
             step_in_place(t, y, left, act, p, on, k, extra)
         out[i + 1] = y[: 2 * NQ]

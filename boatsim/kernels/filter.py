@@ -9,12 +9,23 @@ from math import cos, exp, log, sin, sqrt
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from boatsim.base import Array, Shown, Swell
-from boatsim.kernels.common import SHORTEST, settle
-from boatsim.kernels.laws import HELD, MEMORY, SWELLS, actuate, distorted, late, pause, shown, swell
-from boatsim.kernels.planar import FREEDOMS, NQ, SHOWS, K, constants, force_slopes, moved, slopes, step_in_place
+from boatsim.kernels.common import SHORTEST, actuate_in_place, settle
+from boatsim.kernels.compiling import compiled, lean
+from boatsim.kernels.laws import HELD, MEMORY, SWELLS, distorted, late, pause, shown, swell
+from boatsim.kernels.planar import (
+    BESIDE,
+    FREEDOMS,
+    NQ,
+    SHOWS,
+    K,
+    constants,
+    force_slopes,
+    moved,
+    slopes,
+    step_in_place,
+)
 
 NY = 2 * NQ
 CALM = 3 * NQ
@@ -26,7 +37,7 @@ IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has
 INVERT = 10  # rounds of the inversion of what the instruments show, which is never far from the truth
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def predict(
     times: Array, i: int, lateness: float, row: int, y: Array, commands: Array, memory: Array, max_step: float,
     p: Array, on: Any, k: Array, force: Array, act: Array,
@@ -45,34 +56,24 @@ def predict(
         dt = min(longest, h - done, max(pause(commands[row], memory, p, on), SHORTEST))
         if row + 1 < len(times):
             dt = min(dt, times[row + 1] - begin - done)
-        actuate(commands[row], memory, dt, p, on, act)
+        actuate_in_place(commands[row], memory, dt, p, on, act)
         step_in_place(begin + done, y, dt, act, p, on, k, force)
         done += dt
     return row
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def transition(
     t: float, h: float, z: Array, act: Array, p: Array, on: Any, k: Array, force: Array, F: Array, A: Array, B: Array,
-    y: Array,
 ) -> None:  # fmt: skip
     """Linearised transition F of motion and lasting forces over h: exponential of the Jacobian of the accelerations."""
-    base, other = B[0, :NQ], B[1, :NQ]  # B is free until the products below
-    copy(z, y)
-    slopes(t, y, act, p, on, k, force, base)
-    step = 1e-6
     for i in range(CALM):
         for j in range(CALM):
             A[i, j] = 0.0
     for i in range(NQ):
         A[i, NQ + i] = 1.0
-    for j in range(NY):
-        y[j] += step
-        slopes(t, y, act, p, on, k, force, other)
-        y[j] = z[j]
-        for i in range(NQ):
-            A[NQ + i, j] = (other[i] - base[i]) / step
-    force_slopes(y, k, A, NQ, NY)
+    slopes(t, z, act, p, on, k, force, A[NQ:NY])
+    force_slopes(z, k, A, NQ, NY)
     # exp(A h) to third order of so small a part of h that it converges for a stiff hull too, then squared up again;
     # only the rows of the rates and, above them, their own integrals are not trivial
     part, stiffest = h, 0.0
@@ -96,7 +97,7 @@ def transition(
         part *= 2.0
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def oscillation(h: float, s: Swell) -> tuple[float, float, float, float, float, float]:
     """Transition of the oscillator over h, row by row, and its mean force over h per force and rate at the start."""
     w, damped = s.frequency, s.frequency * sqrt(1.0 - s.damping * s.damping)
@@ -108,7 +109,7 @@ def oscillation(h: float, s: Swell) -> tuple[float, float, float, float, float, 
     return f11, f12, f21, f22, mean1, mean2
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def add_swell(h: float, s: Swell, F: Array) -> None:
     """The oscillators' own rows and what they do to the motion, to F."""
     f11, f12, f21, f22, mean1, mean2 = oscillation(h, s)
@@ -122,7 +123,7 @@ def add_swell(h: float, s: Swell, F: Array) -> None:
         F[a, a], F[a, a + 1], F[a + 1, a], F[a + 1, a + 1] = f11, f12, f21, f22
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def diffuse(h: float, n: int, sigma: Array, tau: float, s: Swell, P: Array) -> None:
     """Add to P what the noise behind the latent forces does over h."""
     decay = exp(-h / tau)
@@ -140,14 +141,14 @@ def diffuse(h: float, n: int, sigma: Array, tau: float, s: Swell, P: Array) -> N
             P[a + 1, a] -= cross
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def copy(source: Array, out: Array) -> None:
     """Fill a vector from the beginning of another. Assigning slices would take numba seconds to compile."""
     for i in range(len(out)):
         out[i] = source[i]
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def copy_square(source: Array, out: Array, n: int) -> None:
     """Fill the first n rows and columns of a matrix from those of another."""
     for i in range(n):
@@ -155,7 +156,7 @@ def copy_square(source: Array, out: Array, n: int) -> None:
             out[i, j] = source[i, j]
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def multiply(A: Array, B: Array, out: Array, n: int) -> None:
     """Out = A B for the filter's small matrices, most of A's rows zero: faster here than a library call."""
     for i in range(n):
@@ -168,7 +169,7 @@ def multiply(A: Array, B: Array, out: Array, n: int) -> None:
                     out[i, j] += x * B[k, j]
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def carry(F: Array, P: Array, work: Array, n: int) -> None:
     """P = F P F', symmetric, in place."""
     multiply(F, P, work, n)
@@ -180,26 +181,25 @@ def carry(F: Array, P: Array, work: Array, n: int) -> None:
             P[i, j] = P[j, i] = x
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def shows(y: Array, code: int, p: Array, on: Any) -> float:
     """What the recording shows of one channel in a state y (2 NQ,)."""
     x, north, psi, phi, u, v, roll_rate, r = moved(y)
     return float(shown(Shown(x, north, psi, phi, u, v, roll_rate, r), p, on)[SHOWS[code]])
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def observe(z: Array, code: int, row: Array, p: Array, on: Any) -> float:
     """Expected value of one channel; fills its row (n,) of the measurement matrix."""
     for j in range(NZ):
         row[j] = 0.0
     if distorted(on):
-        y = np.zeros(NY)
-        copy(z, y)
-        value, step = shows(y, code, p, on), 1e-6
+        value = shows(z, code, p, on)
         for j in range(NY):
-            y[j] += step
-            row[j] = (shows(y, code, p, on) - value) / step
-            y[j] = z[j]
+            here = z[j]
+            z[j] = here + BESIDE
+            row[j] = (shows(z, code, p, on) - value) / BESIDE
+            z[j] = here
         return value
     if code < NQ:
         row[code] = 1.0
@@ -216,7 +216,7 @@ def observe(z: Array, code: int, row: Array, p: Array, on: Any) -> float:
     return float(c * yd - s * xd)
 
 
-@njit(error_model="numpy", cache=True)
+@compiled
 def undistorted(z: Array, p: Array, on: Any) -> None:
     """Turn positions as recorded into those of the boat, in place."""
     if distorted(on):
@@ -229,7 +229,7 @@ def undistorted(z: Array, p: Array, on: Any) -> None:
             copy(z, y)
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int) -> float:
     """Gain (n,) of one measurement and P row' (n,), in place; returns the inverse sd of its prediction error."""
     variance = noise
@@ -246,7 +246,7 @@ def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int) ->
     return float(1.0 / sqrt(variance))
 
 
-@njit(error_model="numpy", cache=True)
+@compiled
 def kalman(
     times: Array, measured: Array, codes: Any, commands: Array, max_step: float, body: Array, p: Array, on: Any,
     sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, full: bool, fresh: bool, linear: Array, gains: Array,
@@ -273,7 +273,7 @@ def kalman(
             P[CALM + 2 * j, CALM + 2 * j] = s[FREEDOMS[j]] ** 2
             P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[FREEDOMS[j]]) ** 2
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
-    y, force, Ph, other = np.zeros(NY), np.zeros(NQ), np.zeros(NZ), np.zeros(NY)
+    y, force, Ph = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
     f11, f12, f21, f22, mean1, mean2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     likelihood, outliers = 0.0, np.zeros(measured.shape[1])
     held = np.int64(0)  # a plain 0 would have `predict` compiled twice
@@ -295,7 +295,7 @@ def kalman(
         held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, force, act)
         if full:  # linearised about the state before, with the actuators of this interval
             if fresh:
-                transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, work, work2, other)
+                transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, work, work2)
                 copy_square(F, linear[i], CALM)
             else:
                 copy_square(linear[i], F, CALM)
@@ -344,7 +344,7 @@ def kalman(
     return likelihood
 
 
-@njit(error_model="numpy", cache=True)
+@compiled
 def smooth(
     means: Array, covariances: Array, transitions: Array, predicted: Array, gains: Array, sigma: Array, times: Array,
     tau: float, p: Array, on: Any,
@@ -376,7 +376,7 @@ def smooth(
                 covariances[i, j, k] += ahead[j, k]
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def solve(A: Array, B: Array, n: int) -> None:
     """B = A^-1 B in place for a symmetric positive definite A (n, n), which is overwritten by its Cholesky factor."""
     for j in range(n):
@@ -397,7 +397,7 @@ def solve(A: Array, B: Array, n: int) -> None:
             B[i, c] /= A[i, i]
 
 
-@njit(error_model="numpy", cache=True)
+@compiled
 def free_runs(
     times: Array, commands: Array, max_step: float, body: Array, p: Array, on: Any, starts: Any, ends: Any,
     states: Array, out: Array,

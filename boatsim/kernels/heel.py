@@ -8,18 +8,19 @@ from math import cos, sin
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from boatsim.base import Array
+from boatsim.kernels.compiling import compiled, inlined, lean
 from boatsim.kernels.laws import flow, inertias, sees, wrench
 
 NQ = 4
 K = 22
+BESIDE = 1e-6  # [m, rad, m/s, rad/s] of a one-sided difference
 FREEDOMS = (0, 1, 3, 2)  # of (surge, sway, roll, yaw)
 SHOWS = (0, 1, 2, 3, 4, 5, 7, 6)  # entries of `Shown` in the order of a state
 
 
-@njit(error_model="numpy", cache=True)
+@compiled
 def constants(body: Array, p: Array, on: Any, k: Array) -> None:
     """Fill k (22,): mass; inverse of the whole mass, water and ballast, the last three in the order of `Mass`."""
     water, hull = np.zeros(7), np.zeros(7)
@@ -46,7 +47,7 @@ def constants(body: Array, p: Array, on: Any, k: Array) -> None:
     k[7] = (b * d - a * f) / determinant
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def accelerations(t: float, y: Any, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
     """Accelerations (x'', y'', psi'', p'); extra is a further body force (X, Y, N, K)."""
     c, s, r = cos(y[2]), sin(y[2]), y[6]
@@ -64,7 +65,7 @@ def accelerations(t: float, y: Any, act: Array, p: Array, on: Any, k: Array, ext
     return c * along - s * across, s * along + c * across, turning, rolling
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def step(t: float, y: Any, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
     """One Runge-Kutta step of fourth order with the actuators held; state tuple in, state tuple out."""
     z, at = y, 0.0
@@ -92,7 +93,7 @@ def step(t: float, y: Any, dt: float, act: Array, p: Array, on: Any, k: Array, e
     )  # fmt: skip
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def step_in_place(t: float, y: Array, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Array) -> None:
     """`step` on arrays."""
     z = (y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7])
@@ -101,7 +102,7 @@ def step_in_place(t: float, y: Array, dt: float, act: Array, p: Array, on: Any, 
         y[i] = z[i]
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def steps(t: float, y: Array, dt: float, n: int, act: Array, p: Array, on: Any, k: Array) -> None:
     """N steps with the actuators held, in place."""
     z = (y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7])
@@ -111,7 +112,7 @@ def steps(t: float, y: Array, dt: float, n: int, act: Array, p: Array, on: Any, 
         y[i] = z[i]
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def forces(t: float, y: Array, act: Array, p: Array, on: Any) -> tuple[float, float, float, float]:
     """Body-axes wrench (X, Y, N, K) of all laws at a state."""
     c, s = cos(y[2]), sin(y[2])
@@ -122,16 +123,25 @@ def forces(t: float, y: Array, act: Array, p: Array, on: Any) -> tuple[float, fl
     return w.X, w.Y, w.N, w.K
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def slopes(t: float, y: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array) -> None:
-    """Accelerations on arrays, for linearisation."""
-    z = (y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7])
-    out[0], out[1], out[2], out[3] = accelerations(
-        t, z, act, p, on, k, (extra[0], extra[1], extra[2], extra[3])
-    )  # fmt: skip
+    """Derivatives of the accelerations by the state, one-sided, to out[:4, :8]."""
+    force = (extra[0], extra[1], extra[2], extra[3])
+    b0 = b1 = b2 = b3 = 0.0
+    for j in range(-1, 8):  # a loop, so that the laws are compiled once
+        z = (
+            y[0] + BESIDE * (j == 0), y[1] + BESIDE * (j == 1), y[2] + BESIDE * (j == 2), y[3] + BESIDE * (j == 3),
+            y[4] + BESIDE * (j == 4), y[5] + BESIDE * (j == 5), y[6] + BESIDE * (j == 6), y[7] + BESIDE * (j == 7),
+        )  # fmt: skip
+        a0, a1, a2, a3 = accelerations(t, z, act, p, on, k, force)
+        if j < 0:
+            b0, b1, b2, b3 = a0, a1, a2, a3
+        else:
+            out[0, j], out[1, j] = (a0 - b0) / BESIDE, (a1 - b1) / BESIDE
+            out[2, j], out[3, j] = (a2 - b2) / BESIDE, (a3 - b3) / BESIDE
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def force_slopes(y: Array, k: Array, A: Any, row: int, column: int) -> None:
     """Derivatives of the accelerations by a body force (X, Y, N, K), to A[row:row + 4, column:column + 4]."""
     c, s = cos(y[2]), sin(y[2])
@@ -143,14 +153,14 @@ def force_slopes(y: Array, k: Array, A: Any, row: int, column: int) -> None:
     A[row + 3, column + 1], A[row + 3, column + 2], A[row + 3, column + 3] = k[5], k[7], k[6]
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def moved(y: Array) -> Any:
     """What instruments that show the truth would show of a state: x, y, psi, phi, u, v, p, r."""
     c, s = cos(y[2]), sin(y[2])
     return y[0], y[1], y[2], y[3], c * y[4] + s * y[5], c * y[5] - s * y[4], y[7], y[6]
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def add_to_mujoco(t: float, q: Array, qd: Array, act: Array, p: Array, k: Array, f: Array, M: Array) -> None:
     """Add the passive force (4,) and the lower triangle (10,) of J' M J, MuJoCo's z-up joints x, y, psi, phi.
 

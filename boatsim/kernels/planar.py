@@ -8,18 +8,19 @@ from math import cos, sin
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from boatsim.base import Array
+from boatsim.kernels.compiling import compiled, inlined, lean
 from boatsim.kernels.laws import flow, inertias, sees, wrench
 
 NQ = 3  # positions; the state has twice as many
 K = 13  # constants of a pass
 FREEDOMS = (0, 1, 3)  # of (surge, sway, roll, yaw)
+BESIDE = 1e-6  # [m, rad, m/s, rad/s] of a one-sided difference
 SHOWS = (0, 1, 2, 4, 5, 7)  # entries of `Shown` in the order of a state
 
 
-@njit(error_model="numpy", cache=True)
+@compiled
 def constants(body: Array, p: Array, on: Any, k: Array) -> None:
     """Fill k (13,): mass; inverse i11 i22 i26 i66; water a11 a22 a26 a66; ballast b11 b22 b26 b66."""
     water, hull = np.zeros(7), np.zeros(7)
@@ -33,7 +34,7 @@ def constants(body: Array, p: Array, on: Any, k: Array) -> None:
     k[2], k[3], k[4] = m66 / determinant, -m26 / determinant, m22 / determinant
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def accelerations(t: float, y: Any, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
     """Earth-axes accelerations (x'', y'', psi''); extra is a further body force (X, Y, N)."""
     c, s, r = cos(y[2]), sin(y[2]), y[5]
@@ -50,7 +51,7 @@ def accelerations(t: float, y: Any, act: Array, p: Array, on: Any, k: Array, ext
     return c * along - s * across, s * along + c * across, k[3] * Y + k[4] * N
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def step(t: float, y: Any, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Any) -> Any:
     """One Runge-Kutta step of fourth order with the actuators held; state tuple in, state tuple out."""
     z, at = y, 0.0
@@ -73,7 +74,7 @@ def step(t: float, y: Any, dt: float, act: Array, p: Array, on: Any, k: Array, e
     return y[0] + w * s0, y[1] + w * s1, y[2] + w * s2, y[3] + w * r0, y[4] + w * r1, y[5] + w * r2
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def step_in_place(t: float, y: Array, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Array) -> None:
     """`step` on arrays."""
     z = step(t, (y[0], y[1], y[2], y[3], y[4], y[5]), dt, act, p, on, k, (extra[0], extra[1], extra[2]))
@@ -81,7 +82,7 @@ def step_in_place(t: float, y: Array, dt: float, act: Array, p: Array, on: Any, 
         y[i] = z[i]
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def steps(t: float, y: Array, dt: float, n: int, act: Array, p: Array, on: Any, k: Array) -> None:
     """N steps with the actuators held, in place."""
     z = (y[0], y[1], y[2], y[3], y[4], y[5])
@@ -91,7 +92,7 @@ def steps(t: float, y: Array, dt: float, n: int, act: Array, p: Array, on: Any, 
         y[i] = z[i]
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def forces(t: float, y: Array, act: Array, p: Array, on: Any) -> tuple[float, float, float]:
     """Body-axes wrench (X, Y, N) of all laws at a state."""
     c, s = cos(y[2]), sin(y[2])
@@ -102,14 +103,24 @@ def forces(t: float, y: Array, act: Array, p: Array, on: Any) -> tuple[float, fl
     return w.X, w.Y, w.N
 
 
-@njit(error_model="numpy", cache=True)
+@lean
 def slopes(t: float, y: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array) -> None:
-    """Accelerations on arrays, for linearisation."""
-    z = (y[0], y[1], y[2], y[3], y[4], y[5])
-    out[0], out[1], out[2] = accelerations(t, z, act, p, on, k, (extra[0], extra[1], extra[2]))
+    """Derivatives of the accelerations by the state, one-sided, to out[:3, :6]."""
+    force = (extra[0], extra[1], extra[2])
+    b0 = b1 = b2 = 0.0
+    for j in range(-1, 6):  # a loop, so that the laws are compiled once
+        z = (
+            y[0] + BESIDE * (j == 0), y[1] + BESIDE * (j == 1), y[2] + BESIDE * (j == 2),
+            y[3] + BESIDE * (j == 3), y[4] + BESIDE * (j == 4), y[5] + BESIDE * (j == 5),
+        )  # fmt: skip
+        a0, a1, a2 = accelerations(t, z, act, p, on, k, force)
+        if j < 0:
+            b0, b1, b2 = a0, a1, a2
+        else:
+            out[0, j], out[1, j], out[2, j] = (a0 - b0) / BESIDE, (a1 - b1) / BESIDE, (a2 - b2) / BESIDE
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def force_slopes(y: Array, k: Array, A: Any, row: int, column: int) -> None:
     """Derivatives of the accelerations by a body force (X, Y, N), to A[row:row + 3, column:column + 3]."""
     c, s = cos(y[2]), sin(y[2])
@@ -118,14 +129,14 @@ def force_slopes(y: Array, k: Array, A: Any, row: int, column: int) -> None:
     A[row + 2, column], A[row + 2, column + 1], A[row + 2, column + 2] = 0.0, k[3], k[4]
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def moved(y: Array) -> Any:
     """What instruments that show the truth would show of a state: x, y, psi, phi, u, v, p, r."""
     c, s = cos(y[2]), sin(y[2])
     return y[0], y[1], y[2], 0.0, c * y[3] + s * y[4], c * y[4] - s * y[3], 0.0, y[5]
 
 
-@njit(inline="always", error_model="numpy")
+@inlined
 def add_to_mujoco(t: float, q: Array, qd: Array, act: Array, p: Array, k: Array, f: Array, M: Array) -> None:
     """Add the passive force (3,) and the lower triangle (6,) of J' M J, MuJoCo's z-up joint coordinates.
 
