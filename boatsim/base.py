@@ -144,6 +144,7 @@ class Param:
     absent: float = 0.0  # value at which the effect is not there
     calibrates: str = ""  # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
     follows: str = ""  # "linear_damping.surge" of the vessel, or "vessel.body.mass" where none is given
+    scales: str = ""  # "linear_damping.surge": the vessel's coefficient that this factor multiplies
 
 
 def param(
@@ -159,9 +160,10 @@ def param(
     absent: float = 0.0,
     calibrates: str = "",
     follows: str = "",
+    scales: str = "",
 ) -> Any:
     """Dataclass field of a checked number. `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter."""
-    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows)
+    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows, scales)
     return field(default=nominal, metadata={"param": about})
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from real_boat import Real, recorded, waves
+from real_boat import FURTHER, Real, recorded, waves
 
 from boatsim import recording
 from boatsim.base import Shown, motion
@@ -102,7 +102,7 @@ def test_a_measurement_error_is_named_as_such_and_undone(tmp_path: Path, real: R
 
 def test_entries_outside_the_vessels_list_are_found_when_asked_for(tmp_path: Path) -> None:
     real = Real(compass=(0.12, 0.0, 0.0), antenna=(0.25, 0.0))
-    answer = diagnosed(tmp_path, real, ("heading_offset", "position_frame_error"))
+    answer = diagnosed(tmp_path, real, FURTHER)
     found = {e["name"]: e["parameters"] for e in answer["effects"]}
     assert set(found) == {"heading_offset", "position_frame_error"}
     assert found["heading_offset"]["offset_rad"]["value"] == pytest.approx(0.12, abs=0.02)

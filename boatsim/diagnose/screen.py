@@ -70,9 +70,24 @@ def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -
     return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf)
 
 
+def handed_over(start: Fit, effect: Effect) -> Fit:
+    """What recalibration made of a coefficient put into the factor of the suspect that multiplies it.
+
+    The product is all that the data know: along the curve on which it stays the same straight steps get nowhere.
+    """
+    theta = start.theta.copy()
+    place = {(f.effect, f.name): i for i, f in enumerate(start.free)}
+    for name, about in type(effect).params().items():
+        owner, _, key = about.scales.partition(".")
+        own, coefficient = place.get((effect.name(), name)), place.get((owner, key))
+        if own is not None and coefficient is not None:
+            theta[own], theta[coefficient] = theta[coefficient], start.free[coefficient].mean
+    return replace(start, theta=theta)
+
+
 def _look(problem: Problem, base: Fit, effect: Effect, begin: Begin) -> Fit:
     """One suspect: a first step from each of its starts, the best of them followed further."""
-    begun = [joined(problem, base, effect.name(), s) for s in starts(problem, effect)]
+    begun = [handed_over(joined(problem, base, effect.name(), s), effect) for s in starts(problem, effect)]
     first = [_step(problem, b, begin, ROUNDS if len(begun) == 1 else 1) for b in begun]
     best = max(first, key=lambda f: f[1])
     if len(begun) > 1:

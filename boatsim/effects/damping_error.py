@@ -28,17 +28,21 @@ class DampingError(Force):
     law: ClassVar = law
 
     surge_factor: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="surge", fit=True, spread=0.4, axis="surge", absent=1.0
-    )
+        1.0, low=0.1, high=5.0, unit="", words="surge", fit=True, spread=0.4, axis="surge", absent=1.0,
+        scales="linear_damping.surge",
+    )  # fmt: skip
     sway_factor: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="sway", fit=True, spread=0.4, axis="sway", absent=1.0
-    )
+        1.0, low=0.1, high=5.0, unit="", words="sway", fit=True, spread=0.4, axis="sway", absent=1.0,
+        scales="linear_damping.sway",
+    )  # fmt: skip
     yaw_factor: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="yaw", fit=True, spread=0.4, axis="yaw", absent=1.0
-    )
+        1.0, low=0.1, high=5.0, unit="", words="yaw", fit=True, spread=0.4, axis="yaw", absent=1.0,
+        scales="linear_damping.yaw",
+    )  # fmt: skip
     roll_factor: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="roll", fit=True, spread=0.4, axis="roll", absent=1.0
-    )
+        1.0, low=0.1, high=5.0, unit="", words="roll", fit=True, spread=0.4, axis="roll", absent=1.0,
+        scales="linear_damping.roll",
+    )  # fmt: skip
     surge: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.surge")
     sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.sway")
     yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")

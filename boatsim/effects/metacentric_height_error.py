@@ -24,8 +24,9 @@ class MetacentricHeightError(Force):
     law: ClassVar = law
 
     factor: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="GM per stated GM", fit=True, spread=0.4, absent=1.0, axis="roll"
-    )
+        1.0, low=0.1, high=5.0, unit="", words="GM per stated GM", fit=True, spread=0.4, absent=1.0, axis="roll",
+        scales="righting_arm.stiffness",
+    )  # fmt: skip
     stiffness: float = param(
         0.0, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM", follows="righting_arm.stiffness"
     )

@@ -8,7 +8,7 @@ from numba import njit
 
 from boatsim.base import Force, Wrench, param
 
-SOFT = 0.15  # [m] over which the line goes from slack to taut
+SOFT = 0.02  # [m] over which the line goes from slack to taut; a wider one can not follow a short stiff line
 NEAR = 0.05  # [m] keeps the direction of the pull defined at the anchor
 
 
@@ -41,13 +41,19 @@ class Tether(Force):
     shown_by: ClassVar[str] = "visiting the corners of the tank on several headings"
     law: ClassVar = law
     strength: ClassVar = ("tension", "stiffness", "drag")
-    starts: ClassVar = tuple(
-        {"tension": 0.05, "stiffness": 0.03, "length": 1.5, "north": north, "east": east}
-        for north, east in ((3.0, 0.0), (-3.0, 0.0), (0.0, 2.5), (0.0, -2.5))
+    starts: ClassVar = (
+        *(
+            {"tension": 0.05, "stiffness": 0.03, "length": 1.5, "north": north, "east": east}
+            for north, east in ((3.0, 0.0), (-3.0, 0.0), (0.0, 2.5), (0.0, -2.5))
+        ),
+        *(  # a short stiff line: nothing of it shows in the slope of the evidence of a long soft one
+            {"tension": 0.0, "stiffness": 1.0, "length": 0.3, "north": north, "east": east}
+            for north, east in ((0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5))
+        ),
     )
 
     tension: float = param(0.0, low=0.0, high=1e6, unit="N", words="steady pull", fit=True, spread=0.15)
-    stiffness: float = param(0.0, low=0.0, high=1e6, unit="N/m", words="pull per stretch", fit=True, spread=0.15)
+    stiffness: float = param(0.0, low=0.0, high=1e6, unit="N/m", words="pull per stretch", fit=True, spread=0.5)
     length: float = param(0.0, low=0.0, high=1e4, unit="m", words="of the slack line", fit=True, spread=3.0)
     drag: float = param(0.0, low=0.0, high=1e6, unit="N s/m", words="of the line in the water", fit=True, spread=0.5)
     north: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=4.0)

@@ -24,5 +24,6 @@ class ThrustGainError(Channel):
     channel: ClassVar = channel
 
     factor: float = param(
-        1.0, low=0.2, high=3.0, unit="", words="thrust per stated thrust", fit=True, spread=0.3, absent=1.0
-    )
+        1.0, low=0.2, high=3.0, unit="", words="thrust per stated thrust", fit=True, spread=0.3, absent=1.0,
+        scales="outboards.gain",
+    )  # fmt: skip

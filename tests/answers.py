@@ -1,0 +1,30 @@
+"""A diagnosis of recordings made in a test, and what must be said of it where the truth is known."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from boatsim import recording
+from boatsim.diagnose import analysis
+from boatsim.recording import Recording
+
+
+def diagnosed(runs: Sequence[Recording], folder: Path, vessel: str, library: Sequence[str] = ()) -> dict[str, Any]:
+    """The answer for runs written to files; the last one is held out."""
+    files = [folder / f"{run.name}.csv" for run in runs]
+    for file, run in zip(files, runs, strict=True):
+        recording.write_csv(run, file)
+    return analysis.diagnose(files[:-1], files[-1:], vessel, library=library).findings.answer
+
+
+def named(answer: Mapping[str, Any], name: str, true: Mapping[str, float]) -> None:
+    """This effect and no other, none tied with it; every true value within 3.5 sd, and known to 30 %."""
+    assert answer["verdict"] == "named" and [e["name"] for e in answer["effects"]] == [name], answer["sentence"]
+    found = answer["effects"][0]["parameters"]
+    for key, value in true.items():
+        assert abs(found[key]["value"] - value) < 3.5 * found[key]["sd"] < 3.5 * 0.3 * abs(value), (key, found[key])
+
+
+def nothing_missing(answer: Mapping[str, Any]) -> None:
+    """No effect, none outside the library."""
+    assert answer["verdict"] == "nothing_missing" and not answer["effects"], answer["sentence"]

@@ -1,0 +1,63 @@
+"""Entries of the library that a rolling hull shows, found with their values in decays integrated by scipy."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from answers import diagnosed, named, nothing_missing
+from scipy.integrate import solve_ivp
+
+from boatsim.base import Array
+from boatsim.recording import Recording
+
+INERTIA, DAMPING, RIGHTING = 135.4, 6.7, 822.3  # [kg m^2], [N m s], [N m] of the 4.7 m tanker, water included
+
+
+@dataclass(frozen=True)
+class Hull:
+    """What the tanker really has, in the words of this file."""
+
+    square: float = 0.0  # [N m s^2] of moment per roll rate squared
+    cube: float = 0.0  # [N m s^3] of moment per roll rate cubed
+    stiffening: float = 0.0  # [1/rad^2] of the righting moment
+    height: float = 1.0  # of the metacentre, per stated one
+
+
+def slopes(t: float, y: Array, hull: Hull) -> list[float]:
+    """Newton's law of a hull that rolls about a fixed axis."""
+    phi, p = y
+    righting = hull.height * RIGHTING * phi + hull.stiffening * RIGHTING * phi**3
+    resisting = (DAMPING + hull.square * abs(p) + hull.cube * p**2) * p
+    return [p, -(righting + resisting) / INERTIA]
+
+
+def released(hull: Hull, seed: int) -> Recording:
+    """60 s at 5 Hz from rest at a heel of 18, 13 or 8 deg, seen by motion tracking with noise."""
+    t, heel = np.arange(0.0, 60.0, 0.2), np.radians(23.0 - 5.0 * seed)
+    phi = solve_ivp(slopes, (0.0, 60.0), [heel, 0.0], t_eval=t, args=(hull,), rtol=1e-9, atol=1e-12).y[0]
+    noise = 1e-4 * np.random.default_rng(seed).standard_normal(len(t))
+    return Recording(f"{seed}", t, {"phi_rad": phi + noise})
+
+
+CASES = {
+    "quadratic_damping": (Hull(square=15.0), {"roll_Nms2": 15.0}),
+    "cubic_damping": (Hull(cube=40.0), {"roll_Nms3": 40.0}),
+    "righting_arm_stiffening": (Hull(stiffening=-1.5), {"cubic_perrad2": -1.5}),
+    "metacentric_height_error": (Hull(height=0.5), {"factor": 0.5}),
+}
+
+
+@pytest.mark.parametrize("entry", CASES)
+def test_an_entry_is_named_with_its_values(tmp_path: Path, entry: str) -> None:
+    hull, true = CASES[entry]
+    named(diagnosed(decays(hull), tmp_path, "kvlcc2_roll", ("metacentric_height_error",)), entry, true)
+
+
+def test_a_linear_hull_of_the_stated_height_misses_nothing(tmp_path: Path) -> None:
+    nothing_missing(diagnosed(decays(Hull()), tmp_path, "kvlcc2_roll", ("metacentric_height_error",)))
+
+
+def decays(hull: Hull) -> list[Recording]:
+    """Three decays of a hull: the middle one is the last, to be held out inside the range of the others."""
+    return [released(hull, seed) for seed in (1, 3, 2)]
