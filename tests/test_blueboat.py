@@ -11,6 +11,8 @@ from boatsim import recording, vessel
 from boatsim.base import motion
 from boatsim.diagnose import analysis, commands
 from boatsim.effects.added_mass import AddedMass
+from boatsim.effects.dragged_propeller import DraggedPropeller
+from boatsim.effects.outboards import Outboards
 from boatsim.effects.sway_yaw_coupling import SwayYawCoupling
 from boatsim.errors import BadInput
 
@@ -108,6 +110,28 @@ def test_a_boat_that_turns_without_slipping_has_its_side_force_from_the_coupling
     wrench = SwayYawCoupling(sway=-MASS).wrench(motion(u=u, r=r))
     assert wrench.Y == pytest.approx(MASS * u * r)  # centripetal force of a circle at the speed u
     assert wrench.X == wrench.K == wrench.N == 0.0
+
+
+@pytest.mark.parametrize("speed", [2.0, -1.3])
+@pytest.mark.parametrize("thrust", [30.0, 8.0, -8.0, -30.0])
+def test_of_a_thrust_against_the_way_is_left_what_exceeds_the_idle_drag(thrust: float, speed: float) -> None:
+    drag, a, yawing = 4.0, 0.4, 0.5
+    port = speed + ARM * yawing  # along its axis, of a mount on the port side in a turn to starboard
+    m = motion(
+        u=port * np.cos(a) - ARM * yawing, v=port * np.sin(a), r=yawing, thrust_port_N=thrust, steer_port_rad=a,
+        thrust_starboard_N=0.0, steer_starboard_rad=0.0,
+    )  # fmt: skip
+    own, lost = Outboards(x=0.0, half_spacing=ARM), DraggedPropeller(drag=drag, x=0.0, half_spacing=ARM, gain=1.0)
+    left = thrust if thrust * port > 0.0 else np.sign(thrust) * max(abs(thrust) - drag * port**2, 0.0)
+    both = np.add(own.wrench(m), lost.wrench(m))
+    assert both == pytest.approx([left * np.cos(a), left * np.sin(a), 0.0, ARM * left * np.cos(a)])
+
+
+def test_an_idle_propeller_and_one_at_rest_lack_nothing() -> None:
+    lost = DraggedPropeller(drag=4.0, x=-0.45, half_spacing=ARM, gain=1.0)
+    idle = motion(u=2.0, v=0.1, r=0.3, thrust_port_N=0.0, thrust_starboard_N=0.0)
+    assert lost.wrench(idle) == pytest.approx((0.0, 0.0, 0.0, 0.0))
+    assert lost.wrench(motion(thrust_port_N=20.0, thrust_starboard_N=-20.0)) == pytest.approx((0.0, 0.0, 0.0, 0.0))
 
 
 def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> None:
