@@ -140,10 +140,10 @@ def manoeuvre(
 @guarded
 def list_(
     kind: Annotated[
-        Literal["vessels", "controllers", "effects", "scenarios"] | None, typer.Argument(help="Only these.")
+        Literal["vessels", "controllers", "effects", "measures", "scenarios"] | None, typer.Argument(help="Only these.")
     ] = None,
 ) -> None:
-    """List vessels, controllers, effects and scenarios, a line each."""
+    """List vessels, controllers, effects, measures and scenarios, a line each."""
     from boatsim.cli.show import listing
 
     print("\n".join(listing(kind)))

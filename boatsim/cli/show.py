@@ -66,7 +66,7 @@ def _verdict(ok: bool | None) -> str:
 
 def listing(only: str | None) -> list[str]:
     """Lines of `boatsim list`: a heading for each kind, then name and a line about each."""
-    kinds = [only] if only else ["vessels", "controllers", "effects", "scenarios"]
+    kinds = [only] if only else ["vessels", "controllers", "effects", "measures", "scenarios"]
     lines: list[str] = []
     for kind in kinds:
         names = content.names(kind.removesuffix("s"))
