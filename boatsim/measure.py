@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.base import Checked
+import numpy as np
+
+from boatsim.base import Array, Checked
 from boatsim.recording import Recording
 
 
@@ -21,3 +23,20 @@ class Measure(Checked):
     def values(self, log: Recording) -> dict[str, float]:
         """Norms of a run; one that the run never got as far as is left out."""
         raise NotImplementedError
+
+
+def crossing(t: Array, above: Array) -> float | None:
+    """First time [s] at which a signal (N,) is not negative, interpolated between its rows; None if it never is."""
+    at = int(np.argmax(above >= 0.0))
+    if above[at] < 0.0:
+        return None
+    if at == 0:
+        return float(t[0])
+    share = above[at - 1] / (above[at - 1] - above[at])
+    return float(t[at - 1] + share * (t[at] - t[at - 1]))
+
+
+def travelled(log: Recording) -> Array:
+    """(N,) integral of the surge speed [m] since the first row, trapezoid rule."""
+    u = log["u_mps"]
+    return np.concatenate(([0.0], np.cumsum(0.5 * (u[1:] + u[:-1]) * np.diff(log.t))))

@@ -178,7 +178,7 @@ def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
 
 def _measure(given: str | Mapping[str, Any] | None, folder: Path) -> Measure | None:
     """The measure on the log that a scenario asks for."""
-    if given is None or isinstance(given, str) and given in NORMS:
+    if given is None or (isinstance(given, str) and given in NORMS):
         return None
     table = {"use": given} if isinstance(given, str) else given
     if isinstance(use := table.get("use"), str) and use not in names("measure") and not use.endswith(".py"):

@@ -14,6 +14,7 @@ from boatsim.diagnose import experiment, hull_forces, locate, show
 from boatsim.diagnose.answer import compose, meanings
 from boatsim.diagnose.filter import Track, axes_of, nominal_levels, stated_noise, track
 from boatsim.diagnose.findings import Findings, Missing
+from boatsim.diagnose.position_frame import in_one_frame
 from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.rank import Ranking, rank
 from boatsim.diagnose.steering_sense import steered
@@ -63,7 +64,7 @@ def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
 def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple[Recording, Vessel]:
     """A recording read with its vessel's names of columns and command limits. Raises BadInput."""
     found = vessel_for(path, vessel, load)
-    return steered(read(path, found.limits(), found.columns).used(), found), found
+    return in_one_frame(steered(read(path, found.limits(), found.columns).used(), found)), found
 
 
 def suspects_of(vessel: Vessel, library: Sequence[str]) -> tuple[Effect, ...]:

@@ -1,0 +1,87 @@
+"""Waypoint navigation of Huang and Ji, Appendix B: full thrust when facing the point, a trickle when close."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import atan2, copysign, cos, hypot, nan, pi, sin
+from typing import ClassVar
+
+from boatsim.base import param
+from boatsim.control import Controller, Estimate, Sense, wrap
+
+Place = tuple[float, float]  # [m] x, y in start axes
+
+
+@dataclass
+class Waypoint(Controller):
+    """Steers to the points given as goals, each in its turn: the next one comes when the last is reached.
+
+    `position_replay` repeats the paper's eq. 1: positions are integrals of u and v, turned by the heading as a whole.
+    """
+
+    words: ClassVar[str] = "waypoints with one azimuth thruster (Huang and Ji)"
+    commands: ClassVar[tuple[str, ...]] = ("thrust_N", "azimuth_rad")
+    goals: ClassVar[tuple[str, ...]] = ("x_m", "y_m")
+
+    period: float = param(0.01, low=0.001, high=10.0, unit="s", words="time between two control steps")
+    full: float = param(20.0, low=0.0, high=1e3, unit="N", words="full thrust")
+    swing: float = param(
+        0.47 * pi, low=-pi, high=pi, unit="rad", words="largest azimuth; negative for a thruster astern"
+    )
+    radius: float = param(2.5, low=0.01, high=50.0, unit="m", words="a point this close counts as reached")
+    near: float = param(10.0, low=0.1, high=200.0, unit="m", words="thrust fades inside this when turning")
+    position_replay: bool = False  # the published kinematics; False: the sensed position
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.reset()
+
+    def reset(self) -> None:
+        """No points yet, dead reckoning at the start."""
+        self._ahead: list[Place] = []
+        self._given: Place | None = None
+        self._travelled = (0.0, 0.0)  # [m] integrals of u and v
+        self._before: Sense | None = None
+        self._believed = (nan, nan)
+
+    def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
+        """Thrust and azimuth towards the point that is next."""
+        self._believed = self._replayed(sense) if self.position_replay else (sense.x, sense.y)
+        self._add(goal)
+        x, y = self._believed
+        while len(self._ahead) > 1 and hypot(self._ahead[0][0] - x, self._ahead[0][1] - y) <= self.radius:
+            del self._ahead[0]
+        if not self._ahead:
+            return {"thrust_N": 0.0, "azimuth_rad": 0.0}
+        north, east = self._ahead[0][0] - x, self._ahead[0][1] - y
+        return self._towards(hypot(north, east), wrap(atan2(east, north) - sense.psi))
+
+    def estimates(self) -> dict[str, Estimate]:
+        """Where the navigation believes to be."""
+        x, y = self._believed
+        return {"x_m": Estimate(x, nan, nan), "y_m": Estimate(y, nan, nan)}
+
+    def _towards(self, distance: float, off: float) -> dict[str, float]:
+        """Commands for a point at this distance [m] and bearing off the bow [rad]."""
+        if distance <= self.radius:
+            return {"thrust_N": 0.0, "azimuth_rad": 0.0}
+        if abs(off) < pi / 2:
+            return {"thrust_N": self.full, "azimuth_rad": self.swing * off / (pi / 2)}
+        slow = distance / self.near / 3 if distance <= self.near else 0.5
+        return {"thrust_N": self.full * slow, "azimuth_rad": self.swing * copysign(1.0, off)}
+
+    def _add(self, goal: Mapping[str, float]) -> None:
+        """A goal that was not there before goes to the end of the points."""
+        place = (goal["x_m"], goal.get("y_m", 0.0)) if "x_m" in goal else None
+        if place is not None and place != self._given:
+            self._ahead.append(place)
+        self._given = place
+
+    def _replayed(self, sense: Sense) -> Place:
+        """Position as eq. 1 has it: X = x cos psi - y sin psi, Y = x sin psi + y cos psi, x' = u, y' = v."""
+        if self._before is not None:
+            half = 0.5 * (sense.t - self._before.t)
+            x, y = self._travelled
+            self._travelled = (x + half * (self._before.u + sense.u), y + half * (self._before.v + sense.v))
+        self._before = sense
+        (x, y), c, s = self._travelled, cos(sense.psi), sin(sense.psi)
+        return x * c - y * s, x * s + y * c
