@@ -108,12 +108,20 @@ def fixed_fields(actuators: tuple[str, ...]) -> dict[str, float]:
     return {f"{part}_{steer}": value for part, value in (("cos", 1.0), ("sin", 0.0)) for steer in fixed}
 
 
+ALSO_CALLED = {"delta_rad": "rudder_rad"}  # what laws call a channel -> how some vessels' recordings name it
+
+
+def alias_fields(actuators: tuple[str, ...]) -> dict[str, str]:
+    """The rudder's angle under the name that laws know, for a vessel that has it under another."""
+    return {law: own for law, own in ALSO_CALLED.items() if own in actuators and law not in actuators}
+
+
 @cache
 def motion_type(actuators: tuple[str, ...]) -> Any:
-    """NamedTuple type of a vessel: fields of `Motion`, its actuators, then cosine and sine of each angle."""
+    """NamedTuple type of a vessel: fields of `Motion`, its actuators, cosine and sine of each angle, other names."""
     from collections import namedtuple
 
-    angles = (*angle_fields(actuators), *fixed_fields(actuators))
+    angles = (*angle_fields(actuators), *fixed_fields(actuators), *alias_fields(actuators))
     return namedtuple("VesselMotion", (*Motion._fields, *actuators, *angles))
 
 
@@ -126,7 +134,7 @@ def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Any:
     full["vr"] = given.get("v", 0.0) - (c * current[1] - s * current[0])
     for name in (n for n in actuators if n.endswith("_rad")):
         full[f"cos_{name}"], full[f"sin_{name}"] = math.cos(given[name]), math.sin(given[name])
-    full |= fixed_fields(actuators)
+    full |= fixed_fields(actuators) | {law: given[own] for law, own in alias_fields(actuators).items()}
     return motion_type(actuators)(**(full | given))
 
 
@@ -238,11 +246,15 @@ class Effect(Checked):
             if owner == "vessel":
                 taken[name] = getattr(self, name) or attrgetter(key)(vessel)
             elif owner:
-                own = vessel.effect(owner)
-                if own is None:
-                    raise BadInput(f"{vessel.name}: {self.name()} needs a vessel with {owner}")
-                taken[name] = getattr(own, key)
+                taken[name] = getattr(self.needed(vessel, owner), key)
         return replace(self, **taken)
+
+    def needed(self, vessel: Any, owner: str) -> Any:
+        """The vessel's effect that this one builds on. Raises BadInput where it has none."""
+        own = vessel.effect(owner)
+        if own is None:
+            raise BadInput(f"{vessel.name}: {self.name()} needs a vessel with {owner}")
+        return own
 
     def seeded(self, seed: int) -> Self:
         """The effect with its random course, if it has one, drawn from a scenario's seed."""

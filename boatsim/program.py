@@ -31,6 +31,7 @@ from boatsim.base import (
     Inertia,
     Measurement,
     Unsteady,
+    alias_fields,
     angle_fields,
     fixed_fields,
 )
@@ -190,7 +191,8 @@ def _composition(program: Program) -> str:
     actuators = program.vessel.actuators
     angles = angle_fields(actuators)
     held = [f"act[{i}]" for i in range(len(actuators) + len(angles))]
-    seen = [*held, *map(repr, fixed_fields(actuators).values())]
+    aliases = [f"act[{actuators.index(own)}]" for own in alias_fields(actuators).values()]
+    seen = [*held, *map(repr, fixed_fields(actuators).values()), *aliases]
     head = [
         '"""Effects of a vessel, composed by boatsim.program; not meant to be edited."""',
         "from math import cos, sin",

@@ -1,10 +1,11 @@
 """Added mass: the water a hull sets in motion when it accelerates."""
 
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
 
 from numba import njit
 
+from boatsim import particulars
 from boatsim.base import Force, Inertia, Mass, Wrench, param
 
 
@@ -30,7 +31,11 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class AddedMass(Inertia, Force):
-    """Inertia of the surrounding water about the origin of motion, and its Coriolis force."""
+    """Inertia of the surrounding water about the origin of motion, and its Coriolis force.
+
+    With `spheroid` the values of surge, sway and yaw are those of a prolate spheroid of the vessel's length and draught
+    (H. Lamb, Hydrodynamics, 1932), and roll is `roll_share` of the body's own roll inertia, about the origin.
+    """
 
     words: ClassVar[str] = "the water that moves with the hull adds inertia"
     shown_by: ClassVar[str] = "sharp starts and stops in sway and yaw"
@@ -57,3 +62,15 @@ class AddedMass(Inertia, Force):
         0.0, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot about that point", fit=True, spread=0.02, axis="roll"
     )
     coriolis: float = param(1.0, low=0.0, high=1.0, unit="", words="share of the Coriolis force that is modelled")
+    spheroid: float = param(0.0, low=0.0, high=1.0, unit="", words="1: surge, sway, yaw and roll by the hull's size")
+    roll_share: float = param(0.2, low=0.0, high=2.0, unit="", words="roll inertia per the body's, if by size")
+
+    def completed(self, vessel: Any) -> Self:
+        """Values by the vessel's size, where they are wanted."""
+        own, body = super().completed(vessel), vessel.body
+        if not self.spheroid:
+            return own
+        share = particulars.spheroid(vessel.length, vessel.draught)
+        sway = share.sway * body.mass
+        roll = self.roll_share * body.roll_inertia - sway * self.sway_below**2
+        return replace(own, surge=share.surge * body.mass, sway=sway, yaw=share.yaw * body.yaw_inertia, roll=roll)

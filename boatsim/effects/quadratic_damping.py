@@ -31,4 +31,4 @@ class QuadraticDamping(Force):
     surge: float = param(0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="surge", fit=True, spread=4.0, axis="surge")
     sway: float = param(0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="sway", fit=True, spread=40.0, axis="sway")
     yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s^2", words="yaw", fit=True, spread=1.5, axis="yaw")
-    roll: float = param(0.0, low=0.0, high=1e13, unit="N m s^2", words="roll", fit=True, spread=0.006, axis="roll")
+    roll: float = param(0.0, low=0.0, high=1e13, unit="N m s^2", words="roll", fit=True, spread=0.1, axis="roll")

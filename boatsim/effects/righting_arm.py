@@ -1,10 +1,11 @@
 """Righting arm: buoyancy turns a heeled hull upright."""
 
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
 
 from numba import njit
 
+from boatsim import particulars
 from boatsim.base import Force, Wrench, param
 
 
@@ -26,3 +27,12 @@ class RightingArm(Force):
         1.0, low=0.0, high=1e13, unit="N m", words="m g GM, per rad", calibrates="restoring", axis="roll"
     )
     list: float = param(0.0, low=-0.5, high=0.5, unit="rad", words="heel at rest", axis="roll")
+    metacentric_height: float = param(
+        0.0, low=0.0, high=50.0, unit="m", words="GM, from which the stiffness follows; 0: stiffness as given"
+    )
+
+    def completed(self, vessel: Any) -> Self:
+        """With the stiffness of the vessel's weight at the given GM."""
+        own = super().completed(vessel)
+        stiffness = vessel.body.mass * particulars.GRAVITY * self.metacentric_height
+        return replace(own, stiffness=stiffness) if self.metacentric_height else own

@@ -21,9 +21,9 @@ def phase(k: int) -> float:
 @njit
 def law(m: Any, q: Any) -> Wrench:
     """One realisation: components at the quantiles of the oscillator's spectrum, each axis with phases of its own."""
-    X = Y = N = 0.0
+    X = Y = K = N = 0.0
     if q.realisation == 0.0:
-        return Wrench(X, Y, 0.0, N)
+        return Wrench(X, Y, K, N)
     for k in range(WAVES):
         off = q.damping * tan(pi * ((k + 0.5) / WAVES - 0.5))  # quantile of a Lorentz line
         w = q.frequency * max(1.0 + off, 0.2)
@@ -31,15 +31,16 @@ def law(m: Any, q: Any) -> Wrench:
         X += cos(w * m.t + phase(first))
         Y += cos(w * m.t + phase(first + 1))
         N += cos(w * m.t + phase(first + 2))
+        K += cos(w * m.t + phase(first + 3 * WAVES))
     share = sqrt(2.0 / WAVES)
-    return Wrench(q.surge * share * X, q.sway * share * Y, 0.0, q.yaw * share * N)
+    return Wrench(q.surge * share * X, q.sway * share * Y, q.roll * share * K, q.yaw * share * N)
 
 
 @njit(inline="always")
 def swell(q: Any) -> Swell:
     """The oscillators that the diagnosis follows; none where the force is zero."""
-    there = q.surge > 0.0 or q.sway > 0.0 or q.yaw > 0.0
-    return Swell(q.surge, q.sway, 0.0, q.yaw, q.frequency if there else 0.0, q.damping)
+    there = q.surge > 0.0 or q.sway > 0.0 or q.roll > 0.0 or q.yaw > 0.0
+    return Swell(q.surge, q.sway, q.roll, q.yaw, q.frequency if there else 0.0, q.damping)
 
 
 @dataclass(frozen=True)
@@ -53,12 +54,13 @@ class WaveForcing(Unsteady):
     )
     law: ClassVar = law
     swell: ClassVar = swell
-    strength: ClassVar = ("surge", "sway", "yaw")
+    strength: ClassVar = ("surge", "sway", "yaw", "roll")
     starts: ClassVar = tuple({"frequency": w} for w in (1.5, 2.2, 3.2, 4.5, 6.5))
 
-    surge: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms surge force", fit=True, spread=0.2)
-    sway: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms sway force", fit=True, spread=0.2)
-    yaw: float = param(0.0, low=0.0, high=1e9, unit="N m", words="rms yaw moment", fit=True, spread=0.06)
+    surge: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms surge force", fit=True, spread=0.2, axis="surge")
+    sway: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms sway force", fit=True, spread=0.2, axis="sway")
+    yaw: float = param(0.0, low=0.0, high=1e9, unit="N m", words="rms yaw moment", fit=True, spread=0.06, axis="yaw")
+    roll: float = param(0.0, low=0.0, high=1e9, unit="N m", words="rms roll moment", fit=True, spread=0.02, axis="roll")
     frequency: float = param(
         3.0, low=0.05, high=20.0, unit="rad/s", words="of encounter", fit=True, spread=1.5, absent=3.0
     )

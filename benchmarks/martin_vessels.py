@@ -1,0 +1,168 @@
+"""Martin's fishing vessels as linear models, their seas, and MuJoCo's error: `python -m benchmarks.martin_vessels`.
+
+Prints the coefficients of every condition, the rms of what the thesis' seas do to the ships, the largest difference of
+MuJoCo from the exact step of the linear model, and processor time per simulated time. About ten seconds once the
+vessels are compiled.
+"""
+
+from math import degrees, pi, radians, sqrt
+from time import process_time
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from scipy.linalg import expm
+
+from boatsim import vessel
+from boatsim.base import Array, Force, motion
+from boatsim.effects.irregular_sea import IrregularSea
+from boatsim.engine import Engine, State
+from boatsim.vessel import Vessel
+
+PERIOD = 0.5  # [s] of the autopilots
+REALISATIONS = 2000
+SEAS = (  # condition, angle of encounter [deg], significant height [m] (0: by resonance), modal period [s]
+    (4, 90, 0.0, 0.0), (3, 45, 0.88, 7.5), (1, 60, 0.88, 7.5), (2, 30, 1.88, 8.8),
+)  # fmt: skip
+PUSHES = ("yaw", "sway", "roll")
+
+
+def inertia(boat: Vessel) -> Array:
+    """(3, 3) over (yaw, sway, roll), water included."""
+    body, water = boat.body, boat.effect("added_mass")
+    whole = np.diag([body.mass, body.mass, body.roll_inertia, body.yaw_inertia]) + water.matrix()  # type: ignore[union-attr]
+    return np.asarray(whole[np.ix_([3, 1, 2], [3, 1, 2])])
+
+
+def speed_of(boat: Vessel) -> float:
+    """The speed it holds [m/s]."""
+    return float(boat.effect("speed_hold").speed)  # type: ignore[union-attr]
+
+
+def force(boat: Vessel, **moved: float) -> Array:
+    """Yaw moment, sway force and roll moment at the approach speed, the hull's own Coriolis force in it."""
+    m = motion(**{"u": speed_of(boat), "rudder_rad": 0.0, **moved})
+    w = np.sum([e.wrench(m) for e in boat.effects if isinstance(e, Force)], axis=0)
+    return np.array([w[3], w[1] - boat.body.mass * speed_of(boat) * m.r, w[2]])
+
+
+def linear(boat: Vessel) -> tuple[Array, Array, Array]:
+    """Continuous A (5, 5) over (psi, r, v, phi, p), B (5,) of the rudder, K (5, 3) of waves as (yaw, sway, roll)."""
+    rates = {n: np.linalg.solve(inertia(boat), force(boat, **{n: 1.0})) for n in ("r", "v", "phi", "p", "rudder_rad")}
+    A, K, mass = np.zeros((5, 5)), np.zeros((5, 3)), inertia(boat).diagonal()
+    A[0, 1] = A[3, 4] = K[1, 0] = K[2, 1] = K[4, 2] = 1.0
+    A[np.ix_([1, 2, 4], [1, 2, 3, 4])] = np.column_stack([rates[n] for n in ("r", "v", "phi", "p")])
+    K[4, 1] = boat.effect("linear_hull").arm * mass[1] / mass[2]  # type: ignore[union-attr]
+    return A, np.array([0, *rates["rudder_rad"][:2], 0, rates["rudder_rad"][2]]), K
+
+
+def held(A: Array, B: Array, period: float = PERIOD) -> tuple[Array, Array]:
+    """A and B (5, n) over a period [s] with the inputs held."""
+    n = B.shape[1]
+    block = np.zeros((5 + n, 5 + n))
+    block[:5, :5], block[:5, 5:] = A, B
+    whole = expm(period * block)
+    return whole[:5, :5], whole[:5, 5:]
+
+
+def zigzag(boat: Vessel, waves: Array) -> tuple[Array, Array]:
+    """States (N + 1, 5) of the exact step, rudder angles (N,) of a 10/10 zig-zag in accelerations (N, 3) held."""
+    A, B, K = linear(boat)
+    step, drive = held(A, np.column_stack([B, K]))
+    x, side, states, rudder = np.zeros(5), radians(10.0), [np.zeros(5)], []
+    for w in waves:
+        if abs(x[0]) > radians(10.0):
+            side = -radians(10.0) * float(np.sign(x[0]))
+        rudder.append(side)
+        x = step @ x + drive @ [side, *w]
+        states.append(x)
+    return np.array(states), np.array(rudder)
+
+
+def random_waves(periods: int = 240) -> Array:
+    """(N, 3) accelerations in yaw, sway, roll [rad/s^2, m/s^2, rad/s^2] drawn anew every period: 120 s of them."""
+    return np.radians([1.0, 5.0, 2.0]) * np.random.default_rng(1).standard_normal((periods, 3))
+
+
+def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> Array:
+    """(N + 1, 5) states of the same run in the engine."""
+    engine, mass = Engine(boat, step=step), inertia(boat).diagonal()
+    engine.reset(State(0, 0, 0, 0, 0, speed_of(boat), 0, 0, 0))
+    at, rows = [engine.program.index("steady_push", n) for n in PUSHES], [[0.0] * 5]
+    for angle, wave in zip(rudder, waves, strict=True):
+        engine._values[at] = wave * mass
+        engine._write_userdata()
+        engine.command({"rudder_rad": float(angle)})
+        engine.advance(round(PERIOD / step))
+        s = engine.state
+        rows.append([s.psi, s.r, s.v, s.phi, s.p])
+    return np.array(rows)
+
+
+def accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], float]:
+    """Rms of yaw, sway and direct roll acceleration [deg/s^2] over realisations, and of the slope [deg]."""
+    law, m = IrregularSea.law, motion()
+    w = np.array([law(m, sea.seeded(i).values()) for i in range(REALISATIONS)])
+    direct = w[:, 2] - sea.arm * w[:, 1]
+    parts = zip((w[:, 3], w[:, 1], direct), inertia(boat).diagonal(), strict=True)
+    slope = direct.std() / (sea.stiffness * abs(np.sin(sea.toward)))
+    return [degrees(a.std() / b) for a, b in parts], degrees(slope)
+
+
+def sea_of(boat: Vessel, angle: float, height: float, period: float) -> IrregularSea:
+    """The thesis' sea for a condition; the beam sea is as long as the roll period and a hundredth as high."""
+    A = linear(boat)[0]
+    period = period or 2 * pi / sqrt(-A[4, 3])
+    height = height or 0.01 * 9.81 * period**2 / (2 * pi)
+    beam = float(angle == 90)
+    sea = IrregularSea(
+        significant_height=height, modal_period=period, toward=radians(angle), flat=beam, course_kept=1.0
+    )
+    return sea.completed(boat)
+
+
+def coefficients() -> Table:
+    """The linear model of every condition."""
+    names = ("a_rr", "a_rv", "a_rphi", "a_vr", "a_vv", "a_pr", "a_pv", "a_pphi", "b_r", "b_v", "b_p")
+    table = Table("vessel", "V [m/s]", *names, "T_phi [s]", "zeta", title="rates of (r, v, p)")
+    for name, condition in ((n, c) for n in ("kynoc", "eastward_ho") for c in range(1, 5)):
+        boat = vessel.load(name, [f"condition_{condition}"])
+        A, B, _ = linear(boat)
+        rows = [*A[1, 1:4], *A[2, 1:3], *A[4, 1:4], B[1], B[2], B[4]]
+        w = sqrt(-A[4, 3])
+        last = (f"{2 * pi / w:.2f}", f"{-A[4, 4] / (2 * w):.3f}")
+        table.add_row(f"{name} {condition}", f"{speed_of(boat):.3f}", *(f"{a:.4f}" for a in rows), *last)
+    return table
+
+
+def seas() -> Table:
+    """What the thesis' seas do to the ships."""
+    table = Table("vessel", "encounter", "yaw", "sway", "direct roll", "slope [deg]", title="rms [deg/s^2]")
+    for name in ("kynoc", "eastward_ho"):
+        for condition, angle, height, period in SEAS:
+            boat = vessel.load(name, [f"condition_{condition}"])
+            found, slope = accelerations(boat, sea_of(boat, angle, height, period))
+            table.add_row(f"{name} {condition}", f"{angle} deg", *(f"{a:.2f}" for a in found), f"{slope:.2f}")
+    return table
+
+
+def main() -> None:
+    """Print all of it."""
+    console = Console(width=150)
+    console.print(coefficients(), seas())
+    boat = vessel.load("eastward_ho", ["condition_3"])
+    truth, rudder = zigzag(boat, random_waves())
+    for step in (0.02, 0.1):
+        off = np.degrees(np.abs(on_mujoco(boat, rudder, random_waves(), step) - truth).max(axis=0))
+        console.print(f"120 s zig-zag in random waves, RK4 at {step} s: yaw {off[0]:.1e} deg, roll {off[3]:.1e} deg")
+    engine = Engine(
+        vessel.load("eastward_ho", ["condition_3"], {"irregular_sea": {"significant_height": 0.88}}), step=0.1
+    )
+    engine.reset(State(0, 0, 0, 0, 0, 6.68777, 0, 0, 0))
+    start = process_time()
+    engine.advance(6000)
+    console.print(f"600 s in 160 waves, steps of 0.1 s: {process_time() - start:.2f} s of processor time")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,48 @@
+"""Minimum variance: of the three swings the one that brings the ship nearest to an ideal response a period later."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from boatsim.base import param
+from boatsim.helm import LearningHelm
+
+
+@dataclass
+class MinimumVariance(LearningHelm):
+    """Martin (1993), section 2.5, on the difference equations multiplied by 1 - z^-1, so that a swing is the input.
+
+    The ideal response is s(k+1) = first y(k) + second y(k-1). The thesis prints rho u^2 and does not say which input u
+    is; the swing, as the input of these equations, gives the printed rudder and yaw in quartering seas, the angle does
+    not.
+    """
+
+    words: ClassVar[str] = "adaptive minimum variance by three-way swings, with or without roll reduction"
+
+    yaw_first: float = param(1.8, low=-2.0, high=2.0, unit="", words="ideal yaw")
+    yaw_second: float = param(-0.8099, low=-1.0, high=1.0, unit="", words="ideal yaw, one period earlier")
+    roll_first: float = param(1.59, low=-2.0, high=2.0, unit="", words="ideal roll: 7 s, damping 0.3")
+    roll_second: float = param(-0.764, low=-1.0, high=1.0, unit="", words="ideal roll, one period earlier")
+    roll_weight: float = param(1.0, low=0.0, high=100.0, unit="", words="K_r, with roll reduction")
+    rudder_weight: float = param(5e-5, low=0.0, high=10.0, unit="", words="rho")
+    weighs_angle: bool = False  # rho weighs the rudder angle instead of its swing
+
+    def demand(self) -> float:
+        """The cheapest of the swings."""
+        yaw, roll = self._coasting()
+        b_yaw, b_roll = self.ship.yaw[1], self.ship.roll[2]
+        weight = self.roll_weight if self.roll_reduction else 0.0
+
+        def cost(u: float) -> float:
+            du = u - self.rudder
+            effort = self.rudder_weight * (u if self.weighs_angle else du) ** 2
+            return (yaw + b_yaw * du) ** 2 + weight * (roll + b_roll * du) ** 2 + effort
+
+        return min(self.choices(), key=cost)
+
+    def _coasting(self) -> tuple[float, float]:
+        """Yaw and roll [rad] a period later if the rudder stops, less the ideal ones."""
+        (s0, s1, s2), (f0, f1, f2) = self.psi, self.phi
+        (a2y, _, b2y), (a1r, a2r, _, b2r) = self.ship.yaw, self.ship.roll
+        psi = (2.0 + a2y) * s0 - (1.0 + 2.0 * a2y) * s1 + a2y * s2 + b2y * (f0 - f1)
+        phi = (1.0 - a1r) * f0 + (a1r - a2r) * f1 + a2r * f2 + b2r * (s0 - 2.0 * s1 + s2)
+        return psi - self.yaw_first * s0 - self.yaw_second * s1, phi - self.roll_first * f0 - self.roll_second * f1

@@ -1,0 +1,51 @@
+"""Pole placement: feedback of the identified ship's states that gives yaw and roll the poles asked for."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.base import Array, param
+from boatsim.helm import LearningHelm
+
+
+def ackermann(a: Array, b: Array, wanted: Array) -> Array | None:
+    """Gains (n,) that give A - B K the characteristic polynomial `wanted` (n + 1,); None where B does not reach all."""
+    columns = [b]
+    value = wanted[0] * np.eye(len(b))
+    for coefficient in wanted[1:]:
+        columns.append(a @ columns[-1])
+        value = value @ a + coefficient * np.eye(len(b))
+    reach = np.array(columns[:-1]).T
+    if abs(np.linalg.det(reach)) < 1e-15:
+        return None
+    return np.asarray(np.linalg.solve(reach.T, np.eye(len(b))[-1]) @ value)
+
+
+@dataclass
+class PolePlacement(LearningHelm):
+    """Martin (1993), section 2.8: u = -K x on the heading, with roll reduction on heading and roll."""
+
+    words: ClassVar[str] = "adaptive pole placement, with or without roll reduction"
+
+    yaw_fast: float = param(0.89, low=0.0, high=1.0, unit="", words="pole of yaw in z")
+    yaw_slow: float = param(0.91, low=0.0, high=1.0, unit="", words="the other pole of yaw")
+    roll_real: float = param(0.798, low=-1.0, high=1.0, unit="", words="real part of the poles of roll: 7 s")
+    roll_imaginary: float = param(0.363, low=0.0, high=1.0, unit="", words="imaginary part: damping 0.3")
+
+    def reset(self) -> None:
+        """Nothing learnt beyond the nominal ship."""
+        super().reset()
+        self._gains = np.zeros(4 if self.roll_reduction else 2)
+        self._wanted: Array = np.array([1.0, -self.yaw_fast - self.yaw_slow, self.yaw_fast * self.yaw_slow])
+        if self.roll_reduction:
+            roll = [1.0, -2.0 * self.roll_real, self.roll_real**2 + self.roll_imaginary**2]
+            self._wanted = np.convolve(self._wanted, roll)
+
+    def demand(self) -> float:
+        """Feedback by the gains of the moment; the last ones where the identified rudder has no effect."""
+        n = len(self._gains)
+        a, b = self.ship.matrices()
+        found = ackermann(a[:n, :n], b[:n], self._wanted)
+        self._gains = self._gains if found is None else found
+        return -float(self._gains @ np.array([*self.psi[:2], *self.phi[:2]])[:n])

@@ -1,0 +1,94 @@
+"""Variable structure control: the rudder swings to port, stops or swings to starboard by the side of a surface."""
+
+from dataclasses import dataclass
+from math import degrees, radians
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.base import Array, param
+from boatsim.errors import BadInput
+from boatsim.helm import Helm
+from boatsim.identification import ROLL, YAW, state_space, with_rudder
+
+FAST = radians(10.0)  # [rad/s] design rates above this are those of the repeat at 15 deg/s
+PRINTED = {  # (roll reduction, fast) -> G as printed, section 3.2
+    (False, False): (107.8961, -254.926, 150.573),
+    (True, False): (43.06, -38.32, 16.69, -0.839, 4.6215),
+    (True, True): (14.24, -12.67, 5.56, -0.3188, 1.536),
+}
+WEIGHTS = {  # diagonal of Q, not printed: found so that the iteration gives the printed G
+    (False, False): (0.34483, 0.34483, 0.34483),
+    (True, False): (0.85, 0.85, 17.0, 17.0, 0.0095),
+    (True, True): (0.28, 0.28, 5.6, 5.6, 0.003),
+}
+
+
+def surface(a: Array, b: Array, weights: Array, swing: float) -> Array:
+    """G = B'P of P = Q + (A - B F)' P (A - B F), F = swing B'P, by iteration from Q (appendix III).
+
+    A (n, n), B (n,), weights (n,) the diagonal of Q; swing [rad] is what the relay moves in a period. Raises BadInput
+    where the iteration has no limit.
+    """
+    p = q = np.diag(weights)
+    for _ in range(10_000):
+        closed = a - np.outer(b, swing * (b @ p))
+        last, p = p, q + closed.T @ p @ closed
+        size = np.abs(p).max()
+        if size > 1e12:
+            break
+        if np.abs(p - last).max() < 1e-13 * size:
+            return np.asarray(b @ p)
+    raise BadInput(f"sliding: no switching surface for a swing of {degrees(swing):g} deg in a period")
+
+
+def nominal(roll_reduction: bool) -> tuple[Array, Array]:
+    """A, B of the ship the surfaces are made for: (psi, psi-1, phi, phi-1, u-1), or (psi-2, psi-1, psi)."""
+    if roll_reduction:
+        return with_rudder(*state_space(YAW, ROLL[:4]))
+    return np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.8, -2.6, 2.8]]), np.array([0.0, 0.0, 0.017])
+
+
+@dataclass
+class Sliding(Helm):
+    """Martin (1993), section 2.7: du = -swing sign(S), nothing where |S| is inside the boundary layer.
+
+    Angles in S are radians: only so does the boundary layer hold the headings at which the printed runs come to rest.
+    """
+
+    words: ClassVar[str] = "three-way relay on a switching surface, with or without roll reduction"
+
+    roll_reduction: bool = False
+    boundary: float = param(0.04, low=0.0, high=100.0, unit="", words="half width of the layer around the surface")
+    design_rate: float = param(radians(5.0), low=1e-3, high=1.0, unit="rad/s", words="rudder rate of the surface")
+    printed: bool = True  # the surface as printed; False: computed from the nominal ship for the design rate
+    in_degrees: bool = False  # angles in S in degrees, as the thesis states angles elsewhere
+
+    def reset(self) -> None:
+        """Rudder amidships; the surface as the settings ask for."""
+        super().reset()
+        self._surface = self.surface()
+
+    def needs_roll(self) -> bool:
+        """With roll reduction."""
+        return bool(self.roll_reduction)
+
+    def surface(self) -> tuple[float, ...]:
+        """G, over (psi, psi-1, phi, phi-1, u-1) or (psi-2, psi-1, psi)."""
+        key = (bool(self.roll_reduction), self.roll_reduction and self.design_rate > FAST)
+        if self.printed:
+            return PRINTED[key]
+        found = surface(*nominal(self.roll_reduction), np.array(WEIGHTS[key]), self.design_rate * self.period)
+        return tuple(found.tolist())
+
+    def side(self) -> float:
+        """S = G x: which side of the surface the ship is on, and how far."""
+        x = (*self.psi[:2], *self.phi[:2], self.rudder) if self.roll_reduction else reversed(self.psi)
+        return sum(g * (degrees(s) if self.in_degrees else s) for g, s in zip(self._surface, x, strict=True))
+
+    def demand(self) -> float:
+        """A swing against the side, or none."""
+        side = self.side()
+        if abs(side) < self.boundary:
+            return self.rudder
+        return self.rudder - self.swing if side > 0.0 else self.rudder + self.swing
