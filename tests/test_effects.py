@@ -51,7 +51,7 @@ SUSPECTS = [n for n, e in SHELF.items() if any(p.fit for p in e.params().values(
 # named port and starboard change places.
 TO_STARBOARD = {
     "toward", "east", "list", "side_force_per_thrust", "thrust_imbalance.fraction", "steady_push.sway",
-    "steady_push.roll", "steady_push.yaw",
+    "steady_push.roll", "steady_push.yaw", "Y_0", "Y_0u", "Y_0uu", "N_0", "N_0u", "N_0uu",
 }  # fmt: skip
 TURNS_SIGN = {"y", "psi", "phi", "v", "vr", "p", "r", "sin_psi", "delta_rad", "azimuth_rad"}  # of a motion
 SI = {"rad", "m", "kg", "s", "N"}
