@@ -273,6 +273,16 @@ class Force(Effect):
 
 
 @dataclass(frozen=True)
+class Reaction(Effect):
+    """A force that depends on the others: compiled `reaction(motion, wrench, values) -> Wrench`.
+
+    `wrench` is the sum of all laws that stand before it: the vessel's own in the order of its file, then the suspects.
+    """
+
+    reaction: ClassVar[Callable[[Any, Wrench, Any], Wrench]]
+
+
+@dataclass(frozen=True)
 class Inertia(Effect):
     """Inertia carried along: compiled `inertia(values) -> Mass`; its Coriolis force is the effect's own law.
 

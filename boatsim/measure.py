@@ -20,6 +20,10 @@ class Measure(Checked):
     words: ClassVar[str] = ""  # one line for `boatsim list`
     units: ClassVar[Mapping[str, str]] = {}  # norm -> its unit
 
+    def unit(self, norm: str) -> str:
+        """Unit of one of its norms; a measure of any signal goes by that signal's."""
+        return type(self).units[norm]
+
     def values(self, log: Recording) -> dict[str, float]:
         """Norms of a run; one that the run never got as far as is left out."""
         raise NotImplementedError

@@ -73,7 +73,7 @@ def norms(run: Run) -> dict[str, Norm]:
             found[name] = _judged(run, name, values.get(name), beside.get(name), floor.get(name))
     elif measure := run.scenario.measure:
         values = measure.values(run.recording)
-        found = {name: _judged(run, name, values.get(name), unit=unit) for name, unit in type(measure).units.items()}
+        found = {n: _judged(run, n, values.get(n), unit=measure.unit(n)) for n in type(measure).units}
     return found | {f"{c.signal}_{c.norm}": _checked(run.recording, c) for c in file.check}
 
 

@@ -30,6 +30,7 @@ from boatsim.base import (
     Force,
     Inertia,
     Measurement,
+    Reaction,
     Unsteady,
     alias_fields,
     angle_fields,
@@ -98,10 +99,11 @@ class Program:
 
     def command_array(self, commands: Mapping[str, float]) -> Array:
         """(C,) in the vessel's order; commands not given are zero. Raises BadInput for a name it does not take."""
-        unknown = [n for n in commands if n not in self.vessel.commands]
-        if unknown:
-            raise BadInput(self.vessel.no_command(unknown[0]))
-        return np.array([commands.get(n, 0.0) for n in self.vessel.commands], dtype=float)
+        known = self.vessel.commands
+        for name in commands:
+            if name not in known:
+                raise BadInput(self.vessel.no_command(name))
+        return np.array([commands.get(n, 0.0) for n in known], dtype=float)
 
     @cached_property
     def module(self) -> ModuleType:
@@ -215,6 +217,10 @@ def _composition(program: Program) -> str:
             head.append(f"law{i} = E[{i}].law")
             lines = [f"w = law{i}(m, {_call(i, effect, offset)})", "X += w.X; Y += w.Y; K += w.K; N += w.N"]
             wrench += _guarded(program, i, lines)
+        if isinstance(effect, Reaction):
+            head.append(f"reaction{i} = E[{i}].reaction")
+            lines = [f"w = reaction{i}(m, Wrench(X, Y, K, N), {_call(i, effect, offset)})"]
+            wrench += _guarded(program, i, [*lines, "X += w.X; Y += w.Y; K += w.K; N += w.N"])
         if isinstance(effect, Flow):
             head.append(f"flow{i} = E[{i}].flow")
             flow += _guarded(program, i, [f"a, b = flow{i}({_call(i, effect, offset)})", "north += a; east += b"])

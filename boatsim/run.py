@@ -104,7 +104,7 @@ class Runner:
         state = State(0.0, start.x, start.y, start.psi, start.phi, start.u, start.v, start.p, start.r)
         controller = self.scenario.controller
         controller.reset()
-        self._commands = controller.initial_commands()
+        self._commands = {**controller.initial_commands(), **start.commands}
         self.engine.reset(state, self._commands)
         self._state = state
         # the log's columns are known once the controller has stepped: which estimates it has
@@ -140,7 +140,6 @@ class Runner:
         """One step of physics from the commands in force, then control at its end and a row, if they are due."""
         before = self._state
         self._average.append(self._sent_now())
-        self.engine.command(self._commands)
         self.engine.advance()
         self._state = self.engine.state
         self._frames += self._shoot(before, self._state)
@@ -159,9 +158,12 @@ class Runner:
             (state.phi, state.p),
         )  # fmt: skip
         self._commands = controller.step(self._sense, self.scenario.goal_at(state.t))
+        self.engine.command(self._commands)
 
     def _shoot(self, before: State, after: State) -> list[Frame]:
         """Camera frames since the last step. A frame carries the mean command from it to the next one."""
+        if not self.scenario.camera.due(self._frame, after.t):
+            return []
         frames = list(
             self.scenario.camera.film(
                 before.t,
@@ -232,6 +234,8 @@ class Runner:
         file, s = self.scenario.file, self._state
         if s.t >= file.duration - 1e-9 or self.scenario.controller.done:
             return True
+        if file.until.starboard is None and file.until.turned is None:
+            return False
         c, n = np.cos(file.start.psi), np.sin(file.start.psi)
         starboard = c * (s.y - file.start.y) - n * (s.x - file.start.x)
         out = file.until.starboard is not None and starboard >= file.until.starboard

@@ -47,6 +47,7 @@ class StartTable(Table):
     v: float = 0.0  # [m/s]
     p: float = 0.0  # [rad/s]
     r: float = 0.0  # [rad/s]
+    commands: dict[str, float] = {}  # to which the actuators have settled; others to the controller's first, or zero
 
 
 class UntilTable(Table):
@@ -127,13 +128,22 @@ class Scenario:
     def _begins(self) -> list[float]:
         return [_begin(g) for g in self.file.goal]
 
+    @cached_property
+    def _goals(self) -> list[tuple[dict[str, float], dict[str, CourseTable]]]:
+        """Of each [[goal]] the values that stay and those that move."""
+        parted: list[tuple[dict[str, float], dict[str, CourseTable]]] = []
+        for goal in self.file.goal:
+            held = {k: v for k, v in goal.items() if k != "from" and not isinstance(v, CourseTable)}
+            parted.append((held, {k: v for k, v in goal.items() if isinstance(v, CourseTable)}))
+        return parted
+
     def goal_at(self, t: float) -> Mapping[str, float]:
         """Goals in force at time t [s]: the last [[goal]] that has begun."""
         at = bisect_right(self._begins, t + 1e-9) - 1
         if at < 0:
             return {}
-        begin, goal = self._begins[at], self.file.goal[at]
-        return {k: v.at(t - begin) if isinstance(v, CourseTable) else v for k, v in goal.items() if k != "from"}
+        held, courses = self._goals[at]
+        return {**held, **{k: c.at(t - self._begins[at]) for k, c in courses.items()}} if courses else held
 
 
 def load(name: str, overrides: Mapping[str, Any] | None = None) -> Scenario:

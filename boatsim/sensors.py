@@ -87,13 +87,17 @@ class Camera(Checked):
         share = -self.button_ahead / self.baseline  # of the way from button to light lies the CG
         return Frame(t, lx, ly, bx, by, bx + share * (lx - bx), by + share * (ly - by), seen)
 
+    def due(self, number: int, t: float) -> bool:
+        """Whether frame `number` has been taken by the time t [s]."""
+        return number / self.rate <= t + 1e-9
+
     def film(
         self, t0: float, before: tuple[float, float, float], t1: float, after: tuple[float, float, float], first: int,
         rng: np.random.Generator,
     ) -> Iterator[Frame]:  # fmt: skip
         """Frames number `first` on that fall into (t0, t1], the pose interpolated between its two ends."""
         number = first
-        while number / self.rate <= t1 + 1e-9:
+        while self.due(number, t1):
             w = 1.0 if t1 == t0 else min(max((number / self.rate - t0) / (t1 - t0), 0.0), 1.0)
             pose = (
                 before[0] + w * (after[0] - before[0]),

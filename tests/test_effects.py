@@ -13,7 +13,21 @@ import numpy as np
 import pytest
 
 from boatsim import content, vessel
-from boatsim.base import AXES, Array, Channel, Effect, Flow, Force, Inertia, Mass, Measurement, Unsteady, motion
+from boatsim.base import (
+    AXES,
+    Array,
+    Channel,
+    Effect,
+    Flow,
+    Force,
+    Inertia,
+    Mass,
+    Measurement,
+    Reaction,
+    Unsteady,
+    Wrench,
+    motion,
+)
 from boatsim.effects.added_mass import AddedMass
 from boatsim.effects.cross_flow_drag import CrossFlowDrag
 from boatsim.effects.cubic_damping import CubicDamping
@@ -43,6 +57,7 @@ RANDOM = {"filtered_sea"}  # noise knows no sides, nor has an oscillator of its 
 FORCES = [n for n, e in SHELF.items() if issubclass(e, Force) and not issubclass(e, Unsteady) and n not in RANDOM]
 CHANNELS = [n for n, e in SHELF.items() if issubclass(e, Channel)]
 FLOWS = [n for n, e in SHELF.items() if issubclass(e, Flow)]
+REACTIONS = [n for n, e in SHELF.items() if issubclass(e, Reaction)]
 INERTIAS = [n for n, e in SHELF.items() if issubclass(e, Inertia)]
 SUSPECTS = [n for n, e in SHELF.items() if any(p.fit for p in e.params().values())]
 
@@ -51,9 +66,13 @@ SUSPECTS = [n for n, e in SHELF.items() if any(p.fit for p in e.params().values(
 # named port and starboard change places.
 TO_STARBOARD = {
     "toward", "east", "list", "side_force_per_thrust", "thrust_imbalance.fraction", "steady_push.sway",
-    "steady_push.roll", "steady_push.yaw", "Y_0", "Y_0u", "Y_0uu", "N_0", "N_0u", "N_0uu",
+    "steady_push.roll", "steady_push.yaw", "Y_0", "Y_0u", "Y_0uu", "N_0", "N_0u", "N_0uu", "steering_offset.middle",
+    "steering_asymmetry.gain", "push.sway", "push.yaw",
 }  # fmt: skip
-TURNS_SIGN = {"y", "psi", "phi", "v", "vr", "p", "r", "sin_psi", "delta_rad", "azimuth_rad"}  # of a motion
+TURNS_SIGN = {
+    "y", "psi", "phi", "v", "vr", "p", "r", "sin_psi", "delta_rad", "azimuth_rad", "jet_rad",
+}  # of a motion  # fmt: skip
+OFTEN_NOTHING = {"push", "rudder_stall"}  # outside its time; a small angle does not stall
 SI = {"rad", "m", "kg", "s", "N"}
 
 
@@ -64,7 +83,7 @@ def drawn(kind: type[Effect], seed: int) -> Any:
 
 
 def drawn_motion(seed: int) -> dict[str, float]:
-    """A random motion with two outboards, a rudder, a propeller and an azimuth thruster."""
+    """A random motion with two outboards, a rudder, a propeller, an azimuth thruster and a water jet."""
     rng = np.random.default_rng(seed)
     names = ("psi", "phi", "u", "v", "p", "r", "thrust_port_N", "thrust_starboard_N")
     angles = ("steer_port_rad", "steer_starboard_rad", "delta_rad")
@@ -74,6 +93,8 @@ def drawn_motion(seed: int) -> dict[str, float]:
         "n_rps": float(rng.uniform(0.0, 2.0)),
         "thrust_N": float(rng.uniform(0.1, 2.0)),
         "azimuth_rad": float(rng.uniform(-0.8, 0.8)),
+        "throttle": float(rng.uniform(1.0, 7.0)),
+        "jet_rad": float(rng.uniform(-0.3, 0.3)),
     }
 
 
@@ -135,8 +156,18 @@ def test_mirror_image_of_the_motion_gives_the_mirror_image_of_the_force(name: st
     effect, given = drawn(SHELF[name], seed), drawn_motion(seed)
     seen = effect.wrench(motion(current=(0.2, 0.1), **given))
     image = mirrored(effect).wrench(motion(current=(0.2, -0.1), **mirrored_motion(given)))
-    idle = {"planing_lag", "rudder_stall"}  # a craft at full speed lags in nothing, a small angle does not stall
-    assert any(abs(part) > 1e-6 for part in seen) or name in idle
+    assert any(abs(part) > 1e-6 for part in seen) or name in OFTEN_NOTHING
+    assert image == pytest.approx((seen.X, -seen.Y, -seen.K, -seen.N), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", REACTIONS)
+@pytest.mark.parametrize("seed", range(5))
+def test_mirror_image_of_motion_and_forces_gives_the_mirror_image_of_the_reaction(name: str, seed: int) -> None:
+    effect, given = drawn(SHELF[name], seed), drawn_motion(seed)
+    others = np.random.default_rng(seed).uniform(-1.0, 1.0, 4)
+    seen = type(effect).reaction(motion(**given), Wrench(*others), effect.values())
+    turned = Wrench(*(others * (1, -1, -1, -1)))
+    image = type(effect).reaction(motion(**mirrored_motion(given)), turned, mirrored(effect).values())
     assert image == pytest.approx((seen.X, -seen.Y, -seen.K, -seen.N), rel=1e-12, abs=1e-12)
 
 
@@ -191,6 +222,9 @@ def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, se
         assert effect.wrench(motion(current=(0.0, 0.0), **drawn_motion(seed))) == pytest.approx(
             (0.0, 0.0, 0.0, 0.0), abs=1e-15
         )
+    if isinstance(effect, Reaction):
+        moving = motion(current=(0.0, 0.0), **drawn_motion(seed))
+        assert type(effect).reaction(moving, Wrench(1.0, 2.0, 3.0, 4.0), effect.values()) == (0.0, 0.0, 0.0, 0.0)
     if isinstance(effect, Flow):
         assert type(effect).flow(effect.values()) == (0.0, 0.0)
     if isinstance(effect, Inertia):
@@ -207,7 +241,7 @@ def test_an_effect_says_what_it_is(name: str) -> None:
     assert kind.words and kind.shown_by and not kind.words.endswith(".")
     assert kind.kind in ("physics", "measurement")
     assert inspect.getdoc(sys.modules[kind.__module__]) and "__doc__" in vars(kind) and kind.__doc__
-    assert issubclass(kind, Force | Inertia | Flow | Channel | Measurement)
+    assert issubclass(kind, Force | Reaction | Inertia | Flow | Channel | Measurement)
 
 
 @pytest.mark.parametrize("name", SHELF)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.base import Array, Unsteady
+from boatsim.base import Array, Channel, Effect, Unsteady
 from boatsim.diagnose.filter import Levels, Track
 from boatsim.vessel import Vessel
 
@@ -42,6 +42,7 @@ class Fit:
         return float(self.theta[i]), float(np.sqrt(self.covariance[i, i]))
 
 
+SIDES = {"port": -1, "middle": 0, "starboard": 1}  # parameters of a channel effect that belong to one side
 MASS, LENGTH = 4.6, 1.2  # [kg], [m] the boat for which the effects state their priors
 SYMBOLS = {
     "N": (1, 1, -2),
@@ -82,7 +83,8 @@ class Problem:
         effects = {e.name(): e for e in self.program.suspects}
         for effect in (effects[n] for n in suspects):
             for name, about in type(effect).params().items():
-                if about.fit and (not about.axis or about.axis in self.program.vessel.freedoms):
+                axis_is_free = not about.axis or about.axis in self.program.vessel.freedoms
+                if about.fit and axis_is_free and self._on_board(effect, name):
                     at = self.program.index(effect.name(), name)
                     sd = about.spread * scale_of(about.unit, self.program.vessel)
                     searched = isinstance(effect, Unsteady)
@@ -105,6 +107,13 @@ class Problem:
     def whitened(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> Array:
         """Whitened prediction errors of all runs with the gains of the last `likelihood`."""
         return np.concatenate([t.whitened(self.values(t, free, theta), on, levels) for t in self.tracks])
+
+    def _on_board(self, effect: Effect, parameter: str) -> bool:
+        """Whether there is an actuator on the side to which a channel effect's parameter belongs, if it is of one."""
+        if not isinstance(effect, Channel) or parameter not in SIDES:
+            return True
+        commands = self.program.vessel.commands
+        return SIDES[parameter] in {commands[name].side for name in self.program.targets(effect)}
 
     @property
     def stiff(self) -> bool:

@@ -10,8 +10,8 @@ from boatsim.base import Array, Channel, param
 
 @njit(inline="always")
 def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
-    """A constant added to the angle of either side."""
-    return x + (q.starboard if side > 0.0 else q.port)
+    """A constant added to the angle of each side."""
+    return x + (q.starboard if side > 0.0 else q.port if side < 0.0 else q.middle)
 
 
 @dataclass(frozen=True)
@@ -27,3 +27,7 @@ class SteeringOffset(Channel):
     starboard: float = param(
         0.0, low=-0.6, high=0.6, unit="rad", words="added to the starboard angle", fit=True, spread=0.12
     )
+    middle: float = param(
+        0.0, low=-0.6, high=0.6, unit="rad", words="added to the angle of a steering on the centreline", fit=True,
+        spread=0.12,
+    )  # fmt: skip

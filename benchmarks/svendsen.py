@@ -1,0 +1,71 @@
+"""What the L1 loops of the high-speed water-jet craft can bear: `python -m benchmarks.svendsen`.
+
+The L1-norm condition of the cruise control over its bandwidth (Fig. 8) and where it is met; what a delay of the jet
+does to the heading control, over its bandwidth; what the time between two control steps does to both.
+"""
+
+import numpy as np
+
+from boatsim import scenario
+from boatsim.content import load_class
+from boatsim.metrics import norms
+from boatsim.run import run
+
+BANDWIDTHS = (5.0, 10.0, 11.0, 12.0, 12.2, 13.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0)  # [1/s] k_u
+DELAYS = (0.002, 0.004, 0.006, 0.010, 0.020)  # [s]
+FILTERS = (80.0, 40.0, 20.0, 10.0)  # [1/s] k_h
+PERIODS = (0.0005, 0.001, 0.002, 0.004, 0.008)  # [s]
+
+
+def condition(bandwidth: float) -> float:
+    """L1 norm times slope of the cruise control at one bandwidth."""
+    found: float = load_class("controller", "l1_cruise")(bandwidth=bandwidth).l1_condition()
+    return found
+
+
+def threshold(low: float = 5.0, high: float = 60.0) -> float:
+    """Bandwidth [1/s] at which the condition is 1, by bisection."""
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if condition(middle) > 1.0 else (low, middle)
+    return 0.5 * (low + high)
+
+
+def value(name: str, norm: str, **changes: object) -> float:
+    """A norm of a scenario with some of its top-level keys replaced."""
+    found = norms(run(scenario.load(f"jet_ski/{name}", changes), 0))[norm].value
+    return float("nan") if found is None else found
+
+
+def with_control(name: str, **settings: float) -> dict[str, object]:
+    """Settings of a scenario's controller, the plant stepped as often."""
+    own = scenario.load(f"jet_ski/{name}").file.controller | settings
+    return {"controller": own, "step": min(settings.get("period", 0.002), 0.004)}
+
+
+def delayed(bandwidth: float, delay: float) -> float:
+    """Rms rate [deg/s] of the jet's command along the sine, so late."""
+    late = [{"use": "command_delay", "delay": delay}]
+    return value("heading_delay", "rate_rms", effect=late, **with_control("heading_delay", bandwidth=bandwidth))
+
+
+def main() -> None:
+    """Print the tables."""
+    print("k_u [1/s]   L1 norm x slope")
+    for bandwidth in BANDWIDTHS:
+        print(f"{bandwidth:9.1f}   {condition(bandwidth):.3f}")
+    print(f"met from k_u = {threshold():.2f} 1/s on\n")
+    print("rms rate of the jet's command [deg/s] along the sine, no rate limit; delay [ms]")
+    print("k_h [1/s]" + "".join(f"{1e3 * delay:9.0f}" for delay in DELAYS))
+    for bandwidth in FILTERS:
+        print(f"{bandwidth:9.0f}" + "".join(f"{delayed(bandwidth, delay):9.1f}" for delay in DELAYS), flush=True)
+    print("\ncontrol step [ms]   staircase: first and last time to 95 % [s]   heading sine: rms to the model [deg]")
+    for period in PERIODS:
+        stairs = norms(run(scenario.load("jet_ski/staircase", with_control("staircase", period=period)), 0))
+        times = [stairs[f"time_95_{i}"].value or np.nan for i in (1, 5)]
+        sine = value("heading_sine", "rms", **with_control("heading_sine", period=period))
+        print(f"{1e3 * period:17.1f}   {times[0]:.3f}  {times[1]:.3f}{sine:37.4f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,48 @@
+"""Staircase: the responses to equal steps that follow each other, one norm for each."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from boatsim.base import param
+from boatsim.measure import Measure
+from boatsim.measures.step_response import first
+from boatsim.recording import Recording
+from boatsim.recording_notes import unit_of
+
+MOST = 8  # steps of a staircase
+
+
+@dataclass(frozen=True)
+class Staircase(Measure):
+    """Steps of `height` every `every` s from `bottom`, the first at `since`; a later one starts where it should."""
+
+    words: ClassVar[str] = "time to 95 % and from 10 to 90 % of each step of a staircase; worst overshoot and end error"
+    units: ClassVar = {f"{what}_{i}": "s" for what in ("time_95", "rise") for i in range(1, MOST + 1)} | {
+        "overshoot": "", "end_error": "",
+    }  # fmt: skip
+
+    signal: str = "u_mps"
+    bottom: float = param(0.0, low=-1e9, high=1e9, unit="", words="value before the first step, in the signal's unit")
+    height: float = param(1.0, low=-1e9, high=1e9, unit="", words="of each step, in the signal's unit")
+    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="time of the first step")
+    every: float = param(10.0, low=1e-3, high=1e6, unit="s", words="time between two steps")
+
+    def unit(self, norm: str) -> str:
+        """Times in s, errors in the signal's unit."""
+        return self.units[norm] or unit_of(self.signal)
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Of as many whole steps as the log has; a time that is not reached is left out."""
+        count = min(MOST, int((log.t[-1] - self.since) / self.every + 1e-6))
+        found: dict[str, float | None] = {}
+        worst = {"overshoot": 0.0, "end_error": 0.0}
+        for i in range(count):
+            begin = self.since + i * self.every
+            seen = (log.t >= begin - 1e-9) & (log.t < begin + self.every - 1e-9)
+            t, done = log.t[seen] - begin, (log[self.signal][seen] - self.bottom) / self.height - i
+            tenth, most = first(t, done, 0.1), first(t, done, 0.9)
+            found[f"time_95_{i + 1}"] = first(t, done, 0.95)
+            found[f"rise_{i + 1}"] = most - tenth if most is not None and tenth is not None else None
+            worst["overshoot"] = max(worst["overshoot"], float(done.max() - 1.0) * abs(self.height))
+            worst["end_error"] = max(worst["end_error"], abs(float(done[-1] - 1.0) * self.height))
+        return {name: value for name, value in (found | worst).items() if value is not None}
