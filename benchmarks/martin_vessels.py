@@ -88,7 +88,7 @@ def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> 
     """(N + 1, 5) states of the same run in the engine."""
     engine, mass = Engine(boat, step=step), inertia(boat).diagonal()
     engine.reset(State(0, 0, 0, 0, 0, speed_of(boat), 0, 0, 0))
-    at, rows = [engine.program.index("steady_push", n) for n in PUSHES], [[0.0] * 5]
+    at, rows = [engine.program.index("push", n) for n in PUSHES], [[0.0] * 5]
     for angle, wave in zip(rudder, waves, strict=True):
         engine._values[at] = wave * mass
         engine._write_userdata()

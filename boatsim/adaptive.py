@@ -16,6 +16,8 @@ from boatsim.errors import BadInput
 
 Complex = NDArray[np.complex128]
 Loop = Callable[[Complex], Complex]  # L(s) at s = j omega, omega in rad/s; pure delays allowed
+Law = Callable[[Complex], tuple[Complex, Complex]]  # of z: what the controller answers to position and to rate
+HIGHEST = 1e3  # [rad/s] beyond which a continuous loop has no crossover
 
 
 def ball_share(square: float, along: float, radius: float, tolerance: float) -> float:
@@ -153,6 +155,45 @@ class PiecewiseConstantMatrix:
         return self.sig
 
 
+@dataclass
+class DiscreteFilter:
+    """Ratio of two polynomials in z (coefficients of falling powers), stepped once a period."""
+
+    numerator: Sequence[float]
+    denominator: Sequence[float]
+    state: list[float] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        n = len(self.denominator)
+        lead = self.denominator[0]
+        self.denominator = [a / lead for a in self.denominator]
+        self.numerator = [0.0] * (n - len(self.numerator)) + [b / lead for b in self.numerator]
+        self.state = [0.0] * (n - 1)
+
+    def step(self, value: float) -> float:
+        """Output of this period, its input already in it where the two polynomials are of the same order."""
+        b, a, x = self.numerator, self.denominator, self.state
+        out = x[0] + b[0] * value
+        for i in range(len(x)):
+            x[i] = b[i + 1] * value - a[i + 1] * out + (x[i + 1] if i + 1 < len(x) else 0.0)
+        return out
+
+    def at(self, z: Complex) -> Complex:
+        """Its value for complex z; z = 1 gives the gain of a constant input."""
+        return np.asarray(np.polyval(self.numerator, z) / np.polyval(self.denominator, z))
+
+
+def held(numerator: Sequence[float], denominator: Sequence[float], period: float) -> DiscreteFilter:
+    """A strictly proper ratio of polynomials in s (falling powers) as seen through a zero-order hold, exact."""
+    lead, n = denominator[0], len(denominator) - 1
+    a = np.vstack([-np.asarray(denominator[1:], dtype=float) / lead, np.eye(n - 1, n)])
+    c = np.concatenate([np.zeros(n - len(numerator)), np.asarray(numerator, dtype=float) / lead])
+    whole = matrix_exp(np.block([[a, np.eye(n, 1)], [np.zeros((1, n + 1))]]) * period)
+    poles = np.poly(whole[:n, :n])  # determinant of zI - A; that of zI - A + b c is numerator + denominator
+    zeros = np.poly(whole[:n, :n] - np.outer(whole[:n, n], c)) - poles
+    return DiscreteFilter(zeros[1:].tolist(), poles.tolist())
+
+
 def lyapunov(am: ArrayLike, q: ArrayLike | None = None) -> Array:
     """P of Am'P + P Am = -Q, (n, n); Q is the identity if not given."""
     a = np.asarray(am, dtype=float)
@@ -284,7 +325,7 @@ class LoopMargins:
     stable: bool
 
 
-def loop_margins(loop: Loop, low: float = 1e-4, high: float = 1e3, points: int = 20000) -> LoopMargins:
+def loop_margins(loop: Loop, low: float = 1e-4, high: float = HIGHEST, points: int = 20000) -> LoopMargins:
     """Crossover, phase margin and extra-delay margin of a loop L(s) under negative feedback.
 
     The loop must have no pole in the right half plane, and its behaviour outside low..high [rad/s] must be plain:
@@ -338,6 +379,11 @@ class LoopChannel:
     pid: tuple[float, float, float] | None = None  # (kp [1/s^2], ki [1/s^3], kd [1/s])
     damping: float = 0.0  # [1/s] of the boat itself
 
+    @property
+    def highest(self) -> float:
+        """Frequency up to which the loop is looked at [rad/s]."""
+        return HIGHEST
+
     def loop(self, gain: float) -> Loop:
         """L(s), broken at the plant input, for one true-over-assumed input gain."""
 
@@ -361,3 +407,44 @@ class LoopChannel:
         if self.pid is not None:
             return None
         return l1_norm(unfiltered([[-self.pole]], [1.0], gain * self.bandwidth))
+
+
+@dataclass(frozen=True)
+class SampledChannel:
+    """One feedback channel of a sampled controller, exact: position and rate of a plant whose input is held.
+
+    The plant is x' = -damping x + (input gain) a, the position is the integral of x; the controller answers
+    a = -(position law(z)[0] + rate law(z)[1]), its own inner loops closed. Both are stable but for the plant's
+    integrator. A delay between them need not be a whole number of periods: the margin is that of the phase.
+    """
+
+    name: str
+    law: Law
+    damping: float  # [1/s] of the boat itself
+    period: float  # [s]
+    input_gain: tuple[float, ...] = (1.0,)  # true over assumed
+    pole: float = 0.0  # [1/s] of the predictor
+
+    @property
+    def highest(self) -> float:
+        """Frequency up to which the loop is looked at [rad/s]: half the sampling rate, where it mirrors itself."""
+        return pi / self.period
+
+    def loop(self, gain: float) -> Loop:
+        """L(s), z = e^{sT}, broken at the plant input, for one true-over-assumed input gain."""
+        decay = exp(-self.damping * self.period)
+        rate_gain = (1.0 - decay) / self.damping  # F and g of the plant over one period, zero-order hold
+        place_gain = (self.period - rate_gain) / self.damping
+
+        def response(s: Complex) -> Complex:
+            z = np.exp(s * self.period)
+            rate = rate_gain / (z - decay)
+            place = (rate_gain * rate + place_gain) / (z - 1.0)
+            to_place, to_rate = self.law(z)
+            return np.asarray(gain * (to_place * place + to_rate * rate))
+
+        return response
+
+    def norm(self, gain: float) -> float | None:
+        """No L1 norm: its condition is one of continuous loops."""
+        return None

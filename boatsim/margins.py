@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import degrees
 from typing import Any
 
-from boatsim.adaptive import LoopChannel, l1_condition, loop_margins
+from boatsim.adaptive import LoopChannel, SampledChannel, l1_condition, loop_margins
 from boatsim.base import snake_case
 from boatsim.content import load_class, names
 from boatsim.errors import BadInput
@@ -37,8 +37,8 @@ def table(controller: Any) -> list[Row]:
     return [_row(channel, gain) for channel in describe() for gain in channel.input_gain]
 
 
-def _row(channel: LoopChannel, gain: float) -> Row:
-    norm, found = channel.norm(gain), loop_margins(channel.loop(gain))
+def _row(channel: LoopChannel | SampledChannel, gain: float) -> Row:
+    norm, found = channel.norm(gain), loop_margins(channel.loop(gain), high=channel.highest)
     return Row(
         channel=channel.name,
         input_gain=gain,

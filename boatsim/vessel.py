@@ -235,12 +235,12 @@ def _overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) ->
         mine = next((t for t in effects if t.get("use") == key), None)
         if mine is not None:
             mine.update(value)
-        elif isinstance(value, dict) and key in ("body", "geometry", "manoeuvring"):
+        elif isinstance(value, dict) and key in ("body", "geometry", "manoeuvring", "diagnosis"):
             out[key] = {**raw.get(key, {}), **value}
         elif key in ("length", "beam", "draught"):
             out[key] = value
         else:
-            tables = ("body", "geometry", "manoeuvring", "length", "beam", "draught")
+            tables = ("body", "geometry", "manoeuvring", "diagnosis", "length", "beam", "draught")
             names = [*(str(t.get("use")) for t in effects), *tables]
             raise BadInput(unknown_name(f"{label}: table to change", key, names))
     out["effect"] = effects

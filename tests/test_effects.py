@@ -65,14 +65,18 @@ SUSPECTS = [n for n, e in SHELF.items() if any(p.fit for p in e.params().values(
 # sign: name it here when an effect brings a new one, with its effect where others mean something else by it. Pairs
 # named port and starboard change places.
 TO_STARBOARD = {
-    "toward", "east", "list", "side_force_per_thrust", "thrust_imbalance.fraction", "steady_push.sway",
-    "steady_push.roll", "steady_push.yaw", "Y_0", "Y_0u", "Y_0uu", "N_0", "N_0u", "N_0uu", "steering_offset.middle",
-    "steering_asymmetry.gain", "push.sway", "push.yaw",
+    "toward", "east", "list", "side_force_per_thrust", "thrust_imbalance.fraction", "Y_0", "Y_0u", "Y_0uu", "N_0",
+    "N_0u", "N_0uu", "steering_offset.middle", "steering_asymmetry.gain",
 }  # fmt: skip
+TO_STARBOARD |= {f"{name}.{axis}" for name in ("push", "steady_force") for axis in ("sway", "yaw", "roll")}
 TURNS_SIGN = {
     "y", "psi", "phi", "v", "vr", "p", "r", "sin_psi", "delta_rad", "azimuth_rad", "jet_rad",
 }  # of a motion  # fmt: skip
-OFTEN_NOTHING = {"push", "rudder_stall"}  # outside its time; a small angle does not stall
+RESTS = {  # effects that are not always there
+    "astern_time_constant",  # going ahead
+    "push",  # before its time and after
+    "rudder_stall",  # at a small angle
+}
 SI = {"rad", "m", "kg", "s", "N"}
 
 
@@ -86,15 +90,14 @@ def drawn_motion(seed: int) -> dict[str, float]:
     """A random motion with two outboards, a rudder, a propeller, an azimuth thruster and a water jet."""
     rng = np.random.default_rng(seed)
     names = ("psi", "phi", "u", "v", "p", "r", "thrust_port_N", "thrust_starboard_N")
-    angles = ("steer_port_rad", "steer_starboard_rad", "delta_rad")
+    angles = ("steer_port_rad", "steer_starboard_rad", "delta_rad", "jet_rad", "elevator_rad")
     found = {n: float(a) for n, a in zip(names, rng.uniform(-1.0, 1.0, 8), strict=True)}
-    found |= {n: float(a) for n, a in zip(angles, rng.uniform(-0.8, 0.8, 3), strict=True)}
+    found |= {n: float(a) for n, a in zip(angles, rng.uniform(-0.8, 0.8, 5), strict=True)}
     return found | {
         "n_rps": float(rng.uniform(0.0, 2.0)),
         "thrust_N": float(rng.uniform(0.1, 2.0)),
         "azimuth_rad": float(rng.uniform(-0.8, 0.8)),
         "throttle": float(rng.uniform(1.0, 7.0)),
-        "jet_rad": float(rng.uniform(-0.3, 0.3)),
     }
 
 
@@ -156,7 +159,7 @@ def test_mirror_image_of_the_motion_gives_the_mirror_image_of_the_force(name: st
     effect, given = drawn(SHELF[name], seed), drawn_motion(seed)
     seen = effect.wrench(motion(current=(0.2, 0.1), **given))
     image = mirrored(effect).wrench(motion(current=(0.2, -0.1), **mirrored_motion(given)))
-    assert any(abs(part) > 1e-6 for part in seen) or name in OFTEN_NOTHING
+    assert any(abs(part) > 1e-6 for part in seen) or name in RESTS
     assert image == pytest.approx((seen.X, -seen.Y, -seen.K, -seen.N), rel=1e-12, abs=1e-12)
 
 
@@ -470,8 +473,14 @@ def positions(servo: Servo, commands: list[float], dt: float) -> Array:
 
 
 def test_servo_keeps_its_range() -> None:
-    angles = positions(Servo(range=0.7, rate=1e3, lag=0.0), [2.0, -2.0, 0.5], 0.02)
+    angles = positions(Servo(range=0.7, rate=1e3, lag=1e-3), [2.0, -2.0, 0.5], 0.02)
     assert angles == pytest.approx([0.0, 0.7, -0.7, 0.5])
+
+
+@pytest.mark.parametrize("dt", [0.01, 0.16, 0.8])
+def test_servo_without_lag_is_a_ramp_whatever_the_step(dt: float) -> None:
+    means = stepped(Servo(range=1.0, rate=0.5, lag=0.0), [0.3] * round(1.6 / dt), dt)
+    assert sum(means) * dt == pytest.approx(0.3 * 1.6 - 0.5 * 0.3 * 0.6)  # 0.6 s on its way
 
 
 def test_servo_turns_at_its_rate_until_the_lag_takes_over() -> None:

@@ -225,7 +225,7 @@ def test_sway_added_mass_heels_one_way_as_printed_or_both_ways_as_energy_demands
 def on_twin(boat: Vessel, rudder: Array, waves: Array) -> Array:
     """(N + 1, 5) states of the run in the twin."""
     twin, y = Twin(boat, 0.02), np.array([0, 0, 0, 0, speed_of(boat), 0, 0, 0.0])
-    at, values, rows = [twin.program.index("steady_push", n) for n in PUSHES], twin.program.values(), [y]
+    at, values, rows = [twin.program.index("push", n) for n in PUSHES], twin.program.values(), [y]
     for i, (angle, wave) in enumerate(zip(rudder, waves, strict=True)):
         values[at] = wave * inertia(boat).diagonal()
         y = twin.rollout(y, np.array([[angle]]), PERIOD, values, t0=PERIOD * i)[-1]

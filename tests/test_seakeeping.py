@@ -15,11 +15,11 @@ from boatsim.effects.bilge_keels import BilgeKeels
 from boatsim.effects.filtered_sea import FilteredSea
 from boatsim.effects.irregular_sea import IrregularSea, sections
 from boatsim.effects.linear_hull import LinearHull
+from boatsim.effects.push import Push
 from boatsim.effects.roll_damping import RollDamping
 from boatsim.effects.rudder import Rudder
 from boatsim.effects.rudder_stall import RudderStall
 from boatsim.effects.speed_hold import SpeedHold
-from boatsim.effects.steady_push import SteadyPush
 from boatsim.errors import BadInput
 from boatsim.measures.sea_keeping import SeaKeeping
 from boatsim.particulars import spheroid
@@ -245,8 +245,8 @@ def test_speed_hold_leaves_no_surge_but_towards_the_speed() -> None:
     assert hold.wrench(motion(u=5.5)).X == pytest.approx(50.0)
 
 
-def test_a_steady_push_is_the_same_on_every_heading() -> None:
-    push = SteadyPush(surge=1.0, sway=2.0, roll=3.0, yaw=4.0, arm=0.5)
+def test_a_push_is_the_same_on_every_heading() -> None:
+    push = Push(surge=1.0, sway=2.0, roll=3.0, yaw=4.0, arm=0.5)
     assert push.wrench(motion(psi=2.0, u=3.0)) == (1.0, 2.0, 4.0, 4.0)
 
 

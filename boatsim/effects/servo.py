@@ -11,12 +11,16 @@ from boatsim.base import Array, Channel, param
 
 @njit(inline="always")
 def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
-    """First-order approach to the limited command, no faster than the rate; the mean of the step's two ends."""
+    """First-order approach to the limited command, no faster than the rate; the mean of the step's two ends.
+
+    Without a lag it is a ramp that ends within the step: its mean is exact.
+    """
     goal = min(max(x, -q.range), q.range)
     share = 1.0 if q.lag < 1e-4 else 1.0 - exp(-dt / q.lag)
     turn = min(max((goal - memory[at]) * share, -q.rate * dt), q.rate * dt)
     memory[at] += turn
-    return memory[at] - 0.5 * turn
+    ramp = abs(turn) / (q.rate * dt) if q.lag < 1e-4 else 1.0  # share of the step
+    return memory[at] - 0.5 * turn * ramp
 
 
 @dataclass(frozen=True)

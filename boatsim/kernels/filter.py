@@ -99,13 +99,15 @@ def transition(
 
 @lean
 def oscillation(h: float, s: Swell) -> tuple[float, float, float, float, float, float]:
-    """Transition of the oscillator over h, row by row, and its mean force over h per force and rate at the start."""
+    """Transition of the oscillator over h, row by row, and its mean force over h per state and rate at the start.
+
+    The force is the rate over the frequency, w s / (s^2 + 2 damping w s + w^2): waves have nothing at zero frequency.
+    """
     w, damped = s.frequency, s.frequency * sqrt(1.0 - s.damping * s.damping)
     e, share = exp(-s.damping * w * h), s.damping * w / damped
     f11, f12 = e * (cos(damped * h) + share * sin(damped * h)), e * sin(damped * h) / damped
     f21, f22 = -w * w * f12, e * (cos(damped * h) - share * sin(damped * h))
-    mean1 = (-2.0 * s.damping / w * (f11 - 1.0) - f21 / (w * w)) / h
-    mean2 = (-2.0 * s.damping / w * f12 - (f22 - 1.0) / (w * w)) / h
+    mean1, mean2 = (f11 - 1.0) / (w * h), f12 / (w * h)
     return f11, f12, f21, f22, mean1, mean2
 
 

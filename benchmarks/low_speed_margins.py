@@ -1,0 +1,60 @@
+"""Margins of the low-speed heading control of the water-jet craft: `python -m benchmarks.low_speed_margins`.
+
+Crossover, phase margin and delay margin of the exact sampled loop, broken at the yaw acceleration, for PD and L1 with
+and without wave filter; then the delay margins of PD and L1 with the filter where the input gain omega (true over
+assumed) or the time constant T_n of the craft is not the one assumed.
+"""
+
+from dataclasses import replace
+from math import degrees
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from boatsim.adaptive import LoopMargins, SampledChannel, loop_margins
+from boatsim.content import load_class
+
+LAWS = {  # switches of the controller
+    "PD, no filter": {"adaptive": 0.0, "wave_filter": 0.0},
+    "PD + filter": {"adaptive": 0.0},
+    "L1, no filter": {"wave_filter": 0.0},
+    "L1 + filter": {},
+}
+GAINS = (0.1, 0.5, 0.7, 1.0, 1.3, 1.6, 2.0, 5.0)
+TIME_CONSTANTS = (0.5, 0.8, 1.67, 2.5, 4.0)  # [s]
+
+
+def channel(**switches: float) -> SampledChannel:
+    """The loop of a controller with these switches, on the craft that it assumes."""
+    controller: Any = load_class("controller", "l1_heading_discrete")(**switches)
+    (found,) = controller.loop_channels()
+    assert isinstance(found, SampledChannel)
+    return found
+
+
+def margins(of: SampledChannel, gain: float = 1.0, time_constant: float | None = None) -> LoopMargins:
+    """Margins for a craft with another input gain or time constant [s] than assumed."""
+    craft = replace(of, damping=1.0 / time_constant) if time_constant else of
+    return loop_margins(craft.loop(gain), high=craft.highest)
+
+
+def main() -> None:
+    """Print both tables."""
+    table = Table("controller", "crossover rad/s", "phase margin deg", "delay margin s")
+    for name, switches in LAWS.items():
+        m = margins(channel(**switches))
+        table.add_row(name, f"{m.crossover:.3f}", f"{degrees(m.phase):.1f}", f"{m.delay:.2f}")
+    Console().print(table)
+    table = Table("craft", "L1 delay margin s", "PD delay margin s")
+    pair = (channel(), channel(adaptive=0.0))
+    cases: list[dict[str, float]] = [{"gain": g} for g in GAINS] + [{"time_constant": t} for t in TIME_CONSTANTS]
+    for case in cases:
+        words = ", ".join(f"{'omega' if k == 'gain' else 'T_n'} {x:g}" for k, x in case.items())
+        found = [margins(one, **case) for one in pair]
+        table.add_row(words, *(f"{m.delay:.2f}" if m.stable else "unstable" for m in found))
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()

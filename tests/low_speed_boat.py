@@ -1,0 +1,73 @@
+"""The water-jet craft at low speed as it might really be, integrated in steps of 10 ms by equations of its own."""
+
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+import numpy as np
+
+from boatsim.base import Array
+from boatsim.recording import Notes, Recording
+
+FINE, ROW = 0.01, 0.1  # [s]
+RATE = 30.0 * pi / 180.0 * FINE  # [rad] nozzle and bucket turn in a step
+BUCKETS = (0.0, 15.0, 30.0, 40.0, 50.0, 55.0)  # [deg]
+
+
+@dataclass(frozen=True)
+class Real:
+    """What the craft really has, in the words of this file."""
+
+    leak: float = 0.0  # share of the jet that passes the bucket
+    late: float = 0.0  # [s] commands
+    astern_time: float = 1.67  # [s] T_n while it goes astern
+    sea: float = 0.0  # [rad/s] rms of waves in the yaw rate
+    sea_frequency: float = 2.5  # [rad/s]
+    pushed: float = 0.0  # [rad/s^2] constant yaw acceleration
+
+
+def commanded(seed: int, seconds_each: float = 12.0) -> tuple[Array, Array]:
+    """Nozzle and bucket [rad], a row every 0.1 s: +-6 or +-12 deg held for 3 s, six bucket angles in random order."""
+    rng = np.random.default_rng(seed)
+    steps = round(seconds_each / 3.0) * len(BUCKETS)
+    nozzle = np.radians(rng.choice([-12.0, -6.0, 6.0, 12.0], steps))
+    bucket = np.radians(np.repeat(rng.permutation(BUCKETS), steps // len(BUCKETS)))
+    return np.repeat(nozzle, round(3.0 / ROW)), np.repeat(bucket, round(3.0 / ROW))
+
+
+def waves(real: Real, n: int, seed: int) -> Array:
+    """The yaw rate r_w of second-order filter waves at every fine step, lambda_w 0.1: a hundred sines by lot."""
+    rng = np.random.default_rng(1000 + seed)
+    w = real.sea_frequency * np.linspace(0.4, 2.5, 300)
+    size = w**2 / ((w**2 - real.sea_frequency**2) ** 2 + (0.2 * real.sea_frequency * w) ** 2)
+    at = FINE * np.arange(n)
+    summed = np.sqrt(2.0 * size / size.sum()) @ np.cos(np.outer(w, at) + rng.uniform(0.0, 2.0 * pi, (300, 1)))
+    return np.asarray(real.sea * summed)
+
+
+def recorded(real: Real, seed: int, commands: tuple[Array, Array] | None = None) -> Recording:
+    """A run from rest as compass, gyro, speed log and a position fix record it."""
+    nozzle, bucket = commands or commanded(seed)
+    every, held = round(ROW / FINE), round(real.late / FINE)
+    n = every * len(nozzle)
+    wave = waves(real, n + 1, seed) if real.sea else np.zeros(n + 1)
+    x = y = psi = r = u = delta = beta = 0.0
+    rows = []
+    for i in range(n):
+        if i % every == 0:
+            rows.append((x, y, psi, u, r + wave[i]))
+        command = nozzle[max(i - held, 0) // every] if i >= held else nozzle[0]
+        delta += min(max(command - delta, -RATE), RATE)
+        lowered = bucket[max(i - held, 0) // every]
+        beta += min(max(lowered - beta, -RATE), RATE)
+        share = cos(2.0 * beta) + real.leak
+        lag = 1.67 if u >= 0.0 else real.astern_time
+        r += FINE * ((share * delta - r) / lag + real.pushed)
+        u += FINE * (2.46 * share - u) / 5.58
+        psi += FINE * (r + wave[i])
+        x, y = x + FINE * u * cos(psi), y + FINE * u * sin(psi)
+    rng = np.random.default_rng(seed)
+    shown = np.array(rows) + rng.standard_normal((len(rows), 5)) * [0.3, 0.3, 0.01, 0.05, 0.5 * pi / 180.0]
+    names = ("x_m", "y_m", "psi_rad", "u_mps", "r_radps")
+    signals = dict(zip(names, shown.T, strict=True)) | {"jet_rad": nozzle, "elevator_rad": bucket}
+    signals["throttle"] = np.ones(len(rows))
+    return Recording(f"{seed}", ROW * np.arange(len(rows)), signals, Notes(vessel="jet_ski", load=("low_speed",)))
