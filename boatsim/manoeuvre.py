@@ -4,9 +4,9 @@ A vessel's [manoeuvring] table says how it is driven ahead and steered. What the
 channels: half of the largest thrust ahead, everything that turns as helm, or more thrust on one side than on the other.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import log10, pi, radians
+from math import inf, log10, pi, radians
 from pathlib import Path
 from typing import Any
 
@@ -39,12 +39,14 @@ def scenario_of(
 ) -> Scenario:
     """The scenario of a manoeuvre; `angle` [deg], positive to starboard, `speed` [m/s] of the approach.
 
-    Raises BadInput for a manoeuvre or vessel that does not exist, or a vessel that can not do it.
+    Raises BadInput for a manoeuvre or vessel that does not exist, or a vessel that can not do it so.
     """
     if manoeuvre not in ANGLES:
         raise BadInput(unknown_name("manoeuvre", manoeuvre, ANGLES))
     vessel = vessels.load(name, loads)
     angle = ANGLES[manoeuvre] if angle is None else angle
+    if angle == 0.0 and manoeuvre != "crash_stop":
+        raise BadInput(f"angle = 0 deg; a {manoeuvre} needs another, usual are {ANGLES[manoeuvre]:g} deg")
     raw = {
         "about": f"{manoeuvre.replace('_', ' ')} of {vessel.name}",
         "vessel": vessel_address(vessel.file),
@@ -56,6 +58,11 @@ def scenario_of(
     if "yaw" not in vessel.freedoms:
         raise BadInput(f"{vessel.name} is not free to turn; of the manoeuvres it can only do roll_decay")
     vessel = replace(vessel, manoeuvring=handled(vessel))
+    _check_commands(vessel, 0.0 if manoeuvre == "crash_stop" else angle)
+    if manoeuvre == "crash_stop" and not vessel.manoeuvring.astern:
+        raise BadInput(
+            f"{vessel.name}: nothing to go astern with; [manoeuvring] astern = {{ CHANNEL = value }} says what"
+        )
     at = approach(vessel, speed)
     return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at), Path(f"{manoeuvre}.toml"))
 
@@ -67,7 +74,7 @@ def handled(vessel: Vessel) -> ManoeuvringTable:
         raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.no_command(wrong[0])}")
     thrusters = [n for n in vessel.actuators if n.endswith("_N")]
     ahead = given.ahead or {n: 0.5 * taken[n].high for n in thrusters}
-    astern = given.astern or {n: max(taken[n].low, -value) for n, value in ahead.items()}
+    astern = given.astern or {n: max(taken[n].low, -value) for n, value in ahead.items() if taken[n].low < 0.0 < value}
     steer = given.steer or {n: 1.0 for n in vessel.actuators if n.endswith("_rad") and taken[n].family != "elevator"}
     if not steer:
         steer = {n: -taken[n].side * ahead[n] / FULL for n in thrusters if taken[n].side and n in ahead}
@@ -75,6 +82,23 @@ def handled(vessel: Vessel) -> ManoeuvringTable:
         raise BadInput(f"{vessel.name}: nothing to steer with; [manoeuvring] steer = {{ CHANNEL = per rad }} says what")
     table = given.model_copy(update={"ahead": ahead, "astern": astern, "steer": steer})
     return table if given.steer else _to_starboard(replace(vessel, manoeuvring=table))
+
+
+def _check_commands(vessel: Vessel, angle: float) -> None:
+    """Ahead, astern and with this much helm [deg] to either side, no command leaves its channel's limits."""
+    table = vessel.manoeuvring
+    all_of_them = {"going ahead": table.ahead, "going astern": table.astern}
+    for side in (angle, -angle):
+        turned = {n: table.ahead.get(n, 0.0) + per_rad * radians(side) for n, per_rad in table.steer.items()}
+        all_of_them[f"{side:g} deg of helm"] = turned
+    for doing, commands in all_of_them.items():
+        for name, value in commands.items():
+            channel = vessel.commands[name]
+            slack = 1e-6 * (channel.high - channel.low)
+            if not channel.low - slack <= value <= channel.high + slack:
+                raise BadInput(
+                    f"{vessel.name}: {doing} means {name} = {value:g}; allowed {channel.low:g} to {channel.high:g}"
+                )
 
 
 def _to_starboard(vessel: Vessel) -> ManoeuvringTable:
@@ -93,6 +117,8 @@ def approach(vessel: Vessel, speed: float | None = None) -> float:
     that makes no way.
     """
     if speed is not None:
+        if not 0.0 < speed < inf:
+            raise BadInput(f"speed = {speed:g} m/s; allowed is more than 0 m/s")
         return speed
     table = vessel.manoeuvring
     u = table.speed or float(_state(vessel, _usual_speed(vessel), table.ahead, HULL_LENGTHS)[-_half(vessel)])
@@ -134,22 +160,18 @@ def _rounded(seconds: float) -> float:
 def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float) -> dict[str, Any]:
     """Tables of a manoeuvre that begins with an approach at a speed."""
     table, unit, step = vessel.manoeuvring, vessel.length / speed, _step(vessel, speed)
-    execute = step * round(BEFORE * unit / step)
-    hold = step * round(HOLD * unit / step)
-    helm = {"use": manoeuvre, "period": step, "execute": execute, "ahead": table.ahead, "steer": table.steer}
-    measure = {"use": manoeuvre, "execute": execute, "length": vessel.length}
-    own: dict[str, Callable[[], tuple[dict[str, Any], dict[str, Any], float]]] = {
-        "turning_circle": lambda: ({"angle": radians(angle)}, {}, LONGEST * unit),
-        "zigzag": lambda: (
-            {"angle": radians(angle), "heading": radians(abs(angle))}, {"heading": radians(abs(angle))}, LONGEST * unit,
-        ),
-        "pull_out": lambda: ({"angle": radians(angle), "hold": hold}, {}, execute + 4 * hold),
-        "spiral": lambda: ({"angle": radians(angle), "hold": hold}, {}, execute + 17 * hold),
-        "crash_stop": lambda: ({"astern": table.astern}, {}, LONGEST * unit),
-    }  # fmt: skip
-    more, asked, duration = own[manoeuvre]()
-    if manoeuvre in ("pull_out", "spiral"):
-        measure = {"use": manoeuvre}
+    execute, hold = (step * round(lengths * unit / step) for lengths in (BEFORE, HOLD))
+    helm, heading = {"angle": radians(angle)}, {"heading": radians(abs(angle))}
+    place = {"execute": execute, "length": vessel.length}
+    own: dict[str, tuple[dict[str, Any], dict[str, Any], float]] = {  # controller, measure, longest time
+        "turning_circle": (helm, place, LONGEST * unit),
+        "zigzag": (helm | heading, place | heading, LONGEST * unit),
+        "pull_out": (helm | {"hold": hold}, {}, execute + 4 * hold),
+        "spiral": (helm | {"hold": hold}, {}, execute + 17 * hold),
+        "crash_stop": ({"astern": table.astern}, place, LONGEST * unit),
+    }
+    controller, measure, duration = own[manoeuvre]
+    handling = {"period": step, "execute": execute, "ahead": table.ahead, "steer": table.steer}
     bars = imo.limits(manoeuvre, angle, vessel.length, speed)
     until = {"until": {"turned": ROUND}} if manoeuvre == "turning_circle" else {}
     return until | {
@@ -157,9 +179,9 @@ def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float) -> di
         "step": step,
         "log": _rounded(unit / ROWS),
         "start": {"u": speed},
-        "controller": helm | more,
+        "controller": {"use": manoeuvre} | handling | controller,
         "camera": {"rate": min(max(1.0 / _rounded(unit / ROWS), 0.1), 6.0)},
-        "measure": measure | asked,
+        "measure": {"use": manoeuvre} | measure,
         "norms": {name: {"high": high} for name, high in bars.items()},
     }
 
@@ -186,7 +208,7 @@ def _roll_period(vessel: Vessel) -> float:
     start = [0.0] * (2 * _half(vessel))
     roll = 0 if _half(vessel) == 1 else 3
     start[roll] = radians(1.0)
-    rows = np.zeros((8000, max(len(vessel.commands), 0)))
+    rows = np.zeros((8000, len(vessel.commands)))
     phi = twin.rollout(start, rows, guess / 400)[:, roll]
     crossings = np.flatnonzero((phi[:-1] > 0.0) & (phi[1:] <= 0.0))
     if len(crossings) < 2:

@@ -44,3 +44,13 @@ def travelled(log: Recording) -> Array:
     """(N,) integral of the surge speed [m] since the first row, trapezoid rule."""
     u = log["u_mps"]
     return np.concatenate(([0.0], np.cumsum(0.5 * (u[1:] + u[:-1]) * np.diff(log.t))))
+
+
+def at(log: Recording, time: float, name: str) -> float:
+    """Value of a column at a time [s], between the rows."""
+    return float(np.interp(time, log.t, log[name]))
+
+
+def track(log: Recording) -> Array:
+    """Distance (N,) travelled up to each row [m]."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(log["x_m"]), np.diff(log["y_m"])))])

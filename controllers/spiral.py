@@ -14,7 +14,7 @@ class Spiral(Steered):
     words: ClassVar[str] = "standard manoeuvre: helm in steps from side to side and back (Dieudonne)"
 
     hold: float = param(60.0, low=0.1, high=1e5, unit="s", words="time for which each angle is held")
-    steps: int = 4  # from midships to the largest angle
+    steps: int = param(4, low=1, high=50, unit="", words="from midships to the largest angle")
 
     def helm(self, sense: Sense) -> float:
         """The angle of this step."""

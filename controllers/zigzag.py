@@ -15,7 +15,7 @@ class Zigzag(Steered):
     words: ClassVar[str] = "standard manoeuvre: reverses the helm each time the heading has reached an angle"
 
     heading: float = param(0.175, low=0.001, high=3.0, unit="rad", words="heading change at which the helm is reversed")
-    reversals: int = 5  # after which it is over
+    reversals: int = param(5, low=1, high=1000, unit="", words="after which it is over")
     _side: float = field(default=0.0, init=False)
     _reversed: int = field(default=0, init=False)
 

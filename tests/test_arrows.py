@@ -13,7 +13,8 @@ LAYERS = (  # a module may import from its own layer and from the lines above it
     "vessel scenario sensors margins",
     "program world native",
     "engine twin",
-    "manoeuvre",
+    "manoeuvre free_body",
+    "pontoon_boat",
     "run metrics rerun_log rerun_scene blueprint env outputs",
     "diagnose",
     "cli __main__",
@@ -23,7 +24,13 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "errors base control adaptive adaptive_loop allocation identification helm".split()
 )
 HEAVY = {  # library -> the only modules that may import it
-    "mujoco": {"world", "native", "engine", "env"},
+    "mujoco": {
+        "world",
+        "native",
+        "engine",
+        "env",
+        "free_body",
+    },  # six freedoms are no vessel: free_body has its own model
     "dm_control": {"env"},
     "dm_env": {"env"},
     "rerun": {"rerun_log", "blueprint"},

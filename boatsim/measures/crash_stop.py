@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.base import param
-from boatsim.measure import Measure
+from boatsim.measure import Measure, at, track
 from boatsim.recording import Recording
 
 
@@ -22,16 +22,17 @@ class CrashStop(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """None if she never stopped."""
-        begin = int(np.searchsorted(log.t, self.execute - 1e-9))
-        stopped = np.flatnonzero(log["u_mps"][begin:] <= 0.0)
+        stopped = np.flatnonzero((log.t > self.execute) & (log["u_mps"] <= 0.0))
         if not len(stopped):
             return {}
-        end = begin + int(stopped[0])
-        x, y, psi0 = log["x_m"][begin : end + 1], log["y_m"][begin : end + 1], log["psi_rad"][begin]
-        dx, dy = x[-1] - x[0], y[-1] - y[0]
+        rows = [int(stopped[0]), int(stopped[0]) - 1]
+        end = float(np.interp(0.0, log["u_mps"][rows], log.t[rows]))
+        psi0 = at(log, self.execute, "psi_rad")
+        dx, dy = (at(log, end, name) - at(log, self.execute, name) for name in ("x_m", "y_m"))
+        travelled = np.interp([self.execute, end], log.t, track(log))
         return {
-            "track_reach": float(np.hypot(np.diff(x), np.diff(y)).sum()) / self.length,
+            "track_reach": float(travelled[1] - travelled[0]) / self.length,
             "head_reach": float(np.cos(psi0) * dx + np.sin(psi0) * dy) / self.length,
             "side_reach": float(np.cos(psi0) * dy - np.sin(psi0) * dx) / self.length,
-            "time_to_stop": float(log.t[end] - log.t[begin]),
+            "time_to_stop": end - self.execute,
         }

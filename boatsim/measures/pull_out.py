@@ -21,6 +21,8 @@ class PullOut(Measure):
     def values(self, log: Recording) -> dict[str, float]:
         """Of the parts there were."""
         helm = log["reference_helm_rad"]
+        if not helm.any():
+            return {}
         begin = int(np.argmax(helm != 0.0))
         ends = [*(begin + np.flatnonzero(np.diff(helm[begin:]))), len(helm) - 1]
         rates = np.degrees(log["r_radps"][ends])

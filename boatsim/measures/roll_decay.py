@@ -22,12 +22,12 @@ class RollDecay(Measure):
     units: ClassVar = {"period": "s", "damping_first": "", "damping_mean": "", "damping_last": ""}
 
     def values(self, log: Recording) -> dict[str, float]:
-        """None for a hull that does not swing."""
+        """None for a hull that does not swing or was not heeled."""
         t, phi = log.t, log["phi_rad"]
         inner = phi[1:-1]
         rows = 1 + np.flatnonzero((inner - phi[:-2]) * (inner - phi[2:]) > 0.0)
         rows = rows[np.abs(phi[rows]) > SMALLEST * abs(phi[0])]
-        if len(rows) < 2:
+        if len(rows) < 2 or not phi[0]:
             return {}
         times, peaks = zip(*(_vertex(t[i - 1 : i + 2], phi[i - 1 : i + 2]) for i in rows), strict=True)
         heights = [abs(phi[0]), *map(abs, peaks)]

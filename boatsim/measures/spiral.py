@@ -24,12 +24,17 @@ class Spiral(Measure):
     }
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Loop height at midships, width over all angles at which the two rates have opposite signs, two rates."""
+        """Loop height at midships, width over all angles at which the two rates have opposite signs, two rates.
+
+        None unless the helm came back to its first angle.
+        """
         helm = log["reference_helm_rad"]
         begin = int(np.argmax(helm != 0.0))
         ends = np.array([*(begin + np.flatnonzero(np.abs(np.diff(helm[begin:])) > SAME)), len(helm) - 1])
         angles, rates = helm[ends], np.degrees(log["r_radps"][ends])
-        turn = int(np.argmin(angles))
+        if len(ends) < 3 or abs(angles[-1] - angles[0]) > SAME:
+            return {}
+        turn = int(np.argmax(np.abs(angles - angles[0])))  # where the helm lies over the other way
         out, back = slice(0, turn + 1), slice(turn, len(ends))
         both = sorted(a for a in angles[out] if np.abs(angles[back] - a).min() < SAME)
         there = np.array([rates[out][np.argmin(np.abs(angles[out] - a))] for a in both])
@@ -39,6 +44,6 @@ class Spiral(Measure):
         return {
             "loop_height": float(abs(there[middle] - again[middle])),
             "loop_width": float(np.degrees(max(loop) - min(loop))) if loop else 0.0,
-            "rate_at_largest": float(rates[int(np.argmax(angles))]),
+            "rate_at_largest": float(rates[0]),
             "rate_midships": float(there[middle]),
         }

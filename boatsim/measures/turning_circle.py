@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.base import param
-from boatsim.measure import Measure
+from boatsim.measure import Measure, at
 from boatsim.recording import Recording
 
 
@@ -29,26 +29,25 @@ class TurningCircle(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """What the turn reached."""
-        begin = int(np.searchsorted(log.t, self.execute - 1e-9))
-        line = begin if self.course < 0.0 else int(np.searchsorted(log.t, self.course - 1e-9))
-        x, y, psi0 = log["x_m"], log["y_m"], log["psi_rad"][line]
+        line = self.execute if self.course < 0.0 else self.course
+        psi0 = at(log, line, "psi_rad")
         c, s = np.cos(psi0), np.sin(psi0)
-        ahead = c * (x[begin:] - x[begin]) + s * (y[begin:] - y[begin])
-        aside = c * (y[begin:] - y[line]) - s * (x[begin:] - x[line])
+        ahead = c * (log["x_m"] - at(log, self.execute, "x_m")) + s * (log["y_m"] - at(log, self.execute, "y_m"))
+        aside = c * (log["y_m"] - at(log, line, "y_m")) - s * (log["x_m"] - at(log, line, "x_m"))
         side = float(np.sign(log["psi_rad"][-1] - psi0))
-        turned = side * (log["psi_rad"][begin:] - psi0)
+        turned = side * (log["psi_rad"] - psi0)
         found = {}
         if turned.max() >= pi / 2:
             found = {
-                "advance": _at(pi / 2, turned, ahead) / self.length,
-                "transfer": side * _at(pi / 2, turned, aside) / self.length,
-                "time_to_90": _at(pi / 2, turned, log.t[begin:]) - float(log.t[begin]),
+                "advance": _when(pi / 2, turned, ahead) / self.length,
+                "transfer": side * _when(pi / 2, turned, aside) / self.length,
+                "time_to_90": _when(pi / 2, turned, log.t) - self.execute,
             }
         if turned.max() >= pi:
             u, v, r = (float(log[n][-1]) for n in ("u_mps", "v_mps", "r_radps"))
             speed = float(np.hypot(u, v))
             found |= {
-                "tactical_diameter": side * _at(pi, turned, aside) / self.length,
+                "tactical_diameter": side * _when(pi, turned, aside) / self.length,
                 "steady_radius": speed / abs(r) / self.length,
                 "steady_speed": speed,
                 "steady_rate": abs(float(np.degrees(r))),
@@ -57,7 +56,7 @@ class TurningCircle(Measure):
         return found
 
 
-def _at(angle: float, turned: np.ndarray, values: np.ndarray) -> float:
+def _when(angle: float, turned: np.ndarray, values: np.ndarray) -> float:
     """Value at which the ship had turned by an angle for the first time, between the rows."""
     i = int(np.argmax(turned >= angle))
     share = (angle - turned[i - 1]) / (turned[i] - turned[i - 1])

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.base import param
-from boatsim.measure import Measure
+from boatsim.measure import Measure, track
 from boatsim.recording import Recording
 
 COUNT = ("first", "second", "third")
@@ -30,21 +30,20 @@ class Zigzag(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many reversals as there were."""
-        begin = int(np.searchsorted(log.t, self.execute - 1e-9))
         helm, psi = log["reference_helm_rad"], log["psi_rad"] - log["psi_rad"][0]
-        reversals = begin + 1 + np.flatnonzero(np.diff(np.sign(helm[begin:])))
-        reversals = reversals[helm[reversals - 1] != 0.0]
+        reversals = 1 + np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0)
         if not len(reversals):
             return {}
-        path = np.hypot(np.diff(log["x_m"][begin:]), np.diff(log["y_m"][begin:]))
-        first = int(reversals[0])
+        last = slice(reversals[0] - 1, reversals[0] + 1)  # rows between which the heading was reached
+        reached = float(np.interp(self.heading, np.sign(helm[last][0]) * psi[last], log.t[last]))
+        travelled = np.interp([self.execute, reached], log.t, track(log))
         found = {
-            "time_to_reversal": float(log.t[first] - log.t[begin]),
-            "track_to_reversal": float(path[: first - begin].sum()) / self.length,
+            "time_to_reversal": reached - self.execute,
+            "track_to_reversal": float(travelled[1] - travelled[0]) / self.length,
         }
         for name, start, end in zip(COUNT, reversals, reversals[1:], strict=False):
             part = float(np.sign(helm[start - 1])) * psi[start : end + 1]
             row = int(np.argmax(part))
             found[f"{name}_overshoot"] = float(np.degrees(part[row] - self.heading))
-            found[f"{name}_overshoot_at"] = float(log.t[start + row] - log.t[begin])
+            found[f"{name}_overshoot_at"] = float(log.t[start + row] - self.execute)
         return found

@@ -1,0 +1,363 @@
+"""Vessels of the literature against their published numbers and against their own equations, integrated by scipy.
+
+The equations here are written from the sources and share nothing with the compiled laws.
+"""
+
+from collections.abc import Callable
+from math import atan2, cos, degrees, exp, hypot, pi, radians, sin, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
+
+from boatsim import scenario, vessel
+from boatsim.base import Array, motion
+from boatsim.engine import Engine, State
+from boatsim.errors import BadPhysics
+from boatsim.free_body import FreeBody, Solid, angles, rotation
+from boatsim.metrics import norms
+from boatsim.pontoon_boat import PontoonBoat, otter, strips
+from boatsim.run import run
+
+Rates = Callable[[Array, float], Array]  # (x, y, psi, u, v, r), rudder [rad] -> their derivatives
+
+
+def sailed(rates: Rates, start: list[float], rudder: float, until: float) -> Array:
+    """State (6,) with the rudder held."""
+    found = solve_ivp(
+        lambda t, s: rates(s, rudder), (0.0, until), start, "DOP853", rtol=1e-10, atol=1e-10
+    )  # fmt: skip
+    return np.asarray(found.y[:, -1])
+
+
+def on_engine(name: str, start: list[float], commands: dict[str, float], until: float, step: float) -> Array:
+    """The same on MuJoCo, its actuators settled from the start."""
+    engine = Engine(vessel.load(name), step=step)
+    x, y, psi, u, v, r = start
+    engine.reset(State(0.0, x, y, psi, 0.0, u, v, 0.0, r), commands)
+    engine.advance(round(until / step))
+    s = engine.state
+    return np.array([s.x, s.y, s.psi, s.u, s.v, s.r])
+
+
+def earth(s: Array) -> list[float]:
+    """x', y', psi'."""
+    _, _, psi, u, v, r = s
+    return [u * cos(psi) - v * sin(psi), u * sin(psi) + v * cos(psi), r]
+
+
+# KVLCC2, 7 m model, MMG standard method (Yasukawa and Yoshimura 2015), origin midship
+
+L, D, RHO = 7.0, 0.46, 1000.0  # [m], [m], [kg/m^3]
+MASS, X_G = 3270.0, 0.25  # [kg], [m]
+M_X, M_Y, J_Z = 0.022 * 0.5 * RHO * L**2 * D, 0.223 * 0.5 * RHO * L**2 * D, 0.011 * 0.5 * RHO * L**4 * D
+HULL_X = {"R": 0.022, "vv": -0.040, "vr": 0.002, "rr": 0.011, "vvvv": 0.771}
+HULL_Y = (-0.315, 0.083, -1.607, 0.379, -0.391, 0.008)  # v, r, vvv, vvr, vrr, rrr
+HULL_N = (-0.137, -0.049, -0.030, -0.294, 0.055, -0.013)
+D_P, T_P, W_P0, X_P = 0.216, 0.22, 0.40, -0.48
+H_R, A_R, F_A, T_R, A_H, X_H = 0.345, 0.0539, 2.747, 0.387, 0.312, -0.464 * L
+L_R, EPSILON, KAPPA = -0.71, 1.09, 0.50
+BALANCED = 11.8516  # [1/s]
+U0 = 1.179  # [m/s]
+
+
+def mmg_forces(u: float, v: float, r: float, delta: float, n: float) -> tuple[float, float, float]:
+    """X, Y, N of hull, propeller and rudder."""
+    U = hypot(u, v)
+    beta, v_, r_ = atan2(-v, u), v / U, r * L / U
+    beta_P = beta - X_P * r_
+    C2 = 1.6 if beta_P > 0 else 1.1
+    w = (1 - W_P0) * (1 + (1 - exp(-2.0 * abs(beta_P))) * (C2 - 1))
+    J = u * w / (n * D_P)
+    K_T = 0.2931 - 0.2753 * J - 0.1385 * J**2
+    eta = D_P / H_R
+    u_R = EPSILON * u * w * sqrt(eta * (1 + KAPPA * (sqrt(1 + 8 * K_T / (pi * J**2)) - 1)) ** 2 + 1 - eta)
+    beta_R = beta - L_R * r_
+    v_R = U * (0.640 if beta_R > 0 else 0.395) * beta_R
+    F_N = 0.5 * RHO * A_R * (u_R**2 + v_R**2) * F_A * sin(delta - atan2(v_R, u_R))
+    k = 0.5 * RHO * L * D * U**2
+    terms = (v_, r_, v_**3, v_**2 * r_, v_ * r_**2, r_**3)
+    q = HULL_X
+    X = k * (-q["R"] + q["vv"] * v_**2 + q["vr"] * v_ * r_ + q["rr"] * r_**2 + q["vvvv"] * v_**4)
+    X += (1 - T_P) * RHO * n**2 * D_P**4 * K_T - (1 - T_R) * F_N * sin(delta)
+    Y = k * float(np.dot(HULL_Y, terms)) - (1 + A_H) * F_N * cos(delta)
+    N = k * L * float(np.dot(HULL_N, terms)) - (-0.5 * L + A_H * X_H) * F_N * cos(delta)
+    return X, Y, N
+
+
+def mmg(s: Array, delta: float) -> Array:
+    u, v, r = s[3:]
+    X, Y, N = mmg_forces(u, v, r, delta, BALANCED)
+    du = (X + (MASS + M_Y) * v * r + X_G * MASS * r**2) / (MASS + M_X)
+    inertia = MASS * (0.25 * L) ** 2 + X_G**2 * MASS + J_Z
+    sway_yaw = [[MASS + M_Y, X_G * MASS], [X_G * MASS, inertia]]
+    dv, dr = np.linalg.solve(sway_yaw, [Y - (MASS + M_X) * u * r, N - X_G * MASS * u * r])
+    return np.array([*earth(s), du, dv, dr])
+
+
+def mmg_wrench(**given: float) -> Array:
+    """Sum of the three effects, without the Coriolis force of the added mass."""
+    boat, m = vessel.load("kvlcc2_mmg"), motion(**given)
+    names = ("mmg_hull", "mmg_propeller", "mmg_rudder")
+    total = np.sum([boat.effect(name).wrench(m) for name in names], axis=0)  # type: ignore[union-attr]
+    return np.asarray(total[[0, 1, 3]] - (M_Y * m.v * m.r, -M_X * m.u * m.r, 0.0))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_mmg_effects_are_the_published_formulas(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    u, v, r = rng.uniform(0.3, 1.5), rng.uniform(-0.3, 0.3), rng.uniform(-0.1, 0.1)
+    delta, n = rng.uniform(-0.6, 0.6), rng.uniform(2.0, 15.0)
+    assert mmg_wrench(u=u, v=v, r=r, delta_rad=delta, n_rps=n) == pytest.approx(mmg_forces(u, v, r, delta, n), rel=1e-5)
+
+
+def test_mmg_propeller_that_stands_still_drags_and_a_ship_at_rest_feels_its_race() -> None:
+    boat = vessel.load("kvlcc2_mmg")
+    propeller, rudder, hull = (boat.effect(f"mmg_{part}") for part in ("propeller", "rudder", "hull"))
+    assert propeller is not None and rudder is not None and hull is not None
+    stopped = propeller.wrench(motion(u=1.0, delta_rad=0.0, n_rps=0.0)).X  # type: ignore[attr-defined]
+    assert stopped == pytest.approx(0.78 * RHO * D_P**2 * -0.1385 * 0.6**2, rel=1e-9)
+    assert rudder.wrench(motion(delta_rad=0.3, n_rps=10.0)).N > 0.0  # type: ignore[attr-defined]
+    spun = hull.wrench(motion(r=0.2)), hull.wrench(motion(r=0.4))  # type: ignore[attr-defined]
+    assert spun[0].N < 0.0 and spun[1].N == pytest.approx(4.0 * spun[0].N)
+
+
+def test_propeller_balances_the_resistance_at_the_published_rate() -> None:
+    found = brentq(lambda n: float(mmg_wrench(u=U0, delta_rad=0.0, n_rps=n)[0]), 8.0, 15.0)
+    assert found == pytest.approx(11.8516, abs=5e-5)
+
+
+@pytest.mark.parametrize("rudder", [0.3, -0.5])
+def test_kvlcc2_mmg_sails_as_by_an_independent_integrator(rudder: float) -> None:
+    start = [0.0, 0.0, 0.3, 1.0, 0.05, -0.02]
+    found = on_engine("kvlcc2_mmg", start, {"delta_rad": rudder, "n_rps": BALANCED}, 60.0, 0.05)
+    assert found == pytest.approx(sailed(mmg, start, rudder, 60.0), rel=1e-5)  # data are rounded to six digits
+
+
+MEASURED = {  # scenario -> published numbers its norms are held against
+    "turning_circle_35": {"advance", "transfer", "tactical_diameter", "steady_speed", "steady_rate", "steady_drift"},
+    "turning_circle_35_port": {"advance", "transfer", "tactical_diameter"},
+    "turning_circle_35_614_rpm": {"advance", "tactical_diameter"},
+    "zigzag_10": {"first_overshoot", "second_overshoot"},
+    "zigzag_20": {"first_overshoot", "second_overshoot"},
+}
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_kvlcc2_mmg_gives_the_published_manoeuvres(name: str) -> None:
+    made = run(scenario.load(f"kvlcc2_mmg/{name}"))
+    found = norms(made)
+    assert {n for n, norm in found.items() if norm.published is not None} == MEASURED[name]
+    assert all(norm.ok for norm in found.values() if norm.ok is not None), found
+    if name == "turning_circle_35":
+        last = [made.recording[n][-1] for n in ("u_mps", "v_mps", "r_radps")]
+        assert last == pytest.approx([0.427100, -0.146748, 0.055538], rel=1e-4)
+
+
+# Mariner (Chislett and Stroem-Tejsen 1965), as the open toolbox has it: derivatives x 1e5 of Chislett's tables
+
+MARINER_U0, MARINER_L = 7.7175, 160.93  # [m/s], [m]
+
+
+def mariner(s: Array, delta: float) -> Array:
+    """In the toolbox a positive rudder angle turns to port, so its sign is turned."""
+    U = hypot(s[3], s[4])
+    u, v, r, d = (s[3] - MARINER_U0) / U, s[4] / U, s[5] * MARINER_L / U, -delta
+    X = (
+        -184 * u - 110 * u**2 - 215 * u**3 - 899 * v**2 + 18 * r**2 - 95 * d**2 - 190 * u * d**2 + 798 * r * v
+        + 93 * v * d + 93 * u * v * d
+    )  # fmt: skip
+    Y = (
+        -1160 * v - 499 * r - 8078 * v**3 + 15356 * v**2 * r - 1160 * v * u - 499 * r * u + 278 * d - 90 * d**3
+        + 556 * u * d + 278 * u**2 * d - 4 * v * d**2 + 1190 * v**2 * d - 4 - 8 * u - 4 * u**2
+    )  # fmt: skip
+    N = (
+        -264 * v - 166 * r + 1636 * v**3 - 5483 * v**2 * r - 264 * v * u - 166 * r * u - 139 * d + 45 * d**3
+        - 278 * u * d - 139 * u**2 * d + 13 * v * d**2 - 489 * v**2 * d + 3 + 6 * u + 3 * u**2
+    )  # fmt: skip
+    m, x_G = 798.0, -0.023
+    du = X / (m + 42.0) * U**2 / MARINER_L
+    sway_yaw = [[m + 748.0, m * x_G + 9.354], [m * x_G - 4.646, 39.2 + 43.8]]
+    dv, dr = np.linalg.solve(sway_yaw, [Y, N]) * U**2 / MARINER_L
+    return np.array([*earth(s), du, dv, dr / MARINER_L])
+
+
+@pytest.mark.parametrize("rudder", [radians(20.0), radians(-35.0)])
+def test_mariner_sails_as_by_an_independent_integrator(rudder: float) -> None:
+    start = [0.0, 0.0, 0.2, 7.0, 0.3, -0.002]
+    found = on_engine("mariner", start, {"delta_rad": rudder}, 300.0, 0.25)
+    assert found == pytest.approx(sailed(mariner, start, rudder, 300.0), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["turning_circle_35", "zigzag_10", "zigzag_20", "pull_out_20"])
+def test_mariner_does_as_the_toolbox(name: str) -> None:
+    found = norms(run(scenario.load(f"mariner/{name}")))
+    assert sum(norm.ok is True for norm in found.values()) >= 4
+    assert all(norm.ok is not False for norm in found.values()), found
+
+
+# Otter in six freedoms (Fossen's toolbox)
+
+# order u v w p q r, about the origin midships [kg, kg m, kg m^2]
+OTTER_MASS = np.diag([60.28152101, 137.5, 110.0, 14.517184, 29.15, 39.325])
+for (i, j), value in {(0, 4): -11.0, (1, 3): 11.0, (1, 5): 11.0, (2, 4): -11.0, (3, 5): 2.2}.items():
+    OTTER_MASS[i, j] = OTTER_MASS[j, i] = value
+OTTER_ADDED = np.diag([5.28152101, 82.5, 55.0, 2.052864, 11.0, 23.375])
+OTTER_DAMPING = np.array([77.55443235, 137.5, 546.48048913, 50.02366181, 218.18785613, 39.325])
+OTTER_DRAUGHT = 0.134146341463  # [m]
+TURN = {  # after 20 s, port 80, starboard 60 rad/s: printed to eight decimals
+    "velocity": (1.40535943, -0.09073613, -0.00011745, -0.00001268, -0.00041727, 0.17057993),
+    "pose": (0.23809611, 16.65627828, -0.00001107, -0.00244617, 0.00007436, 3.24853616),
+}
+
+
+def skew(a: Array) -> Array:
+    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
+
+
+def coriolis_matrix(M: Array, nu: Array) -> Array:
+    """Fossen 2021, eq. 3.46."""
+    a = M @ nu
+    return np.block([[np.zeros((3, 3)), -skew(a[:3])], [-skew(a[:3]), -skew(a[3:])]])
+
+
+def restoring() -> Array:
+    """Hydrostatics of the two pontoons, moved from the centre of flotation to the origin."""
+    rho_g, b, length, c, V, T = 1025 * 9.81, 0.25, 2.0, 0.75, 55 / 1025, OTTER_DRAUGHT
+    plane = c * length * b
+    across = 2 / 12 * length * b**3 * 6 * c**3 / ((1 + c) * (1 + 2 * c)) + 2 * plane * 0.395**2
+    along = 0.8 * 2 / 12 * b * length**3
+    KB, KG = (5 * T / 2 - V / (2 * length * b)) / 3, T + 0.2
+    stiffness = [0, 0, rho_g * 2 * plane, rho_g * V * (KB + across / V - KG), rho_g * V * (KB + along / V - KG), 0]
+    H = np.eye(6)
+    H[:3, 3:] = skew(np.array([-0.2, 0.0, 0.0])).T
+    return np.asarray(H.T @ np.diag(stiffness) @ H)
+
+
+def cross_flow(v: float, r: float) -> tuple[float, float]:
+    """The integrals in closed form: of w = v + x r the antiderivatives are |w|^3 / 3 and |w| w^3 / 4."""
+    if abs(r) < 1e-4:  # where the differences below lose their digits
+        points = [-v / r] if r and abs(v / r) < 1.0 else None
+        one, two = (
+            quad(lambda x, k=k: abs(v + x * r) * (v + x * r) * x**k, -1, 1, points=points, epsabs=1e-15)[0]
+            for k in (0, 1)
+        )
+        return float(one), float(two)
+    ends = (v - r, v + r)
+    cube, fourth = (
+        (abs(ends[1]) ** 3 - abs(ends[0]) ** 3) / 3,
+        (ends[1] ** 3 * abs(ends[1]) - ends[0] ** 3 * abs(ends[0])) / 4,
+    )
+    return cube / r, (fourth - v * cube) / r**2
+
+
+def otter_rates(t: float, s: Array, G: Array) -> Array:
+    eta, nu, n = s[:6], s[6:12], s[12:]
+    port, starboard = 0.01108 * n * np.abs(n)
+    tau = np.array([port + starboard, 0, 0, 0, 0, 0.395 * (port - starboard)]) - OTTER_DAMPING * nu - G @ eta
+    tau[5] -= 10 * abs(nu[5]) * OTTER_DAMPING[5] * nu[5]
+    k = 0.5 * 1025 * OTTER_DRAUGHT * 0.847030
+    Y, N = cross_flow(nu[1], nu[5])
+    Z, M = cross_flow(nu[2], -nu[4])
+    tau -= k * np.array([0, Y, Z, 0, -M, N])
+    rigid = OTTER_MASS - OTTER_ADDED
+    tau -= (coriolis_matrix(rigid, nu) + coriolis_matrix(OTTER_ADDED, nu)) @ nu
+    phi, theta, psi = eta[3:]
+    W = np.array(
+        [
+            [1, sin(phi) * sin(theta) / cos(theta), cos(phi) * sin(theta) / cos(theta)],
+            [0, cos(phi), -sin(phi)],
+            [0, sin(phi) / cos(theta), cos(phi) / cos(theta)],
+        ]
+    )
+    about_z = np.array([[cos(psi), -sin(psi), 0], [sin(psi), cos(psi), 0], [0, 0, 1]])
+    about_y = np.array([[cos(theta), 0, sin(theta)], [0, 1, 0], [-sin(theta), 0, cos(theta)]])
+    about_x = np.array([[1, 0, 0], [0, cos(phi), -sin(phi)], [0, sin(phi), cos(phi)]])
+    place = about_z @ about_y @ about_x @ nu[:3]
+    return np.concatenate([place, W @ nu[3:], np.linalg.solve(OTTER_MASS, tau), (np.array([80.0, 60.0]) - n) / 0.1])
+
+
+def with_stations(stations: int) -> PontoonBoat:
+    boat = otter()
+    return boat.model_copy(update={"water": boat.water.model_copy(update={"stations": stations})})
+
+
+def test_otter_has_the_published_mass_matrix_and_draught() -> None:
+    boat, c = otter(), skew(np.array([0.2, 0.0, -0.2]))
+    rigid = np.block(
+        [[55.0 * np.eye(3), -55.0 * c], [55.0 * c, np.diag(boat.inertia) - 55.0 * c @ c]]
+    )  # about the origin
+    assert rigid + np.diag(boat.water.added_mass) == pytest.approx(OTTER_MASS, abs=1e-8)
+    assert boat.draught == pytest.approx(0.134146, abs=5e-7)
+    assert boat.stiffness() == pytest.approx(restoring(), rel=1e-9, abs=1e-9)
+
+
+def test_otter_turns_as_published() -> None:
+    body = with_stations(21).launched(80.0, 60.0)
+    body.advance(1000)
+    assert body.velocity == pytest.approx(np.array(TURN["velocity"]), rel=1e-4, abs=5e-9)  # half of the last digit
+    pose = body.pose
+    assert pose[5] == pytest.approx(TURN["pose"][5] - 2 * pi, rel=1e-4)
+    assert pose[:5] == pytest.approx(np.array(TURN["pose"][:5]), rel=1e-4, abs=5e-9)
+
+
+def test_otter_goes_straight_as_published() -> None:
+    body = otter().launched(60.0, 60.0)
+    body.advance(2000)
+    assert body.velocity[0] == pytest.approx(1.02864527, rel=1e-8)
+    assert body.pose[0] == pytest.approx(40.19200, abs=5e-6)
+
+
+def test_otter_turns_as_by_an_independent_integrator_with_the_exact_integral() -> None:
+    body = with_stations(0).launched(80.0, 60.0)
+    body.advance(1000)
+    found = solve_ivp(otter_rates, (0, 20), np.zeros(14), "DOP853", args=(restoring(),), rtol=1e-9, atol=1e-11).y[:, -1]
+    assert body.velocity == pytest.approx(found[6:12], rel=1e-6, abs=1e-9)
+    wanted = found[:6] - [0, 0, 0, 0, 0, 2 * pi]
+    assert body.pose == pytest.approx(wanted, rel=1e-5, abs=1e-9)
+
+
+@pytest.mark.parametrize(("v", "r"), [(0.3, 0.2), (-0.1, 0.4), (0.2, -0.5), (0.2, 0.0)])
+def test_strips_of_a_pontoon(v: float, r: float) -> None:
+    assert strips(v, r, 1.0, 0) == pytest.approx(cross_flow(v, r), rel=1e-9, abs=1e-12)
+    assert strips(v, r, 1.0, 20001) == pytest.approx(cross_flow(v, r), rel=1e-6, abs=1e-8)
+
+
+# A body free in six ways, nothing acting on it: energy and momentum last, whatever its added mass
+
+
+def test_a_free_body_keeps_energy_and_momentum() -> None:
+    root = np.random.default_rng(5).normal(size=(6, 6))
+    added, centre, inertia = root @ root.T, np.array([0.1, -0.05, 0.2]), np.array([2.0, 3.0, 4.0])
+    solid = Solid(6.0, centre, inertia, added)
+    c = skew(centre)
+    M = added + np.block([[6.0 * np.eye(3), -6.0 * c], [6.0 * c, np.diag(inertia) - 6.0 * c @ c]])
+    body = FreeBody(solid, lambda t, pose, nu: np.zeros(6), step=2e-3)
+    pose, nu = np.array([0.3, -0.2, 0.1, 0.2, -0.3, 1.0]), np.array([0.5, 0.2, -0.3, 0.6, -0.4, 0.8])
+    body.put(pose, nu)
+    assert body.pose == pytest.approx(pose) and body.velocity == pytest.approx(nu)
+
+    def kept() -> Array:
+        nu, turn = body.velocity, rotation(body.pose[3:])
+        linear = turn @ (M @ nu)[:3]
+        angular = turn @ (M @ nu)[3:] + np.cross(body.pose[:3], linear)
+        return np.array([0.5 * nu @ M @ nu, *linear, *angular])
+
+    before = kept()
+    body.advance(2000)
+    assert np.abs(body.velocity - nu).max() > 0.1
+    assert kept() == pytest.approx(before, rel=1e-5, abs=1e-5)
+
+
+def test_angles_of_a_rotation() -> None:
+    euler = np.array([0.4, -0.7, 2.5])
+    assert angles(rotation(euler)) == pytest.approx(euler)
+    assert degrees(angles(np.eye(3)).max()) == 0.0
+
+
+def test_a_free_body_must_not_have_its_mass_centre_at_its_origin() -> None:
+    solid: Any = Solid(1.0, np.zeros(3), np.ones(3), np.eye(6))
+    with pytest.raises(BadPhysics, match="mass centre must not be its origin"):
+        FreeBody(solid, lambda t, pose, nu: np.zeros(6))
