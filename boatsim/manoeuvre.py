@@ -6,7 +6,7 @@ channels: half of the largest thrust ahead, everything that turns as helm, or mo
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import inf, log10, pi, radians
+from math import log10, pi, radians
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +39,8 @@ def scenario_of(
 ) -> Scenario:
     """The scenario of a manoeuvre; `angle` [deg], positive to starboard, `speed` [m/s] of the approach.
 
-    Raises BadInput for a manoeuvre or vessel that does not exist, or a vessel that can not do it so.
+    Without an angle it is the usual one, or as much helm as the vessel has. Raises BadInput for a manoeuvre or vessel
+    that does not exist, or a vessel that can not do it so.
     """
     if manoeuvre not in ANGLES:
         raise BadInput(unknown_name("manoeuvre", manoeuvre, ANGLES))

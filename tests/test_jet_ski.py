@@ -58,7 +58,16 @@ def test_thrust_rises_no_more_below_half_a_metre_a_second() -> None:
 
 
 def test_sway_roll_and_yaw_of_the_craft_are_the_printed_matrix() -> None:
-    given = {"u": 20.0, "v": -0.7, "p": 0.3, "r": 0.5, "phi": 0.2, "jet_rad": 0.15, "throttle": 3.0}
+    given = {
+        "u": 20.0,
+        "v": -0.7,
+        "p": 0.3,
+        "r": 0.5,
+        "phi": 0.2,
+        "jet_rad": 0.15,
+        "throttle": 3.0,
+        "elevator_rad": 0.0,
+    }
     m = motion(**given)
     total = np.sum([e.wrench(m) for e in CRAFT.effects if hasattr(e, "wrench")], axis=0)
     accelerations = total[1] / MASS - m.u * m.r, total[2] / ROLL, total[3] / YAW

@@ -383,7 +383,7 @@ def test_step_response_of_a_second_order_system() -> None:
 def test_step_that_is_never_made_has_no_times() -> None:
     t = np.arange(0.0, 5.0, 0.1)
     found = StepResponse(signal="y", target=1.0).values(logged(t, y=0.1 * t))
-    assert set(found) == {"overshoot", "end_error"} and found["end_error"] == pytest.approx(51.0)
+    assert set(found) == {"overshoot", "end_error", "end"} and found["end_error"] == pytest.approx(51.0)
 
 
 def test_holding_a_heading_is_measured_about_its_mean() -> None:

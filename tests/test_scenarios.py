@@ -205,7 +205,7 @@ MISTAKES = [
     ({"vessel": "joystik_boat"}, r"vessel 'joystik_boat' .*did you mean 'joystick_boat'"),
     ({"load": ["lite"]}, r"load 'lite' .*did you mean 'light'"),
     ({"duration": -1.0}, r"duration = -1"),
-    ({"measure": "sawy"}, r"measure = 'sawy'"),
+    ({"measure": "sawy"}, r"measure 'sawy' does not exist; did you mean 'sway'"),
     ({"tank": {"lenght": 1.5}}, r"key in \[tank\] 'lenght' .*did you mean 'length'"),
     ({"start": {"x": 9.0}}, r"lies outside the tank"),
     ({"controller": {"use": "l1_joystik"}}, r"controller 'l1_joystik' .*did you mean 'l1_joystick'"),
