@@ -6,7 +6,7 @@ channels: half of the largest thrust ahead, everything that turns as helm, or mo
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import log10, pi, radians
+from math import degrees, inf, log10, pi, radians
 from pathlib import Path
 from typing import Any
 
@@ -45,8 +45,8 @@ def scenario_of(
     if manoeuvre not in ANGLES:
         raise BadInput(unknown_name("manoeuvre", manoeuvre, ANGLES))
     vessel = vessels.load(name, loads)
-    angle = ANGLES[manoeuvre] if angle is None else angle
-    if angle == 0.0 and manoeuvre != "crash_stop":
+    usual = ANGLES[manoeuvre] if angle is None else angle
+    if usual == 0.0 and manoeuvre != "crash_stop":
         raise BadInput(f"angle = 0 deg; a {manoeuvre} needs another, usual are {ANGLES[manoeuvre]:g} deg")
     raw = {
         "about": f"{manoeuvre.replace('_', ' ')} of {vessel.name}",
@@ -55,10 +55,11 @@ def scenario_of(
         "sensors": {"ideal": True},
     }
     if manoeuvre == "roll_decay":
-        return scenario.from_table(raw | _released(vessel, angle), Path(f"{manoeuvre}.toml"))
+        return scenario.from_table(raw | _released(vessel, usual), Path(f"{manoeuvre}.toml"))
     if "yaw" not in vessel.freedoms:
         raise BadInput(f"{vessel.name} is not free to turn; of the manoeuvres it can only do roll_decay")
     vessel = replace(vessel, manoeuvring=handled(vessel))
+    angle = min(usual, helm_of(vessel)) if angle is None else angle
     _check_commands(vessel, 0.0 if manoeuvre == "crash_stop" else angle)
     if manoeuvre == "crash_stop" and not vessel.manoeuvring.astern:
         raise BadInput(
@@ -83,6 +84,16 @@ def handled(vessel: Vessel) -> ManoeuvringTable:
         raise BadInput(f"{vessel.name}: nothing to steer with; [manoeuvring] steer = {{ CHANNEL = per rad }} says what")
     table = given.model_copy(update={"ahead": ahead, "astern": astern, "steer": steer})
     return table if given.steer else _to_starboard(replace(vessel, manoeuvring=table))
+
+
+def helm_of(vessel: Vessel) -> float:
+    """Largest helm [deg] that all its channels can follow to both sides."""
+    table, taken = vessel.manoeuvring, vessel.commands
+    room = [
+        min(taken[n].high - table.ahead.get(n, 0.0), table.ahead.get(n, 0.0) - taken[n].low) / abs(per_rad)
+        for n, per_rad in table.steer.items()
+    ]
+    return float(np.round(degrees(min(room)), 1))
 
 
 def _check_commands(vessel: Vessel, angle: float) -> None:

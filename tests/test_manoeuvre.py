@@ -282,10 +282,11 @@ def test_every_vessel_that_can_turn_does_a_short_zigzag_and_a_turning_circle(nam
     assert seen["psi_rad"][np.argmax(seen["reference_helm_rad"] > 0.0) :][3] > -1e-4  # a positive angle is to starboard
     for command, channel in boat.commands.items():
         assert channel.low <= seen[command].min() and seen[command].max() <= channel.high
-    made = run(replace(turn, file=turn.file.model_copy(update={"duration": 25.0 * unit})))
+    made = run(replace(turn, file=turn.file.model_copy(update={"duration": 100.0 * unit})))
     found = {k: norm.value for k, norm in norms(made).items()}
     assert made.recording["psi_rad"][-1] > pi
-    assert 0.1 < found["tactical_diameter"] < 10.0 and 0.5 < found["advance"] < 6.0  # type: ignore[operator]
+    widest = 25.0 if name == "jet_ski" else 10.0  # [L] eight lengths a second
+    assert 0.1 < found["tactical_diameter"] < widest and 0.5 < found["advance"] < 0.6 * widest  # type: ignore[operator]
     assert found["steady_drift"] > 0.0 or name == "catamaran"  # type: ignore[operator]  # whose thruster is at the bow
 
 
