@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from runs import found
@@ -18,7 +19,12 @@ def with_today(value: float | None) -> golden.Values:
     return {"yaw_rate_inf": OLD["yaw_rate_inf"] | {"today": value}}
 
 
-@pytest.mark.parametrize("name", TRACKED)
+def by_speed(name: str) -> Any:
+    """The thesis' tests are always run, the other papers' many scenarios with the slow tests."""
+    return name if name.startswith("joystick_boat/") else pytest.param(name, marks=pytest.mark.slow)
+
+
+@pytest.mark.parametrize("name", map(by_speed, TRACKED))
 def test_norms_are_what_they_were(name: str) -> None:
     lines = drifts(name, kept(name), values(found(name)[0]))
     assert not lines, "\n".join([*lines, 'if this is wanted: python -m benchmarks.golden --update --reason "..."'])

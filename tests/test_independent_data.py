@@ -11,6 +11,8 @@ import pytest
 from answers import diagnosed, named, nothing_missing
 from real_boat import FURTHER, Real, recorded
 
+pytestmark = pytest.mark.slow
+
 
 @dataclass(frozen=True)
 class Case:

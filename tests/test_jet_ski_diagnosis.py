@@ -13,6 +13,8 @@ from boatsim.base import Array
 from boatsim.diagnose import analysis
 from boatsim.recording import Recording
 
+pytestmark = pytest.mark.slow
+
 ROWS = 300  # 60 s at 5 Hz
 
 

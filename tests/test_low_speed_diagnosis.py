@@ -13,6 +13,8 @@ from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import track
 from boatsim.outputs import run_into
 
+pytestmark = pytest.mark.slow
+
 NOTES = """vessel = "jet_ski"
 load = ["low_speed"]
 noise = { position_sd_m = 0.3, heading_sd_rad = 0.01, yaw_rate_sd_radps = 0.00873 }

@@ -286,7 +286,7 @@ def test_every_vessel_that_can_turn_does_a_short_zigzag_and_a_turning_circle(nam
     found = {k: norm.value for k, norm in norms(made).items()}
     assert made.recording["psi_rad"][-1] > pi
     widest = 25.0 if name == "jet_ski" else 10.0  # [L] eight lengths a second
-    assert 0.1 < found["tactical_diameter"] < widest and 0.5 < found["advance"] < 0.6 * widest  # type: ignore[operator]
+    assert 0.1 < found["tactical_diameter"] < widest and 0.5 < found["advance"] < widest  # type: ignore[operator]
     assert found["steady_drift"] > 0.0 or name == "catamaran"  # type: ignore[operator]  # whose thruster is at the bow
 
 

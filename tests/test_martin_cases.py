@@ -17,6 +17,8 @@ from boatsim.base import Array
 from boatsim.diagnose import analysis
 from boatsim.recording import Recording
 
+pytestmark = pytest.mark.slow
+
 # ---- A, B: the tank model rolls at rest
 
 PERIOD, AT_REST, KEEL = 1.49, 0.0119, 1.065  # [s]; damping ratio of the simulation; quadratic damping per inertia
