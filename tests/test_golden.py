@@ -24,7 +24,7 @@ def by_speed(name: str) -> Any:
     return name if name.startswith("joystick_boat/") else pytest.param(name, marks=pytest.mark.slow)
 
 
-@pytest.mark.parametrize("name", map(by_speed, TRACKED))
+@pytest.mark.parametrize("name", [by_speed(name) for name in TRACKED])
 def test_norms_are_what_they_were(name: str) -> None:
     lines = drifts(name, kept(name), values(found(name)[0]))
     assert not lines, "\n".join([*lines, 'if this is wanted: python -m benchmarks.golden --update --reason "..."'])
