@@ -8,6 +8,8 @@ from numba import njit
 
 from boatsim.base import Force, Wrench, param
 
+SLOWEST = 0.3  # of the approach speed; what tests about it say of slower ships is not defined there
+
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
@@ -16,9 +18,7 @@ def law(m: Any, q: Any) -> Wrench:
     The model's own inertia, which need not be symmetric, is solved here; nondimensional as in the source: speeds over
     the instantaneous U, times over L / U, the rudder's sign turned so that a positive angle steers to starboard.
     """
-    U = sqrt(m.ur * m.ur + m.vr * m.vr)
-    if U < 1e-9:
-        return Wrench(0.0, 0.0, 0.0, 0.0)
+    U = max(sqrt(m.ur * m.ur + m.vr * m.vr), SLOWEST * q.speed)
     u, v, r, d = (m.ur - q.speed) / U, m.vr / U, m.r * q.length / U, -m.delta_rad
     X = (
         u * (q.X_u + u * (q.X_uu + u * q.X_uuu)) + q.X_vv * v * v + q.X_rr * r * r + q.X_rv * r * v

@@ -34,6 +34,7 @@ NZ = CALM + (2 * NQ if SWELLS else 0)
 # logarithm (as of a Cauchy distribution), neither with a jump at which a fit would get stuck
 GATE = 5.0
 IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has lost track and must follow
+SMALLEST = 2.0**-40  # share of a sample over which a transition begins; a hull stiffer than that has gone wild
 INVERT = 10  # rounds of the inversion of what the instruments show, which is never far from the truth
 
 
@@ -79,7 +80,7 @@ def transition(
     part, stiffest = h, 0.0
     for i in range(NQ, NY):
         stiffest = max(stiffest, abs(A[i, i]))
-    while part * stiffest > 1.0:
+    while part * stiffest > 1.0 and part > SMALLEST * h:
         part *= 0.5
     for i in range(NY):
         for j in range(CALM):
