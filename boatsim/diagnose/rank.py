@@ -131,10 +131,17 @@ class _Search:
         """The set without members that gain too little on top of the others, and what is to be said of the rest."""
         while True:
             named = tuple(self.named(best, n) for n in best.suspects)
-            weak = [n for n in named if n.gain < ENOUGH]
+            weak = [n for n in named if n.gain < ENOUGH or not self.there(best, n.name)]
             if not weak:
                 return best, named
             best = self.without(best, min(weak, key=lambda n: n.gain).name)
+
+    def there(self, best: Fit, name: str) -> bool:
+        """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it."""
+        params = next(type(e).params() for e in self.problem.program.suspects if e.name() == name)
+        fitted = {f.name: params[f.name].absent for f in best.free if f.effect == name and not f.relative}
+        found = {n: best.value(name, n) for n in fitted}
+        return not found or any(abs(x - fitted[n]) > sd for n, (x, sd) in found.items())
 
     def named(self, best: Fit, name: str) -> Named:
         """Gain of one effect on top of the others, and how its rivals do in its place."""
