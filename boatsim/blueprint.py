@@ -126,21 +126,29 @@ def _view(
     scene: Scene, trails: Sequence[str], eye: tuple[float, float, float] | None = None, title: str = ""
 ) -> rrb.Spatial3DView:
     """The scene seen from astern and above, or from `eye`; trails show everything up to the time cursor."""
-    length, width, x, y = scene.tank
-    size = max(length, width)
     so_far = rrb.VisibleTimeRanges(
         timeline=TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
     )
     return rrb.Spatial3DView(
         origin=WORLD,
-        name=title or f"{scene.vessel} in its tank",
+        name=title or f"{scene.vessel} in {'open water' if scene.open else 'its tank'}",
         background=SKY,
         line_grid=False,
-        eye_controls=rrb.EyeControls3D(
-            position=eye or (x - 0.6 * size, -y, 0.6 * size), look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0)
-        ),
+        eye_controls=_with_boat() if scene.open and eye is None else _still(scene, eye),
         overrides={f"{WORLD}/{trail}": so_far for trail in trails},
     )
+
+
+def _with_boat() -> rrb.EyeControls3D:
+    """An eye for open water: it turns about the boat and begins with all of its path in view."""
+    return rrb.EyeControls3D(tracking_entity=f"{WORLD}/boat", eye_up=(0.0, 0.0, 1.0))
+
+
+def _still(scene: Scene, eye: tuple[float, float, float] | None) -> rrb.EyeControls3D:
+    """An eye at a place, or astern and above, that looks at the middle of the tank."""
+    length, width, x, y = scene.tank
+    place = eye or (x - 0.6 * max(length, width), -y, 0.6 * max(length, width))
+    return rrb.EyeControls3D(position=place, look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0))
 
 
 def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:

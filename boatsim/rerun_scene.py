@@ -22,6 +22,8 @@ OUTBOARD = "outboard_"  # bodies of this name turn with the steering of their si
 BALL, BARREL, BRICK, MESH = 4, 5, 6, 7  # mjtGeom: ellipsoid, cylinder, box, mesh
 ROUND = 2  # mjtGeom: sphere
 REACH = 0.6  # a full-thrust arrow is this part of the boat's length
+PUSH = 0.05  # share of the weight that a force as long as REACH has on a boat whose thrust is not a command
+GRAVITY = 9.81  # [m/s^2]
 
 
 class Solid(NamedTuple):
@@ -54,6 +56,7 @@ class Scene:
     solids: tuple[Solid, ...] = ()
     thrusters: tuple[Thruster, ...] = ()
     reach: float = 0.3  # [m/N] length of an arrow per newton
+    open: bool = False  # no walls: the boat may go anywhere, and the eye goes with it
 
     def outline(self) -> Array:
         """(V, 2) m, closed, of what is drawn of the hull, seen from above (its convex hull)."""
@@ -71,7 +74,8 @@ def scene_from(model: Any, vessel: "Vessel", tank: Any) -> Scene:
         (tank.length, tank.width, *tank.centre),
         tuple(_solids(model)),
         tuple(_thrusters(model)),
-        REACH * vessel.length / max(thrust, default=1.0),
+        REACH * vessel.length / max(thrust, default=PUSH * GRAVITY * vessel.body.mass),
+        open=not tank.walls,
     )
 
 
