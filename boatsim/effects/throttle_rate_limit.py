@@ -1,12 +1,26 @@
 """Throttle rate limit: the handle is moved no faster than a rate."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from boatsim.base import Channel, param
-from boatsim.effects.steering_rate_limit import channel
+from numba import njit
+
+from boatsim.base import Array, Channel, param
 
 INSTANT = 1e3  # [1/s] whatever is quicker follows its command at once
+
+
+@njit(inline="always")
+def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
+    """A ramp to the command, then the command; the mean over the step is exact."""
+    gap = x - memory[at]
+    needed = 0.0 if q.rate >= INSTANT else abs(gap) / q.rate  # [s]
+    if needed <= dt:
+        memory[at] = x
+        return x - 0.5 * gap * needed / dt
+    turn = q.rate * dt if gap > 0.0 else -q.rate * dt
+    memory[at] += turn
+    return memory[at] - 0.5 * turn
 
 
 @dataclass(frozen=True)
