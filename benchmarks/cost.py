@@ -18,9 +18,9 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from boatsim import vessel
-from boatsim.recording import Recording, write_csv
-from boatsim.twin import Twin
+from boatsim.physics import vessel
+from boatsim.recordings.table import Recording, write_csv
+from boatsim.simulate.twin import Twin
 
 BOAT, HELD, STEP = "trial_boat", 5 / 6, 1 / 60  # vessel, [s] between joystick steps, [s] of integration
 NOISE = (0.003, 0.003, 0.012)  # [m, m, rad] of camera and compass

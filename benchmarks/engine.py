@@ -17,11 +17,12 @@ from time import perf_counter
 from rich.console import Console
 from rich.table import Table
 
-from boatsim import scenario, vessel
-from boatsim.engine import Engine, State
-from boatsim.run import run
-from boatsim.twin import Twin
-from boatsim.world import Tank
+from boatsim.physics import vessel
+from boatsim.simulate import scenario
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.run import run
+from boatsim.simulate.twin import Twin
+from boatsim.simulate.world import Tank
 
 ROUNDS = 5
 STEP = 0.02  # [s]

@@ -20,15 +20,15 @@ from functools import cache
 import numpy as np
 from rich.progress import track as shown
 
-from boatsim import vessel
-from boatsim.base import Array
 from boatsim.diagnose.analysis import suspects_of
-from boatsim.diagnose.experiment import Plan, next_experiment, plans, question
 from boatsim.diagnose.filter import axes_of, nominal_levels, track
+from boatsim.diagnose.next.experiment import Plan, next_experiment, plans, question
 from boatsim.diagnose.problem import Problem, scale_of
-from boatsim.diagnose.rank import Ranking, rank
-from boatsim.program import Program
-from boatsim.recording import Recording
+from boatsim.diagnose.search.rank import Ranking, rank
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+from boatsim.recordings.table import Recording
 
 BOAT, STRENGTH, ERROR = "trial_boat", 0.5, 0.05
 SHORT, LONG = 20.0, 40.0  # [s] of the first run, and of one more

@@ -11,11 +11,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from boatsim import scenario
-from boatsim.content import names
-from boatsim.metrics import Norm, norms
-from boatsim.recording import replacing
-from boatsim.run import run
+from boatsim.files import replacing
+from boatsim.physics.content import names
+from boatsim.simulate import scenario
+from boatsim.simulate.metrics import Norm, norms
+from boatsim.simulate.run import run
 
 HOME = Path(__file__).parents[1]
 HEADING = "## Norms"

@@ -2,7 +2,7 @@
 
 TRIALS/Txxx/ holds run_1.csv, run_2.csv, answer.json and missing_force_1.csv, missing_force_2.csv: the force missing on
 the vessel as written (body axes, 1 s averages) at times t_s. Each trial's noise is fitted, its coefficients are
-recalibrated, and the force that `boatsim.diagnose.locate` finds, an average over 1 s too, is compared sample by sample,
+recalibrated, and the force that `diagnose.locate.forces` finds, an average over 1 s too, is compared sample by sample,
 one sample per time and axis:
 
 inside     share of samples at which the true force lies within 2 sd of the found one, the mean over trials
@@ -31,14 +31,14 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.trials import SHARED
-from boatsim.base import Array
 from boatsim.diagnose.analysis import open_recording, suspects_of
 from boatsim.diagnose.filter import axes_of, nominal_levels, stated_noise, track
-from boatsim.diagnose.locate import BAND, missing_force
+from boatsim.diagnose.locate.forces import BAND, missing_force
+from boatsim.diagnose.locate.regions import LIKELY, Region, regions
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.rank import baseline
-from boatsim.diagnose.regions import LIKELY, Region, regions
-from boatsim.program import Program
+from boatsim.diagnose.search.rank import baseline
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
 
 RUNS = (1, 2)
 NOTHING = "nothing missing"

@@ -12,8 +12,8 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from boatsim.adaptive import LoopMargins, SampledChannel, loop_margins
-from boatsim.content import load_class
+from boatsim.control.adaptive import LoopMargins, SampledChannel, loop_margins
+from boatsim.physics.content import load_class
 
 LAWS = {  # switches of the controller
     "PD, no filter": {"adaptive": 0.0, "wave_filter": 0.0},

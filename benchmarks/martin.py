@@ -20,14 +20,14 @@ from typing import Any
 
 import numpy as np
 
-from boatsim import scenario
-from boatsim.base import Array
-from boatsim.control import Sense
-from boatsim.program import Program
-from boatsim.recording import Recording
-from boatsim.run import run
-from boatsim.scenario import Scenario
-from boatsim.twin import earth_rates
+from boatsim.control.base import Sense
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+from boatsim.recordings.table import Recording
+from boatsim.simulate import scenario
+from boatsim.simulate.run import run
+from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.twin import earth_rates
 
 VESSELS = ("eastward_ho", "kynoc")
 CALM = ("offset", "impulse", "half_speed", "full_load", "full_load_half_speed", "slow_servo", "yaw_moment")

@@ -13,11 +13,11 @@ from rich.console import Console
 from rich.table import Table
 from scipy.linalg import expm
 
-from boatsim import vessel
-from boatsim.base import Array, Force, motion
-from boatsim.effects.irregular_sea import IrregularSea
-from boatsim.engine import Engine, State
-from boatsim.vessel import Vessel
+from boatsim.physics import vessel
+from boatsim.physics.base import Array, Force, motion
+from boatsim.physics.effects.irregular_sea import IrregularSea
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.engine import Engine, State
 
 PERIOD = 0.5  # [s] of the autopilots
 REALISATIONS = 2000

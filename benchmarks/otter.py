@@ -5,7 +5,7 @@ python -m benchmarks.otter
 
 from math import pi
 
-from boatsim.pontoon_boat import otter
+from boatsim.simulate.pontoon_boat import otter
 
 SIGNALS = ("u", "v", "w", "p", "q", "r", "x", "y", "z", "roll", "pitch", "yaw")
 

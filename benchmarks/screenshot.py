@@ -16,9 +16,8 @@ from pathlib import Path
 
 from rerun.experimental import ViewerClient
 
-from boatsim.blueprint import TIMELINE
-from boatsim.recording_files import replacing
-from boatsim.rerun_log import last_time
+from boatsim.files import replacing
+from boatsim.recordings.readers.rrd import TIMELINE, last_time
 
 SOFTWARE = "/usr/share/vulkan/icd.d/lvp_icd*.json"  # Mesa's lavapipe
 SIZE = "1600x900"

@@ -6,10 +6,10 @@ does to the heading control, over its bandwidth; what the time between two contr
 
 import numpy as np
 
-from boatsim import scenario
-from boatsim.content import load_class
-from boatsim.metrics import norms
-from boatsim.run import run
+from boatsim.physics.content import load_class
+from boatsim.simulate import scenario
+from boatsim.simulate.metrics import norms
+from boatsim.simulate.run import run
 
 BANDWIDTHS = (5.0, 10.0, 11.0, 12.0, 12.2, 13.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0)  # [1/s] k_u
 DELAYS = (0.002, 0.004, 0.006, 0.010, 0.020)  # [s]

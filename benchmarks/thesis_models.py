@@ -8,10 +8,10 @@ from math import degrees, pi, sqrt
 import numpy as np
 from scipy.optimize import brentq
 
-from boatsim import vessel
-from boatsim.adaptive import LinearSystem, step_response
-from boatsim.base import Array, motion
-from boatsim.effects.outboards import Outboards
+from boatsim.control.adaptive import LinearSystem, step_response
+from boatsim.physics import vessel
+from boatsim.physics.base import Array, motion
+from boatsim.physics.effects.outboards import Outboards
 
 STEP = 1e-3  # [s]
 SURGE = np.array([[-1.4]])

@@ -39,7 +39,9 @@ WORTH = 0.15  # share of the recalibrated error that the true structure must sav
 
 def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[str, Any]:
     """Diagnose one trial and replay its held-out run with the patched vessel; the answer."""
-    from boatsim.diagnose import analysis, commands, patch
+    from boatsim.cli import diagnosis as commands
+    from boatsim.diagnose import analysis
+    from boatsim.diagnose.report import patch
 
     found = analysis.diagnose(
         [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"], VESSEL, without=without

@@ -1,6 +1,9 @@
-"""Reads vessel and scenario files: TOML checked against a pydantic model, each mistake reported as one clear line."""
+"""Files in and out: TOML checked against a pydantic model, each mistake one clear line; writing all or nothing."""
 
+import os
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -58,3 +61,16 @@ def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
         kinds = [model.model_fields[key].annotation, *getattr(model.model_fields[key].annotation, "__args__", ())]
         model = next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), model)
     return list(model.model_fields)
+
+
+@contextmanager
+def replacing(path: Path | str) -> Iterator[Path]:
+    """A temporary name beside `path` to write to; it takes the place of `path` at the end if nothing was raised."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{os.getpid()}.{path.name}")  # keeps the ending, by which writers choose the format
+    try:
+        yield temporary
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)

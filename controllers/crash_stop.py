@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from boatsim.control import Sense, Steered
+from boatsim.control.base import Sense, Steered
 
 
 @dataclass

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from math import exp, isnan, nan
 from typing import ClassVar
 
-from boatsim.allocation import JetThrottle
-from boatsim.base import param
-from boatsim.control import Controller, Estimate, Sense
+from boatsim.control.allocation import JetThrottle
+from boatsim.control.base import Controller, Estimate, Sense
+from boatsim.physics.base import param
 
 JET = JetThrottle()
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from math import exp, isnan, nan
 from typing import ClassVar
 
-from boatsim.adaptive import LinearSystem, l1_norm, unfiltered
-from boatsim.adaptive_loop import AdaptiveLoop
-from boatsim.allocation import JetThrottle
-from boatsim.base import param
-from boatsim.control import Controller, Estimate, Sense, clip
+from boatsim.control.adaptive import LinearSystem, l1_norm, unfiltered
+from boatsim.control.adaptive_loop import AdaptiveLoop
+from boatsim.control.allocation import JetThrottle
+from boatsim.control.base import Controller, Estimate, Sense, clip
+from boatsim.physics.base import param
 
 THETA, SIGMA, OMEGA = (0.2025, 1.7716), (-23.17, 23.17), (0.1, 2.0)  # section 4.1; 1/s, m/s^2, 1
 SLOWEST = 0.5  # [m/s] thrust is power / speed down to here

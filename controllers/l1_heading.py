@@ -7,9 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.adaptive_loop import AdaptiveLoop
-from boatsim.base import Array, param
-from boatsim.control import Controller, Estimate, Sense, wrap
+from boatsim.control.adaptive_loop import AdaptiveLoop
+from boatsim.control.base import Controller, Estimate, Sense, wrap
+from boatsim.physics.base import Array, param
 
 THETA_1, THETA_2, SIGMA, OMEGA = (-3.0, 3.0), (-5.0, 5.0), (-5.0, 5.0), (0.1, 10.0)  # chosen: none are published
 JUMP = 1.0  # [rad/s] a reference that changes faster jumps

@@ -7,9 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from boatsim.adaptive import DiscreteFilter, SampledChannel, held
-from boatsim.base import param
-from boatsim.control import Controller, Estimate, Sense, clip, wrap
+from boatsim.control.adaptive import DiscreteFilter, SampledChannel, held
+from boatsim.control.base import Controller, Estimate, Sense, clip, wrap
+from boatsim.physics.base import param
 
 IDLE = 1.0  # throttle position
 PRINTED_LEAD = 0.2754  # k_H, Table B.1

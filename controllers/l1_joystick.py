@@ -6,10 +6,10 @@ from functools import partial
 from math import isnan, nan
 from typing import ClassVar
 
-from boatsim.adaptive import LoopChannel, PiecewiseConstant
-from boatsim.allocation import STICK, Heading, Outboards, Push, Stick
-from boatsim.base import param
-from boatsim.control import Controller, Estimate, LowPass, Sense, clip
+from boatsim.control.adaptive import LoopChannel, PiecewiseConstant
+from boatsim.control.allocation import STICK, Heading, Outboards, Push, Stick
+from boatsim.control.base import Controller, Estimate, LowPass, Sense, clip
+from boatsim.physics.base import param
 
 SERVO_LAG = 0.06  # [s] "about one time step" in the thesis; used for the printed margins only
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from math import nan, pi, radians
 from typing import ClassVar
 
-from boatsim.base import param
-from boatsim.control import Controller, Estimate, Sense, clip
+from boatsim.control.base import Controller, Estimate, Sense, clip
+from boatsim.physics.base import param
 
 # Constants of the listing (Bayless 2017, Appendix H)
 T_S = 0.08  # [s] sample time the code believes in, whatever the true period is

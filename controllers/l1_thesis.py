@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from math import nan, pi, radians, sin
 from typing import ClassVar
 
-from boatsim.adaptive import Gradient, lyapunov
-from boatsim.base import param
-from boatsim.control import Controller, Estimate, Sense, clip
+from boatsim.control.adaptive import Gradient, lyapunov
+from boatsim.control.base import Controller, Estimate, Sense, clip
+from boatsim.physics.base import param
 
 MODEL = ((0.0, -1.0), (1.0, -1.4))  # [1/s] A_m of sway velocity and yaw rate, T8; b = I
 ROOM = pi / 4  # [rad] both motors turn inward as far as this, T9

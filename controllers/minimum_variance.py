@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.base import param
-from boatsim.helm import LearningHelm
+from boatsim.control.helm import LearningHelm
+from boatsim.physics.base import param
 
 
 @dataclass

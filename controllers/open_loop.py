@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.control import Controller, Sense
+from boatsim.control.base import Controller, Sense
 
 
 @dataclass

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from math import nan, radians
 from typing import ClassVar
 
-from boatsim.base import param
-from boatsim.control import Controller, Estimate, Sense, clip, wrap
+from boatsim.control.base import Controller, Estimate, Sense, clip, wrap
+from boatsim.physics.base import param
 
 
 @dataclass

@@ -6,10 +6,10 @@ from functools import partial
 from math import isnan
 from typing import ClassVar
 
-from boatsim.adaptive import LoopChannel
-from boatsim.allocation import STICK, Heading, Outboards, Push, Stick
-from boatsim.base import param
-from boatsim.control import Controller, Sense, clip
+from boatsim.control.adaptive import LoopChannel
+from boatsim.control.allocation import STICK, Heading, Outboards, Push, Stick
+from boatsim.control.base import Controller, Sense, clip
+from boatsim.physics.base import param
 
 SERVO_LAG = 0.06  # [s] "about one time step" in the thesis; used for the printed margins only
 

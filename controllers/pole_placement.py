@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.base import Array, param
-from boatsim.helm import LearningHelm
+from boatsim.control.helm import LearningHelm
+from boatsim.physics.base import Array, param
 
 
 def ackermann(a: Array, b: Array, wanted: Array) -> Array | None:

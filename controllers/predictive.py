@@ -5,9 +5,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.base import Array, param
-from boatsim.helm import LearningHelm
-from boatsim.identification import with_rudder
+from boatsim.control.helm import LearningHelm
+from boatsim.control.identification import with_rudder
+from boatsim.physics.base import Array, param
 
 
 def predictions(a: Array, b: Array, periods: int, outputs: list[int]) -> tuple[Array, Array]:

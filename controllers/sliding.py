@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.base import Array, param
+from boatsim.control.helm import Helm
+from boatsim.control.identification import ROLL, YAW, state_space, with_rudder
 from boatsim.errors import BadInput
-from boatsim.helm import Helm
-from boatsim.identification import ROLL, YAW, state_space, with_rudder
+from boatsim.physics.base import Array, param
 
 FAST = radians(10.0)  # [rad/s] design rates above this are those of the repeat at 15 deg/s
 PRINTED = {  # (roll reduction, fast) -> G as printed, section 3.2

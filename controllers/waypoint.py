@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from math import atan2, copysign, cos, hypot, nan, pi, sin
 from typing import ClassVar
 
-from boatsim.base import param
-from boatsim.control import Controller, Estimate, Sense, wrap
+from boatsim.control.base import Controller, Estimate, Sense, wrap
+from boatsim.physics.base import param
 
 Place = tuple[float, float]  # [m] x, y in start axes
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 from math import copysign
 from typing import ClassVar
 
-from boatsim.base import param
-from boatsim.control import Sense, Steered
+from boatsim.control.base import Sense, Steered
+from boatsim.physics.base import param
 
 
 @dataclass

@@ -3,7 +3,7 @@
 import numpy as np
 from PIL import Image
 
-from boatsim import env
+from boatsim.simulate import env
 
 boat = env.load("joystick_boat/yaw_1")
 spec = boat.action_spec()  # one number for each command channel; spec.name lists them

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from boatsim import recording
 from boatsim.diagnose import analysis
-from boatsim.recording import Recording
+from boatsim.recordings import table as recording
+from boatsim.recordings.table import Recording
 
 
 def diagnosed(runs: Sequence[Recording], folder: Path, vessel: str, library: Sequence[str] = ()) -> dict[str, Any]:

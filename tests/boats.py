@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from boatsim import vessel
-from boatsim.vessel import Vessel
+from boatsim.physics import vessel
+from boatsim.physics.vessel import Vessel
 
 HULL = """<mujoco model="{name}">
   <custom><numeric name="drawn_for" data="1 0.4 0.1"/></custom>

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from boatsim import vessel
-from boatsim.base import Array
-from boatsim.recording import Notes, Recording
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.recordings.table import Notes, Recording
 
 A1, A2, A3 = -0.1926, -0.0035, 5.032  # Table 3 [1/s], [1/m], 1
 STEERING = np.array([  # eq. 15, rows v', p', r' by v, p, r, phi, delta

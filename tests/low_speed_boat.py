@@ -5,8 +5,8 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from boatsim.base import Array
-from boatsim.recording import Notes, Recording
+from boatsim.physics.base import Array
+from boatsim.recordings.table import Notes, Recording
 
 FINE, ROW = 0.01, 0.1  # [s]
 RATE = 30.0 * pi / 180.0 * FINE  # [rad] nozzle and bucket turn in a step

@@ -6,8 +6,8 @@ from math import cos, hypot, pi, sin
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from boatsim.base import Array
-from boatsim.recording import Notes, Recording
+from boatsim.physics.base import Array
+from boatsim.recordings.table import Notes, Recording
 
 MASS, INERTIA, WATER = 4.6, 0.6, (0.3, 9.0, 0.7)  # [kg], [kg m^2], [kg, kg, kg m^2] of the water that moves along
 DAMPING = np.array([3.0, 10.0, 1.0])  # [N s/m, N s/m, N m s]

@@ -6,8 +6,8 @@ from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
-from boatsim.base import Array
-from boatsim.recording import Recording
+from boatsim.physics.base import Array
+from boatsim.recordings.table import Recording
 
 SWING = 0.47 * pi  # [rad] largest azimuth
 LEVER = 0.4  # [m] mass centre to thruster

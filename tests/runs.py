@@ -5,11 +5,11 @@ from functools import cache
 from math import nan
 from typing import Any
 
-from boatsim import scenario
-from boatsim.content import find, names
 from boatsim.files import read_toml
-from boatsim.metrics import Norm, norms
-from boatsim.run import run
+from boatsim.physics.content import find, names
+from boatsim.simulate import scenario
+from boatsim.simulate.metrics import Norm, norms
+from boatsim.simulate.run import run
 
 SHIPPED = tuple(name for name in names("scenario") if name.startswith("joystick_boat/"))
 TESTS = ("sway_1", "sway_2", "sway_3", "sway_4", "yaw_1", "yaw_2", "yaw_3", "yaw_4")  # of the thesis

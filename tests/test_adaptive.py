@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 
-from boatsim import adaptive
-from boatsim.adaptive import (
+from boatsim.control import adaptive
+from boatsim.control.adaptive import (
     Gradient,
     GradientVector,
     LinearSystem,
@@ -229,7 +229,7 @@ def test_margins_of_sampled_loops(name: str, crossover: float, phase_deg: float,
 
 
 def compiled(block: Any, **replaced: Any) -> Any:
-    """A block of boatsim.adaptive compiled as it stands, calling the compiled forms of the blocks it calls."""
+    """A block of boatsim.control.adaptive compiled as it stands, calling the compiled forms of the blocks it calls."""
     return njit(FunctionType(block.__code__, block.__globals__ | replaced))
 
 

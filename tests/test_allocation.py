@@ -5,7 +5,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boatsim.allocation import ANGLE_MAX, HOLD_SHARE, PWM_MAX, TURN_SHARE, Drive, Heading, Outboards, Push, Stick
+from boatsim.control.allocation import (
+    ANGLE_MAX,
+    HOLD_SHARE,
+    PWM_MAX,
+    TURN_SHARE,
+    Drive,
+    Heading,
+    Outboards,
+    Push,
+    Stick,
+)
 from boatsim.errors import BadInput
 
 OURS = Outboards()

@@ -6,35 +6,27 @@ from pathlib import Path
 
 import pytest
 
-LAYERS = (  # a module may import from its own layer and from the lines above it
-    "__init__ errors imo",
-    "base files content particulars recording recording_files recording_notes recording_units",
-    "effects kernels control adaptive adaptive_loop allocation identification helm hullform measure measures",
-    "vessel scenario sensors margins",
-    "program world native",
-    "engine twin",
-    "manoeuvre free_body",
-    "pontoon_boat",
-    "run metrics rerun_log rerun_scene blueprint env outputs",
+LAYERS = (  # a module may import from its own folder and from those in the lines above it
+    "__init__ errors files",
+    "physics",
+    "recordings control",
+    "simulate",
+    "measures",
+    "view",
     "diagnose",
     "cli __main__",
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names.split()}
 FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
-    "errors base control adaptive adaptive_loop allocation identification helm".split()
+    "errors physics.base control.base control.adaptive control.adaptive_loop control.allocation "
+    "control.identification control.helm".split()
 )
 HEAVY = {  # library -> the only modules that may import it
-    "mujoco": {
-        "world",
-        "native",
-        "engine",
-        "env",
-        "free_body",
-    },  # six freedoms are no vessel: free_body has its own model
-    "dm_control": {"env"},
-    "dm_env": {"env"},
-    "rerun": {"rerun_log", "blueprint"},
-    "jinja2": {"diagnose.report"},
+    "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env", "free_body")},
+    "dm_control": {"simulate.env"},
+    "dm_env": {"simulate.env"},
+    "rerun": {"view.rerun_log", "view.blueprint", "recordings.readers.rrd"},
+    "jinja2": {"diagnose.report.page"},
 }
 ROOT = Path(__file__).parents[1]
 CONTROLLERS = sorted((ROOT / "controllers").glob("*.py"))
@@ -57,7 +49,7 @@ def imported(path: Path) -> set[str]:
 
 
 def own(path: Path) -> set[str]:
-    """Our modules among them: boatsim.effects.fan_wind.law is `effects.fan_wind`."""
+    """Our modules among them: boatsim.physics.effects.fan_wind.law is `effects.fan_wind`."""
     names = [name.split(".")[1:] for name in imported(path) if name.split(".")[0] == "boatsim"]
     parts = [[".".join(name[:n]) for n in range(len(name), 0, -1)] for name in names]
     return {next((part for part in longest_first if part in OURS), "__init__") for longest_first in parts}

@@ -7,14 +7,16 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from boatsim import recording, vessel
-from boatsim.base import motion
-from boatsim.diagnose import analysis, commands
-from boatsim.effects.added_mass import AddedMass
-from boatsim.effects.dragged_propeller import DraggedPropeller
-from boatsim.effects.outboards import Outboards
-from boatsim.effects.sway_yaw_coupling import SwayYawCoupling
+from boatsim.cli import diagnosis as commands
+from boatsim.diagnose import analysis
 from boatsim.errors import BadInput
+from boatsim.physics import vessel
+from boatsim.physics.base import motion
+from boatsim.physics.effects.added_mass import AddedMass
+from boatsim.physics.effects.dragged_propeller import DraggedPropeller
+from boatsim.physics.effects.outboards import Outboards
+from boatsim.physics.effects.sway_yaw_coupling import SwayYawCoupling
+from boatsim.recordings import table as recording
 
 DATA = Path(__file__).parent / "data" / "twin_usv_paths"
 MASS, ARM, INERTIA = 15.0, 0.285, 1.7  # kg, m, kg m^2 as the source of the recordings gives them

@@ -10,29 +10,31 @@ import numpy as np
 import pytest
 from real_catamaran import Real, navigation, recording
 
-from boatsim import recording as recordings
-from boatsim import scenario, vessel
-from boatsim.base import Array, motion
-from boatsim.content import load_class, names
-from boatsim.control import Sense
-from boatsim.diagnose import analysis, commands
-from boatsim.diagnose.position_frame import in_one_frame, turned_share
-from boatsim.effects.added_mass_error import AddedMassError
-from boatsim.effects.azimuth_thruster import AzimuthThruster
-from boatsim.effects.damping_exponent import DampingExponent
-from boatsim.effects.gust import Gust
-from boatsim.effects.gust_off_centre import GustOffCentre
-from boatsim.effects.payload import Payload
-from boatsim.effects.speed_hold import SpeedHold
-from boatsim.engine import Engine, State
+from boatsim.cli import diagnosis as commands
+from boatsim.control.base import Sense
+from boatsim.diagnose import analysis
+from boatsim.diagnose.log.position_frame import in_one_frame, turned_share
 from boatsim.measures.arrival import Arrival
 from boatsim.measures.speed_reached import SpeedReached
 from boatsim.measures.turning_radius import TurningRadius
-from boatsim.metrics import norms
-from boatsim.outputs import run_into
-from boatsim.recording import Recording
-from boatsim.run import Run, run
-from boatsim.twin import Twin
+from boatsim.physics import vessel
+from boatsim.physics.base import Array, motion
+from boatsim.physics.content import load_class, names
+from boatsim.physics.effects.added_mass_error import AddedMassError
+from boatsim.physics.effects.azimuth_thruster import AzimuthThruster
+from boatsim.physics.effects.damping_exponent import DampingExponent
+from boatsim.physics.effects.gust import Gust
+from boatsim.physics.effects.gust_off_centre import GustOffCentre
+from boatsim.physics.effects.payload import Payload
+from boatsim.physics.effects.speed_hold import SpeedHold
+from boatsim.recordings import table as recordings
+from boatsim.recordings.table import Recording
+from boatsim.simulate import scenario
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.metrics import norms
+from boatsim.simulate.run import Run, run
+from boatsim.simulate.twin import Twin
+from boatsim.view.outputs import run_into
 
 SHIPPED = [name for name in names("scenario") if name.startswith("catamaran/")]
 TABLE_III = {0: (2.4, 2.7), 45: (2.6, 2.8), 90: (3.0, 3.0), 135: (4.1, 3.1), 180: (5.1, 3.2)}  # s, m

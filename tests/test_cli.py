@@ -15,8 +15,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from boatsim import __version__, content, recording
+from boatsim import __version__
 from boatsim.cli import app
+from boatsim.physics import content
+from boatsim.recordings import table as recording
 
 FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"}
 PLAIN = """
@@ -35,7 +37,7 @@ astern_factor = 0.694
 IMPOSSIBLE = '[[check]]\nsignal = "v_mps"\nnorm = "inf"\nbelow = 1e-9\n'
 QUITTER = """
 from dataclasses import dataclass
-from boatsim.control import Controller
+from boatsim.control.base import Controller
 
 @dataclass
 class Quitter(Controller):
@@ -216,7 +218,7 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
         return 0
 
     for name in ("diagnose", "replay", "compare"):
-        monkeypatch.setattr(f"boatsim.diagnose.commands.{name}", fake)
+        monkeypatch.setattr(f"boatsim.cli.diagnosis.{name}", fake)
     boat = ["--vessel", "trial_boat", "--load", "heavy,wide", "--out", "o"]
     kept = ["--hold-out", "c.csv", "--library", "wind", "--library", "own.py", "--without", "current"]
     assert boatsim("diagnose", "a.csv", "b.csv", *boat, *kept).exit_code == 0

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from boatsim.content import load_class
-from boatsim.control import Sense
+from boatsim.control.base import Sense
+from boatsim.control.margins import table
 from boatsim.errors import BadInput
-from boatsim.margins import table
+from boatsim.physics.content import load_class
 
 STILL = Sense(t=0.0, psi=0.0, r=0.0, ax=0.0, ay=0.0, u=nan, v=nan, x=nan, y=nan)
 AsPublished = load_class("controller", "l1_joystick_as_published")

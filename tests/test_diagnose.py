@@ -10,15 +10,19 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.stats import multivariate_normal
 
-from boatsim import recording, scenario, vessel
-from boatsim.diagnose import analysis, commands, show
-from boatsim.diagnose.answer import key_of
+from boatsim.cli import diagnosis as commands
+from boatsim.diagnose import analysis
 from boatsim.diagnose.filter import Levels, segments, track
 from boatsim.diagnose.problem import scale_of
+from boatsim.diagnose.report import show
+from boatsim.diagnose.report.answer import key_of
 from boatsim.errors import BadInput
-from boatsim.outputs import run_into
-from boatsim.program import Program
-from boatsim.recording import Notes, Recording
+from boatsim.physics import vessel
+from boatsim.physics.program import Program
+from boatsim.recordings import table as recording
+from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate import scenario
+from boatsim.view.outputs import run_into
 
 DATA = Path(__file__).parent / "data"
 DECAY = DATA / "kvlcc2_roll_decay" / "decay_0kn_run2.csv"

@@ -12,8 +12,9 @@ import boats
 import numpy as np
 import pytest
 
-from boatsim import content, vessel
-from boatsim.base import (
+from boatsim.errors import BadInput
+from boatsim.physics import content, vessel
+from boatsim.physics.base import (
     AXES,
     Array,
     Channel,
@@ -28,29 +29,28 @@ from boatsim.base import (
     Wrench,
     motion,
 )
-from boatsim.effects.added_mass import AddedMass
-from boatsim.effects.cross_flow_drag import CrossFlowDrag
-from boatsim.effects.cubic_damping import CubicDamping
-from boatsim.effects.current import Current
-from boatsim.effects.damping_error import DampingError
-from boatsim.effects.fan_wind import AIR_DENSITY, FanWind
-from boatsim.effects.linear_damping import LinearDamping
-from boatsim.effects.outboards import Outboards
-from boatsim.effects.pwm_thrust import PwmThrust
-from boatsim.effects.quadratic_damping import QuadraticDamping
-from boatsim.effects.righting_arm import RightingArm
-from boatsim.effects.righting_arm_stiffening import RightingArmStiffening
-from boatsim.effects.servo import Servo
-from boatsim.effects.shallow_water import ShallowWater
-from boatsim.effects.steering_offset import SteeringOffset
-from boatsim.effects.surge_drag import SurgeDrag
-from boatsim.effects.thrust_gain_error import ThrustGainError
-from boatsim.effects.thrust_imbalance import ThrustImbalance
-from boatsim.effects.thrust_lag import ThrustLag
-from boatsim.effects.weak_reverse import WeakReverse
-from boatsim.effects.wind import Wind
-from boatsim.errors import BadInput
-from boatsim.program import Program
+from boatsim.physics.effects.added_mass import AddedMass
+from boatsim.physics.effects.cross_flow_drag import CrossFlowDrag
+from boatsim.physics.effects.cubic_damping import CubicDamping
+from boatsim.physics.effects.current import Current
+from boatsim.physics.effects.damping_error import DampingError
+from boatsim.physics.effects.fan_wind import AIR_DENSITY, FanWind
+from boatsim.physics.effects.linear_damping import LinearDamping
+from boatsim.physics.effects.outboards import Outboards
+from boatsim.physics.effects.pwm_thrust import PwmThrust
+from boatsim.physics.effects.quadratic_damping import QuadraticDamping
+from boatsim.physics.effects.righting_arm import RightingArm
+from boatsim.physics.effects.righting_arm_stiffening import RightingArmStiffening
+from boatsim.physics.effects.servo import Servo
+from boatsim.physics.effects.shallow_water import ShallowWater
+from boatsim.physics.effects.steering_offset import SteeringOffset
+from boatsim.physics.effects.surge_drag import SurgeDrag
+from boatsim.physics.effects.thrust_gain_error import ThrustGainError
+from boatsim.physics.effects.thrust_imbalance import ThrustImbalance
+from boatsim.physics.effects.thrust_lag import ThrustLag
+from boatsim.physics.effects.weak_reverse import WeakReverse
+from boatsim.physics.effects.wind import Wind
+from boatsim.physics.program import Program
 
 SHELF: dict[str, type[Effect]] = {name: content.load_class("effect", name) for name in content.names("effect")}
 RANDOM = {"filtered_sea"}  # noise knows no sides, nor has an oscillator of its own in the filter

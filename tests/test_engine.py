@@ -13,13 +13,13 @@ import mujoco
 import numpy as np
 import pytest
 
-from boatsim import content, vessel
-from boatsim.base import Array
-from boatsim.engine import Engine, State, from_joints, installed, to_joints
 from boatsim.errors import BadInput, BadPhysics
-from boatsim.twin import Twin
-from boatsim.vessel import Vessel
-from boatsim.world import Tank
+from boatsim.physics import content, vessel
+from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.engine import Engine, State, from_joints, installed, to_joints
+from boatsim.simulate.twin import Twin
+from boatsim.simulate.world import Tank
 
 EXTRA: dict[str, dict[str, float]] = {
     "weak_reverse": {"astern_factor": 0.694},

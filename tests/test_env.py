@@ -16,12 +16,13 @@ import numpy as np
 import pytest
 from dm_env import test_utils
 
-from boatsim import env, scenario  # before dm_control, whose renderer it chooses
-from boatsim.engine import Engine
+from boatsim import scenario  # before dm_control, whose renderer it chooses
 from boatsim.errors import BadInput, BadPhysics
-from boatsim.recording_notes import unit_of
-from boatsim.run import commands_of, run
-from boatsim.scenario import Scenario
+from boatsim.recordings.notes import unit_of
+from boatsim.simulate import env
+from boatsim.simulate.engine import Engine
+from boatsim.simulate.run import commands_of, run
+from boatsim.simulate.scenario import Scenario
 
 # isort: split
 from dm_control import mujoco as dm_mujoco
@@ -267,7 +268,7 @@ def without_a_display(code: str) -> tuple[int, str, str]:
 
 
 def test_importing_without_a_display_is_silent() -> None:
-    assert without_a_display("import boatsim.env") == (0, "", "")
+    assert without_a_display("import boatsim.simulate.env") == (0, "", "")
 
 
 def test_physics_needs_no_opengl() -> None:
@@ -279,7 +280,7 @@ def refuse(self, name, *a, **k):
         raise OSError(name)
     load(self, name, *a, **k)
 ctypes.CDLL.__init__ = refuse
-from boatsim import env
+from boatsim.simulate import env
 boat = env.load()
 boat.reset()
 print(boat.step(boat.action_spec().generate_value()).mid())

@@ -9,20 +9,22 @@ import pytest
 from boats import PLANAR, ROLL, written
 from scipy.linalg import expm
 
-from boatsim import scenario, vessel
-from boatsim.base import Array
-from boatsim.content import load_class
-from boatsim.diagnose import commands, experiment, manoeuvres
+from boatsim.cli import diagnosis as commands
 from boatsim.diagnose.analysis import absent, suspects_of
-from boatsim.diagnose.course import laid
 from boatsim.diagnose.filter import Levels, nominal_levels, track
 from boatsim.diagnose.fit import converge, descend, fit
-from boatsim.diagnose.manoeuvres import Manoeuvre, menu
+from boatsim.diagnose.next import experiment, manoeuvres
+from boatsim.diagnose.next.course import laid
+from boatsim.diagnose.next.manoeuvres import Manoeuvre, menu
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.screen import screen
-from boatsim.program import Program
-from boatsim.recording import Recording, write_csv
-from boatsim.run import run
+from boatsim.diagnose.search.screen import screen
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.content import load_class
+from boatsim.physics.program import Program
+from boatsim.recordings.table import Recording, write_csv
+from boatsim.simulate import scenario
+from boatsim.simulate.run import run
 
 RATE = 6.0  # [1/s] rows of a recording
 STRAIGHT = ((10.0, 0.5, 0.5, 0.0, 0.0), (10.0, -0.5, -0.5, 0.0, 0.0)) * 2

@@ -19,10 +19,10 @@ from benchmarks.martin_vessels import (
     speed_of,
     zigzag,
 )  # fmt: skip
-from boatsim import particulars, vessel
-from boatsim.base import Array
-from boatsim.twin import Twin
-from boatsim.vessel import Vessel
+from boatsim.physics import particulars, vessel
+from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.twin import Twin
 
 TONNE = 1000.0  # [kg]; the thesis counts in tonnes and kilonewtons
 

@@ -9,7 +9,7 @@ from runs import found
 
 from benchmarks import golden
 from benchmarks.golden import TOLERANCE, drifts, kept, main, path_of, tracked, update, values, with_reason
-from boatsim.metrics import Norm
+from boatsim.simulate.metrics import Norm
 
 TRACKED = tracked()
 OLD = {"yaw_rate_inf": {"today": 0.5, "at_6hz": 1.1, "published": 2.8, "unit": "deg/s"}}

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from boatsim import vessel
-from boatsim.base import Array
-from boatsim.engine import Engine, State
-from boatsim.twin import Twin
-from boatsim.vessel import Vessel
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.twin import Twin
 
 HEELING = boats.PLANAR.replace('freedoms = ["surge", "sway", "yaw"]', 'freedoms = ["surge", "sway", "yaw", "roll"]')
 RIGHTING = '\n[[effect]]\nuse = "righting_arm"\nstiffness = 2.0\n'

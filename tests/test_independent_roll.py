@@ -8,8 +8,8 @@ import pytest
 from answers import diagnosed, named, nothing_missing
 from scipy.integrate import solve_ivp
 
-from boatsim.base import Array
-from boatsim.recording import Recording
+from boatsim.physics.base import Array
+from boatsim.recordings.table import Recording
 
 INERTIA, DAMPING, RIGHTING = 135.4, 6.7, 822.3  # [kg m^2], [N m s], [N m] of the 4.7 m tanker, water included
 

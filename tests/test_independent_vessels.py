@@ -12,14 +12,15 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from boatsim import scenario, vessel
-from boatsim.base import Array, motion
-from boatsim.engine import Engine, State
 from boatsim.errors import BadPhysics
-from boatsim.free_body import FreeBody, Solid, angles, rotation
-from boatsim.metrics import norms
-from boatsim.pontoon_boat import PontoonBoat, otter, strips
-from boatsim.run import run
+from boatsim.physics import vessel
+from boatsim.physics.base import Array, motion
+from boatsim.simulate import scenario
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.free_body import FreeBody, Solid, angles, rotation
+from boatsim.simulate.metrics import norms
+from boatsim.simulate.pontoon_boat import PontoonBoat, otter, strips
+from boatsim.simulate.run import run
 
 Rates = Callable[[Array, float], Array]  # (x, y, psi, u, v, r), rudder [rad] -> their derivatives
 

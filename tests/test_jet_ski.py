@@ -7,23 +7,24 @@ import numpy as np
 import pytest
 from jet_craft import STEERING, Craft, power, solved
 
-from boatsim import scenario, vessel
-from boatsim.adaptive import l1_norm, project_interval, unfiltered
-from boatsim.adaptive_loop import AdaptiveLoop, adapt, filtered, projected
-from boatsim.allocation import JetThrottle
-from boatsim.base import Wrench, motion
-from boatsim.content import load_class, names
-from boatsim.effects.jet_steering import JetSteering
-from boatsim.effects.nomoto_yaw import NomotoYaw
-from boatsim.effects.push import Push
-from boatsim.effects.roll_coupling import RollCoupling
-from boatsim.effects.steering_asymmetry import SteeringAsymmetry
-from boatsim.effects.throttle_rate_limit import ThrottleRateLimit
-from boatsim.effects.water_jet import WaterJet
-from boatsim.engine import Engine, State
-from boatsim.metrics import norms
-from boatsim.run import run
-from boatsim.twin import Twin
+from boatsim.control.adaptive import l1_norm, project_interval, unfiltered
+from boatsim.control.adaptive_loop import AdaptiveLoop, adapt, filtered, projected
+from boatsim.control.allocation import JetThrottle
+from boatsim.physics import vessel
+from boatsim.physics.base import Wrench, motion
+from boatsim.physics.content import load_class, names
+from boatsim.physics.effects.jet_steering import JetSteering
+from boatsim.physics.effects.nomoto_yaw import NomotoYaw
+from boatsim.physics.effects.push import Push
+from boatsim.physics.effects.roll_coupling import RollCoupling
+from boatsim.physics.effects.steering_asymmetry import SteeringAsymmetry
+from boatsim.physics.effects.throttle_rate_limit import ThrottleRateLimit
+from boatsim.physics.effects.water_jet import WaterJet
+from boatsim.simulate import scenario
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.metrics import norms
+from boatsim.simulate.run import run
+from boatsim.simulate.twin import Twin
 
 CRAFT = vessel.load("jet_ski", settings={"throttle_rate_limit": {"rate": 1e6}, "servo": {"rate": 1e3}})
 MASS, ROLL, YAW = CRAFT.body.mass, CRAFT.body.roll_inertia, CRAFT.body.yaw_inertia

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from jet_craft import A3, Craft, nominal_without, sailed
 
-from boatsim import recording
-from boatsim.base import Array
 from boatsim.diagnose import analysis
-from boatsim.recording import Recording
+from boatsim.physics.base import Array
+from boatsim.recordings import table as recording
+from boatsim.recordings.table import Recording
 
 pytestmark = pytest.mark.slow
 

@@ -8,21 +8,22 @@ import numpy as np
 import pytest
 from real_boat import Real, recorded
 
-from boatsim import recording, vessel
-from boatsim.base import Array, motion
 from boatsim.diagnose import analysis
-from boatsim.effects.added_mass import AddedMass
-from boatsim.effects.added_mass_coriolis import AddedMassCoriolis
-from boatsim.effects.command_delay import HISTORY, CommandDelay
-from boatsim.effects.extra_mass import ExtraMass
-from boatsim.effects.lateral_centre_shift import LateralCentreShift
-from boatsim.effects.linear_damping import LinearDamping
-from boatsim.effects.mass_centre_shift import MassCentreShift
-from boatsim.effects.prop_walk import PropWalk
-from boatsim.effects.steering_backlash import SteeringBacklash
-from boatsim.effects.tether import Tether
-from boatsim.effects.thrust_deadband import ThrustDeadband
-from boatsim.effects.wall_effect import WallEffect
+from boatsim.physics import vessel
+from boatsim.physics.base import Array, motion
+from boatsim.physics.effects.added_mass import AddedMass
+from boatsim.physics.effects.added_mass_coriolis import AddedMassCoriolis
+from boatsim.physics.effects.command_delay import HISTORY, CommandDelay
+from boatsim.physics.effects.extra_mass import ExtraMass
+from boatsim.physics.effects.lateral_centre_shift import LateralCentreShift
+from boatsim.physics.effects.linear_damping import LinearDamping
+from boatsim.physics.effects.mass_centre_shift import MassCentreShift
+from boatsim.physics.effects.prop_walk import PropWalk
+from boatsim.physics.effects.steering_backlash import SteeringBacklash
+from boatsim.physics.effects.tether import Tether
+from boatsim.physics.effects.thrust_deadband import ThrustDeadband
+from boatsim.physics.effects.wall_effect import WallEffect
+from boatsim.recordings import table as recording
 
 BOAT = vessel.load("trial_boat")
 

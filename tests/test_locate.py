@@ -10,21 +10,21 @@ from scipy.integrate import odeint
 from scipy.linalg import expm
 from scipy.stats import kstest
 
-from boatsim import vessel
-from boatsim.base import Array
 from boatsim.diagnose.analysis import suspects_of
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.levels import fit_time_constant
-from boatsim.diagnose.locate import BAND, force_left, intervals, missing_force
+from boatsim.diagnose.locate.forces import BAND, force_left, intervals, missing_force
+from boatsim.diagnose.locate.region_ideas import walls_of
+from boatsim.diagnose.locate.region_tests import Evidence, joint
+from boatsim.diagnose.locate.regions import Region, regions
+from boatsim.diagnose.locate.rhythm import rhythm
+from boatsim.diagnose.locate.smoothing import information, running_average, variance_of_average
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.rank import baseline
-from boatsim.diagnose.region_ideas import walls_of
-from boatsim.diagnose.region_tests import Evidence, joint
-from boatsim.diagnose.regions import Region, regions
-from boatsim.diagnose.rhythm import rhythm
-from boatsim.diagnose.smoothing import information, running_average, variance_of_average
-from boatsim.program import Program
-from boatsim.recording import Notes, Recording
+from boatsim.diagnose.search.rank import baseline
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+from boatsim.recordings.table import Notes, Recording
 
 # ---- a linear Gaussian chain whose posterior is written out densely
 

@@ -10,21 +10,22 @@ import pytest
 from scipy.signal import cont2discrete
 
 from benchmarks.low_speed_margins import LAWS, channel, margins
-from boatsim import scenario, vessel
-from boatsim.adaptive import held
-from boatsim.base import Array, motion
-from boatsim.content import load_class, names
-from boatsim.effects.astern_time_constant import AsternTimeConstant
-from boatsim.effects.jet_leak import JetLeak
-from boatsim.effects.reversing_jet import ReversingJet
-from boatsim.effects.yaw_rate_waves import PAIRS, YawRateWaves, phase, spread
-from boatsim.engine import Engine, State
+from boatsim.control.adaptive import held
 from boatsim.measures.crossing import Crossing
 from boatsim.measures.heading_hold import HeadingHold
 from boatsim.measures.step_response import StepResponse
-from boatsim.metrics import Norm, norms
-from boatsim.recording import Notes, Recording
-from boatsim.run import Run, run
+from boatsim.physics import vessel
+from boatsim.physics.base import Array, motion
+from boatsim.physics.content import load_class, names
+from boatsim.physics.effects.astern_time_constant import AsternTimeConstant
+from boatsim.physics.effects.jet_leak import JetLeak
+from boatsim.physics.effects.reversing_jet import ReversingJet
+from boatsim.physics.effects.yaw_rate_waves import PAIRS, YawRateWaves, phase, spread
+from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate import scenario
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.metrics import Norm, norms
+from boatsim.simulate.run import Run, run
 
 Heading = load_class("controller", "l1_heading_discrete")
 ASTERN = 0.9599  # [rad] bucket at 55 deg

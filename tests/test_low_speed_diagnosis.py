@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from low_speed_boat import Real, recorded
 
-from boatsim import recording, scenario
 from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import track
-from boatsim.outputs import run_into
+from boatsim.recordings import table as recording
+from boatsim.simulate import scenario
+from boatsim.view.outputs import run_into
 
 pytestmark = pytest.mark.slow
 

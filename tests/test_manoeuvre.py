@@ -10,21 +10,22 @@ import pytest
 from scipy.optimize import brentq
 from typer.testing import CliRunner
 
-from boatsim import content, imo, vessel
-from boatsim.base import Array
 from boatsim.cli import app
-from boatsim.content import load_class
-from boatsim.control import Sense
-from boatsim.manoeuvre import handled, scenario_of
+from boatsim.control.base import Sense
 from boatsim.measures.crash_stop import CrashStop
 from boatsim.measures.pull_out import PullOut
 from boatsim.measures.roll_decay import RollDecay
 from boatsim.measures.spiral import Spiral
 from boatsim.measures.turning_circle import TurningCircle
 from boatsim.measures.zigzag import Zigzag
-from boatsim.metrics import norms
-from boatsim.recording import Recording
-from boatsim.run import run
+from boatsim.physics import content, vessel
+from boatsim.physics.base import Array
+from boatsim.physics.content import load_class
+from boatsim.recordings.table import Recording
+from boatsim.simulate import imo
+from boatsim.simulate.manoeuvre import handled, scenario_of
+from boatsim.simulate.metrics import norms
+from boatsim.simulate.run import run
 
 LENGTH = 2.0  # [m] of the ships here
 EXECUTE = 10.03  # [s] between two rows of a log

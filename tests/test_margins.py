@@ -4,11 +4,11 @@ from math import exp, log, nan
 
 import pytest
 
-from boatsim import margins
-from boatsim.adaptive import LoopChannel, PiecewiseConstant
-from boatsim.content import load_class
-from boatsim.control import LowPass
+from boatsim.control import margins
+from boatsim.control.adaptive import LoopChannel, PiecewiseConstant
+from boatsim.control.base import LowPass
 from boatsim.errors import BadInput
+from boatsim.physics.content import load_class
 
 PERIOD, SERVO = 0.08, 0.06  # [s]
 YAW = LoopChannel(

@@ -1,6 +1,6 @@
 """Concealed cases: recordings of Martin's vessels that hold more than their simulation, by an integrator of its own.
 
-The truth is written out here from the thesis' equations and tables; nothing of `boatsim.effects` takes part.
+The truth is written out here from the thesis' equations and tables; nothing of `boatsim.physics.effects` takes part.
 """
 
 from collections.abc import Callable
@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from boatsim import recording
-from boatsim.base import Array
 from boatsim.diagnose import analysis
-from boatsim.recording import Recording
+from boatsim.physics.base import Array
+from boatsim.recordings import table as recording
+from boatsim.recordings.table import Recording
 
 pytestmark = pytest.mark.slow
 

@@ -16,15 +16,15 @@ import pytest
 from scipy.linalg import expm
 
 from benchmarks import martin
-from boatsim import scenario
-from boatsim.base import Array
-from boatsim.content import load_class, names
-from boatsim.control import Sense
+from boatsim.control.base import Sense
+from boatsim.control.identification import Estimator, Forgetting, Ship, state_space, with_rudder
 from boatsim.errors import BadInput
-from boatsim.identification import Estimator, Forgetting, Ship, state_space, with_rudder
 from boatsim.measures.settling import Settling
-from boatsim.recording import Recording
-from boatsim.run import run
+from boatsim.physics.base import Array
+from boatsim.physics.content import load_class, names
+from boatsim.recordings.table import Recording
+from boatsim.simulate import scenario
+from boatsim.simulate.run import run
 
 PidCourse, Sliding, MinimumVariance, Predictive, PolePlacement = (
     load_class("controller", n)

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from real_boat import FURTHER, Real, recorded, waves
 
-from boatsim import recording
-from boatsim.base import Shown, motion
 from boatsim.diagnose import analysis
-from boatsim.effects.camera_scale import CameraScale
-from boatsim.effects.heading_deviation import HeadingDeviation
-from boatsim.effects.heading_offset import HeadingOffset
-from boatsim.effects.position_frame_error import PositionFrameError
-from boatsim.effects.wave_forcing import WaveForcing, law
+from boatsim.physics.base import Shown, motion
+from boatsim.physics.effects.camera_scale import CameraScale
+from boatsim.physics.effects.heading_deviation import HeadingDeviation
+from boatsim.physics.effects.heading_offset import HeadingOffset
+from boatsim.physics.effects.position_frame_error import PositionFrameError
+from boatsim.physics.effects.wave_forcing import WaveForcing, law
+from boatsim.recordings import table as recording
 
 TRUE = Shown(x=1.2, y=-0.7, psi=0.8, phi=0.1, u=0.5, v=-0.2, p=0.0, r=0.3)
 

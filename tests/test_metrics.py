@@ -10,11 +10,11 @@ import pytest
 
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
-from boatsim.metrics import CIRCLE, J, Norm, noise_floor, norms, signal_norm, to_json, yaw_rate_norms
-from boatsim.recording import Recording
-from boatsim.run import Run
-from boatsim.scenario import NORMS, Scenario, from_table
-from boatsim.sensors import Camera
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metrics import CIRCLE, J, Norm, noise_floor, norms, signal_norm, to_json, yaw_rate_norms
+from boatsim.simulate.run import Run
+from boatsim.simulate.scenario import NORMS, Scenario, from_table
+from boatsim.simulate.sensors import Camera
 
 Pose = tuple[float, float, float]
 SHIPPED = Path(__file__).parents[1] / "scenarios" / "joystick_boat"

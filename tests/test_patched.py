@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from boatsim import vessel
-from boatsim.base import Array
 from boatsim.diagnose.analysis import composed
 from boatsim.diagnose.filter import MAX_STEP
-from boatsim.engine import Engine
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.simulate.engine import Engine
 
 SMOOTH: list[dict[str, Any]] = [
     {"use": "wind", "force": 0.1, "toward": 0.7, "arm": 0.05},

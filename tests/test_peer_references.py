@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from boatsim.base import Array, motion
-from boatsim.effects.cross_flow_drag import WATER_DENSITY, CrossFlowDrag
-from boatsim.engine import Engine, State
-from boatsim.twin import Twin
+from boatsim.physics.base import Array, motion
+from boatsim.physics.effects.cross_flow_drag import WATER_DENSITY, CrossFlowDrag
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.twin import Twin
 
 MASS, YAW_INERTIA = 6.0, 0.5  # [kg], [kg m^2]
 ADDED = np.diag([0.6, 3.0, 0.3])  # [kg], [kg], [kg m^2]

@@ -10,12 +10,12 @@ import boats
 import numpy as np
 import pytest
 
-from boatsim import vessel
-from boatsim.base import Array
-from boatsim.effects.current import Current
-from boatsim.effects.wind import Wind
 from boatsim.errors import BadInput
-from boatsim.program import Program
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.effects.current import Current
+from boatsim.physics.effects.wind import Wind
+from boatsim.physics.program import Program
 
 SPRING = '''"""A spring in roll."""
 
@@ -24,7 +24,7 @@ from typing import ClassVar
 
 from numba import njit
 
-from boatsim.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param
 
 
 @njit(inline="always")
@@ -47,8 +47,8 @@ USE_SPRING = '[[effect]]\nuse = "spring"\n'
 SNIPPET = """
 import sys
 import numpy as np
-from boatsim import vessel
-from boatsim.program import Program
+from boatsim.physics import vessel
+from boatsim.physics.program import Program
 
 program = Program(vessel.load(sys.argv[1]))
 act = np.zeros(program.module.HELD)

@@ -8,11 +8,11 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from boatsim.diagnose import report
-from boatsim.diagnose.findings import Findings, FreeRun, Missing
-from boatsim.diagnose.report_figures import closer, thinned, ticks
-from boatsim.diagnose.report_sections import sections_of
-from boatsim.diagnose.report_words import (
+from boatsim.diagnose.report import page as report
+from boatsim.diagnose.report.figures import closer, thinned, ticks
+from boatsim.diagnose.report.findings import Findings, FreeRun, Missing
+from boatsim.diagnose.report.sections import sections_of
+from boatsim.diagnose.report.words import (
     alike,
     limit,
     nats,

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from boatsim import blueprint, rerun_log
 from boatsim.errors import BadInput
-from boatsim.recording import Recording, read, write_csv
-from boatsim.rerun_log import RunLog, last_time, log_overlay, norms_table
-from boatsim.rerun_scene import plain_scene, scene_from
+from boatsim.recordings.readers.rrd import last_time
+from boatsim.recordings.table import Recording, read, write_csv
+from boatsim.view import blueprint, rerun_log
+from boatsim.view.rerun_log import RunLog, log_overlay, norms_table
+from boatsim.view.scene import plain_scene, scene_from
 
 SCENE = plain_scene(1.2, 0.3, (1.5, 3.0, 0.0, 0.0))
 
@@ -180,7 +181,8 @@ def test_a_run_goes_on_where_no_viewer_can_be_shown(tmp_path, monkeypatch):
 
 
 def test_the_scene_of_a_vessel_has_its_hull_and_a_thruster_on_each_side():
-    from boatsim import vessel, world
+    from boatsim.physics import vessel
+    from boatsim.simulate import world
 
     boat, tank = vessel.load("trial_boat"), world.Tank(length=8.0, width=6.0)
     scene = scene_from(world.build(boat, tank), boat, tank)
@@ -197,7 +199,7 @@ def test_every_closed_shape_has_its_outside_outside():
         a, b, c = (vertices[triangles[:, i]] for i in range(3))
         return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
 
-    from boatsim.rerun_scene import _lathe
+    from boatsim.view.scene import _lathe
 
     brick = _lathe([(0.0, -1.0), (2**0.5, -1.0), (2**0.5, 1.0), (0.0, 1.0)], 4, np.pi / 4)
     assert volume(*brick) == pytest.approx(8.0)

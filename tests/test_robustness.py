@@ -16,7 +16,7 @@ from hypothesis.errors import InvalidArgument
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.content import root
+from boatsim.physics.content import root
 
 DIAGNOSIS = {"diagnosis.json", "report.html", "report.md", "patched.toml", "diagnosis.rrd"}
 WRITTEN = {

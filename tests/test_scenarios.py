@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 from runs import SHIPPED, TESTS, found, mean, mean_of, raw
 
-from boatsim import scenario
-from boatsim.content import root
 from boatsim.errors import BadInput
-from boatsim.metrics import J, norms
-from boatsim.run import run
+from boatsim.physics.content import root
+from boatsim.simulate import scenario
+from boatsim.simulate.metrics import J, norms
+from boatsim.simulate.run import run
 
 SEEDS = 6  # of the means in section 11
 FEW = 3  # where a bar is far away

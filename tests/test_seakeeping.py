@@ -9,21 +9,21 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import exp1
 
-from boatsim import vessel
-from boatsim.base import Array, motion
-from boatsim.effects.bilge_keels import BilgeKeels
-from boatsim.effects.filtered_sea import FilteredSea
-from boatsim.effects.irregular_sea import IrregularSea, sections
-from boatsim.effects.linear_hull import LinearHull
-from boatsim.effects.push import Push
-from boatsim.effects.roll_damping import RollDamping
-from boatsim.effects.rudder import Rudder
-from boatsim.effects.rudder_stall import RudderStall
-from boatsim.effects.speed_hold import SpeedHold
 from boatsim.errors import BadInput
 from boatsim.measures.sea_keeping import SeaKeeping
-from boatsim.particulars import spheroid
-from boatsim.recording import Recording
+from boatsim.physics import vessel
+from boatsim.physics.base import Array, motion
+from boatsim.physics.effects.bilge_keels import BilgeKeels
+from boatsim.physics.effects.filtered_sea import FilteredSea
+from boatsim.physics.effects.irregular_sea import IrregularSea, sections
+from boatsim.physics.effects.linear_hull import LinearHull
+from boatsim.physics.effects.push import Push
+from boatsim.physics.effects.roll_damping import RollDamping
+from boatsim.physics.effects.rudder import Rudder
+from boatsim.physics.effects.rudder_stall import RudderStall
+from boatsim.physics.effects.speed_hold import SpeedHold
+from boatsim.physics.particulars import spheroid
+from boatsim.recordings.table import Recording
 
 G, RHO = 9.81, 1025.0
 SEEDS = 4000  # the error of an rms over them is 1.1 %

@@ -11,26 +11,27 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from boatsim import recording, vessel
-from boatsim.base import Array, Wrench, motion
 from boatsim.diagnose import analysis
-from boatsim.effects.added_mass import AddedMass
-from boatsim.effects.approach_balance import ApproachBalance
-from boatsim.effects.forward_speed_damping import ForwardSpeedDamping
-from boatsim.effects.linear_damping import LinearDamping
-from boatsim.effects.metacentric_height_error import MetacentricHeightError
-from boatsim.effects.outboards import Outboards
-from boatsim.effects.planing_lag import PlaningLag
-from boatsim.effects.righting_arm import RightingArm
-from boatsim.effects.rudder import Rudder
-from boatsim.effects.shaft_rpm import ShaftRpm
-from boatsim.effects.speed_loss_in_turn import SpeedLossInTurn
-from boatsim.effects.speed_scaled_steering import SpeedScaledSteering
-from boatsim.effects.steering_drag import SteeringDrag
-from boatsim.effects.steering_rate_limit import SteeringRateLimit
-from boatsim.effects.thrust_loss_with_speed import ThrustLossWithSpeed
 from boatsim.errors import BadInput
-from boatsim.recording import Notes, Recording
+from boatsim.physics import vessel
+from boatsim.physics.base import Array, Wrench, motion
+from boatsim.physics.effects.added_mass import AddedMass
+from boatsim.physics.effects.approach_balance import ApproachBalance
+from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
+from boatsim.physics.effects.linear_damping import LinearDamping
+from boatsim.physics.effects.metacentric_height_error import MetacentricHeightError
+from boatsim.physics.effects.outboards import Outboards
+from boatsim.physics.effects.planing_lag import PlaningLag
+from boatsim.physics.effects.righting_arm import RightingArm
+from boatsim.physics.effects.rudder import Rudder
+from boatsim.physics.effects.shaft_rpm import ShaftRpm
+from boatsim.physics.effects.speed_loss_in_turn import SpeedLossInTurn
+from boatsim.physics.effects.speed_scaled_steering import SpeedScaledSteering
+from boatsim.physics.effects.steering_drag import SteeringDrag
+from boatsim.physics.effects.steering_rate_limit import SteeringRateLimit
+from boatsim.physics.effects.thrust_loss_with_speed import ThrustLossWithSpeed
+from boatsim.recordings import table as recording
+from boatsim.recordings.table import Notes, Recording
 
 SHIP = vessel.load("kvlcc2")
 TURN = {"u": 0.8, "v": 0.15, "r": -0.06, "delta_rad": 0.4}  # of the 7 m model, to port

@@ -5,14 +5,14 @@ from math import exp, log, pi
 import numpy as np
 import pytest
 
-from boatsim.base import Array
 from boatsim.measures.activity import Activity
 from boatsim.measures.levels import Levels
 from boatsim.measures.staircase import Staircase
 from boatsim.measures.step_response import StepResponse
 from boatsim.measures.tracking import Tracking
 from boatsim.measures.zigzag_swings import ZigzagSwings
-from boatsim.recording import Recording
+from boatsim.physics.base import Array
+from boatsim.recordings.table import Recording
 
 T: Array = 0.01 * np.arange(2001.0)
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from benchmarks import thesis_models
-from boatsim import vessel
-from boatsim.adaptive import lyapunov
-from boatsim.base import motion
+from boatsim.control.adaptive import lyapunov
+from boatsim.physics import vessel
+from boatsim.physics.base import motion
 
 ARM = thesis_models.ARM
 SWAY_YAW = thesis_models.SWAY_YAW

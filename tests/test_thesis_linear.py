@@ -9,16 +9,17 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from boatsim import scenario, vessel
-from boatsim.base import Array
-from boatsim.content import names
-from boatsim.diagnose import commands
-from boatsim.engine import Engine, State
+from boatsim.cli import diagnosis as commands
 from boatsim.measures.sway_hold import SwayHold
-from boatsim.metrics import norms
-from boatsim.outputs import run_into
-from boatsim.recording import Recording
-from boatsim.run import Run, run
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.content import names
+from boatsim.recordings.table import Recording
+from boatsim.simulate import scenario
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.metrics import norms
+from boatsim.simulate.run import Run, run
+from boatsim.view.outputs import run_into
 
 SHIPPED = [name.removeprefix("thesis_linear/") for name in names("scenario") if name.startswith("thesis_linear/")]
 A = {  # T10 to T14, states v and r

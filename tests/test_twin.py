@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boatsim import vessel
-from boatsim.base import Array
 from boatsim.errors import BadInput
-from boatsim.twin import Twin, body_rates, earth_rates
-from boatsim.vessel import Vessel
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.twin import Twin, body_rates, earth_rates
 
 NO_COMMANDS = np.zeros((100, 0))
 

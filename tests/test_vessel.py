@@ -6,10 +6,10 @@ from typing import Any
 import boats
 import pytest
 
-from boatsim import content, vessel
-from boatsim.effects.added_mass import AddedMass
-from boatsim.effects.outboards import Outboards
 from boatsim.errors import BadInput
+from boatsim.physics import content, vessel
+from boatsim.physics.effects.added_mass import AddedMass
+from boatsim.physics.effects.outboards import Outboards
 
 
 def of(text: str, tmp_path: Path, **more: Any) -> vessel.Vessel:

@@ -9,7 +9,7 @@ import pytest
 from real_boat import Real, recorded
 
 from boatsim.diagnose import analysis
-from boatsim.recording import Notes, Recording, write_csv
+from boatsim.recordings.table import Notes, Recording, write_csv
 
 NOISE = (0.003, 0.003, 0.012)  # [m, m, rad] of camera and compass
 COMMANDS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")

@@ -12,10 +12,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from boatsim import hullform, vessel, world
-from boatsim.content import root
 from boatsim.errors import BadInput, BadPhysics
-from boatsim.world import Tank
+from boatsim.physics import hullform, vessel
+from boatsim.physics.content import root
+from boatsim.simulate import world
+from boatsim.simulate.world import Tank
 
 MODELS = root() / "models"
 VESSELS = ("joystick_boat", "trial_boat", "kvlcc2_roll")
@@ -289,7 +290,8 @@ except Exception as error:
     print(error)
     sys.exit(77)
 import mujoco
-from boatsim import vessel, world
+from boatsim.physics import vessel
+from boatsim.simulate import world
 model = world.build(vessel.load("joystick_boat"), world.Tank(centre=(0.1, 0.0)))
 data = mujoco.MjData(model)
 pictures = {}

@@ -15,15 +15,16 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.base import Array, Measurement, Shown
-from boatsim.diagnose import analysis, show
+from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, segments, stated_noise, track
-from boatsim.diagnose.findings import FreeRun
 from boatsim.diagnose.fit import converge, fit
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.rank import selection
-from boatsim.recording import Recording
+from boatsim.diagnose.report import show
+from boatsim.diagnose.report.findings import FreeRun
+from boatsim.diagnose.search.rank import selection
+from boatsim.physics.base import Array, Measurement, Shown
+from boatsim.recordings.table import Recording
 
 NAME, VESSEL = "blueboat_lake", "blueboat"
 UNSEEN = ("run_220", "run_225")

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from boatsim.diagnose import commands
+from boatsim.cli import diagnosis as commands
 from boatsim.diagnose.analysis import Diagnosis
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "recordings"

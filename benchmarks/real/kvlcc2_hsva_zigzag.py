@@ -6,11 +6,12 @@ Z_20_05; then each of the ten runs is left out once, with the couplings kept and
 """
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.diagnose import analysis, show
+from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, track
 from boatsim.diagnose.fit import converge, descend
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.report import show
 
 NAME = "kvlcc2_hsva_zigzag"
 UNSEEN = ("Z_15_05", "Z_20_05")

@@ -9,12 +9,12 @@ positions have steps of 10 m. The circle goes far below any speed of the fit.
 import numpy as np
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.base import Array
 from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, track
 from boatsim.diagnose.problem import Fit
-from boatsim.diagnose.show import fits_of
+from boatsim.diagnose.report.show import fits_of
+from boatsim.physics.base import Array
 
 NAME = "kvlcc2_marin_free"
 FITTED = ("zz_10", "zz_m10", "zz_m20")

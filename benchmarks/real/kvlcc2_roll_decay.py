@@ -14,16 +14,17 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.real.common import report, table
-from boatsim.base import Array
-from boatsim.diagnose import analysis, show
+from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, track
 from boatsim.diagnose.fit import converge
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.rank import ENOUGH, Ranking, rank
-from boatsim.diagnose.screen import screen
-from boatsim.recording import Recording
-from boatsim.vessel import Vessel
+from boatsim.diagnose.report import show
+from boatsim.diagnose.search.rank import ENOUGH, Ranking, rank
+from boatsim.diagnose.search.screen import screen
+from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import Recording
 
 NAME = "kvlcc2_roll_decay"
 DATA = Path(__file__).parents[2] / "tests" / "data" / NAME

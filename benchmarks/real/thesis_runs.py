@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from boatsim import scenario
-from boatsim.base import Array
-from boatsim.content import find
-from boatsim.control import Sense
+from boatsim.control.base import Sense
 from boatsim.files import read_toml
-from boatsim.metrics import SCORED, Film, sway_values, yaw_values
-from boatsim.program import Program
-from boatsim.scenario import Scenario
-from boatsim.twin import body_rates
+from boatsim.physics.base import Array
+from boatsim.physics.content import find
+from boatsim.physics.program import Program
+from boatsim.simulate import scenario
+from boatsim.simulate.metrics import SCORED, Film, sway_values, yaw_values
+from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.twin import body_rates
 
 TESTS = ("sway_1", "sway_2", "sway_3", "sway_4", "yaw_1", "yaw_2", "yaw_3", "yaw_4")
 WINDY = ("yaw_2", "yaw_4")  # T18

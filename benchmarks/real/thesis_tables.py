@@ -33,10 +33,10 @@ import numpy as np
 
 from benchmarks.real.common import table
 from benchmarks.real.thesis_runs import TESTS, WINDY, Bench, Knob
-from boatsim.base import Array
 from boatsim.diagnose.fit import Space, log_prior
-from boatsim.diagnose.rank import ALIKE, ENOUGH
-from boatsim.metrics import CLIP, SCALE, J
+from boatsim.diagnose.search.rank import ALIKE, ENOUGH
+from boatsim.physics.base import Array
+from boatsim.simulate.metrics import CLIP, SCALE, J
 
 SPREAD = 0.3  # of a residual: camera marks, rounding of the tables, and how far runs of one test differ
 INDEPENDENT = 2.0  # numbers that the norms of one test are worth

@@ -16,12 +16,13 @@ import numpy as np
 
 from benchmarks.real import blueboat_lake, kvlcc2_hsva_zigzag, kvlcc2_marin_free
 from benchmarks.real.common import runs_of, table
-from boatsim.diagnose import analysis, show
+from boatsim.diagnose import analysis
 from boatsim.diagnose.filter import nominal_levels, stated_noise, track
 from boatsim.diagnose.fit import converge, fit
 from boatsim.diagnose.problem import LENGTH, Fit, Problem
-from boatsim.diagnose.rank import selection
-from boatsim.program import Program
+from boatsim.diagnose.report import show
+from boatsim.diagnose.search.rank import selection
+from boatsim.physics.program import Program
 
 LADDER = (0.25, 0.5, 1.0, 2.0, 4.0)  # [s] on a boat of 1.2 m; by Froude's law on others
 SAME = 1.01  # an error this little above the smallest is no reason to leave more to the latent force

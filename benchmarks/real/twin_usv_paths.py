@@ -7,8 +7,9 @@ The middle third is kept unseen. Prints what was found, how strong at most is wh
 import numpy as np
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.diagnose import analysis, show
+from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import Diagnosis
+from boatsim.diagnose.report import show
 
 NAME, VESSEL = "twin_usv_paths", "twin_usv"
 HELPS = 0.9  # ratio of errors on unseen data above which an effect found has not earned its place

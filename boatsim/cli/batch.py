@@ -10,11 +10,11 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from boatsim import scenario as scenarios
 from boatsim.cli import show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput
-from boatsim.scenario import Scenario
+from boatsim.simulate import scenario as scenarios
+from boatsim.simulate.scenario import Scenario
 
 POLL = 0.1  # [s] between two looks at the processes
 
@@ -73,7 +73,7 @@ def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None,
 
 def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
     """Run a standard manoeuvre and print its figures; the limits beside them are a yardstick, not a test."""
-    from boatsim.outputs import run_into
+    from boatsim.view.outputs import run_into
 
     with show.progress([(scenario.name, scenario.file.duration)]) as report:
         content = run_into(folder, scenario, progress=lambda t: report(0, t))
@@ -106,7 +106,7 @@ def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
 def carry_out(task: Task, progress: Callable[[float], None]) -> Outcome:
     """Run one task, whatever comes of it."""
     try:
-        from boatsim.outputs import run_into
+        from boatsim.view.outputs import run_into
 
         return Outcome(task, run_into(task.folder, scenarios.load(task.given), task.seed, task.live, progress))
     except FAULTS as error:

@@ -130,7 +130,7 @@ def manoeuvre(
 ) -> int:
     """Run a standard manoeuvre of a vessel: its figures beside the limits of the IMO, and the files of a run."""
     from boatsim.cli.batch import run_manoeuvre
-    from boatsim.manoeuvre import scenario_of
+    from boatsim.simulate.manoeuvre import scenario_of
 
     made = scenario_of(name, vessel, _loads(load), angle, speed)
     return run_manoeuvre(made, out or Path("out") / f"{made.vessel.name}_{name}")
@@ -153,8 +153,8 @@ def list_(
 @guarded
 def margins(controller: Annotated[str, typer.Argument(help="Name of a controller, or its .py file.")]) -> None:
     """Print L1 norm, crossover, phase margin and delay margin of a controller's feedback channels."""
-    from boatsim import content
-    from boatsim import margins as found
+    from boatsim.control import margins as found
+    from boatsim.physics import content
 
     print(found.text(found.table(content.load_class("controller", controller)())))
 
@@ -173,7 +173,7 @@ def compare(
     ] = None,
 ) -> int:
     """Compare a recording with a simulation of its commands, or of a scenario."""
-    from boatsim.diagnose import commands
+    from boatsim.cli import diagnosis as commands
 
     return commands.compare(run, vessel, _loads(load), scenario, out)
 
@@ -188,7 +188,7 @@ def replay(
     horizon: Annotated[float, typer.Option(min=0.1, metavar="S", help="Length of each free run [s].")] = 6.0,
 ) -> int:
     """Simulate a recording in free runs, each driven by the recorded commands alone."""
-    from boatsim.diagnose import commands
+    from boatsim.cli import diagnosis as commands
 
     return commands.replay(run, vessel, _loads(load), horizon, out)
 
@@ -213,7 +213,7 @@ def diagnose(
     ] = None,
 ) -> int:
     """Say which physics a vessel's model leaves out of recordings of the real one."""
-    from boatsim.diagnose import commands
+    from boatsim.cli import diagnosis as commands
 
     return commands.diagnose(runs, hold_out or [], vessel, _loads(load), out, library or [], without or [])
 

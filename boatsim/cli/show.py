@@ -6,8 +6,8 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from boatsim import content
 from boatsim.files import read_toml
+from boatsim.physics import content
 
 
 @contextmanager

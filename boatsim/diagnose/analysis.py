@@ -7,22 +7,25 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim import vessel as vessels
-from boatsim.base import Array, Effect
-from boatsim.content import load_class, names
-from boatsim.diagnose import experiment, hull_forces, locate, show
-from boatsim.diagnose.answer import compose, meanings
 from boatsim.diagnose.filter import Track, axes_of, nominal_levels, stated_noise, track
-from boatsim.diagnose.findings import Findings, Missing
-from boatsim.diagnose.position_frame import in_one_frame
+from boatsim.diagnose.locate import forces as locate
+from boatsim.diagnose.locate import hull_forces
+from boatsim.diagnose.log.position_frame import in_one_frame
+from boatsim.diagnose.log.steering_sense import steered
+from boatsim.diagnose.next import experiment
 from boatsim.diagnose.problem import Problem
-from boatsim.diagnose.rank import Ranking, rank
-from boatsim.diagnose.steering_sense import steered
+from boatsim.diagnose.report import show
+from boatsim.diagnose.report.answer import compose, meanings
+from boatsim.diagnose.report.findings import Findings, Missing
+from boatsim.diagnose.search.rank import Ranking, rank
 from boatsim.errors import BadInput, unknown_name
-from boatsim.program import Program
-from boatsim.recording import Recording, read
-from boatsim.recording_notes import notes_for
-from boatsim.vessel import Vessel
+from boatsim.physics import vessel as vessels
+from boatsim.physics.base import Array, Effect
+from boatsim.physics.content import load_class, names
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.notes import notes_for
+from boatsim.recordings.table import Recording, read
 
 SAME_SCALE = 0.01  # scales this close are one
 NEXT = "next.toml"  # scenario of the next experiment, in the folder of the answer

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.base import Array, Channel, Unsteady
 from boatsim.errors import BadInput
-from boatsim.program import Program
-from boatsim.recording import FEWEST_ROWS, HUGE, Recording
-from boatsim.run import commands_of
-from boatsim.vessel import Vessel
+from boatsim.physics.base import Array, Channel, Unsteady
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
+from boatsim.simulate.run import commands_of
 
 FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into thirds
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike

@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from boatsim.base import Array
 from boatsim.diagnose.filter import Levels
 from boatsim.diagnose.levels import fit_force, force_prior
 from boatsim.diagnose.problem import Fit, Free, Problem
+from boatsim.physics.base import Array
 
 SETTLED = 0.3  # [nats] a refit that gains less changes nothing
 HALVINGS = 6  # of the way from a start at which the boat runs away to the boat with nothing missing

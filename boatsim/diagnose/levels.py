@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.base import Array
 from boatsim.diagnose.filter import Levels
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.physics.base import Array
 
 FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above the ambient level
 SENSOR_PRIOR = 0.4  # sd of log noise about the stated one

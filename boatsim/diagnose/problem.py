@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.base import Array, Channel, Effect, Unsteady
 from boatsim.diagnose.filter import Levels, Track
-from boatsim.vessel import Vessel
+from boatsim.physics.base import Array, Channel, Effect, Unsteady
+from boatsim.physics.vessel import Vessel
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.base import Array, param
-from boatsim.measure import Measure, crossing, travelled
-from boatsim.recording import Recording
+from boatsim.physics.base import Array, param
+from boatsim.recordings.table import Recording
+from boatsim.simulate.measure import Measure, crossing, travelled
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.control import wrap
-from boatsim.measure import Measure
-from boatsim.recording import Recording
+from boatsim.control.base import wrap
+from boatsim.recordings.table import Recording
+from boatsim.simulate.measure import Measure
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.base import param
-from boatsim.measure import Measure
-from boatsim.recording import Recording
-from boatsim.recording_notes import unit_of
+from boatsim.physics.base import param
+from boatsim.recordings.notes import unit_of
+from boatsim.recordings.table import Recording
+from boatsim.simulate.measure import Measure
 
 MOST = 12  # levels
 

@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.measure import Measure
-from boatsim.recording import Recording
+from boatsim.recordings.table import Recording
+from boatsim.simulate.measure import Measure
 
 PARTS = ("first_turn", "after_first", "second_turn", "after_second")
 

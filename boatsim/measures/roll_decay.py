@@ -8,8 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.measure import Measure
-from boatsim.recording import Recording
+from boatsim.recordings.table import Recording
+from boatsim.simulate.measure import Measure
 
 SMALLEST = 0.02  # share of the release below which peaks are left out
 

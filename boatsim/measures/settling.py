@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.base import param
 from boatsim.errors import BadInput, unknown_name
-from boatsim.measure import Measure
-from boatsim.recording import Recording
+from boatsim.physics.base import param
+from boatsim.recordings.table import Recording
+from boatsim.simulate.measure import Measure
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.measure import Measure
-from boatsim.recording import Recording
+from boatsim.recordings.table import Recording
+from boatsim.simulate.measure import Measure
 
 SAME = 1e-6  # [rad] between two helm angles that are one
 

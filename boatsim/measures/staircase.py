@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from boatsim.base import param
-from boatsim.measure import Measure
 from boatsim.measures.step_response import first
-from boatsim.recording import Recording
-from boatsim.recording_notes import unit_of
+from boatsim.physics.base import param
+from boatsim.recordings.notes import unit_of
+from boatsim.recordings.table import Recording
+from boatsim.simulate.measure import Measure
 
 MOST = 8  # steps of a staircase
 

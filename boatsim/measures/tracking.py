@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from boatsim.base import Array, param
-from boatsim.measure import Measure
-from boatsim.recording import Recording
-from boatsim.recording_notes import unit_of
+from boatsim.physics.base import Array, param
+from boatsim.recordings.notes import unit_of
+from boatsim.recordings.table import Recording
+from boatsim.simulate.measure import Measure
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,232 @@
+"""What `boatsim diagnose`, `replay` and `compare` do: files in, files and a few printed lines out."""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from boatsim.diagnose.analysis import NEXT, Diagnosis, composed, open_recording
+from boatsim.diagnose.analysis import diagnose as analyse
+from boatsim.diagnose.filter import nominal_levels, track
+from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.next.experiment import scenario_text
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.report import page as report
+from boatsim.diagnose.report import patch, show
+from boatsim.diagnose.report.findings import FreeRun
+from boatsim.errors import BadInput, BadPhysics
+from boatsim.files import replacing
+from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import Notes, Recording, write_csv
+from boatsim.simulate import scenario as scenarios
+from boatsim.view.outputs import filling
+
+FORCE_NAMES = {"surge": "force_X_N", "sway": "force_Y_N", "roll": "force_K_Nm", "yaw": "force_N_Nm"}
+
+
+def diagnose(
+    runs: list[Path], hold_out: list[Path], vessel: str | None, load: list[str], out: Path, library: list[str],
+    without: list[str],
+) -> int:  # fmt: skip
+    """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
+    found = analyse(runs, hold_out, vessel, load, library, without)
+    _say(found.remarks)
+    write(found, out)
+    for line in summary(found):
+        print(line)
+    plan = [NEXT] if found.plan else []
+    files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *plan, "diagnosis.rrd"]
+    print(f"written to {out}: {', '.join(files)}")
+    return 0
+
+
+def _say(remarks: Sequence[str]) -> None:
+    """Remarks on the input, to stderr, a line each."""
+    for line in remarks:
+        print(f"note: {line}", file=sys.stderr)
+
+
+def write(found: Diagnosis, out: Path) -> None:
+    """All files of a diagnosis, or none."""
+    try:
+        answer = json.dumps(found.findings.answer, indent=1, allow_nan=False) + "\n"
+    except ValueError:
+        raise BadPhysics(
+            f"{found.vessel.name}: a fitted boat diverges; are the units of the recording right?"
+        ) from None
+    with filling(out) as new:
+        report.write(found.findings, new)
+        kinds = {e.name(): type(e) for e in found.problem.program.suspects}
+        patch.write(found.vessel, found.ranking.best, kinds, new / "patched.toml")
+        if found.plan is not None:
+            (new / NEXT).write_text(scenario_text(found.plan, found.vessel), encoding="utf-8")
+        overlay(found, new / "diagnosis.rrd")
+        (new / "diagnosis.json").write_text(answer, encoding="utf-8")
+    if found.plan is None:  # that of an earlier diagnosis
+        (out / NEXT).unlink(missing_ok=True)
+
+
+def summary(found: Diagnosis) -> list[str]:
+    """What is printed of a diagnosis."""
+    answer = found.findings.answer
+    lines = [answer["sentence"]]
+    for effect in answer["effects"]:
+        lines.append(
+            f"  {effect['name']}: gains {effect['gain_nats']:.1f} nats, probability {effect['probability']:.2f}"
+        )
+        lines += [f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()]
+    fit = answer["fit"]
+    lines.append(f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):")
+    for key, unit, scale in (
+        ("position_rms_m", "m", 1.0), ("heading_rms_rad", "deg", 57.29578), ("roll_rms_rad", "deg", 57.29578),
+    ):  # fmt: skip
+        if fit.get(key):
+            cells = ", ".join(f"{m} {fit[key][m] * scale:.4g}" for m in show.MODELS)
+            lines.append(f"  {key.split('_')[0]} rms [{unit}]: {cells}")
+    if wanted := answer["next_experiment"]:
+        names, nats = ", ".join(wanted["separates"]), wanted["expected_gain_nats"]
+        lines.append(f"to record next: {wanted['manoeuvre']} (tells apart {names}; expected gain {nats:.3g} nats)")
+    return lines
+
+
+def overlay(found: Diagnosis, path: Path) -> None:
+    """diagnosis.rrd: recorded, nominal, recalibrated and patched boats of the first unseen run on one time line."""
+    from boatsim.view import rerun_log
+
+    stretches = [s for s in found.findings.free_runs if s.run == found.findings.free_runs[0].run]
+    boats = {m: [_of_model(s, m) for s in stretches] for m in show.MODELS} if stretches else {}
+    if stretches:
+        boats = {"recording": [_whole(stretches)], **boats}
+    chosen = next((m for m in found.findings.missing if stretches and m.run == stretches[0].run), None)
+    missing = None
+    if chosen is not None:
+        signals: dict[str, Array] = {}
+        for axis, mean in chosen.force.items():
+            name, sd = FORCE_NAMES[axis], chosen.sd[axis]
+            signals |= {name: mean, f"{name}_low": mean - 2 * sd, f"{name}_high": mean + 2 * sd}
+        missing = Recording(chosen.run, chosen.t, signals)
+    scene = _water_around(found.vessel, *boats.get("recording", ()))
+    intervals = [
+        i for i in found.findings.answer["where"]["intervals"] if chosen is not None and i["run"] == chosen.run
+    ]
+    with replacing(path) as temporary:
+        rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
+
+
+def _water_around(boat: Vessel, path: Recording | None = None) -> Any:
+    """Scene of a boat in open water that reaches one and a half boat lengths beyond where it went."""
+    from boatsim.simulate import world
+    from boatsim.view.scene import scene_from
+
+    spans = []
+    for name in ("x_m", "y_m"):
+        where = path.signals[name] if path is not None and name in path.signals else np.zeros(1)
+        spans.append((float(np.nanmin(where)), float(np.nanmax(where))))
+    length, width = (high - low + 3 * boat.length for low, high in spans)
+    centre = (sum(spans[0]) / 2, sum(spans[1]) / 2)
+    tank = world.Tank(length, width, boat.draught * 2, walls=False, centre=centre)
+    return scene_from(world.build(boat, tank), boat, tank)
+
+
+def _whole(stretches: Sequence[FreeRun]) -> Recording:
+    """The recording under consecutive free runs, which share their ends."""
+    t, rows = np.unique(np.concatenate([s.t for s in stretches]), return_index=True)
+    names = stretches[0].channels["recorded"]
+    joined = {n: np.concatenate([s.channels["recorded"][n] for s in stretches])[rows] for n in names}
+    return Recording("recording", t, joined)
+
+
+def _of_model(stretch: FreeRun, model: str) -> Recording:
+    """A free run of one model, with its distance from the recording."""
+    signals, recorded = dict(stretch.channels[model]), stretch.channels["recorded"]
+    if {"x_m", "y_m"} <= signals.keys():
+        signals["off_m"] = np.hypot(signals["x_m"] - recorded["x_m"], signals["y_m"] - recorded["y_m"])
+    return Recording(model, stretch.t, signals)
+
+
+def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:
+    """Free runs of a vessel over a recording, driven by the recorded commands alone: replay.csv and rms errors."""
+    recording, boat = open_recording(run, vessel, load)
+    _say(recording.remarks)
+    problem, fitted = _as_written(recording, boat)
+    stretches = show.free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
+    if not stretches:
+        raise BadInput(f"{run}: {recording.t[-1] - recording.t[0]:g} s long; a free run of {horizon:g} s does not fit")
+    _write_replay(stretches, out / "replay.csv")
+    for family, found in show.errors(stretches).items():
+        print(f"{family}: {found['simulated']:.5g} ({len(stretches)} free runs of {horizon:g} s)")
+    print(f"written to {out}: replay.csv")
+    return 0
+
+
+def _as_written(recording: Recording, boat: Vessel) -> tuple[Problem, Fit]:
+    """A vessel file on a recording, nothing fitted but the noise that the smoothed starts need."""
+    program, acting = composed(boat)
+    problem = Problem([track(recording, program)], nominal_levels(boat, recording), {})
+    return problem, fit_noise(problem, replace(problem.nominal(), suspects=acting))
+
+
+def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
+    """Columns t_s, segment, pose; times as in the recording."""
+    names = list(stretches[0].channels["simulated"])
+    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        file.write(",".join(["t_s", "segment", *names]) + "\n")
+        for i, s in enumerate(stretches):
+            for k, t in enumerate(s.t):
+                cells = ",".join(f"{s.channels['simulated'][n][k]:.9g}" for n in names)
+                file.write(f"{t:.10g},{i},{cells}\n")
+
+
+def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None, out: Path) -> int:
+    """A recording beside a simulation: of its own commands from its smoothed first state, or of a scenario."""
+    recording, boat = open_recording(run, vessel, load)
+    _say(recording.remarks)
+    if scenario:
+        simulated = _of_scenario(recording, scenario)
+    else:
+        problem, fitted = _as_written(recording, boat)
+        whole = float(recording.t[-1] - recording.t[0])
+        only = show.free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[0]
+        simulated = only.channels["simulated"]
+    signals: dict[str, Array] = {}
+    lines = [f"{'signal':10s} {'rms error':>12s} {'largest':>12s}   of a range of"]
+    for name, value in simulated.items():
+        off = value - recording.signals[name]
+        signals |= {f"recorded_{name}": recording.signals[name], f"simulated_{name}": value, f"error_{name}": off}
+        reach = float(np.nanmax(recording.signals[name]) - np.nanmin(recording.signals[name]))
+        lines.append(f"{name:10s} {_rms(off):12.5g} {np.nanmax(np.abs(off)):12.5g}   {reach:.5g}")
+    with filling(out) as new:
+        write_csv(Recording(recording.name, recording.t, signals, Notes()), new / "compare.csv")
+        _compare_rrd(boat, recording, simulated, new / "compare.rrd")
+    print("\n".join(lines))
+    print(f"written to {out}: compare.csv, compare.rrd")
+    return 0
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.nanmean(values**2)))
+
+
+def _of_scenario(recording: Recording, name: str) -> dict[str, Array]:
+    """A scenario's own run at the times of a recording."""
+    from boatsim.simulate.run import run
+
+    log = run(scenarios.load(name)).recording
+    if recording.t[0] > log.t[-1]:
+        raise BadInput(f"{name} ends at {log.t[-1]:g} s, before {recording.name} begins ({recording.t[0]:g} s)")
+    shared = [n for n in ("x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "r_radps") if n in recording.signals]
+    return {n: np.interp(recording.t, log.t, log.signals[n], right=np.nan) for n in shared}
+
+
+def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Any], path: Path) -> None:
+    from boatsim.view import rerun_log
+
+    measured = Recording("recording", recording.t, {n: recording.signals[n] for n in simulated})
+    boats = {"recording": [measured], "simulated": [Recording("simulated", recording.t, dict(simulated))]}
+    with replacing(path) as temporary:
+        rerun_log.log_overlay(temporary, boats, None, [], _water_around(boat, measured))

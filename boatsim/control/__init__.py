@@ -1,0 +1,1 @@
+"""Blocks that controllers are made of: plain numbers, no knowledge of the simulator."""

@@ -1,0 +1,213 @@
+"""How a joystick's surge, sway and yaw demands become settings of two mirrored outboards, and what those then give.
+
+Both motors turn inward by one angle d >= 0 and run against each other. With D = T_port - T_starboard, S = T_port +
+T_starboard (thrusts signed, astern negative), half spacing B and arm L from the motors to the origin of the moment:
+
+    X = S cos d        Y = D sin d        N = D (B cos d - L sin d) = D R sin(gamma - d)
+
+with R = hypot(B, L) and gamma = atan(B/L) the neutral angle. B, L and the thrust curve are nominal values: what the
+boat really has enters a control loop as a disturbance.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import asin, atan2, copysign, cos, degrees, exp, hypot, radians, sin, sqrt
+from typing import NamedTuple
+
+from boatsim.control.base import clip, wrap
+from boatsim.physics.base import Checked, param
+
+PWM_RATED = 150.0  # thrusts are quoted at this PWM value (thesis, Appendix H: nominalpower)
+PWM_MAX = 255  # eight bits
+ANGLE_MAX = radians(45.0)  # [rad] inward range of the steering (thesis, Fig. 8)
+HOLD_SHARE = 0.45  # surge correction over differential thrust while the motors give sway (bayless.md section 9)
+TURN_SHARE = 0.8  # the same while they only turn the boat
+SURGE_RESERVE = 0.3  # part of that share which a turn at the motors' limits leaves to surge, or the boat drifts ahead
+
+
+class Stick(NamedTuple):
+    """What the operator asks for."""
+
+    surge: float  # [m/s] ahead
+    sway: float  # [m/s] to starboard
+    yaw: float  # [rad/s] clockwise
+
+    @classmethod
+    def read(cls, goal: Mapping[str, float]) -> "Stick":
+        """From the goal's `surge_mps`, `sway_mps`, `yaw_radps`; what is not given is zero."""
+        return cls(*(goal.get(name, 0.0) for name in STICK))
+
+
+STICK = ("surge_mps", "sway_mps", "yaw_radps")
+
+
+@dataclass
+class Heading:
+    """Heading of the boat and heading asked for, both counted from the start heading."""
+
+    own: float = 0.0  # [rad] integrated gyro, drawn slowly towards the compass if that is wanted
+    wanted: float = 0.0  # [rad] integrated stick
+
+    def step(self, rate: float, compass: float, stick: float, dt: float, trust: float = 0.0) -> None:
+        """One period of dt [s]; `trust` [1/s] is the rate at which the compass takes the gyro's drift out."""
+        self.own += dt * rate
+        self.wanted += dt * stick
+        if trust > 0.0:
+            self.own += (1.0 - exp(-trust * dt)) * wrap(compass - self.own)
+
+    def error(self) -> float:
+        """Wanted minus own heading [rad]; whole turns count."""
+        return self.wanted - self.own
+
+
+class Drive(NamedTuple):
+    """Thrust of each motor, astern negative, and the angle by which both turn inward."""
+
+    port: float  # [N]
+    starboard: float  # [N]
+    angle: float  # [rad] 0 to ANGLE_MAX
+
+
+class Push(NamedTuple):
+    """Force on the hull in body axes and moment about the origin of the nominal arm."""
+
+    X: float  # [N]
+    Y: float  # [N]
+    N: float  # [N m]
+
+
+class Setting(NamedTuple):
+    """A drive as the servos and motor controllers take it: whole PWM steps and whole degrees."""
+
+    pwm_port: int
+    pwm_starboard: int
+    degrees: int
+
+    def commands(self) -> dict[str, float]:
+        """By name of command channel; the starboard angle is the mirror image of the port one."""
+        angle = radians(self.degrees)
+        return {
+            "pwm_port": float(self.pwm_port),
+            "pwm_starboard": float(self.pwm_starboard),
+            "steer_port_rad": angle,
+            "steer_starboard_rad": -angle,
+        }
+
+
+@dataclass
+class Outboards(Checked):
+    """What a controller believes of its two outboards, and the allocation built on it."""
+
+    half_spacing: float = param(0.235, low=0.05, high=0.4, unit="m", words="assumed motor to centreline")
+    arm: float = param(0.62, low=0.45, high=2.0, unit="m", words="assumed motors to centre of lateral resistance")
+    rated_thrust: float = param(0.5, low=0.05, high=5.0, unit="N", words="assumed thrust of a motor at PWM 150")
+    reverse_ratio: float = param(0.67, low=0.2, high=1.0, unit="", words="assumed thrust astern over thrust ahead")
+    dead_pwm: float = param(0.0, low=0.0, high=120.0, unit="", words="assumed PWM below which a motor gives nothing")
+    thrust_power: float = param(1.0, low=0.5, high=3.0, unit="", words="assumed exponent of thrust over PWM")
+    largest_difference: float = param(0.9, low=0.05, high=5.0, unit="N", words="largest port minus starboard thrust")
+    rated_sway: float = param(0.07, low=0.01, high=1.0, unit="m/s", words="sway command that gets the sway thrust")
+    sway_thrust: float = param(0.6, low=0.05, high=5.0, unit="N", words="thrust difference for that sway command")
+    sway_dead_zone: float = param(0.007, low=0.0, high=1.0, unit="m/s", words="smaller sway commands count as none")
+    compass_trust: float = param(
+        0.0, low=0.0, high=5.0, unit="1/s", words="rate at which the compass corrects the gyro"
+    )
+
+    def sway_difference(self, sway: float) -> float:
+        """Thrust difference D [N] for a sway command [m/s]; sway is open loop, so D is all there is to choose."""
+        if abs(sway) < self.sway_dead_zone:
+            return 0.0
+        return clip(self.sway_thrust * sway / self.rated_sway, -self.largest_difference, self.largest_difference)
+
+    def lever(self, angle: float) -> float:
+        """Moment over thrust difference [m] with both motors turned inward by `angle` [rad]."""
+        return self.half_spacing * cos(angle) - self.arm * sin(angle)
+
+    def neutral_angle(self) -> float:
+        """Inward angle [rad] at which the motors give sway without a moment."""
+        return atan2(self.half_spacing, self.arm)
+
+    def allocate(self, surge: float, difference: float, moment: float, room: float = 0.0) -> Drive:
+        """Drive for a surge force [N], a sway thrust difference [N] and a moment [N m]; yaw first, then sway, surge.
+
+        `room` [N] widens the bound on the surge thrust beyond its share of D. The motors swap direction only where
+        `difference` changes sign or, where it is zero, where `moment` does; elsewhere the drive is continuous.
+        """
+        if difference == 0.0:
+            d, spread = 0.0, moment / self.half_spacing
+        else:
+            d, spread = self._steered(difference, moment)
+        spread = clip(spread, -self.largest_difference, self.largest_difference)
+        share = TURN_SHARE if difference == 0.0 else HOLD_SHARE
+        return self._powered(surge / cos(d), spread, share * abs(spread) + room, d)
+
+    def _steered(self, difference: float, moment: float) -> tuple[float, float]:
+        """Angle and D for sway: D as asked or, if no angle then gives the moment, as large as the moment needs."""
+        helps = moment * difference > 0.0
+        needed = moment / self.lever(0.0 if helps else ANGLE_MAX)
+        spread = copysign(max(abs(difference), abs(needed)), difference)
+        sine = moment / (spread * hypot(self.half_spacing, self.arm))
+        return clip(self.neutral_angle() - asin(clip(sine, -1.0, 1.0)), 0.0, ANGLE_MAX), spread
+
+    def _powered(self, total: float, spread: float, bound: float, angle: float) -> Drive:
+        """Both thrusts from S and D; where a motor would exceed its bound S yields, all but its reserve, then D."""
+        ahead, astern = self.thrust(PWM_MAX), -self.thrust(-PWM_MAX)
+        total = clip(total, -bound, bound)
+        kept = clip(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
+        spread = copysign(min(abs(spread), 2.0 * astern + kept, 2.0 * ahead - kept), spread)
+        total = clip(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
+        return Drive(0.5 * (total + spread), 0.5 * (total - spread), angle)
+
+    def pwm(self, thrust: float) -> int:
+        """Signed whole PWM value whose nominal thrust is nearest to `thrust` [N]."""
+        ahead = abs(thrust) if thrust > 0.0 else abs(thrust) / self.reverse_ratio
+        if ahead == 0.0:
+            return 0
+        value = self.dead_pwm + (PWM_RATED - self.dead_pwm) * (ahead / self.rated_thrust) ** (1.0 / self.thrust_power)
+        return round(copysign(min(value, PWM_MAX), thrust))
+
+    def thrust(self, pwm: float) -> float:
+        """Nominal thrust [N] at a signed PWM value."""
+        share = max(abs(pwm) - self.dead_pwm, 0.0) / (PWM_RATED - self.dead_pwm)
+        ahead: float = self.rated_thrust * share**self.thrust_power
+        return ahead if pwm >= 0.0 else -self.reverse_ratio * ahead
+
+    def setting(self, drive: Drive) -> Setting:
+        """The drive rounded and capped to what motors and servos accept."""
+        return Setting(self.pwm(drive.port), self.pwm(drive.starboard), round(degrees(drive.angle)))
+
+    def push(self, drive: Drive) -> Push:
+        """Nominal force and moment of a drive."""
+        spread = drive.port - drive.starboard
+        total = drive.port + drive.starboard
+        return Push(total * cos(drive.angle), spread * sin(drive.angle), spread * self.lever(drive.angle))
+
+    def applied(self, setting: Setting) -> Push:
+        """Nominal force and moment of a rounded and capped setting: what a predictor should be told."""
+        angle = radians(setting.degrees)
+        return self.push(Drive(self.thrust(setting.pwm_port), self.thrust(setting.pwm_starboard), angle))
+
+
+@dataclass(frozen=True)
+class JetThrottle:
+    """Throttle of a water jet, 1 idle to 7 full, and its shaft power per mass [m^2/s^3]; thrust is power / speed.
+
+    Svendsen et al., IFAC MCMC 2012, eq. 10 and Table 2, with the printed s_i taken as the coefficients of throttle^i.
+    """
+
+    q2: float = 154.9  # printed 164.5, with which the power jumps at throttle 4
+
+    def power(self, throttle: float) -> float:
+        """Power of a throttle."""
+        if throttle < 2.0:
+            return 12.10 * throttle - 11.30
+        if throttle < 4.0:
+            return -21.1 - 20.0 * throttle + 18.5 * throttle * throttle
+        return 10.00 * throttle + self.q2
+
+    def throttle(self, power: float) -> float:
+        """Throttle of a power, within idle and full."""
+        if power < 12.90:  # at 2
+            return max((power + 11.30) / 12.10, 1.0)
+        if power < 194.9:  # at 4
+            return (20.0 + sqrt(400.0 + 74.0 * (power + 21.1))) / 37.0
+        return clip(0.1 * (power - self.q2), 4.0, 7.0)

@@ -1,0 +1,109 @@
+"""A ship's yaw and roll identified while it sails: approximate maximum likelihood that forgets and resets.
+
+Salgado, Goodwin and Middleton, Int. J. Control 47 (1988) 477; as used by Martin (1993), appendix I. Angles are in
+degrees in here, because the constants of forgetting and resetting go with the size of the signals.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import degrees
+
+import numpy as np
+
+from boatsim.physics.base import Array, Checked, param
+
+YAW = (0.8, 0.03, 0.0)  # a2, b1, b2 at the start: Martin's nominal ship, section 3.2
+ROLL = (-1.7624, 0.9561, 0.01, -0.3, 0.0, 0.0)  # a1, a2, b1, b2, c1, c2
+
+
+@dataclass
+class Forgetting(Checked):
+    """Constants of exponential forgetting and resetting; Martin does not print his, these are our choice."""
+
+    alpha: float = param(0.5, low=0.0, high=1.0, unit="", words="share of the gain that is used")
+    forgetting: float = param(0.99, low=0.5, high=1.0, unit="", words="lambda: what a sample weighs one period later")
+    beta: float = param(1e-5, low=0.0, high=10.0, unit="", words="keeps the covariance from vanishing")
+    delta: float = param(0.05, low=0.0, high=10.0, unit="", words="keeps the covariance from growing")
+    covariance: float = param(0.01, low=1e-6, high=1e4, unit="", words="P(0)")
+    inverse_alone: bool = False  # the thesis prints 1/lambda where P/lambda is meant
+    later_gain: bool = False  # the thesis prints P(t+1) in the gain where P(t) is meant
+
+
+@dataclass
+class Estimator:
+    """Estimates theta of y = x'theta + noise, sample by sample."""
+
+    theta: Array  # (n,)
+    law: Forgetting
+    p: Array = field(init=False)  # (n, n) covariance
+
+    def __post_init__(self) -> None:
+        self.p = self.law.covariance * np.eye(len(self.theta))
+
+    def learn(self, x: Array, y: float) -> float:
+        """Take in one sample, x (n,); returns the error that is left with the new estimate."""
+        law, p = self.law, self.p
+        px = p @ x
+        scale = 1.0 + x @ px
+        kept = np.eye(len(x)) if law.inverse_alone else p
+        self.p = (
+            kept / law.forgetting
+            - (law.alpha / scale) * np.outer(px, px)
+            + law.beta * np.eye(len(x))
+            - law.delta * (p @ p)
+        )
+        gain = (law.alpha / scale) * (self.p @ x if law.later_gain else px)
+        self.theta = self.theta + gain * (y - x @ self.theta)
+        return float(y - x @ self.theta)
+
+
+class Ship:
+    """Difference equations of yaw and roll, one period at a time, identified apart.
+
+    psi(k+1) = (1 + a2y) psi(k) - a2y psi(k-1) + b1y u(k) + b2y phi(k)
+    phi(k+1) = -a1r phi(k) - a2r phi(k-1) + b1r u(k) + b2r (psi(k) - psi(k-1))
+    """
+
+    def __init__(self, law: Forgetting) -> None:
+        """Knows Martin's nominal ship only."""
+        self._yaw, self._roll = Estimator(np.array(YAW), law), Estimator(np.array(ROLL), law)
+        self._left = [0.0, 0.0]  # [deg] errors of roll that were left, one period ago and two
+
+    @property
+    def yaw(self) -> tuple[float, ...]:
+        """a2y, b1y, b2y."""
+        return tuple(self._yaw.theta.tolist())
+
+    @property
+    def roll(self) -> tuple[float, ...]:
+        """a1r, a2r, b1r, b2r."""
+        return tuple(self._roll.theta[:4].tolist())
+
+    def learn(self, psi: Sequence[float], phi: Sequence[float], rudder: float) -> None:
+        """One period: heading and roll [rad] now, one period ago, two ago; rudder [rad] in the period gone by."""
+        (s0, s1, s2), (f0, f1, f2), u = map(degrees, psi), map(degrees, phi), degrees(rudder)
+        self._yaw.learn(np.array([s1 - s2, u, f1]), s0 - s1)
+        left = self._roll.learn(np.array([-f1, -f2, u, s1 - s2, *self._left]), f0)
+        self._left = [left, self._left[0]]
+
+    def named(self) -> dict[str, float]:
+        """The estimates by name, for a log."""
+        return dict(zip(("a2y", "b1y", "b2y", "a1r", "a2r", "b1r", "b2r"), self.yaw + self.roll, strict=True))
+
+    def matrices(self) -> tuple[Array, Array]:
+        """A (4, 4), B (4,) of the state psi, psi one ago, phi, phi one ago under the rudder angle."""
+        return state_space(self.yaw, self.roll)
+
+
+def state_space(yaw: Sequence[float], roll: Sequence[float]) -> tuple[Array, Array]:
+    """A (4, 4), B (4,) of (a2y, b1y, b2y) and (a1r, a2r, b1r, b2r)."""
+    (a2y, b1y, b2y), (a1r, a2r, b1r, b2r) = yaw, roll
+    a = np.array([[1.0 + a2y, -a2y, b2y, 0.0], [1.0, 0.0, 0.0, 0.0], [b2r, -b2r, -a1r, -a2r], [0.0, 0.0, 1.0, 0.0]])
+    return a, np.array([b1y, 0.0, b1r, 0.0])
+
+
+def with_rudder(a: Array, b: Array) -> tuple[Array, Array]:
+    """The same with the rudder angle as last state, moved by its change: A (n + 1, n + 1), B (n + 1,)."""
+    n = len(b)
+    whole = np.block([[a, b[:, None]], [np.zeros((1, n)), np.ones((1, 1))]])
+    return whole, np.array([*b, 1.0])

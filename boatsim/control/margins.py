@@ -1,0 +1,87 @@
+"""Robustness table of a controller: L1 norm, crossover, phase and extra-delay margin of each feedback channel."""
+
+from dataclasses import dataclass
+from math import degrees
+from typing import Any
+
+from boatsim.control.adaptive import LoopChannel, SampledChannel, l1_condition, loop_margins
+from boatsim.errors import BadInput
+from boatsim.physics.base import snake_case
+from boatsim.physics.content import load_class, names
+
+HEADINGS = ("channel", "input gain", "L1 norm s", "slope 1/s", "crossover rad/s", "phase deg", "extra delay s")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One channel at one true-over-assumed input gain."""
+
+    channel: str
+    input_gain: float
+    norm: float | None  # [s] L1 norm of what the low-pass leaves; None for a controller that is not L1
+    slope: float | None  # [1/s] largest slope of the uncertainty that the norm covers
+    needed: float | None  # [1/s] slope there is: the predictor's pole less the boat's own damping
+    crossover: float  # [rad/s]
+    phase_deg: float  # [deg] phase margin
+    delay_s: float  # [s] extra-delay margin
+    stable: bool
+
+
+def table(controller: Any) -> list[Row]:
+    """Rows of a controller (an object with `loop_channels`), three input gains for each channel. Raises BadInput."""
+    describe = getattr(controller, "loop_channels", None)
+    if describe is None:
+        asked = snake_case(type(controller).__name__)
+        able = [name for name in names("controller") if hasattr(load_class("controller", name), "loop_channels")]
+        raise BadInput(f"controller {asked!r} describes no loop_channels (these do: {', '.join(able) or 'none'})")
+    return [_row(channel, gain) for channel in describe() for gain in channel.input_gain]
+
+
+def _row(channel: LoopChannel | SampledChannel, gain: float) -> Row:
+    norm, found = channel.norm(gain), loop_margins(channel.loop(gain), high=channel.highest)
+    return Row(
+        channel=channel.name,
+        input_gain=gain,
+        norm=norm,
+        slope=None if norm is None else 1.0 / norm,
+        needed=None if norm is None else abs(channel.pole - channel.damping),
+        crossover=found.crossover,
+        phase_deg=degrees(found.phase),
+        delay_s=found.delay,
+        stable=found.stable,
+    )
+
+
+def text(rows: list[Row]) -> str:
+    """The table for a terminal, and for each L1 channel whether its L1-norm condition is met."""
+    lines = ["  ".join((f"{HEADINGS[0]:10}", *HEADINGS[1:]))]
+    lines += ["  ".join(_cells(row)).rstrip() for row in rows]
+    return "\n".join(lines + [_condition(name, rows) for name in _l1_channels(rows)])
+
+
+def _cells(row: Row) -> list[str]:
+    """One line of the table, each number under its heading."""
+    values = [
+        f"{row.input_gain:.2f}",
+        "-" if row.norm is None else f"{row.norm:.3f}",
+        "-" if row.slope is None else f"{row.slope:.2f}",
+        f"{row.crossover:.1f}",
+        f"{row.phase_deg:.0f}" if row.stable else "unstable",
+        f"{row.delay_s:.2f}",
+    ]
+    return [f"{row.channel:10}", *(f"{v:>{len(h)}}" for v, h in zip(values, HEADINGS[1:], strict=True))]
+
+
+def _l1_channels(rows: list[Row]) -> list[str]:
+    return list(dict.fromkeys(row.channel for row in rows if row.norm is not None))
+
+
+def _condition(name: str, rows: list[Row]) -> str:
+    """The L1-norm condition of one channel at its worst input gain, in words."""
+    norm, needed = max((row.norm, row.needed) for row in rows if row.channel == name and row.norm and row.needed)
+    value = l1_condition(norm, needed)
+    verdict = "met" if value < 1.0 else "not met (it is sufficient, not necessary)"
+    return (
+        f"{name}: L1 norm {norm:.3f} s covers uncertainty slopes below {1.0 / norm:.2f} 1/s; {needed:.2f} 1/s needed "
+        f"(norm x slope {value:.2f}): condition {verdict}"
+    )

@@ -1,0 +1,1 @@
+"""Where the missing force is: axis, time, region of the state."""

@@ -1,0 +1,163 @@
+"""What a missing force may depend on: each idea is what the force would be there up to factors, and how to say it."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import exp
+
+import numpy as np
+
+from boatsim.diagnose.filter import Track
+from boatsim.diagnose.locate.hull_forces import actuators, along
+from boatsim.physics.base import Array, angle_fields
+from boatsim.simulate.twin import body_rates
+
+FAMILY = "thrust"  # of actuators whose value is a force
+PLAY = 0.1  # [rad] between a steering command and the angle it stands for; the force hardly depends on it beyond scale
+REACH = 0.5  # [boat lengths] over which what a wall does falls to 37 % (`wall_effect` has the same for the trial boat)
+NEAR = 2.0  # [reaches] beyond which a wall is taken to do nothing
+SPEED = "forward_speed_mps"  # fact of a recording in which the hull only rolls
+
+
+@dataclass(frozen=True)
+class Idea:
+    """One explanation tried."""
+
+    variable: str
+    shapes: tuple[Array, ...]  # each (N, axes) [N, N m per factor]
+    sentence: Callable[[Array], str]  # of the fitted factors
+
+
+def ideas(track: Track, states: Array, damping: Array) -> list[Idea]:
+    """Everything tried on a run; `states` (N, 2 NQ) are smoothed, `damping` (N, axes) is the vessel's own."""
+    if track.program.module.NQ == 1:
+        return list(_rolling(track, states))
+    return [*_moving(states), *_astern(track), *_reversals(track), *_walls(track, states, damping)]
+
+
+def _moving(states: Array) -> Iterator[Idea]:
+    """A direction of the world, the square of each speed."""
+    axes = np.eye(states.shape[1] // 2)
+    c, s = np.cos(states[:, 2]), np.sin(states[:, 2])
+    north, east = np.outer(c, axes[0]) - np.outer(s, axes[1]), np.outer(s, axes[0]) + np.outer(c, axes[1])
+    yield Idea("heading in the world", (north, east), _direction)
+    rates = body_rates(states)[:, len(axes) :]
+    for axis, name in enumerate(("surge", "sway", "yaw", "roll")[: len(axes)]):
+        w = rates[:, axis]
+        yield Idea(f"{name} speed", (np.outer(w * np.abs(w), axes[axis]),), _square(f"{name} speed"))
+
+
+def _rolling(track: Track, states: Array) -> Iterator[Idea]:
+    """Amplitude of roll, the square of its rate, and the forward speed at which it rolls."""
+    angle, rate = states[:, :1], states[:, 1:2]
+    yield Idea("roll angle", (angle**3,), _cube)
+    yield Idea("roll rate", (rate * np.abs(rate),), _square("roll rate"))
+    if SPEED in track.facts:
+        yield Idea("forward speed", (rate * float(track.facts[SPEED]),), _forward)
+
+
+def _astern(track: Track) -> Iterator[Idea]:
+    """Force of the thrusters that push astern."""
+    vessel = track.program.vessel
+    thrusters = [i for i, a in enumerate(vessel.actuators) if vessel.commands[a].family == FAMILY]
+    if not thrusters:
+        return
+    idle = actuators(track)
+    back = idle.copy()
+    back[:, thrusters] = np.minimum(back[:, thrusters], 0.0)
+    idle[:, thrusters] = 0.0
+    yield Idea("thrust astern", (_at_rest(track, back) - _at_rest(track, idle),), _thrust)
+
+
+def _reversals(track: Track) -> Iterator[Idea]:
+    """Force that is missing while the angles stay behind a steering that has reversed (play operator)."""
+    names = track.program.vessel.actuators
+    angles = [i for i, a in enumerate(names) if a.endswith("_rad")]
+    if not angles:
+        return
+    held = actuators(track)
+    late = held.copy()
+    for row in range(1, len(held)):
+        late[row, angles] = np.clip(late[row - 1, angles], held[row, angles] - PLAY / 2, held[row, angles] + PLAY / 2)
+    for k, field in enumerate(angle_fields(names)):
+        part, angle = field.split("_", 1)
+        late[:, len(names) + k] = getattr(np, part)(late[:, names.index(angle)])
+    yield Idea("steering reversals", ((_at_rest(track, late) - _at_rest(track, held)) / PLAY,), _play)
+
+
+def _at_rest(track: Track, held: Array) -> Array:
+    """(N, axes) force of the vessel at rest with given actuators."""
+    still = np.zeros((len(held), 2 * track.program.module.NQ))
+    return along(track, still, held, track.values)
+
+
+def _walls(track: Track, states: Array, damping: Array) -> Iterator[Idea]:
+    """Pull towards the walls and damping that rises near them."""
+    walls = walls_of(track)
+    if walls is None:
+        return
+    reach = REACH * track.program.vessel.length
+    high, low = (
+        np.maximum(np.exp(-np.maximum(side * (np.array(walls)[ends] - states[:, :2]), 0.0) / reach) - exp(-NEAR), 0.0)
+        for side, ends in ((1.0, [1, 3]), (-1.0, [0, 2]))
+    )
+    c, s = np.cos(states[:, 2]), np.sin(states[:, 2])
+    north, east = (high - low).T
+    pull = np.column_stack([c * north + s * east, c * east - s * north])
+    pull = np.pad(pull, ((0, 0), (0, states.shape[1] // 2 - 2)))
+    near = (high + low).sum(axis=1, keepdims=True)
+    yield Idea("distance to the walls", (pull, near * damping), _near(reach))
+
+
+def walls_of(track: Track) -> tuple[float, ...] | None:
+    """x_low, x_high, y_low, y_high [m] of the tank: what the recording states, else the vessel's wall effect."""
+    if "walls_m" in track.facts:
+        return tuple(track.facts["walls_m"])
+    for effect in track.program.effects:
+        if names := type(effect).facts.get("walls_m"):
+            return tuple(float(getattr(effect, n)) for n in names)
+    return None
+
+
+def _direction(factors: Array) -> str:
+    size, toward = float(np.hypot(*factors)), float(np.degrees(np.arctan2(factors[1], factors[0]))) % 360.0
+    return f"the missing force keeps its direction in the world: {size:.2g} N toward {toward:.0f} deg"
+
+
+def _square(variable: str) -> Callable[[Array], str]:
+    what = "moment" if variable.startswith(("yaw", "roll")) else "force"
+    return lambda factors: f"the missing {what} {_way(factors[0])} with the square of the {variable}"
+
+
+def _cube(factors: Array) -> str:
+    way = "softer" if factors[0] > 0.0 else "stiffer"
+    return f"the hull gets {way} the further it rolls: the missing moment grows with the cube of the roll angle"
+
+
+def _forward(factors: Array) -> str:
+    return f"the missing moment {_way(factors[0])} with the roll rate, the more the faster the ship goes ahead"
+
+
+def _way(factor: float) -> str:
+    return "resists" if factor < 0.0 else "pushes"
+
+
+def _thrust(factors: Array) -> str:
+    what = "is missing" if factors[0] < 0 else "comes on top"
+    return f"while thrust is astern, about {abs(100.0 * factors[0]):.0f} % of the commanded thrust {what}"
+
+
+def _play(factors: Array) -> str:
+    way = "stays behind" if factors[0] > 0 else "runs ahead"
+    return f"after the steering reverses, its angle {way} as with {abs(factors[0]):.2g} rad of play"
+
+
+def _near(reach: float) -> Callable[[Array], str]:
+    def sentence(factors: Array) -> str:
+        pull, rise = factors * (1.0 - exp(-NEAR))  # at the wall
+        more, way = "more" if rise > 0.0 else "less", "towards" if pull > 0.0 else "away from"
+        return (
+            f"within about {reach:.2g} m of a wall the boat drags up to {abs(100.0 * rise):.0f} % {more} and is pushed "
+            f"{way} it by up to {abs(pull):.2g} N"
+        )
+
+    return sentence

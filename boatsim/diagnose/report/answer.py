@@ -1,0 +1,137 @@
+"""The answer file of a diagnosis: verdict, effects with their parameters, where, limits, fit."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from boatsim import __version__
+from boatsim.control.base import wrap
+from boatsim.diagnose.locate import forces as locate
+from boatsim.diagnose.locate.regions import regions
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.report import show
+from boatsim.diagnose.report import words as report_words
+from boatsim.diagnose.report.findings import FreeRun
+from boatsim.diagnose.search.rank import Named, Ranking
+from boatsim.physics.base import Effect
+
+ONE_SIDED_95 = 1.645  # [sd]
+SHAPE = 0.05  # nature's law is never quite the entry's: an sd holds this share of what was found [rad for directions]
+TOLD = 0.9  # a fitted sd above this share of the prior one means that the data say nothing
+
+
+def compose(
+    problem: Problem,
+    ranking: Ranking,
+    forces: Sequence[locate.Force],
+    stretches: Sequence[FreeRun],
+    held_out: Sequence[str],
+    horizon: float,
+    wanted: Mapping[str, Any],
+) -> dict[str, Any]:
+    """diagnosis.json as a dictionary, without the seconds; `wanted` is what it says of the next experiment."""
+    effects = [_effect(problem, ranking.best, n) for n in ranking.named]
+    verdict = "ambiguous" if any(e["tied_with"] for e in effects) else "named" if effects else "nothing_missing"
+    verdict = "unknown" if ranking.unknown else verdict
+    found = show.errors(stretches)
+    none: dict[str, float] = {}
+    answer: dict[str, Any] = {
+        "verdict": verdict,
+        "sentence": "",
+        "seconds": 0.0,
+        "version": __version__,
+        "effects": effects,
+        "unknown": {"flag": ranking.unknown, "gain_nats": round(ranking.left_over, 3)},
+        "candidates": _candidates(ranking),
+        "upper_limits": {name: _limits(problem, fitted, name) for name, fitted in ranking.last.items()},
+        "where": {
+            "axes": locate.strength(problem, forces),
+            "intervals": [vars(i) for i in locate.intervals(problem, forces)],
+            "region": [vars(r) for r in regions(problem, ranking.recalibrated)],
+        },
+        "fit": {
+            "horizon_s": horizon,
+            "held_out": list(held_out),
+            "position_rms_m": found.get("position_rms_m", none),
+            "heading_rms_rad": found.get("heading_rms_rad", none),
+            **({"roll_rms_rad": found["roll_rms_rad"]} if "roll_rms_rad" in found else {}),
+        },
+        "next_experiment": dict(wanted),
+        "patch": "patched.toml",
+    }
+    answer["sentence"] = report_words.sentence(answer, meanings(problem.program.suspects))
+    return answer
+
+
+def meanings(suspects: Iterable[Effect]) -> dict[str, str]:
+    """What each entry says, by name, and each of its fitted parameters, by "entry.parameter" as in the answer."""
+    kinds = [type(e) for e in suspects]
+    fitted = ((kind.name(), name, p) for kind in kinds for name, p in kind.params().items() if p.fit)
+    return {k.name(): k.words for k in kinds} | {f"{k}.{key_of(name, p.unit)}": p.words for k, name, p in fitted}
+
+
+def key_of(name: str, unit: str) -> str:
+    """Parameter name with its unit: force in N -> force_N, north in m/s -> north_mps, a ratio stays as it is."""
+    suffix = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
+    return f"{name}_{suffix}" if suffix else name
+
+
+def _effect(problem: Problem, best: Fit, named: Named) -> dict[str, Any]:
+    kind = _kind(problem, named.name)
+    return {
+        "name": named.name,
+        "kind": kind.kind,
+        "probability": round(named.probability, 4),
+        "gain_nats": round(named.gain, 2),
+        "words": kind.words,
+        "tied_with": list(named.tied_with),
+        "parameters": {
+            key_of(f.name, kind.params()[f.name].unit): _parameter(best, kind, f.name)
+            for f in best.free
+            if f.effect == named.name and not f.relative
+        },
+    }
+
+
+def _parameter(best: Fit, kind: type[Effect], name: str) -> dict[str, Any]:
+    """Value, sd and unit of a fitted parameter; angles within half a turn."""
+    about = kind.params()[name]
+    value, sd = best.value(kind.name(), name)
+    if name in (kind.strength or kind.params()):
+        strength = min(abs(value - about.absent), abs(value) or np.inf)  # some laws are absent at "very fast"
+        sd = float(np.hypot(sd, SHAPE * strength))
+    elif about.unit == "rad":
+        sd = float(np.hypot(sd, SHAPE))
+    return {"value": wrap(value) if about.unit == "rad" else value, "sd": sd, "unit": about.unit}
+
+
+def _candidates(ranking: Ranking) -> list[dict[str, Any]]:
+    """Every entry tried alone, best first, with its probability against the others and against nothing."""
+    names = sorted(ranking.first, key=lambda n: -ranking.first[n])
+    gains = np.array([0.0, *(ranking.first[n] for n in names)])
+    weights = np.exp(gains - gains.max())
+    weights /= weights.sum()
+    return [
+        {"name": n, "gain_nats": round(float(g), 2), "probability": round(float(w), 4)}
+        for n, g, w in zip(names, gains[1:], weights[1:], strict=True)
+    ]
+
+
+def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
+    """How far each parameter can be from not acting at all, at 95 %."""
+    kind = _kind(problem, name)
+    params = kind.params()
+    out = {}
+    for f in fitted.free:
+        if f.effect != name or f.relative or f.name not in (kind.strength or params):
+            continue
+        value, sd = fitted.value(name, f.name)
+        if sd < TOLD * f.sd:  # otherwise the limit would only be the prior's
+            strength = abs(value - params[f.name].absent) + ONE_SIDED_95 * sd
+            out[key_of(f.name, params[f.name].unit)] = float(f"{strength:.3g}")
+    return out
+
+
+def _kind(problem: Problem, name: str) -> type[Effect]:
+    return next(type(e) for e in problem.program.effects if e.name() == name)

@@ -1,0 +1,49 @@
+"""What a diagnosis hands to those who show it: the answer, and the curves behind it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from boatsim.physics.base import Array
+
+MODELS = ("recorded", "nominal", "recalibrated", "patched")  # what a free run compares
+
+
+@dataclass(frozen=True)
+class FreeRun:
+    """A stretch of unseen recording, and what each boat does from its first row with the recorded commands alone."""
+
+    run: str  # name of the recording
+    start_s: float
+    t: Array  # (M,) s
+    channels: dict[str, dict[str, Array]]  # one of `MODELS` -> x_m, y_m, psi_rad, phi_rad (those there are), each (M,)
+
+
+@dataclass(frozen=True)
+class Missing:
+    """The force of a run that the vessel as written has no cause for, by axis, and what the patch leaves of it."""
+
+    run: str  # name of the recording
+    t: Array  # (N,) s
+    force: dict[str, Array]  # "surge", "sway", "roll", "yaw" -> (N,)
+    sd: dict[str, Array]  # standard deviation of `force`, (N,)
+    unit: dict[str, str]  # "N" or "N m", by axis
+    left: dict[str, Array]  # the same force under the patched vessel, (N,)
+
+
+@dataclass(frozen=True)
+class Findings:
+    """A whole diagnosis, as the report shows it."""
+
+    answer: dict[str, Any]  # exactly what diagnosis.json holds
+    vessel: str
+    runs: tuple[str, ...]  # what was fitted
+    held_out: tuple[str, ...]  # what was kept unseen
+    held_out_note: str  # "the middle third of run_1 was kept unseen"
+    missing: tuple[Missing, ...] = ()
+    free_runs: tuple[FreeRun, ...] = ()  # on unseen data
+    remarks: tuple[str, ...] = ()  # what the data can not tell, and anything else a reader must know
+    coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)  # recalibrated coefficient -> factor, sd
+    extra_tables: tuple[tuple[str, list[str], list[list[str]]], ...] = ()  # title, header, rows
+    words: dict[str, str] = field(default_factory=dict)  # what a library entry says, by name; also "entry.parameter"
+    steps: tuple[tuple[float, Mapping[str, float]], ...] = ()  # commands of the next experiment from each time [s] on

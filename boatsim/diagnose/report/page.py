@@ -1,0 +1,81 @@
+"""The report of a diagnosis for people: one page and the same as plain text, made from one list of sections."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from boatsim.diagnose.report.blocks import Section, as_text, safe
+from boatsim.diagnose.report.findings import Findings
+from boatsim.diagnose.report.sections import proof, sections_of
+from boatsim.diagnose.report.words import listed, sentence
+from boatsim.files import replacing
+
+__all__ = ["sentence", "write"]
+
+VERDICTS = {
+    "named": "Named",
+    "ambiguous": "Named, with look-alikes",
+    "unknown": "Cause not in the library",
+    "nothing_missing": "Nothing missing",
+}
+
+
+NOT_PHYSICS = "Measurement, not physics"  # if all that was named is of that kind
+
+
+def write(findings: Findings, folder: Path) -> None:
+    """Write report.html (one page, nothing fetched) and report.md (the same in text). Raises OSError."""
+    sections = [s for s in sections_of(findings) if s.blocks]
+    for name, text in (("report.html", page(findings, sections)), ("report.md", markdown(findings, sections))):
+        with replacing(folder / name) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+
+
+def page(findings: Findings, sections: Sequence[Section]) -> str:
+    """The page, complete in itself."""
+    from jinja2 import Environment, StrictUndefined
+
+    template = (Path(__file__).parent / "templates" / "report.html.j2").read_text(encoding="utf-8")
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["held"] = _held
+    answer = findings.answer
+    return environment.from_string(template).render(
+        f=findings, verdict=_verdict(findings), answer=answer, headline=_headline(findings), sections=sections,
+        proof=proof(findings), facts=_facts(findings),
+    )  # fmt: skip
+
+
+def _held(words: str) -> str:
+    """No line ends within a value."""
+    return words.replace(" ± ", "\u00a0±\u00a0").replace(" %", "\u00a0%")
+
+
+def markdown(findings: Findings, sections: Sequence[Section]) -> str:
+    """The same as text."""
+    lines = [f"# {safe(_headline(findings))}", "", f"**{_verdict(findings)}.** {safe(proof(findings))}", ""]
+    lines += [f"- {name}: {safe(value)}" for name, value in _facts(findings)]
+    for section in sections:
+        lines += ["", f"## {section.title}"]
+        for block in section.blocks:
+            lines += as_text(block)
+    return "\n".join(lines) + "\n"
+
+
+def _headline(f: Findings) -> str:
+    return str(f.answer["sentence"]) or sentence(f.answer, f.words)
+
+
+def _verdict(f: Findings) -> str:
+    """The verdict in a word or two."""
+    effects, verdict = f.answer["effects"], f.answer["verdict"]
+    measured = verdict == "named" and all(e["kind"] == "measurement" for e in effects)
+    return NOT_PHYSICS if measured else VERDICTS[verdict]
+
+
+def _facts(f: Findings) -> list[tuple[str, str]]:
+    """Who, on what, how long."""
+    return [
+        ("Vessel", f.vessel),
+        ("Fitted to", listed(f.runs)),
+        ("Kept unseen", f.held_out_note.removeprefix("kept unseen: ") or listed(f.held_out) or "nothing"),
+        ("Made by", f"boatsim {f.answer['version']}"),
+    ]

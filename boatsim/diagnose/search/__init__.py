@@ -1,0 +1,1 @@
+"""Which entries of the library the data ask for."""

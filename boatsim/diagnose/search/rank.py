@@ -1,0 +1,172 @@
+"""Names what is missing: every suspect fitted in the filter, scored by evidence, selected forward, pruned backward."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from boatsim.diagnose.fit import converge, descend, fit, reduced
+from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search.screen import screen
+
+ENOUGH = 4.0  # [nats] an effect must gain to be named
+ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
+CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
+HALF = 0.5  # and those with this share of its gain
+MANY = 5  # but no more of them than this
+RIVALS = 3  # fitted in the place of what was named
+UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
+DWARFED = 0.1  # an effect that gains less than this share of what is left over is not stood for
+UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library
+
+
+@dataclass(frozen=True)
+class Named:
+    """An effect the data call for."""
+
+    name: str
+    gain: float  # [nats] on top of the others named
+    probability: float
+    tied_with: tuple[str, ...]  # look-alikes, at most three
+    rivals: Mapping[str, Fit]  # fits with the next best suspects in its place
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """What selection found."""
+
+    nominal: Fit  # the vessel as written, noise and force levels fitted
+    recalibrated: Fit  # the nominal structure with its own coefficients refitted
+    best: Fit
+    named: tuple[Named, ...]
+    first: dict[str, float]  # gain of every suspect alone over the recalibrated nominal [nats]
+    last: dict[str, Fit]  # every suspect not named, on top of the best set
+    left_over: float  # [nats] that a force beyond the tolerated one gains after the best set
+
+    @property
+    def unknown(self) -> bool:
+        """Whether something is left that no entry of the library explains."""
+        return self.left_over > UNKNOWN
+
+
+def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
+    """Forward selection over the candidates, the incumbent converged before each comparison.
+
+    Where far more stays unexplained than an effect explains, the tool does not stand for that effect.
+    """
+    nominal, recalibrated = baseline(problem)
+    search = _Search(problem, candidates, recalibrated)
+    best = search.selected()
+    best, named = search.settled(best)
+    while (left := left_over(problem, best)) > UNKNOWN and (dwarfed := [n for n in named if n.gain < DWARFED * left]):
+        best, named = search.settled(search.without(best, min(dwarfed, key=lambda n: n.gain).name))
+    tried = search.tried(best)
+    first = {n: f.evidence - search.base.evidence for n, f in search.tried(search.base).items()}
+    return Ranking(nominal, search.base, best, named, first, tried, left)
+
+
+def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:
+    """The recalibrated nominal and the best set on top of it, and no more: for cross-validation."""
+    _, recalibrated = baseline(problem)
+    return recalibrated, _Search(problem, candidates, recalibrated).selected()
+
+
+def baseline(problem: Problem) -> tuple[Fit, Fit]:
+    """The vessel as written with noise and force levels fitted, and recalibrated: its own coefficients refitted."""
+    nominal = fit_noise(problem, problem.nominal())
+    return nominal, converge(problem, descend(problem, nominal, 4, 0.1))
+
+
+class _Search:
+    """Fits of sets of suspects, each made once."""
+
+    def __init__(self, problem: Problem, candidates: tuple[str, ...], base: Fit) -> None:
+        self.problem, self.candidates, self.base = problem, candidates, base
+        self.fits: dict[frozenset[str], Fit] = {frozenset(): base}
+        self.looks: dict[frozenset[str], dict[str, Fit]] = {}
+
+    def selected(self) -> Fit:
+        """The best set: suspects added one by one, earlier ones dropped that a newer one makes needless."""
+        best, most = self.base, self.problem.program.vessel.diagnosis.most
+        for _ in range(2 * most):  # additions and prunings together
+            tried = self.tried(best)
+            if not tried or len(best.suspects) == most:
+                break
+            name = max(tried, key=lambda n: tried[n].evidence)
+            if tried[name].evidence - best.evidence < ENOUGH:
+                break
+            best = self.pruned(self.converged(tried[name]))
+        return best
+
+    def converged(self, start: Fit) -> Fit:
+        """The fit of a set, kept: made from `start` unless it was made before."""
+        key = frozenset(start.suspects)
+        if key not in self.fits:
+            self.fits[key] = converge(self.problem, start)
+        return self.fits[key]
+
+    def without(self, best: Fit, name: str) -> Fit:
+        """The fit of a set without one of its members."""
+        return self.converged(reduced(self.problem, best, name))
+
+    def tried(self, best: Fit) -> dict[str, Fit]:
+        """Every other candidate on top of a set: a quick look at all, those in front fitted in full."""
+        key = frozenset(best.suspects)
+        if key not in self.looks:
+            tried = screen(self.problem, best, [n for n in self.candidates if n not in best.suspects])
+            front = _front(tried, best)[:MANY]
+            self.looks[key] = tried | {n: fit(self.problem, tried[n]) for n in front}
+        return self.looks[key]
+
+    def pruned(self, best: Fit) -> Fit:
+        """Without the earlier effects that the newest one has made needless."""
+        for name in best.suspects[:-1]:
+            without = self.without(best, name)
+            if without.evidence > best.evidence - ENOUGH:
+                best = without
+        return best
+
+    def settled(self, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
+        """The set without members that gain too little on top of the others, and what is to be said of the rest."""
+        while True:
+            named = tuple(self.named(best, n) for n in best.suspects)
+            weak = [n for n in named if n.gain < ENOUGH or not self.there(best, n.name)]
+            if not weak:
+                return best, named
+            best = self.without(best, min(weak, key=lambda n: n.gain).name)
+
+    def there(self, best: Fit, name: str) -> bool:
+        """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it."""
+        params = next(type(e).params() for e in self.problem.program.suspects if e.name() == name)
+        fitted = {f.name: params[f.name].absent for f in best.free if f.effect == name and not f.relative}
+        found = {n: best.value(name, n) for n in fitted}
+        return not found or any(abs(x - fitted[n]) > sd for n, (x, sd) in found.items())
+
+    def named(self, best: Fit, name: str) -> Named:
+        """Gain of one effect on top of the others, and how its rivals do in its place."""
+        without = self.without(best, name)
+        gain = best.evidence - without.evidence
+        others = {n: f for n, f in self.tried(without).items() if n not in best.suspects}
+        rivals = {n: self.converged(others[n]) for n in _front(others, without)[:RIVALS]}
+        gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
+        weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
+        order = sorted(gains, key=lambda n: -gains[n])
+        tied = tuple(n for n in order if gains[n] > gain - ALIKE)[:3]
+        return Named(name, gain, float(weights[1] / weights.sum()), tied, {n: rivals[n] for n in order})
+
+
+def _front(tried: Mapping[str, Fit], base: Fit) -> list[str]:
+    """Candidates that may yet turn out the best, the best first: a quick look leaves out what the force levels take."""
+    gains = {n: f.evidence - base.evidence for n, f in tried.items()}
+    order = sorted(gains, key=lambda n: -gains[n])
+    reach = max(CLOSE, HALF * gains[order[0]]) if order else 0.0
+    return [n for n in order if gains[n] > gains[order[0]] - reach]
+
+
+def left_over(problem: Problem, best: Fit) -> float:
+    """Nats that the latent force gains beyond the tolerated level: what nothing in the library explains."""
+    on = problem.program.switches(best.suspects)
+    held = replace(best.levels, force=np.minimum(best.levels.force, UNKNOWN_FACTOR * problem.ambient.force))
+    free = problem.likelihood(best.free, best.theta, on, best.levels)
+    return free - problem.likelihood(best.free, best.theta, on, held)

@@ -1,0 +1,152 @@
+"""A quick look at every suspect on top of a fit: Gauss-Newton with the filter's gains and all else linearised."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from boatsim.diagnose.filter import axes_of
+from boatsim.diagnose.fit import Space, as_promised, jacobian, log_prior
+from boatsim.diagnose.levels import force_prior
+from boatsim.diagnose.problem import Fit, Problem, scale_of
+from boatsim.physics.base import Array, Effect, Unsteady
+
+ROUNDS = 3  # Gauss-Newton steps of a suspect
+HALVINGS, TOO_STRONG = 8, 30.0  # of a start that lies this far below nothing missing [nats]
+SMALL = 0.1  # where a suspect without starts of its own begins, in prior sds
+SWELL_SHARE = 0.7  # of the fitted latent force that a random force is tried with; the latent force keeps as much
+
+
+@dataclass(frozen=True)
+class Begin:
+    """What all looks share: the fit they are on top of, linearised with the gains held."""
+
+    columns: Array  # (rows, F) derivatives of the whitened errors by its parameters
+    slope: Array  # (F,) gradient that held gains show where there is none
+    score: float
+
+
+def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, Fit]:
+    """Each candidate added to `base`: parameters near the best, evidence near enough to choose whom to fit in full."""
+    on = problem.program.switches(base.suspects)
+    problem.likelihood(base.free, base.theta, on, base.levels)  # the gains that all looks share
+    white = problem.white()
+    known = jacobian(problem, base.free, base.theta, on, base.levels, white)
+    # base is a maximum: its gradient is zero, whatever gains held still make of it
+    space = Space(base.free)
+    off = known.T @ white + (base.theta - space.mean) / space.sd
+    score = log_prior(base.free, base.theta) - 0.5 * float(white @ white)
+    begin = Begin(known, off, score)
+    effects = {e.name(): e for e in problem.program.effects}
+    tried = {n: _look(problem, base, effects[n], begin) for n in candidates if not _random(effects[n])}
+    return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if _random(effects[n])}
+
+
+def _random(effect: Effect) -> bool:
+    return isinstance(effect, Unsteady)
+
+
+def _half_determinant(J: Array) -> float:
+    return 0.5 * float(np.linalg.slogdet(np.eye(J.shape[1]) + J.T @ J)[1])
+
+
+def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
+    """Where the fit of a suspect's parameters begins: its own starts, Froude-scaled, or a little of it."""
+    params, vessel = type(effect).params(), problem.program.vessel
+    default = {}
+    for name, p in params.items():
+        step = SMALL * p.spread * scale_of(p.unit, vessel)
+        default[name] = p.absent + (step if p.absent + step <= p.high else -step)
+    given = [{n: x * scale_of(params[n].unit, vessel) for n, x in s.items()} for s in type(effect).starts] or [{}]
+    return [{**default, **s} for s in given]
+
+
+def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -> Fit:
+    """`base` with one more suspect at a start of its parameters, not yet scored."""
+    suspects = (*base.suspects, name)
+    free = problem.parameters(suspects)
+    known = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
+    theta = np.array([known[f.effect, f.name] if (f.effect, f.name) in known else start[f.name] for f in free])
+    return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf)
+
+
+def handed_over(start: Fit, effect: Effect) -> Fit:
+    """What recalibration made of a coefficient put into the factor of the suspect that multiplies it.
+
+    The product is all that the data know: along the curve on which it stays the same straight steps get nowhere.
+    """
+    theta = start.theta.copy()
+    place = {(f.effect, f.name): i for i, f in enumerate(start.free)}
+    for name, about in type(effect).params().items():
+        owner, _, key = about.scales.partition(".")
+        own, coefficient = place.get((effect.name(), name)), place.get((owner, key))
+        if own is not None and coefficient is not None:
+            theta[own], theta[coefficient] = theta[coefficient], start.free[coefficient].mean
+    return replace(start, theta=theta)
+
+
+def _look(problem: Problem, base: Fit, effect: Effect, begin: Begin) -> Fit:
+    """One suspect: a first step from each of its starts, the best of them followed further."""
+    begun = [handed_over(joined(problem, base, effect.name(), s), effect) for s in starts(problem, effect)]
+    first = [_step(problem, b, begin, ROUNDS if len(begun) == 1 else 1) for b in begun]
+    best = max(first, key=lambda f: f[1])
+    if len(begun) > 1:
+        best = _step(problem, best[0], begin, ROUNDS - 1)
+    return replace(best[0], evidence=base.evidence + best[1] - begin.score + _half_determinant(begin.columns))
+
+
+def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit, float]:
+    """Gauss-Newton steps; the columns of what was free before stay as they are. Fit and score with its determinant."""
+    free, levels = start.free, start.levels
+    on = problem.program.switches(start.suspects)
+    space = Space(free)
+    theta = middle = space.clipped(start.theta)
+    known, off = begin.columns, np.append(begin.slope, np.zeros(len(free) - len(begin.slope)))
+
+    def look(x: Array) -> tuple[Array, float]:
+        white = problem.whitened(free, x, on, levels)
+        return white, log_prior(free, x) - 0.5 * float(white @ white) + float(off @ ((x - middle) / space.sd))
+
+    white, score = look(theta)
+    own = np.arange(len(free)) >= len(begin.slope)
+    for _ in range(HALVINGS):  # a start far too strong for this boat is brought nearer to nothing missing
+        if np.isfinite(score) and score > begin.score - TOO_STRONG:
+            break
+        theta = np.where(own, 0.5 * (theta + space.mean), theta)
+        white, score = look(theta)
+    if not np.isfinite(score):  # the boat runs away
+        return start, -np.inf
+    damping, J = 1e-3, known
+    for _ in range(rounds):
+        J = np.hstack([known, jacobian(problem, free, theta, on, levels, white, known.shape[1])])
+        gain, kept = 0.0, False
+        for _ in range(3):
+            g = off - J.T @ white - (theta - space.mean) / space.sd
+            trial = space.stepped(theta, J, g, damping)
+            after, value = look(trial)
+            if np.isfinite(value) and value > score:
+                kept = as_promised(value - score, space.promised(J, g, theta, trial))
+                theta, white, gain, score = trial, after, value - score, value
+                break
+            damping = max(damping, 1e-2) * 10.0
+        if gain < 0.1 or kept:
+            break
+    found = replace(start, theta=theta, covariance=space.covariance(np.eye(len(free)) + J.T @ J))
+    return found, score - _half_determinant(J)
+
+
+def _random_look(problem: Problem, base: Fit, effect: Effect) -> Fit:
+    """A random force takes over a share of the latent one, at each of the frequencies it may have."""
+    on = problem.program.switches((*base.suspects, effect.name()))
+    levels = replace(base.levels, force=SWELL_SHARE * base.levels.force)
+    of_axis = dict(zip(axes_of(problem.program.vessel), levels.force.tolist(), strict=True))
+    # linearised once; the determinant of what was free before is much the same with and without
+    was = problem.likelihood(base.free, base.theta, problem.program.switches(base.suspects), base.levels)
+    was += log_prior(base.free, base.theta) + force_prior(problem, base.levels)
+    tried = []
+    for start in starts(problem, effect):
+        rms = {n: of_axis.get(n, 0.0) for n in type(effect).strength}
+        at = replace(joined(problem, base, effect.name(), {**start, **rms}), levels=levels)
+        score = problem.likelihood(at.free, at.theta, on, levels, fresh=False) + log_prior(at.free, at.theta)
+        tried.append(replace(at, evidence=base.evidence + score + force_prior(problem, levels) - was))
+    return max(tried, key=lambda f: f.evidence)

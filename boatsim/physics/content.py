@@ -1,0 +1,138 @@
+"""Finds content by name: vessels, controllers and scenarios are files, and a file's name is its name everywhere."""
+
+import hashlib
+import importlib
+import importlib.util
+import sys
+import traceback
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from boatsim.errors import BadInput, unknown_name
+
+PACKAGES = {  # kinds that are modules of ours, one a file
+    "effect": "physics.effects",
+    "measure": "measures",
+    "reader": "recordings.readers",
+}
+KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
+
+
+@cache
+def root() -> Path:
+    """Folder that holds models/, controllers/ and scenarios/: inside an installed package, or the repository."""
+    package = Path(__file__).parents[1]
+    packed = package / "_content"
+    return packed if packed.is_dir() else package.parent
+
+
+def names(kind: str) -> list[str]:
+    """Every vessel, controller, effect, measure or scenario there is; scenarios are named folder/file."""
+    if kind in PACKAGES:
+        folder = Path(__file__).parents[1].joinpath(*PACKAGES[kind].split("."))
+        return sorted(p.stem for p in folder.glob("[!_]*.py"))
+    folder = root() / KINDS[kind]
+    if kind == "vessel":
+        return sorted(p.parent.name for p in folder.glob("*/vessel.toml"))
+    if kind == "controller":
+        return sorted(p.stem for p in folder.glob("[!_]*.py"))
+    return sorted(str(p.relative_to(folder).with_suffix("")) for p in folder.glob("*/*.toml"))
+
+
+def find(kind: str, name: str, beside: Path | None = None) -> Path:
+    """Path of a vessel.toml, controller .py or scenario .toml, given by name or by a path of the user's own.
+
+    `beside` is the folder a relative path starts from; if nothing is there, the working directory. Raises BadInput.
+    """
+    suffix = ".py" if kind == "controller" else ".toml"
+    for folder in [*([beside] if beside else []), Path()]:
+        own = folder / name
+        if own.suffix == suffix and own.is_file():
+            return own.resolve()
+        if beside and kind == "controller" and name not in names(kind) and (folder / f"{name}{suffix}").is_file():
+            return (folder / f"{name}{suffix}").resolve()
+        if kind == "vessel" and (own / "vessel.toml").is_file() and "/" in name:
+            return (own / "vessel.toml").resolve()
+    if name in names(kind):
+        folder = root() / KINDS[kind]
+        return folder / name / "vessel.toml" if kind == "vessel" else folder / f"{name}{suffix}"
+    if name.endswith(suffix):
+        raise BadInput(f"{name}: no such file")
+    raise BadInput(unknown_name(kind, name, names(kind)))
+
+
+def module_at(path: Path, name: str) -> ModuleType:
+    """Import one file under a given module name, once."""
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise BadInput(f"{path}: can not be imported")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[name]
+        row = next(
+            (
+                f" line {f.lineno}"
+                for f in reversed(traceback.extract_tb(error.__traceback__))
+                if f.filename == str(path)
+            ),
+            "",
+        )
+        raise BadInput(f"{path}:{row} {type(error).__name__}: {error}".replace("\n", " ")) from error
+    return module
+
+
+def camel_case(name: str) -> str:
+    """fan_wind -> FanWind."""
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+def module_of(kind: str, name: str) -> ModuleType:
+    """The module of ours that holds an effect, a measure or a reader."""
+    return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{name}")
+
+
+def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
+    """The class of an effect, measure or controller: CamelCase of its file's name. Raises BadInput where not found."""
+    if kind in PACKAGES and name in names(kind):
+        module = module_of(kind, name)
+    elif kind in PACKAGES:
+        file = name if name.endswith(".py") else f"{name}.py"
+        path = next((p for p in ((beside or Path()) / file, Path(file)) if p.is_file()), None)
+        if path is None:
+            raise BadInput(unknown_name(kind, name, names(kind)))
+        name, module = path.stem, _own_module(path)
+    else:
+        path = find("controller", name, beside)
+        shipped = path.parent == root() / KINDS["controller"]
+        name = path.stem
+        module = module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path)
+    found = getattr(module, camel_case(name), None)
+    if found is None:
+        raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
+    return found
+
+
+def address(effect: Any) -> str:
+    """What an effect class is found by from anywhere: its name if it is on the shelf, else the path of its file."""
+    if effect.__module__.startswith("boatsim.physics.effects."):
+        return str(effect.name())
+    return str(Path(sys.modules[effect.__module__].__file__ or "").resolve())
+
+
+def vessel_address(file: Path) -> str:
+    """The name of a shipped vessel, else the path of its file."""
+    return file.parent.name if file.parent.parent == root() / KINDS["vessel"] else str(file.resolve())
+
+
+def _own_module(path: Path) -> ModuleType:
+    """A user's own file: two folders may each have a push.py, and it may be edited while we run."""
+    path = path.resolve()
+    stamp = hashlib.sha256(str(path).encode() + path.read_bytes()).hexdigest()[:16]
+    return module_at(path, f"boatsim_own_{path.stem}_{stamp}")

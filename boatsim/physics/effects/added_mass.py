@@ -1,0 +1,76 @@
+"""Added mass: the water a hull sets in motion when it accelerates."""
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+from numba import njit
+
+from boatsim.physics import particulars
+from boatsim.physics.base import Force, Inertia, Mass, Wrench, param
+
+
+@njit(inline="always")
+def inertia(q: Any) -> Mass:
+    """Sway mass acts at its own centre, ahead and below, so it couples into yaw and roll."""
+    a, z = q.sway_at, q.sway_below
+    return Mass(
+        q.surge, q.sway, q.sway * a, q.yaw + q.sway * a * a, -q.sway * z, q.roll + q.sway * z * z, -q.sway * z * a
+    )
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    """Coriolis force -C_A(nu_r) nu_r of the added mass, Munk moment included (Fossen 2021, eq. 6.42)."""
+    b = q.sway * q.sway_at
+    along = q.surge * m.ur  # [kg m/s] added momentum in surge
+    across = q.sway * (m.vr - q.sway_below * m.p) + b * m.r
+    return Wrench(
+        q.coriolis * across * m.r, -q.coriolis * along * m.r, 0.0, q.coriolis * (across * -m.ur + along * m.vr)
+    )
+
+
+@dataclass(frozen=True)
+class AddedMass(Inertia, Force):
+    """Inertia of the surrounding water about the origin of motion, and its Coriolis force.
+
+    With `spheroid` the values of surge, sway and yaw are those of a prolate spheroid of the vessel's length and draught
+    (H. Lamb, Hydrodynamics, 1932), and roll is `roll_share` of the body's own roll inertia, about the origin.
+    """
+
+    words: ClassVar[str] = "the water that moves with the hull adds inertia"
+    shown_by: ClassVar[str] = "sharp starts and stops in sway and yaw"
+    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.3"
+    moves_with: ClassVar[str] = "water"
+    inertia: ClassVar = inertia
+    law: ClassVar = law
+
+    surge: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-X_udot", fit=True, spread=0.5, axis="surge")
+    sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-Y_vdot", fit=True, spread=5.0, axis="sway")
+    sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead")
+    sway_below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="sway added mass acts this far below")
+    yaw: float = param(
+        0.0,
+        low=0.0,
+        high=1e13,
+        unit="kg m^2",
+        words="-N_rdot about the point where sway acts",
+        fit=True,
+        spread=0.7,
+        axis="yaw",
+    )
+    roll: float = param(
+        0.0, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot about that point", fit=True, spread=0.02, axis="roll"
+    )
+    coriolis: float = param(1.0, low=0.0, high=1.0, unit="", words="share of the Coriolis force that is modelled")
+    spheroid: float = param(0.0, low=0.0, high=1.0, unit="", words="1: surge, sway, yaw and roll by the hull's size")
+    roll_share: float = param(0.2, low=0.0, high=2.0, unit="", words="roll inertia per the body's, if by size")
+
+    def completed(self, vessel: Any) -> Self:
+        """Values by the vessel's size, where they are wanted."""
+        own, body = super().completed(vessel), vessel.body
+        if not self.spheroid:
+            return own
+        share = particulars.spheroid(vessel.length, vessel.draught)
+        sway = share.sway * body.mass
+        roll = self.roll_share * body.roll_inertia - sway * self.sway_below**2
+        return replace(own, surge=share.surge * body.mass, sway=sway, yaw=share.yaw * body.yaw_inertia, roll=roll)

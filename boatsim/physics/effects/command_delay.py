@@ -1,0 +1,77 @@
+"""Command delay: what is commanded now reaches the thrusters later."""
+
+from dataclasses import dataclass
+from math import inf
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Array, Channel, param
+
+SAME = 1e-9  # [s] instants this close are one
+HISTORY = 80  # commands remembered of each actuator: one every 20 ms for the longest delay
+
+
+@njit(inline="always")
+def remember(x: float, memory: Array, at: int, dt: float) -> int:
+    """Add a command held for dt to the ring of (command, duration) pairs behind memory[at]; index of the newest."""
+    newest = int(memory[at])
+    if x != memory[at + 1 + 2 * newest]:
+        newest = (newest + 1) % HISTORY
+        memory[at] = newest
+        memory[at + 1 + 2 * newest] = x
+        memory[at + 2 + 2 * newest] = 0.0
+    memory[at + 2 + 2 * newest] += dt
+    return newest
+
+
+@njit
+def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
+    """Mean command of the time window that is `delay` old: exact for held commands, smooth in the delay."""
+    i = remember(x, memory, at, dt)
+    if q.delay <= 0.0:
+        return x
+    left, age, total, held = dt, 0.0, 0.0, x  # age [s] at the end of the step, walking back in time
+    for _ in range(HISTORY):
+        held = memory[at + 1 + 2 * i]
+        older = age + memory[at + 2 + 2 * i]
+        part = min(older, q.delay + dt) - max(age, q.delay)
+        if part > 0.0:
+            total += part * held
+            left -= part
+        age = older
+        if age >= q.delay + dt:
+            return total / dt
+        i = i - 1 if i > 0 else HISTORY - 1
+    return (total + left * held) / dt
+
+
+@njit
+def pause(x: float, memory: Array, at: int, q: Any) -> float:
+    """Time until the next command that is on its way arrives; one given now needs the whole delay."""
+    if q.delay <= 0.0:
+        return inf
+    i, age = int(memory[at]), 0.0
+    left = q.delay if x != memory[at + 1 + 2 * i] else inf
+    for _ in range(HISTORY):
+        age += memory[at + 2 + 2 * i]
+        if age >= q.delay - SAME:
+            break
+        left = q.delay - age
+        i = i - 1 if i > 0 else HISTORY - 1
+    return left
+
+
+@dataclass(frozen=True)
+class CommandDelay(Channel):
+    """Dead time between every command and its actuator."""
+
+    words: ClassVar[str] = "commands take effect after a dead time"
+    shown_by: ClassVar[str] = "quick steps of thrust and steering"
+    acts_on: ClassVar[str] = ""  # every actuator
+    slots: ClassVar[int] = 1 + 2 * HISTORY
+    channel: ClassVar = channel
+    pause: ClassVar = pause
+    starts: ClassVar = ({"delay": 0.1},)
+
+    delay: float = param(0.0, low=0.0, high=1.6, unit="s", words="command to effect", fit=True, spread=0.5)

@@ -1,0 +1,29 @@
+"""Forward speed damping: damping of sway, roll and yaw that grows with the speed ahead."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Force, Wrench, param
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    """|u| v, |u| p and |u| r, each axis for itself: lift of hull and fins at a small angle to the flow."""
+    speed = abs(m.ur)
+    return Wrench(0.0, -q.sway * speed * m.vr, -q.roll * speed * m.p, -q.yaw * speed * m.r)
+
+
+@dataclass(frozen=True)
+class ForwardSpeedDamping(Force):
+    """Linear damping in proportion to the forward speed."""
+
+    words: ClassVar[str] = "damping of sway, roll and yaw grows with the forward speed"
+    shown_by: ClassVar[str] = "the same turns at two forward speeds"
+    source: ClassVar[str] = "M. Blanke, Ship Propulsion Losses, PhD thesis 1981: terms Y_|u|v, K_|u|p, N_|u|r"
+    law: ClassVar = law
+
+    sway: float = param(0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="-Y_|u|v", fit=True, spread=20.0, axis="sway")
+    roll: float = param(0.0, low=0.0, high=1e13, unit="N s^2", words="-K_|u|p", fit=True, spread=0.02, axis="roll")
+    yaw: float = param(0.0, low=0.0, high=1e13, unit="N s^2", words="-N_|u|r", fit=True, spread=2.0, axis="yaw")

@@ -1,0 +1,31 @@
+"""Heading deviation: a compass error that depends on the heading."""
+
+from dataclasses import dataclass
+from math import cos, sin
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Measurement, Shown, param
+
+
+@njit(inline="always")
+def shown(m: Shown, q: Any) -> Shown:
+    """Recorded psi = psi + cos cos(psi) + sin sin(psi); speeds are resolved along the recorded heading."""
+    off = q.cos * cos(m.psi) + q.sin * sin(m.psi)
+    rate = (q.sin * cos(m.psi) - q.cos * sin(m.psi)) * m.r
+    c, s = cos(off), sin(off)
+    return Shown(m.x, m.y, m.psi + off, m.phi, c * m.u + s * m.v, c * m.v - s * m.u, m.p, m.r + rate)
+
+
+@dataclass(frozen=True)
+class HeadingDeviation(Measurement):
+    """Semicircular deviation of a compass, from iron or current-carrying wires aboard."""
+
+    words: ClassVar[str] = "the compass deviates with the heading (not physics)"
+    shown_by: ClassVar[str] = "straight runs on four headings, or a slow full turn"
+    source: ClassVar[str] = "coefficients B and C of the classical deviation formula (Archibald Smith)"
+    shown: ClassVar = shown
+
+    cos: float = param(0.0, low=-0.6, high=0.6, unit="rad", words="error heading north", fit=True, spread=0.1)
+    sin: float = param(0.0, low=-0.6, high=0.6, unit="rad", words="error heading east", fit=True, spread=0.1)

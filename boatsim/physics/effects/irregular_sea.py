@@ -1,0 +1,132 @@
+"""Irregular sea: long-crested wind waves push a hull in sway, yaw and roll, all three with the same waves."""
+
+from dataclasses import dataclass, replace
+from math import cos, exp, pi, sin, sqrt
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numba import njit
+
+from boatsim.physics import particulars
+from boatsim.physics.base import Force, Wrench, param
+
+LOWEST = 0.45  # of the modal frequency: below it lies less than 1e-13 of the energy
+GRAVITY = particulars.GRAVITY
+
+
+@njit(inline="always")
+def drawn(realisation: float, k: int) -> float:
+    """A number in [0, 1) that depends on realisation and k alone (G. Steele et al., SplitMix, OOPSLA 2014)."""
+    z = np.uint64(realisation) * np.uint64(0xD1342543DE82EF95) + np.uint64(k + 1) * np.uint64(0x9E3779B97F4A7C15)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return float((z ^ (z >> np.uint64(31))) >> np.uint64(11)) / 9007199254740992.0  # 2^53
+
+
+@njit(inline="always")
+def sections(s: float, taper: float) -> tuple[float, float]:
+    """Integrals over x in [-1, 1] of (1 - taper x^2) cos(s x) and of (1 - taper x^2) x sin(s x)."""
+    if abs(s) < 0.02:  # series: the closed forms lose their digits
+        s2 = s * s
+        return 2.0 - 2.0 / 3.0 * taper - s2 * (1.0 / 3.0 - taper / 5.0), s * (
+            2.0 / 3.0 - 0.4 * taper - s2 * (1.0 / 15.0 - taper / 21.0)
+        )
+    c, n = cos(s), sin(s)
+    even, square = n / s, n / s + 2.0 * c / s**2 - 2.0 * n / s**3  # halves of the integrals of cos and x^2 cos
+    odd = (n - s * c) / s**2
+    cube = (3.0 * s * s * n - s**3 * c + 6.0 * s * c - 6.0 * n) / s**4
+    return 2.0 * (even - taper * square), 2.0 * (odd - taper * cube)
+
+
+@njit
+def law(m: Any, q: Any) -> Wrench:
+    """Sum over waves, one from each cell of the frequencies; each carries the elevation's energy of its cell."""
+    Y = K = N = 0.0
+    if q.significant_height == 0.0:
+        return Wrench(0.0, 0.0, 0.0, 0.0)
+    ahead, across = cos(q.toward), sin(q.toward)  # of where the waves run: earth axes
+    run = ahead * m.x + across * m.y  # [m] the ship's way with them
+    if q.course_kept != 0.0:
+        run = ahead * q.speed * m.t
+    else:
+        ahead, across = m.cos_psi * ahead + m.sin_psi * across, m.cos_psi * across - m.sin_psi * ahead
+    modal, count = 2.0 * pi / q.modal_period, int(q.components)
+    low = LOWEST * modal
+    width, half = (max(q.cut, modal) - low) / count, 0.5 * q.length
+    weight = 0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length  # of water, per length of hull [N]
+    below = 0.0
+    for k in range(count):
+        w = low + width * (k + drawn(q.realisation, 2 * k))
+        above = exp(-1.25 * (modal / (low + width * (k + 1))) ** 4)  # share of the energy below the cell's upper end
+        number = w * w / GRAVITY  # deep water
+        slope = number * q.significant_height * sqrt((above - below) / 8.0)
+        theta = w * m.t - number * run + 2.0 * pi * drawn(q.realisation, 2 * k + 1)
+        up, turn = slope * sin(theta), slope * cos(theta)
+        K += up
+        if q.flat != 0.0:
+            Y += up
+        else:
+            together, apart = sections(number * ahead * half, q.taper)
+            deep = exp(-number * q.centre_depth)
+            Y += deep * together * up
+            N -= deep * apart * turn
+        below = above
+    Y *= q.sway * across * (q.mass * GRAVITY if q.flat != 0.0 else weight)
+    N *= q.yaw * across * weight * half
+    return Wrench(0.0, Y, q.roll * across * q.stiffness * K + q.arm * Y, N)
+
+
+@dataclass(frozen=True)
+class IrregularSea(Force):
+    """Waves of a Bretschneider spectrum that run one way; their slope pushes, turns and heels the hull.
+
+    Sway force and yaw moment are integrals of the slope over the sections of an ellipsoid; roll follows the slope with
+    the righting moment. With `course_kept` the ship meets the waves as on her first course (north) and speed, so that
+    `toward` is the angle of encounter: 0 following, pi / 2 beam, pi head sea; else by her true heading and place.
+    """
+
+    words: ClassVar[str] = "wind waves push, turn and heel the hull"
+    shown_by: ClassVar[str] = "lying across the sea without steering"
+    source: ClassVar[str] = "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V"
+    law: ClassVar = law
+
+    significant_height: float = param(
+        0.0, low=0.0, high=30.0, unit="m", words="four times the elevation's rms; 0: calm"
+    )
+    modal_period: float = param(7.5, low=0.2, high=40.0, unit="s", words="at the peak of the elevation's spectrum")
+    toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where the waves run to")
+    course_kept: float = param(0.0, low=0.0, high=1.0, unit="", words="1: met as on course north at `speed`")
+    speed: float = param(0.0, low=-50.0, high=50.0, unit="m/s", words="then; 0: that of the vessel's speed_hold")
+    cut: float = param(3.0, low=0.0, high=100.0, unit="rad/s", words="shorter waves are left out")
+    components: float = param(160.0, low=1.0, high=2000.0, unit="", words="number of waves")
+    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course")
+    sway: float = param(1.0, low=0.0, high=10.0, unit="", words="scale of the sway force; 1: by the formula")
+    roll: float = param(1.0, low=0.0, high=10.0, unit="", words="scale of the direct roll moment")
+    yaw: float = param(1.0, low=0.0, high=10.0, unit="", words="scale of the yaw moment")
+    flat: float = param(0.0, low=0.0, high=1.0, unit="", words="1: waves long against the hull, weight times slope")
+    taper: float = param(1.0, low=-10.0, high=10.0, unit="", words="sections 1 - taper (2 x / L)^2; 1: ellipsoid")
+    centre_depth: float = param(0.0, low=0.0, high=50.0, unit="m", words="of buoyancy; 0: 0.4 of the draught")
+    density: float = param(particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water")
+    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="0: the vessel's own", follows="vessel.length")
+    draught: float = param(0.0, low=0.0, high=50.0, unit="m", words="0: the vessel's own", follows="vessel.draught")
+    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the vessel's own; filled in")
+    stiffness: float = param(0.0, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM; filled in if it has one")
+    arm: float = param(
+        0.0, low=-100.0, high=100.0, unit="m", words="the vessel's roll by sway; filled in if it has one"
+    )
+
+    def completed(self, vessel: Any) -> Self:
+        """With what is known of the vessel's hull."""
+        own = super().completed(vessel)
+        return replace(
+            own,
+            speed=self.speed or getattr(vessel.effect("speed_hold"), "speed", 0.0),
+            centre_depth=self.centre_depth or 0.4 * own.draught,
+            mass=vessel.body.mass,
+            stiffness=getattr(vessel.effect("righting_arm"), "stiffness", self.stiffness),
+            arm=getattr(vessel.effect("linear_hull"), "arm", self.arm),
+        )
+
+    def seeded(self, seed: int) -> Self:
+        """Another course for each seed."""
+        return replace(self, realisation=self.realisation + seed)

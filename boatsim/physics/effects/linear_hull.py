@@ -1,0 +1,69 @@
+"""Linear hull: sway force and yaw moment of a displacement hull about its approach speed, from its particulars."""
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+from numba import njit
+
+from boatsim.physics import particulars
+from boatsim.physics.base import Force, Wrench, param
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    """Sway force at a depth below the mass centre; `arm` turns what accelerates the hull in sway into a roll moment."""
+    Y = -q.sway * m.vr - q.sway_by_yaw * m.r
+    N = -q.yaw_by_sway * m.vr - q.yaw * m.r + q.yaw_by_heel * m.phi
+    return Wrench(0.0, Y, -q.below * Y + q.arm * (Y - q.mass * m.u * m.r), N)
+
+
+@dataclass(frozen=True)
+class LinearHull(Force):
+    """Linear derivatives of a hull at constant forward speed, with its sway force acting below the mass centre.
+
+    The added mass of sway acts at the same depth, m_y z_H v' in roll. Martin's equations have that term in roll alone
+    (one-sided): as v' is the sum of all sway forces over m + m_y, each of them heels the hull with the further lever
+    `arm` = z_H m_y / (m + m_y). Where the vessel's `added_mass.sway_below` is set, the mass matrix has the coupling on
+    both sides, as energy demands, and the arm is zero.
+    """
+
+    words: ClassVar[str] = "the hull resists drifting and turning and is heeled by it"
+    shown_by: ClassVar[str] = "a zig-zag at small rudder angles"
+    source: ClassVar[str] = (
+        "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix IV; Inoue, Hirano, Kijima 1981"
+    )
+    law: ClassVar = law
+
+    trim: float = param(0.0, low=-20.0, high=20.0, unit="m", words="draught aft less draught forward")
+    block: float = param(0.5, low=0.05, high=1.0, unit="", words="block coefficient")
+    ahead: float = param(0.0, low=-200.0, high=200.0, unit="m", words="mass centre ahead of midship, LCG")
+    above_keel: float = param(0.0, low=0.0, high=100.0, unit="m", words="mass centre above the keel, VCG")
+    heel_to_yaw: float = param(-0.0076, low=-1.0, high=1.0, unit="", words="N'phi; -0.0076 for Martin's worked example")
+    density: float = param(particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water")
+    speed: float = param(0.0, low=-50.0, high=50.0, unit="m/s", words="approach speed", follows="speed_hold.speed")
+    sway: float = param(0.0, low=-1e11, high=1e11, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway")
+    sway_by_yaw: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping")
+    yaw_by_sway: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping")
+    yaw: float = param(0.0, low=-1e13, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw")
+    yaw_by_heel: float = param(0.0, low=-1e13, high=1e13, unit="N m", words="N_phi", calibrates="damping", axis="roll")
+    below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="depth of the sway force, z_H", axis="roll")
+    arm: float = param(0.0, low=-100.0, high=100.0, unit="m", words="roll moment per force that accelerates in sway")
+    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the vessel's own; filled in")
+
+    def completed(self, vessel: Any) -> Self:
+        """With derivatives and levers of the vessel's size, speed and added mass. Raises BadInput without that."""
+        own, L, T, water = super().completed(vessel), vessel.length, vessel.draught, self.needed(vessel, "added_mass")
+        d = particulars.derivatives(L, vessel.beam, T, self.trim, self.block)
+        q, x = 0.5 * self.density * L * T * own.speed, -self.ahead  # x: midship seen from the mass centre
+        below, mass = self.above_keel - 0.5 * T, vessel.body.mass
+        return replace(
+            own,
+            sway=-q * d.sway_by_sway,
+            sway_by_yaw=-q * L * d.sway_by_yaw + water.surge * own.speed,  # m_x V: Coriolis force of the water
+            yaw_by_sway=-q * (L * d.yaw_by_sway + d.sway_by_sway * x),
+            yaw=-q * L * (L * d.yaw_by_yaw + d.sway_by_yaw * x),
+            yaw_by_heel=q * L * own.speed * self.heel_to_yaw,
+            below=below,
+            arm=0.0 if water.sway_below else below * water.sway / (mass + water.sway),
+            mass=mass,
+        )

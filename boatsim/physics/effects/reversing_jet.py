@@ -1,0 +1,38 @@
+"""Reversing jet: a water jet at idle whose bucket bends it ahead or astern and whose nozzle turns it aside."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Force, Wrench, param
+
+
+@njit(inline="always")
+def ahead(m: Any) -> float:
+    """Share cos 2 beta: the bucket at `elevator_rad` = beta bends the jet by twice its own angle; negative astern."""
+    return 2.0 * m.cos_elevator_rad * m.cos_elevator_rad - 1.0
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    """Thrust and turning moment both go with the part of the jet that points astern."""
+    share = ahead(m)
+    return Wrench(q.thrust * share, 0.0, 0.0, q.yaw * share * m.jet_rad)
+
+
+@dataclass(frozen=True)
+class ReversingJet(Force):
+    """Idling water jet with a deflecting bucket; a positive nozzle angle `jet_rad` turns to starboard going ahead."""
+
+    words: ClassVar[str] = "the idling jet pushes and turns as far as its bucket lets it point astern"
+    shown_by: ClassVar[str] = "circles at several bucket angles"
+    source: ClassVar[str] = "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, equations 2, 5 and 9"
+    law: ClassVar = law
+
+    thrust: float = param(
+        0.0, low=0.0, high=1e7, unit="N", words="at idle, bucket up", calibrates="thrust", axis="surge"
+    )
+    yaw: float = param(
+        0.0, low=-1e9, high=1e9, unit="N m/rad", words="N_delta, bucket up", calibrates="thrust", axis="yaw"
+    )

@@ -1,0 +1,50 @@
+"""Roll damping: a share of the critical one, larger with headway where the bilge is round."""
+
+from dataclasses import dataclass, replace
+from math import sqrt
+from typing import Any, ClassVar, Self
+
+from numba import njit
+
+from boatsim.physics import particulars
+from boatsim.physics.base import Force, Wrench, param
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    """K = -roll p."""
+    return Wrench(0.0, 0.0, -q.roll * m.p, 0.0)
+
+
+@dataclass(frozen=True)
+class RollDamping(Force):
+    """Linear roll damping from the hull's form, its righting arm and its roll inertia, water included."""
+
+    words: ClassVar[str] = "the hull's roll is damped in proportion to its rate"
+    shown_by: ClassVar[str] = "a roll decay"
+    source: ClassVar[str] = "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix IV"
+    law: ClassVar = law
+
+    at_rest: float = param(0.09, low=0.0, high=2.0, unit="", words="per critical, without headway; 0.09: hard chine")
+    round_bilge: float = param(0.0, low=0.0, high=1.0, unit="", words="1: grows with headway by the published formula")
+    roll: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll")
+    stiffness: float = param(
+        0.0, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM", follows="righting_arm.stiffness"
+    )
+
+    def completed(self, vessel: Any) -> Self:
+        """With the coefficient of the vessel's own stiffness, inertia, form and speed. Raises BadInput."""
+        own = super().completed(vessel)
+        inertia = vessel.body.roll_inertia + _water(vessel.effect("added_mass"))
+        ratio = self.at_rest + (self._with_headway(vessel, own.stiffness) if self.round_bilge else 0.0)
+        return replace(own, roll=2.0 * ratio * sqrt(own.stiffness * inertia))
+
+    def _with_headway(self, vessel: Any, stiffness: float) -> float:
+        """Share of the critical damping that headway adds."""
+        hull, height = self.needed(vessel, "linear_hull"), stiffness / (vessel.body.mass * particulars.GRAVITY)
+        return particulars.roll_ratio_by_speed(vessel.length, vessel.beam, hull.block, height, hull.speed)
+
+
+def _water(added_mass: Any) -> float:
+    """Roll inertia of the water about the origin."""
+    return 0.0 if added_mass is None else float(added_mass.roll + added_mass.sway * added_mass.sway_below**2)

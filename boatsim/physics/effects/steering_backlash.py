@@ -1,0 +1,31 @@
+"""Steering backlash: play in the linkage, so the thruster stays behind when the steering reverses."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Array, Channel, param
+
+
+@njit(inline="always")
+def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
+    """The play operator: the angle moves only when the command pushes against an end of the play."""
+    half = 0.5 * q.width
+    memory[at] = min(max(memory[at], x - half), x + half)
+    return memory[at]
+
+
+@dataclass(frozen=True)
+class SteeringBacklash(Channel):
+    """Free play between steering command and thruster angle."""
+
+    words: ClassVar[str] = "the steering linkage has play, so an angle stays behind when the steering reverses"
+    shown_by: ClassVar[str] = "small steering reversals while pushing"
+    source: ClassVar[str] = "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, 1996 (play operator)"
+    acts_on: ClassVar[str] = "steer"
+    slots: ClassVar[int] = 1
+    channel: ClassVar = channel
+    starts: ClassVar = ({"width": 0.05}, {"width": 0.2})
+
+    width: float = param(0.0, low=0.0, high=0.8, unit="rad", words="total play", fit=True, spread=0.2)

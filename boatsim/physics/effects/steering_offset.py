@@ -1,0 +1,33 @@
+"""Steering offset: the thrusters do not point where the steering says."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Array, Channel, param
+
+
+@njit(inline="always")
+def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
+    """A constant added to the angle of each side."""
+    return x + (q.starboard if side > 0.0 else q.port if side < 0.0 else q.middle)
+
+
+@dataclass(frozen=True)
+class SteeringOffset(Channel):
+    """A constant error of each steering angle."""
+
+    words: ClassVar[str] = "the thrusters are mounted or trimmed at an angle"
+    shown_by: ClassVar[str] = "straight runs ahead and astern"
+    acts_on: ClassVar[str] = "steer"
+    channel: ClassVar = channel
+
+    port: float = param(0.0, low=-0.6, high=0.6, unit="rad", words="added to the port angle", fit=True, spread=0.12)
+    starboard: float = param(
+        0.0, low=-0.6, high=0.6, unit="rad", words="added to the starboard angle", fit=True, spread=0.12
+    )
+    middle: float = param(
+        0.0, low=-0.6, high=0.6, unit="rad", words="added to the angle of a steering on the centreline", fit=True,
+        spread=0.12,
+    )  # fmt: skip

@@ -1,0 +1,63 @@
+"""Tether: a line from the stern to a fixed point pulls the boat back and drags through the water."""
+
+from dataclasses import dataclass
+from math import exp, log, sqrt
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Force, Wrench, param
+
+SOFT = 0.02  # [m] over which the line goes from slack to taut; a wider one can not follow a short stiff line
+NEAR = 0.05  # [m] keeps the direction of the pull defined at the anchor
+
+
+@njit(inline="always")
+def stretch(beyond: float) -> float:
+    """Length the line is stretched by [m], smooth where it becomes taut."""
+    z = beyond / SOFT
+    if z > 30.0:
+        return beyond
+    return SOFT * log(1.0 + exp(z)) if z > -30.0 else 0.0
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    """Steady and elastic pull towards the anchor, and the line's drag, all at the point where it is made fast."""
+    north = q.north - m.x - q.at * m.cos_psi  # [m] from the boat's end of the line to the anchor
+    east = q.east - m.y - q.at * m.sin_psi
+    distance = sqrt(north * north + east * east + NEAR * NEAR)
+    pull = (q.tension + q.stiffness * stretch(distance - q.length)) / distance
+    X = pull * (m.cos_psi * north + m.sin_psi * east) - q.drag * m.ur
+    Y = pull * (m.cos_psi * east - m.sin_psi * north) - q.drag * (m.vr + q.at * m.r)
+    return Wrench(X, Y, 0.0, q.at * Y)
+
+
+@dataclass(frozen=True)
+class Tether(Force):
+    """A cable or line between the boat and a fixed point: its weight pulls always, its stretch when it is taut."""
+
+    words: ClassVar[str] = "a line or cable pulls the boat towards a fixed point"
+    shown_by: ClassVar[str] = "visiting the corners of the tank on several headings"
+    law: ClassVar = law
+    strength: ClassVar = ("tension", "stiffness", "drag")
+    starts: ClassVar = (
+        *(
+            {"tension": 0.05, "stiffness": 0.03, "length": 1.5, "north": north, "east": east}
+            for north, east in ((3.0, 0.0), (-3.0, 0.0), (0.0, 2.5), (0.0, -2.5))
+        ),
+        *(  # a short stiff line: nothing of it shows in the slope of the evidence of a long soft one
+            {"tension": 0.0, "stiffness": 1.0, "length": 0.3, "north": north, "east": east}
+            for north, east in ((0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5))
+        ),
+    )
+
+    tension: float = param(0.0, low=0.0, high=1e6, unit="N", words="steady pull", fit=True, spread=0.15)
+    stiffness: float = param(0.0, low=0.0, high=1e6, unit="N/m", words="pull per stretch", fit=True, spread=0.5)
+    length: float = param(0.0, low=0.0, high=1e4, unit="m", words="of the slack line", fit=True, spread=3.0)
+    drag: float = param(0.0, low=0.0, high=1e6, unit="N s/m", words="of the line in the water", fit=True, spread=0.5)
+    north: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=4.0)
+    east: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=3.0)
+    at: float = param(
+        0.0, low=-500.0, high=500.0, unit="m", words="made fast at the vessel's thrusters", follows="outboards.x"
+    )

@@ -1,0 +1,26 @@
+"""Thrust deadband: small commands do not turn the propeller, and larger ones lack what it takes."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Array, Channel, param
+
+
+@njit(inline="always")
+def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
+    """Nothing inside the half width, the rest of the command beyond it."""
+    return x - min(max(x, -q.width), q.width)
+
+
+@dataclass(frozen=True)
+class ThrustDeadband(Channel):
+    """Friction of motor and shaft: thrust begins at a threshold, ahead and astern alike."""
+
+    words: ClassVar[str] = "small thrust commands do nothing and all thrust is less by a constant"
+    shown_by: ClassVar[str] = "slow runs at several small thrust levels"
+    acts_on: ClassVar[str] = "thrust"
+    channel: ClassVar = channel
+
+    width: float = param(0.0, low=0.0, high=0.5, unit="N", words="half width", fit=True, spread=0.1)

@@ -1,0 +1,43 @@
+"""Wind: a steady force in earth axes on a hull whose areas nobody gave."""
+
+from dataclasses import dataclass
+from math import cos, pi, sin
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Force, Wrench, param
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    """Full side force with the wind on the beam, a share of it end-on; the moment has the terms sin g and sin 2 g."""
+    north, east = q.force * cos(q.toward), q.force * sin(q.toward)
+    along = m.cos_psi * north + m.sin_psi * east
+    across = m.cos_psi * east - m.sin_psi * north
+    arm = q.arm + (q.swing * along / q.force if q.force > 0.0 else 0.0)
+    return Wrench(q.end_on * along, across, 0.0, arm * across)
+
+
+@dataclass(frozen=True)
+class Wind(Force):
+    """A push in a fixed direction of the world that depends on the heading."""
+
+    words: ClassVar[str] = "a steady wind pushes the hull in one direction of the world"
+    shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
+    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"
+    law: ClassVar = law
+    strength: ClassVar = ("force",)
+    starts: ClassVar = tuple({"force": 0.08, "toward": quarter * pi / 2} for quarter in (-1, 0, 1, 2))
+
+    force: float = param(
+        0.0, low=0.0, high=1e7, unit="N", words="side force with the wind on the beam", fit=True, spread=0.15
+    )
+    toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where it blows to", fit=True, spread=3.0)
+    arm: float = param(
+        0.0, low=-200.0, high=200.0, unit="m", words="side force acts this far forward", fit=True, spread=0.1
+    )
+    swing: float = param(
+        0.0, low=-200.0, high=200.0, unit="m", words="further forward with the wind from astern", fit=True, spread=0.1
+    )
+    end_on: float = param(0.5, low=0.0, high=2.0, unit="", words="end-on force per beam-on force")

@@ -1,0 +1,247 @@
+"""Draws the deep-V hull of a small outboard boat from its particulars.
+
+`python -m boatsim.physics.hullform models/joystick_boat` writes OBJ meshes with the origin at the transom on the
+centreline at the design waterline; x forward, y to port, z up.
+"""
+
+import math
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.physics.base import Array
+
+Curve = Callable[[Array], Array]  # of s = x / length, 0 at the transom, 1 at the tip of the bow
+AROUND = 20  # points around a rounded body
+
+
+@dataclass(frozen=True)
+class DeepV:
+    """Lines of a hard-chine hull of constant deadrise up to `parallel`, warped and raked ahead of it."""
+
+    length: float = 1.2  # [m] Bayless 2017, table 27
+    beam: float = 0.30  # [m] same
+    draught: float = 0.06  # [m] same
+    deadrise: float = math.radians(25.0)  # [rad] same, section II
+    parallel: float = 0.55  # [-] part of the length with straight keel and constant deadrise
+    freeboard: float = 0.075  # [m] amidships, by eye; the remaining numbers shape what the particulars leave open
+    stem_height: float = 0.125  # [m] tip of the bow above the waterline
+    chine_beam: float = 0.25  # [m]
+    rocker: float = 0.037  # [m] rise of the keel from amidships to the transom
+    fullness: float = 2.4  # [-] exponent of the keel's rise to the stem; with rocker: displaces 4.6 kg, about the CG
+    chine_end: float = 0.95  # [-] where the chine runs into the stem
+
+    def ahead(self, s: Array) -> Array:
+        """0 up to the end of the parallel body, then rising to 1 at the bow."""
+        return np.clip((s - self.parallel) / (1 - self.parallel), 0, 1)
+
+    def keel(self, s: Array) -> Array:
+        """Height of the keel and stem [m]."""
+        aft = np.clip(1 - s / self.parallel, 0, 1)
+        return self.rocker * aft**2 - self.draught + (self.draught + self.stem_height) * self.ahead(s) ** self.fullness
+
+    def chine(self, s: Array) -> tuple[Array, Array]:
+        """Half-breadth and height of the chine [m]."""
+        along = np.clip((s - 0.4) / (self.chine_end - 0.4), 0, 1)
+        half = self.chine_beam / 2 * (1 - along**2.2)
+        rise = np.tan(self.deadrise + math.radians(30) * self.ahead(s))
+        return half, self.keel(s) + half * rise
+
+    def sheer(self, s: Array) -> tuple[Array, Array]:
+        """Half-breadth and height of the deck edge [m]."""
+        aft, fore = np.clip((0.4 - s) / 0.4, 0, 1), np.clip((s - 0.4) / 0.6, 0, 1)
+        half = self.beam / 2 * (1 - 0.05 * aft**2) * (1 - fore**2.8)
+        return half, self.freeboard + (self.stem_height - self.freeboard) * np.clip((s - 0.3) / 0.7, 0, 1) ** 1.6
+
+    def stations(self, count: int = 49) -> Array:
+        """Values of s, denser towards the bow."""
+        return np.sin(np.linspace(0, math.pi / 2, count))
+
+
+@dataclass
+class Mesh:
+    """Triangles; each surface added keeps its own vertices, so that edges between surfaces stay sharp."""
+
+    points: list[Array] = field(default_factory=list)
+    faces: list[tuple[int, int, int]] = field(default_factory=list)
+
+    def add(self, grid: Array, *, flip: bool = False) -> None:
+        """Add the surface through a (rows, columns, 3) grid of points.
+
+        Looking along the rows the columns rise and outside is to the left; `flip` where outside is to the right.
+        """
+        rows, columns, _ = grid.shape
+        start = sum(len(p) for p in self.points)
+        self.points.append(grid.reshape(-1, 3))
+        for i in range(rows - 1):
+            for j in range(columns - 1):
+                a, b = start + i * columns + j, start + (i + 1) * columns + j
+                for corners in ((a, b, b + 1), (a, b + 1, a + 1)):
+                    self.faces.append(corners if flip else corners[::-1])
+
+    def both_sides(self, grid: Array) -> None:
+        """Add a surface of the port side (y > 0) and its mirror image."""
+        self.add(grid)
+        self.add(grid * (1, -1, 1), flip=True)
+
+    def body(self, rings: Sequence[Array]) -> None:
+        """Add a closed body through rings (n, 3), counter-clockwise seen against the direction they follow."""
+        closed = np.array([np.vstack([r, r[:1]]) for r in rings])
+        self.add(closed)
+        for ring, flip in ((closed[0], True), (closed[-1], False)):
+            self.add(np.array([ring, np.tile(ring[:-1].mean(0), (len(ring), 1))]), flip=flip)
+
+    def obj(self, about: str) -> str:
+        """The mesh as an OBJ file; triangles without area are left out."""
+        points = np.round(np.vstack(self.points), 5) + 0.0
+        lines = [f"# {about}", *(f"v {x:.5f} {y:.5f} {z:.5f}" for x, y, z in points)]
+        for a, b, c in self.faces:
+            if np.linalg.norm(np.cross(points[b] - points[a], points[c] - points[a])) > 1e-9:
+                lines.append(f"f {a + 1} {b + 1} {c + 1}")
+        return "\n".join(lines) + "\n"
+
+
+def between(a: Array, b: Array, rows: int) -> Array:
+    """(n, rows, 3) straight ruled surface from curve a (n, 3) to curve b (n, 3)."""
+    t = np.linspace(0, 1, rows)[None, :, None]
+    return np.asarray(a[:, None, :] * (1 - t) + b[:, None, :] * t)
+
+
+def curve(x: Array, y: Array | float, z: Array | float) -> Array:
+    """(n, 3) points of a curve."""
+    return np.stack(np.broadcast_arrays(x, y, z), axis=-1).astype(float)
+
+
+def ring(centre: Sequence[float], half: tuple[float, float], power: float = 2.0, axis: str = "z") -> Array:
+    """(n, 3) rounded rectangle (power 2: ellipse, higher: squarer) about `centre`, in the plane across `axis`."""
+    angle = np.linspace(0, 2 * math.pi, AROUND, endpoint=False)
+    c, s = np.cos(angle), np.sin(angle)
+    p = half[0] * np.sign(c) * np.abs(c) ** (2 / power)
+    q = half[1] * np.sign(s) * np.abs(s) ** (2 / power)
+    zero = np.zeros_like(p)
+    return np.asarray(centre) + (curve(p, q, zero) if axis == "z" else curve(zero, p, q))
+
+
+def shell(hull: DeepV) -> Mesh:
+    """Bottom, topsides and transom."""
+    s = hull.stations()
+    x = s * hull.length
+    chine_half, chine_z = hull.chine(s)
+    sheer_half, sheer_z = hull.sheer(s)
+    keel = curve(x, 0.0, hull.keel(s))
+    chine = curve(x, chine_half, chine_z)
+    step = curve(x, np.minimum(chine_half * 1.04, np.maximum(sheer_half, chine_half)), chine_z)
+    sheer = curve(x, sheer_half, np.maximum(sheer_z, hull.keel(s)))
+    mesh = Mesh()
+    for lower, upper, rows in ((keel, chine, 4), (chine, step, 2), (step, sheer, 6)):
+        mesh.both_sides(between(lower, upper, rows))
+    side = np.array([keel[0], chine[0], step[0], sheer[0]])
+    mesh.both_sides(np.array([side, side * (1, 0, 1)]).transpose(1, 0, 2))
+    return mesh
+
+
+def deck(hull: DeepV) -> Mesh:
+    """Foredeck, side decks, cockpit with its floor, and a stripe below the deck edge."""
+    s = np.unique(np.concatenate([hull.stations(), [0.04, 0.0401, 0.56, 0.5601]]))
+    half, z = hull.sheer(s)
+    x = s * hull.length
+    open_here = (s > 0.04) & (s < 0.5601)
+    camber = 0.06 * half
+    inner = np.where(open_here, 0.74 * half, 0.0)
+    floor = np.where(open_here, 0.012, z + camber)
+    edge = curve(x, half, z)
+    rim = curve(x, inner, z + camber * (1 - (inner / np.maximum(half, 1e-9)) ** 2))
+    foot = curve(x, inner, floor)
+    mesh = Mesh()
+    for outer, inward in ((edge, rim), (rim, foot), (foot, curve(x, 0.0, floor))):
+        mesh.both_sides(between(outer, inward, 5))
+    out = 0.0008  # [m] the stripe lies this far outside the shell
+    mesh.both_sides(between(edge + (0, out, -0.014), edge + (0, out, 0.001), 2)[: len(s) - 1])
+    return mesh
+
+
+def fittings() -> Mesh:
+    """Console, seats and windscreen frame."""
+    mesh = Mesh()
+    console = ((0.0, 0.045), (0.06, 0.045), (0.075, 0.034), (0.1, 0.02))
+    mesh.body([ring((0.52 - 0.1 * up, 0, 0.012 + up), (half, 0.05), 6) for up, half in console])
+    for y in (-0.045, 0.045):
+        mesh.body([ring((0.33, y, 0.012 + up), (0.035, 0.032), 5) for up in (0.0, 0.04)])
+        mesh.body([ring((0.30 - 0.15 * up, y, 0.052 + up), (0.008, 0.032), 5) for up in (0.0, 0.05)])
+    mesh.body([ring((0.12, 0, 0.012 + up), (0.03, 0.085), 6) for up in (0.0, 0.04)])
+    return mesh
+
+
+def outboard_cowl() -> Mesh:
+    """Motor cover; origin on the steering axis at the waterline, the motor astern of it."""
+    mesh = Mesh()
+    levels = ((0.062, 0.75), (0.068, 0.93), (0.085, 1.0), (0.11, 0.98), (0.128, 0.88), (0.137, 0.6))
+    mesh.body([ring((-0.028 - 0.05 * (z - 0.06), 0, z), (0.036 * k, 0.025 * k), 3.2) for z, k in levels])
+    return mesh
+
+
+def outboard_leg() -> Mesh:
+    """Leg, plate over the propeller, gear case, skeg and a three-bladed propeller."""
+    mesh = Mesh()
+    strut = ((-0.055, 0.017), (0.0, 0.018), (0.064, 0.026))
+    mesh.body([ring((-0.026, 0, z), (half, 0.35 * half), 2.4) for z, half in strut])
+    mesh.body([ring((-0.036, 0, z), (0.032, 0.018), 2.6) for z in (-0.031, -0.028)])
+    case = ((-0.062, 0.008), (-0.052, 0.0095), (-0.03, 0.0105), (-0.012, 0.009), (-0.002, 0.005), (0.002, 0.001))
+    mesh.body([ring((x, 0, -0.055), (r, r), axis="x") for x, r in case])
+    skeg = ((-0.082, 0.006), (-0.06, 0.016))
+    mesh.body([ring((-0.034 + 0.3 * (z + 0.055), 0, z), (half, 0.0018)) for z, half in skeg])
+    hub = ((-0.078, 0.004), (-0.074, 0.0065), (-0.062, 0.0078))
+    mesh.body([ring((x, 0, -0.055), (r, r), axis="x") for x, r in hub])
+    for turn in (0.0, 2 * math.pi / 3, 4 * math.pi / 3):
+        mesh.add(blade(turn))
+        mesh.add(blade(turn), flip=True)
+    return mesh
+
+
+def blade(turn: float) -> Array:
+    """(rows, 3, 3) one propeller blade, turned about the shaft; pitch angle falls towards the tip."""
+    rows = []
+    for radius, chord, pitch in ((0.006, 0.007, 1.0), (0.014, 0.011, 0.75), (0.021, 0.010, 0.6), (0.0245, 0.004, 0.55)):
+        for t in (-1, 0, 1):
+            across, along = t * chord * math.cos(pitch), t * chord * math.sin(pitch)
+            y, z = radius * math.cos(turn + across / radius), radius * math.sin(turn + across / radius)
+            rows.append((-0.069 + along, y, -0.055 + z))
+    return np.array(rows).reshape(4, 3, 3)
+
+
+def collision(hull: DeepV) -> Mesh:
+    """Convex prism of few vertices around the deck edge: what touches the walls."""
+    s = np.array([0.0, 0.4, 0.6, 0.75, 0.87, 0.95, 1.0])
+    half, _ = hull.sheer(s)
+    plan = np.vstack([curve(s * hull.length, -half, 0.0), curve(s * hull.length, half, 0.0)[-2::-1]])
+    mesh = Mesh()
+    mesh.body([plan + (0, 0, -hull.draught), plan + (0, 0, hull.freeboard)])
+    return mesh
+
+
+def meshes(hull: DeepV | None = None) -> dict[str, str]:
+    """File name -> OBJ text of everything the boat is drawn with."""
+    hull = hull or DeepV()
+    parts = {
+        "shell": shell(hull),
+        "deck": deck(hull),
+        "fittings": fittings(),
+        "outboard_cowl": outboard_cowl(),
+        "outboard_leg": outboard_leg(),
+        "collision": collision(hull),
+    }
+    return {f"{name}.obj": mesh.obj(f"{name}, drawn by boatsim.physics.hullform") for name, mesh in parts.items()}
+
+
+def main(arguments: Iterable[str]) -> None:
+    """Write the meshes into the folder given."""
+    for folder in arguments:
+        for name, text in meshes().items():
+            (Path(folder) / name).write_text(text)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

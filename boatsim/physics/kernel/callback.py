@@ -1,0 +1,62 @@
+"""MuJoCo's passive-force callback for this vessel: parameters and actuators lie in `userdata`, so nothing is global.
+
+userdata: [parameters..., constants k..., actuators held over the step...]. Offsets of struct fields are words.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import carray, cfunc, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from boatsim.physics.base import Array
+from boatsim.physics.kernel.compiling import lean
+from boatsim.physics.kernel.laws import HELD
+from boatsim.physics.kernel.planar import NQ, K, add_to_mujoco
+
+NM = NQ * (NQ + 1) // 2  # stored entries of MuJoCo's joint-space inertia
+factor_mass = types.ExternalFunction("mj_factorM", types.void(types.voidptr, types.voidptr))
+
+
+@lean
+def passive_in_place(t: float, q: Array, qd: Array, user: Array, f: Array, M: Array) -> None:
+    """What the native callback does, for the callback written in Python."""
+    n = user.size - HELD - K
+    add_to_mujoco(t, q, qd, user[n + K :], user[:n], user[n : n + K], f, M)
+
+
+@intrinsic
+def pointer(context: Any, word: Any) -> Any:
+    """An address held in an integer, as a pointer."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
+
+    return types.voidptr(word), generate
+
+
+def make_native(offsets: dict[str, int], size: int) -> Callable[..., Any]:
+    """The callback as a C function for models whose userdata has `size` floats; other models are left alone."""
+    of_size, of_time = offsets["nuserdata"], offsets["time"]
+    of_q, of_qd, of_user = offsets["qpos"], offsets["qvel"], offsets["userdata"]
+    of_f, of_M = offsets["qfrc_passive"], offsets["M"]
+    words = max(offsets.values()) + 1
+    n = size - HELD - K
+
+    @cfunc(types.void(types.voidptr, types.voidptr), nopython=True, error_model="numpy", cache=True)
+    def passive(model, data):  # type: ignore[no-untyped-def]
+        if carray(model, (of_size + 1,), np.int32)[of_size] != size:
+            return
+        w = carray(data, (words,), np.int64)
+        t = carray(data, (words,), np.float64)[of_time]
+        user = carray(pointer(w[of_user]), (size,), np.float64)
+        q = carray(pointer(w[of_q]), (NQ,), np.float64)
+        qd = carray(pointer(w[of_qd]), (NQ,), np.float64)
+        f = carray(pointer(w[of_f]), (NQ,), np.float64)
+        M = carray(pointer(w[of_M]), (NM,), np.float64)
+        add_to_mujoco(t, q, qd, user[n + K :], user[:n], user[n : n + K], f, M)
+        factor_mass(model, data)
+
+    return passive

@@ -1,0 +1,432 @@
+"""Kalman filter over a recording with one slowly varying unmodelled force per freedom, and its smoother.
+
+State z = (positions, earth-axes rates, body-axes latent forces), CALM = 3 NQ, then, for vessels that may meet a swell,
+an oscillating force and its rate per axis. Measured channels are coded: 0 .. NQ-1 a position, NQ .. 2 NQ-1 a
+body-axes rate. Measurements are taken one at a time, so any of them may be missing (nan).
+"""
+
+from math import cos, exp, log, sin, sqrt
+from typing import Any
+
+import numpy as np
+
+from boatsim.physics.base import Array, Shown, Swell
+from boatsim.physics.kernel.common import SHORTEST, actuate_in_place, settle
+from boatsim.physics.kernel.compiling import compiled, lean
+from boatsim.physics.kernel.laws import HELD, MEMORY, SWELLS, distorted, late, pause, shown, swell
+from boatsim.physics.kernel.planar import (
+    BESIDE,
+    FREEDOMS,
+    NQ,
+    SHOWS,
+    K,
+    constants,
+    force_slopes,
+    moved,
+    slopes,
+    step_in_place,
+)
+
+NY = 2 * NQ
+CALM = 3 * NQ
+NZ = CALM + (2 * NQ if SWELLS else 0)
+# [sd] a measurement further off is taken for an outlier: its pull falls with its distance, its penalty grows with the
+# logarithm (as of a Cauchy distribution), neither with a jump at which a fit would get stuck
+GATE = 5.0
+IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has lost track and must follow
+SMALLEST = 2.0**-40  # share of a sample over which a transition begins; a hull stiffer than that has gone wild
+INVERT = 10  # rounds of the inversion of what the instruments show, which is never far from the truth
+
+
+@lean
+def predict(
+    times: Array, i: int, lateness: float, row: int, y: Array, commands: Array, memory: Array, max_step: float,
+    p: Array, on: Any, k: Array, force: Array, act: Array,
+) -> int:  # fmt: skip
+    """Carry y (2 NQ,) from row i - 1 to row i in place, the latent force constant.
+
+    The motion of row i happened `lateness` before its time; commands hold from their own times on. `row` is the last
+    command used so far; returns the one used last. No step reaches beyond a change of an actuator's signal.
+    """
+    h = times[i] - times[i - 1]
+    longest = h / max(1, int(np.ceil(h / max_step - 1e-9)))
+    begin, done = times[i - 1] - lateness, 0.0
+    while h - done > 1e-9:
+        while row + 1 < len(times) and times[row + 1] <= begin + done + 1e-9:
+            row += 1
+        dt = min(longest, h - done, max(pause(commands[row], memory, p, on), SHORTEST))
+        if row + 1 < len(times):
+            dt = min(dt, times[row + 1] - begin - done)
+        actuate_in_place(commands[row], memory, dt, p, on, act)
+        step_in_place(begin + done, y, dt, act, p, on, k, force)
+        done += dt
+    return row
+
+
+@lean
+def transition(
+    t: float, h: float, z: Array, act: Array, p: Array, on: Any, k: Array, force: Array, F: Array, A: Array, B: Array,
+) -> None:  # fmt: skip
+    """Linearised transition F of motion and lasting forces over h: exponential of the Jacobian of the accelerations."""
+    for i in range(CALM):
+        for j in range(CALM):
+            A[i, j] = 0.0
+    for i in range(NQ):
+        A[i, NQ + i] = 1.0
+    slopes(t, z, act, p, on, k, force, A[NQ:NY])
+    force_slopes(z, k, A, NQ, NY)
+    # exp(A h) to third order of so small a part of h that it converges for a stiff hull too, then squared up again;
+    # only the rows of the rates and, above them, their own integrals are not trivial
+    part, stiffest = h, 0.0
+    for i in range(NQ, NY):
+        stiffest = max(stiffest, abs(A[i, i]))
+    while part * stiffest > 1.0 and part > SMALLEST * h:
+        part *= 0.5
+    for i in range(NY):
+        for j in range(CALM):
+            A[i, j] *= part
+    n = np.int64(CALM)
+    multiply(A, A, B, n)
+    multiply(B, A, F, n)
+    for i in range(CALM):
+        for j in range(CALM):
+            F[i, j] = A[i, j] + 0.5 * B[i, j] + F[i, j] / 6.0
+        F[i, i] += 1.0
+    while part < 0.75 * h:
+        multiply(F, F, B, n)
+        copy_square(B, F, n)
+        part *= 2.0
+
+
+@lean
+def oscillation(h: float, s: Swell) -> tuple[float, float, float, float, float, float]:
+    """Transition of the oscillator over h, row by row, and its mean force over h per state and rate at the start.
+
+    The force is the rate over the frequency, w s / (s^2 + 2 damping w s + w^2): waves have nothing at zero frequency.
+    """
+    w, damped = s.frequency, s.frequency * sqrt(1.0 - s.damping * s.damping)
+    e, share = exp(-s.damping * w * h), s.damping * w / damped
+    f11, f12 = e * (cos(damped * h) + share * sin(damped * h)), e * sin(damped * h) / damped
+    f21, f22 = -w * w * f12, e * (cos(damped * h) - share * sin(damped * h))
+    mean1, mean2 = (f11 - 1.0) / (w * h), f12 / (w * h)
+    return f11, f12, f21, f22, mean1, mean2
+
+
+@lean
+def add_swell(h: float, s: Swell, F: Array) -> None:
+    """The oscillators' own rows and what they do to the motion, to F."""
+    f11, f12, f21, f22, mean1, mean2 = oscillation(h, s)
+    for i in range(NZ):
+        for j in range(CALM, NZ):
+            F[i, j] = F[j, i] = 0.0
+    for j in range(NQ):
+        a = CALM + 2 * j
+        for i in range(NY):
+            F[i, a], F[i, a + 1] = F[i, NY + j] * mean1, F[i, NY + j] * mean2
+        F[a, a], F[a, a + 1], F[a + 1, a], F[a + 1, a + 1] = f11, f12, f21, f22
+
+
+@lean
+def diffuse(h: float, n: int, sigma: Array, tau: float, s: Swell, P: Array) -> None:
+    """Add to P what the noise behind the latent forces does over h."""
+    decay = exp(-h / tau)
+    for j in range(NQ):
+        P[NY + j, NY + j] += sigma[j] * (1.0 - decay * decay)
+    if n > CALM:
+        f11, f12, f21, f22, _, _ = oscillation(h, s)
+        w2 = s.frequency * s.frequency
+        for j in range(NQ):
+            v, a = s[FREEDOMS[j]] ** 2, CALM + 2 * j
+            P[a, a] += v * (1.0 - f11 * f11 - w2 * f12 * f12)
+            P[a + 1, a + 1] += v * (w2 - f21 * f21 - w2 * f22 * f22)
+            cross = v * (f11 * f21 + w2 * f12 * f22)
+            P[a, a + 1] -= cross
+            P[a + 1, a] -= cross
+
+
+@lean
+def copy(source: Array, out: Array) -> None:
+    """Fill a vector from the beginning of another. Assigning slices would take numba seconds to compile."""
+    for i in range(len(out)):
+        out[i] = source[i]
+
+
+@lean
+def copy_square(source: Array, out: Array, n: int) -> None:
+    """Fill the first n rows and columns of a matrix from those of another."""
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = source[i, j]
+
+
+@lean
+def multiply(A: Array, B: Array, out: Array, n: int) -> None:
+    """Out = A B for the filter's small matrices, most of A's rows zero: faster here than a library call."""
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = 0.0
+        for k in range(n):
+            x = A[i, k]
+            if x != 0.0:
+                for j in range(n):
+                    out[i, j] += x * B[k, j]
+
+
+@lean
+def carry(F: Array, P: Array, work: Array, n: int) -> None:
+    """P = F P F', symmetric, in place."""
+    multiply(F, P, work, n)
+    for i in range(n):
+        for j in range(i + 1):
+            x = 0.0
+            for k in range(n):
+                x += work[i, k] * F[j, k]
+            P[i, j] = P[j, i] = x
+
+
+@lean
+def shows(y: Array, code: int, p: Array, on: Any) -> float:
+    """What the recording shows of one channel in a state y (2 NQ,)."""
+    x, north, psi, phi, u, v, roll_rate, r = moved(y)
+    return float(shown(Shown(x, north, psi, phi, u, v, roll_rate, r), p, on)[SHOWS[code]])
+
+
+@lean
+def observe(z: Array, code: int, row: Array, p: Array, on: Any) -> float:
+    """Expected value of one channel; fills its row (n,) of the measurement matrix."""
+    for j in range(NZ):
+        row[j] = 0.0
+    if distorted(on):
+        value = shows(z, code, p, on)
+        for j in range(NY):
+            here = z[j]
+            z[j] = here + BESIDE
+            row[j] = (shows(z, code, p, on) - value) / BESIDE
+            z[j] = here
+        return value
+    if code < NQ:
+        row[code] = 1.0
+        return float(z[code])
+    if NQ == 1 or code > NQ + 1:
+        row[code] = 1.0
+        return float(z[code])
+    c, s = cos(z[2]), sin(z[2])
+    xd, yd = z[NQ], z[NQ + 1]
+    if code == NQ:  # u
+        row[NQ], row[NQ + 1], row[2] = c, s, c * yd - s * xd
+        return float(c * xd + s * yd)
+    row[NQ], row[NQ + 1], row[2] = -s, c, -s * yd - c * xd
+    return float(c * yd - s * xd)
+
+
+@compiled
+def undistorted(z: Array, p: Array, on: Any) -> None:
+    """Turn positions as recorded into those of the boat, in place."""
+    if distorted(on):
+        recorded, y = np.zeros(NQ), np.zeros(NY)
+        copy(z, recorded)
+        copy(z, y)
+        for _ in range(INVERT):
+            for j in range(NQ):
+                z[j] += recorded[j] - shows(y, j, p, on)
+            copy(z, y)
+
+
+@lean
+def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int) -> float:
+    """Gain (n,) of one measurement and P row' (n,), in place; returns the inverse sd of its prediction error."""
+    variance = noise
+    for a in range(n):
+        Ph[a] = 0.0
+    for b in range(NY):
+        if row[b] != 0.0:
+            for a in range(n):
+                Ph[a] += P[a, b] * row[b]
+    for b in range(NY):
+        variance += row[b] * Ph[b]
+    for a in range(n):
+        gain[a] = Ph[a] / variance
+    return float(1.0 / sqrt(variance))
+
+
+@compiled
+def kalman(
+    times: Array, measured: Array, codes: Any, commands: Array, max_step: float, body: Array, p: Array, on: Any,
+    sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, full: bool, fresh: bool, linear: Array, gains: Array,
+    scale: Array, white: Array, keep: bool, means: Array, covariances: Array, transitions: Array, predicted: Array,
+) -> float:  # fmt: skip
+    """One pass. measured (N, C), nan where missing; noise (C,) and sigma (NQ,) are variances of sensors and force.
+
+    full: compute gains (N, C, n) and inverse innovation sd `scale` (N, C), 0 where missing, both less for an outlier;
+    otherwise reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM); otherwise take it from there.
+    white (N, C) gets the whitened innovations. keep: store what the smoother needs. Returns log likelihood.
+    """
+    k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
+    constants(body, p, on, k)
+    settle(commands[0], memory, p, on, act)
+    s, lateness = swell(p, on), late(p, on)
+    n = NZ if s.frequency > 0.0 else CALM
+    z, P = np.zeros(NZ), np.zeros((NZ, NZ))
+    for a in range(CALM):
+        z[a] = z0[a]
+    copy_square(P0, P, CALM)
+    undistorted(z, p, on)
+    if n > CALM:
+        for j in range(NQ):
+            P[CALM + 2 * j, CALM + 2 * j] = s[FREEDOMS[j]] ** 2
+            P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[FREEDOMS[j]]) ** 2
+    F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
+    y, force, Ph = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
+    f11, f12, f21, f22, mean1, mean2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    likelihood, outliers = 0.0, np.zeros(measured.shape[1])
+    held = np.int64(0)  # a plain 0 would have `predict` compiled twice
+    if keep:
+        copy(z, means[0])
+        copy(z, predicted[0])
+        copy_square(P, covariances[0], NZ)
+    for i in range(1, len(times)):
+        h = times[i] - times[i - 1]
+        decay = exp(-h / tau)
+        for a in range(NY):
+            y[a] = z[a]
+        for a in range(NQ):
+            force[a] = z[NY + a]
+        if n > CALM:
+            f11, f12, f21, f22, mean1, mean2 = oscillation(h, s)
+            for a in range(NQ):
+                force[a] += mean1 * z[CALM + 2 * a] + mean2 * z[CALM + 2 * a + 1]
+        held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, force, act)
+        if full:  # linearised about the state before, with the actuators of this interval
+            if fresh:
+                transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, work, work2)
+                copy_square(F, linear[i], CALM)
+            else:
+                copy_square(linear[i], F, CALM)
+            for a in range(NY, CALM):
+                F[a, a] = decay
+            if n > CALM:
+                add_swell(h, s, F)
+            carry(F, P, work2, n)
+            diffuse(h, n, sigma, tau, s, P)
+        for a in range(NY):
+            z[a] = y[a]
+        for a in range(NY, CALM):
+            z[a] *= decay
+        for a in range(CALM, n, 2):
+            z[a], z[a + 1] = f11 * z[a] + f12 * z[a + 1], f21 * z[a] + f22 * z[a + 1]
+        if keep:
+            copy(z, predicted[i])
+            copy_square(F, transitions[i], NZ)
+        for c in range(measured.shape[1]):
+            if np.isnan(measured[i, c]):
+                scale[i, c] = white[i, c] = 0.0
+                continue
+            error = measured[i, c] - observe(z, codes[c], row, p, on)
+            if full:
+                scale[i, c] = weigh(P, row, noise[c], gains[i, c], Ph, n)
+                likelihood += log(scale[i, c])
+                far = abs(error) * scale[i, c] > GATE and outliers[c] < IN_A_ROW
+                outliers[c] = outliers[c] + 1.0 if far else 0.0
+                if far:
+                    share = GATE / (abs(error) * scale[i, c])
+                    likelihood += GATE * GATE * log(share)
+                    scale[i, c] *= share
+                    for a in range(n):
+                        gains[i, c, a] *= share * share
+            white[i, c] = error * scale[i, c]
+            likelihood -= 0.5 * white[i, c] ** 2
+            for a in range(n):
+                z[a] += gains[i, c, a] * error
+            if full:
+                for a in range(n):
+                    for b in range(n):
+                        P[a, b] -= gains[i, c, a] * Ph[b]
+        if keep:
+            copy(z, means[i])
+            copy_square(P, covariances[i], NZ)
+    return likelihood
+
+
+@compiled
+def smooth(
+    means: Array, covariances: Array, transitions: Array, predicted: Array, gains: Array, sigma: Array, times: Array,
+    tau: float, p: Array, on: Any,
+) -> None:  # fmt: skip
+    """Rauch-Tung-Striebel smoother, in place on means (N, n) and covariances (N, n, n); fills its gains (N, n, n)."""
+    s = swell(p, on)
+    n = NZ if s.frequency > 0.0 else CALM
+    ahead, cross, G, work = np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
+    off = np.zeros(NZ)
+    for i in range(len(times) - 2, -1, -1):
+        multiply(transitions[i + 1], covariances[i], cross, n)  # F P
+        copy_square(covariances[i], ahead, n)
+        carry(transitions[i + 1], ahead, work, n)
+        diffuse(times[i + 1] - times[i], n, sigma, tau, s, ahead)
+        for j in range(n):
+            ahead[j, j] *= 1.0 + 1e-9  # positions and rates are driven through the force alone: keep it invertible
+            ahead[j, j] += 1e-18
+        copy_square(ahead, work, n)
+        solve(work, cross, n)
+        for j in range(n):
+            off[j] = means[i + 1, j] - predicted[i + 1, j]
+            for k in range(n):
+                G[j, k] = gains[i, j, k] = cross[k, j]
+                ahead[j, k] = covariances[i + 1, j, k] - ahead[j, k]
+        carry(G, ahead, work, n)
+        for j in range(n):
+            for k in range(n):
+                means[i, j] += G[j, k] * off[k]
+                covariances[i, j, k] += ahead[j, k]
+
+
+@lean
+def solve(A: Array, B: Array, n: int) -> None:
+    """B = A^-1 B in place for a symmetric positive definite A (n, n), which is overwritten by its Cholesky factor."""
+    for j in range(n):
+        for k in range(j):
+            for i in range(j, n):
+                A[i, j] -= A[i, k] * A[j, k]
+        root = sqrt(max(A[j, j], 1e-300))
+        for i in range(j, n):
+            A[i, j] /= root
+    for c in range(n):
+        for i in range(n):
+            for k in range(i):
+                B[i, c] -= A[i, k] * B[k, c]
+            B[i, c] /= A[i, i]
+        for i in range(n - 1, -1, -1):
+            for k in range(i + 1, n):
+                B[i, c] -= A[k, i] * B[k, c]
+            B[i, c] /= A[i, i]
+
+
+@compiled
+def free_runs(
+    times: Array, commands: Array, max_step: float, body: Array, p: Array, on: Any, starts: Any, ends: Any,
+    states: Array, out: Array,
+) -> None:  # fmt: skip
+    """Free runs from row starts[j] to ends[j] out of states[j] (2 NQ,), driven by the commands alone.
+
+    Actuator memory runs from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ) with every channel
+    as the recording would show it.
+    """
+    k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
+    constants(body, p, on, k)
+    settle(commands[0], memory, p, on, act)
+    nothing, y, lateness, held = np.zeros(NQ), np.zeros(NY), late(p, on), np.int64(0)
+    saved, rows = np.zeros((len(times), MEMORY)), np.zeros(len(times), dtype=np.int64)
+    for i in range(1, len(times)):  # only for the actuators
+        copy(memory, saved[i - 1])
+        rows[i - 1] = held
+        for j in range(NY):
+            y[j] = 0.0
+        held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, nothing, act)
+    for run in range(len(starts)):
+        copy(states[run], y)
+        copy(saved[starts[run]], memory)
+        held = rows[starts[run]]
+        for i in range(starts[run], ends[run] + 1):
+            if i > starts[run]:
+                held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, nothing, act)
+            for code in range(NY):
+                out[run, i, code] = shows(y, code, p, on)

@@ -1,0 +1,1 @@
+"""Recordings of a boat: a table of named signals with notes, read from the formats in `readers/`."""

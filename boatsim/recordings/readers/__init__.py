@@ -1,0 +1,1 @@
+"""One format a file: `read(path) -> Raw`, found by the suffix of the recording."""

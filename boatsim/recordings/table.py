@@ -1,0 +1,248 @@
+"""Recordings of a boat: time, named signals with units, notes; CSV, Parquet and the `.rrd` of our own runs in."""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.files import replacing
+from boatsim.physics.base import Array
+from boatsim.physics.content import module_of, names
+from boatsim.recordings import units
+from boatsim.recordings.notes import Notes, NotesFile, notes_for, unit_of
+from boatsim.recordings.raw import Raw, refuse
+
+__all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
+
+POSE = ("x_m", "y_m", "psi_rad", "phi_rad")
+RATES = ("u_mps", "v_mps", "r_radps", "p_radps")
+FEWEST_ROWS = 20
+# columns of our own runs beside pose, rates and commands; a sensor the boat has not got is nan
+OWN = re.compile(r"(actual|sensed|camera|estimate|reference|force|wind)_")
+# what command channels of boats are called; others are known by the vessel
+COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))")
+HUGE = 1e12  # no time, place, speed or command here is anywhere near
+GAP = 60.0  # [s] between two rows; over a longer one no boat here can be followed
+ROUNDING = 1e-3  # share of a channel's range by which a command rounded for the file may pass its limit
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One run of a boat, SI units, SNAME axes. Commands are held from their row to the next; headings unwrapped."""
+
+    name: str
+    t: Array  # (N,) s, strictly increasing
+    signals: dict[str, Array]  # each (N,), named with the unit at the end: psi_rad
+    notes: Notes = field(default_factory=Notes)
+    path: Path | None = None
+    remarks: tuple[str, ...] = ()  # what was found in the files and not used, one line each
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __getitem__(self, name: str) -> Array:
+        """The signal (N,) of this name."""
+        return self.signals[name]
+
+    def unit(self, name: str) -> str:
+        """Unit of a signal, from the end of its name; "" for a plain number."""
+        return unit_of(name)
+
+    def between(self, from_s: float, to_s: float) -> "Recording":
+        """The rows with from_s <= t <= to_s; times stay as they are."""
+        inside = (self.t >= from_s - 1e-9) & (self.t <= to_s + 1e-9)
+        if not inside.any():
+            message = f"no rows from {from_s:g} to {to_s:g} s; it has {self.t[0]:g} to {self.t[-1]:g} s"
+            raise refuse(self.path or Path(self.name), message, column="t_s")
+        return replace(self, t=self.t[inside], signals={k: v[inside] for k, v in self.signals.items()})
+
+    def thinned(self, rate: float) -> "Recording":
+        """Every n-th row, so that about `rate` rows a second are left, each with the mean command until the next."""
+        n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
+        if n == 1:
+            return self
+        ends = np.append(np.arange(0, len(self.t), n), len(self.t))
+        signals = {k: v[::n] for k, v in self.signals.items()}
+        for name in (k for k in signals if COMMAND.match(k)):
+            signals[name] = np.add.reduceat(self.signals[name], ends[:-1]) / np.diff(ends)
+        return replace(self, t=self.t[::n], signals=signals)
+
+    def used(self) -> "Recording":
+        """The part its notes name in `use`, or all of it."""
+        return self.between(*self.notes.use) if self.notes.use else self
+
+
+def read(
+    path: Path | str,
+    channels: Mapping[str, tuple[float, float]] | None = None,
+    columns: Mapping[str, str] | None = None,
+) -> Recording:
+    """A recording with the notes of the nearest `recording.toml`.
+
+    `channels` are the vessel's command channels with their lowest and highest value; those not among the columns are
+    simply absent. `columns` says what the vessel's recordings call our names; the notes' own word wins. Raises
+    BadInput, one line with file, row and column, for anything that can not be used.
+    """
+    path, channels = Path(path), channels or {}
+    found = notes_for(path) if path.is_file() else NotesFile()
+    raw = _renamed(_raw(path), {**(columns or {}), **found.columns})
+    needed = [n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or _is_command(n)]
+    _check_columns(raw, needed)
+    _check_cells(raw, needed)
+    _check_time(raw)
+    _check_units(raw)
+    _check_limits(raw, channels)
+    signals, ignored = _signals(raw, needed)
+    remarks = (*found.remarks, *((f"{path}: columns not used: {', '.join(ignored)}",) if ignored else ()))
+    recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, remarks)
+    if len(part := recording.used()) < FEWEST_ROWS:
+        raise refuse(path, f"has {len(part)} rows in its part to use {found.notes.use}; at least {FEWEST_ROWS} needed")
+    return recording
+
+
+def write_csv(recording: Recording, path: Path | str) -> None:
+    """Write all signals, t_s first, to 12 digits: the same recording gives the same bytes. Raises OSError."""
+    names = ["t_s", *recording.signals]
+    columns = [recording.t, *recording.signals.values()]
+    line = ",".join(["%.12g"] * len(names)) + "\n"
+    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        file.write(",".join(names) + "\n")
+        for start in range(0, len(recording), 10_000):  # an hour of rows is not formatted in one piece of memory
+            part = np.column_stack([c[start : start + 10_000] for c in columns]) + 0.0  # -0 becomes 0
+            rows = part.tolist()
+            file.write("".join([line % tuple(row) for row in rows]).replace("nan", ""))
+
+
+def _raw(path: Path) -> Raw:
+    if path.is_dir():
+        raise refuse(path, "is a folder; a recording is a CSV, Parquet or .rrd file")
+    if not path.is_file():
+        raise refuse(path, "there is no such file")
+    try:
+        suffix = path.suffix.removeprefix(".").lower()
+        read_raw = module_of("reader", suffix if suffix in names("reader") else "csv").read
+        found: Raw = read_raw(path)
+        return found
+    except OSError as error:
+        raise refuse(path, f"can not be read ({error.strerror})") from error
+
+
+def _renamed(raw: Raw, columns: Mapping[str, str]) -> Raw:
+    """The table under our names; a mapping that does not fit this file's columns is left alone."""
+    theirs = {ours: column.removeprefix("-").strip() for ours, column in columns.items()}
+    theirs = {ours: column for ours, column in theirs.items() if column in raw.columns}
+    kept = {n: v for n, v in raw.columns.items() if n not in theirs.values() and n not in theirs}
+    for ours, column in theirs.items():
+        kept[ours] = raw.columns[column] * (-1.0 if columns[ours].startswith("-") else 1.0) + 0.0
+    text = {n: raw.text[n] for n in kept if n in raw.text and n not in theirs}
+    return replace(raw, columns=kept, text=text | {o: raw.text[c] for o, c in theirs.items() if c in raw.text})
+
+
+def _is_command(name: str) -> bool:
+    return COMMAND.match(name) is not None
+
+
+def _check_columns(raw: Raw, needed: list[str]) -> None:
+    if "t_s" not in raw.columns:
+        raise refuse(raw.path, f"is missing (there are: {', '.join(raw.columns)[:200]})", 1, "t_s")
+    if not any(name in (*POSE, *RATES) for name in needed):
+        raise refuse(raw.path, f"no pose or rate; at least one is needed of {', '.join((*POSE, *RATES))}", 1)
+    if not len(raw.rows):
+        raise refuse(raw.path, f"has a header and no rows; at least {FEWEST_ROWS} are needed")
+
+
+def _check_cells(raw: Raw, needed: list[str]) -> None:
+    for name in needed:
+        if name in raw.text:
+            row, cell = raw.text[name]
+            raise refuse(raw.path, f"{cell!r} is not a number", row, name)
+    _check_overlap(raw, {name: np.isnan(raw.columns[name]) for name in needed})
+    unusable = {name: ~(np.abs(raw.columns[name]) < HUGE) for name in needed}
+    first = [(int(np.argmax(where)), name) for name, where in unusable.items() if where.any()]
+    if first:
+        index, name = min(first, key=lambda found: found[0])
+        found = raw.columns[name][index]
+        what = "the cell is empty or not a number (NaN)" if np.isnan(found) else f"{found:g} can not be right"
+        raise refuse(raw.path, f"{what}; every row needs a number here", raw.rows[index], name)
+    if len(raw.rows) < FEWEST_ROWS:
+        raise refuse(raw.path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed", raw.rows[-1])
+
+
+def _check_overlap(raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]) -> None:
+    """Two logs merged by time leave poses in some rows and commands in others."""
+    motion = [where for name, where in empty.items() if name in (*POSE, *RATES)]
+    commands = [where for name, where in empty.items() if name not in ("t_s", *POSE, *RATES)]
+    if not motion or not commands:
+        return
+    posed, commanded = ~np.any(motion, axis=0), ~np.any(commands, axis=0)
+    if posed.any() and commanded.any() and not (posed & commanded).any():
+        t = raw.columns["t_s"]
+        spans = [f"{t[rows][0]:g} to {t[rows][-1]:g} s" for rows in (posed, commanded)]
+        message = f"poses ({spans[0]}) and commands ({spans[1]}) have no row in common; every row needs both"
+        raise refuse(raw.path, message, raw.rows[int(np.argmax(commanded))], "t_s")
+
+
+def _check_time(raw: Raw) -> None:
+    t = raw.columns["t_s"]
+    stuck = np.diff(t) <= 0.0
+    if stuck.any():
+        index = int(np.argmax(stuck)) + 1
+        message = f"time {t[index]:g} s after {t[index - 1]:g} s; it must increase from row to row"
+        raise refuse(raw.path, message, raw.rows[index], "t_s")
+    if (apart := np.diff(t) > GAP).any():
+        index = int(np.argmax(apart)) + 1
+        message = (
+            f"{t[index] - t[index - 1]:g} s after the row before, at most {GAP:g} s are allowed; is it in seconds?"
+        )
+        raise refuse(raw.path, message, raw.rows[index], "t_s")
+
+
+def _check_units(raw: Raw) -> None:
+    columns = raw.columns
+    t = columns["t_s"]
+    suspects: dict[str, int | None] = {}
+    if "psi_rad" in columns:
+        suspects["psi_rad"] = units.heading_in_degrees(t, columns["psi_rad"], columns)
+    if "phi_rad" in columns:
+        suspects["phi_rad"] = units.roll_in_degrees(t, columns["phi_rad"], columns.get("p_radps"))
+    for rate, angle in (("r_radps", "psi_rad"), ("p_radps", "phi_rad")):
+        if rate in columns:
+            suspects[rate] = units.rate_in_degrees(t, columns[rate], columns.get(angle))
+    for name, index in suspects.items():
+        if index is not None:
+            message = f"{columns[name][index]:g} looks like degrees; allowed are radians ({unit_of(name)})"
+            raise refuse(raw.path, message, raw.rows[index], name)
+
+
+def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None:
+    for name, (low, high) in channels.items():
+        if name in raw.columns:
+            margin = ROUNDING * (high - low) if math.isfinite(high - low) else 0.0
+            beyond = (raw.columns[name] < low - margin) | (raw.columns[name] > high + margin)
+            if beyond.any():
+                index = int(np.argmax(beyond))
+                found = f"{raw.columns[name][index]:g} {unit_of(name)}".strip()
+                message = f"command {found} is outside the vessel's limits {low:g} to {high:g}"
+                raise refuse(raw.path, message, raw.rows[index], name)
+
+
+def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str]]:
+    """The signals, headings unwrapped, and the names of columns a diagnosis has no use for."""
+    ignored = [n for n in raw.columns if n not in needed and not OWN.match(n)]
+    names = [n for n in raw.columns if n != "t_s" and n not in raw.text and (n not in ignored or unit_of(n))]
+    signals = {name: raw.columns[name] for name in names}
+    for name in names:
+        if name == "psi_rad" or name.endswith("_psi_rad"):
+            signals[name] = _unwrapped(signals[name])
+    return signals, ignored
+
+
+def _unwrapped(angle: Array) -> Array:
+    """Without jumps of 2 pi; rows that are nan stay so."""
+    known = np.isfinite(angle)
+    full = angle.copy()
+    full[known] = np.unwrap(angle[known])
+    return full

@@ -1,0 +1,1 @@
+"""What a run is: a vessel in its water, steered, stepped and logged."""

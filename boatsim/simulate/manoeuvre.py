@@ -1,0 +1,228 @@
+"""Standard manoeuvres of any vessel: a scenario made from its data, with the IMO's limits as bars where there are some.
+
+A vessel's [manoeuvring] table says how it is driven ahead and steered. What the table leaves out follows from the
+channels: half of the largest thrust ahead, everything that turns as helm, or more thrust on one side than on the other.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import degrees, inf, log10, pi, radians
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from boatsim.errors import BadInput, unknown_name
+from boatsim.physics import vessel as vessels
+from boatsim.physics.content import vessel_address
+from boatsim.physics.vessel import ManoeuvringTable, Vessel
+from boatsim.simulate import imo, scenario
+from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.twin import Twin
+
+ANGLES = {  # manoeuvre -> its usual angle [deg]
+    "turning_circle": 35.0, "zigzag": 20.0, "pull_out": 20.0, "spiral": 20.0, "crash_stop": 0.0, "roll_decay": 10.0,
+}  # fmt: skip
+HULL_LENGTHS = 100.0  # of travel after which an approach is steady
+STEPS = 250  # of integration in the time of one length of travel
+ROWS = 25  # of the log in that time
+BEFORE = 2.0  # [lengths] of approach before a manoeuvre begins
+LONGEST = 200.0  # [lengths] of travel
+HOLD = 30.0  # [lengths] for which each angle of a pull-out or spiral is held
+ROUND = 2.5 * pi  # [rad] of a turning circle
+FULL = radians(35.0)  # helm angle that stands for all of the differential thrust of a vessel that has no helm
+ROLLS = 12  # periods of a roll decay, of a hull as wide as this one
+
+
+def scenario_of(
+    manoeuvre: str, name: str, loads: Sequence[str] = (), angle: float | None = None, speed: float | None = None
+) -> Scenario:
+    """The scenario of a manoeuvre; `angle` [deg], positive to starboard, `speed` [m/s] of the approach.
+
+    Without an angle it is the usual one, or as much helm as the vessel has. Raises BadInput for a manoeuvre or vessel
+    that does not exist, or a vessel that can not do it so.
+    """
+    if manoeuvre not in ANGLES:
+        raise BadInput(unknown_name("manoeuvre", manoeuvre, ANGLES))
+    vessel = vessels.load(name, loads)
+    usual = ANGLES[manoeuvre] if angle is None else angle
+    if usual == 0.0 and manoeuvre != "crash_stop":
+        raise BadInput(f"angle = 0 deg; a {manoeuvre} needs another, usual are {ANGLES[manoeuvre]:g} deg")
+    raw = {
+        "about": f"{manoeuvre.replace('_', ' ')} of {vessel.name}",
+        "vessel": vessel_address(vessel.file),
+        "load": list(loads),
+        "sensors": {"ideal": True},
+    }
+    if manoeuvre == "roll_decay":
+        return scenario.from_table(raw | _released(vessel, usual), Path(f"{manoeuvre}.toml"))
+    if "yaw" not in vessel.freedoms:
+        raise BadInput(f"{vessel.name} is not free to turn; of the manoeuvres it can only do roll_decay")
+    vessel = replace(vessel, manoeuvring=handled(vessel))
+    angle = min(usual, helm_of(vessel)) if angle is None else angle
+    _check_commands(vessel, 0.0 if manoeuvre == "crash_stop" else angle)
+    if manoeuvre == "crash_stop" and not vessel.manoeuvring.astern:
+        raise BadInput(
+            f"{vessel.name}: nothing to go astern with; [manoeuvring] astern = {{ CHANNEL = value }} says what"
+        )
+    at = approach(vessel, speed)
+    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at), Path(f"{manoeuvre}.toml"))
+
+
+def handled(vessel: Vessel) -> ManoeuvringTable:
+    """The vessel's [manoeuvring] table, completed from its channels. Raises BadInput where nothing steers."""
+    given, taken = vessel.manoeuvring, vessel.commands
+    if wrong := [n for n in (*given.ahead, *given.astern, *given.steer) if n not in taken]:
+        raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.no_command(wrong[0])}")
+    thrusters = [n for n in vessel.actuators if n.endswith("_N")]
+    ahead = given.ahead or {n: 0.5 * taken[n].high for n in thrusters}
+    astern = given.astern or {n: max(taken[n].low, -value) for n, value in ahead.items() if taken[n].low < 0.0 < value}
+    steer = given.steer or {n: 1.0 for n in vessel.actuators if n.endswith("_rad") and taken[n].family != "elevator"}
+    if not steer:
+        steer = {n: -taken[n].side * ahead[n] / FULL for n in thrusters if taken[n].side and n in ahead}
+    if not steer:
+        raise BadInput(f"{vessel.name}: nothing to steer with; [manoeuvring] steer = {{ CHANNEL = per rad }} says what")
+    table = given.model_copy(update={"ahead": ahead, "astern": astern, "steer": steer})
+    return table if given.steer else _to_starboard(replace(vessel, manoeuvring=table))
+
+
+def helm_of(vessel: Vessel) -> float:
+    """Largest helm [deg] that all its channels can follow to both sides."""
+    table, taken = vessel.manoeuvring, vessel.commands
+    room = [
+        min(taken[n].high - table.ahead.get(n, 0.0), table.ahead.get(n, 0.0) - taken[n].low) / abs(per_rad)
+        for n, per_rad in table.steer.items()
+    ]
+    return float(np.round(degrees(min(room)), 1))
+
+
+def _check_commands(vessel: Vessel, angle: float) -> None:
+    """Ahead, astern and with this much helm [deg] to either side, no command leaves its channel's limits."""
+    table = vessel.manoeuvring
+    all_of_them = {"going ahead": table.ahead, "going astern": table.astern}
+    for side in (angle, -angle):
+        turned = {n: table.ahead.get(n, 0.0) + per_rad * radians(side) for n, per_rad in table.steer.items()}
+        all_of_them[f"{side:g} deg of helm"] = turned
+    for doing, commands in all_of_them.items():
+        for name, value in commands.items():
+            channel = vessel.commands[name]
+            slack = 1e-6 * (channel.high - channel.low)
+            if not channel.low - slack <= value <= channel.high + slack:
+                raise BadInput(
+                    f"{vessel.name}: {doing} means {name} = {value:g}; allowed {channel.low:g} to {channel.high:g}"
+                )
+
+
+def _to_starboard(vessel: Vessel) -> ManoeuvringTable:
+    """The table with helm such that a positive angle turns to starboard, which a short run of the vessel tells."""
+    table = vessel.manoeuvring
+    held = {**table.ahead, **{n: table.ahead.get(n, 0.0) + 0.2 * per_rad for n, per_rad in table.steer.items()}}
+    way = _state(vessel, _usual_speed(vessel), held, 3.0)[2]
+    turned = {n: per_rad if way > 0.0 else -per_rad for n, per_rad in table.steer.items()}
+    return table.model_copy(update={"steer": turned})
+
+
+def approach(vessel: Vessel, speed: float | None = None) -> float:
+    """Speed [m/s] at which the vessel goes straight ahead under the commands of its approach.
+
+    A given speed is only where the run begins: what keeps it there is the vessel's own affair. Raises BadInput for one
+    that makes no way.
+    """
+    if speed is not None:
+        if not 0.0 < speed < inf:
+            raise BadInput(f"speed = {speed:g} m/s; allowed is more than 0 m/s")
+        return speed
+    table = vessel.manoeuvring
+    u = table.speed or float(_state(vessel, _usual_speed(vessel), table.ahead, HULL_LENGTHS)[-_half(vessel)])
+    if not u > 0.0:
+        raise BadInput(f"{vessel.name} makes no way ahead under {table.ahead}; [manoeuvring] ahead says what drives it")
+    return u
+
+
+def _usual_speed(vessel: Vessel) -> float:
+    """The table's speed, else one [m/s] at which a hull of this length is still slow: Froude number 0.15."""
+    return vessel.manoeuvring.speed or 0.15 * float(np.sqrt(9.81 * vessel.length))
+
+
+def _half(vessel: Vessel) -> int:
+    return len(vessel.freedoms)
+
+
+def _state(vessel: Vessel, speed: float, commands: Mapping[str, float], lengths: float) -> Any:
+    """State after so many lengths' time at a speed, begun straight ahead."""
+    step = _step(vessel, speed)
+    twin = Twin(vessel, step)
+    start = [0.0] * (2 * _half(vessel))
+    start[_half(vessel)] = speed
+    rows = np.tile(twin.program.command_array(commands), (round(lengths * vessel.length / speed / step), 1))
+    return twin.rollout(start, rows, step)[-1]
+
+
+def _step(vessel: Vessel, speed: float) -> float:
+    """Step of integration [s], a round number."""
+    return _rounded(min(max(vessel.length / speed / STEPS, 0.002), 0.5))
+
+
+def _rounded(seconds: float) -> float:
+    """1, 2 or 5 times a power of ten, not above."""
+    power = 10.0 ** np.floor(log10(seconds))
+    return float(max(m for m in (1.0, 2.0, 5.0) if m * power <= seconds * (1 + 1e-9)) * power)
+
+
+def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float) -> dict[str, Any]:
+    """Tables of a manoeuvre that begins with an approach at a speed."""
+    table, unit, step = vessel.manoeuvring, vessel.length / speed, _step(vessel, speed)
+    execute, hold = (step * round(lengths * unit / step) for lengths in (BEFORE, HOLD))
+    helm, heading = {"angle": radians(angle)}, {"heading": radians(abs(angle))}
+    place = {"execute": execute, "length": vessel.length}
+    own: dict[str, tuple[dict[str, Any], dict[str, Any], float]] = {  # controller, measure, longest time
+        "turning_circle": (helm, place, LONGEST * unit),
+        "zigzag": (helm | heading, place | heading, LONGEST * unit),
+        "pull_out": (helm | {"hold": hold}, {}, execute + 4 * hold),
+        "spiral": (helm | {"hold": hold}, {}, execute + 17 * hold),
+        "crash_stop": ({"astern": table.astern}, place, LONGEST * unit),
+    }
+    controller, measure, duration = own[manoeuvre]
+    handling = {"period": step, "execute": execute, "ahead": table.ahead, "steer": table.steer}
+    bars = imo.limits(manoeuvre, angle, vessel.length, speed)
+    until = {"until": {"turned": ROUND}} if manoeuvre == "turning_circle" else {}
+    return until | {
+        "duration": min(duration, 86400.0),
+        "step": step,
+        "log": _rounded(unit / ROWS),
+        "start": {"u": speed},
+        "controller": {"use": manoeuvre} | handling | controller,
+        "camera": {"rate": min(max(1.0 / _rounded(unit / ROWS), 0.1), 6.0)},
+        "measure": {"use": manoeuvre} | measure,
+        "norms": {name: {"high": high} for name, high in bars.items()},
+    }
+
+
+def _released(vessel: Vessel, angle: float) -> dict[str, Any]:
+    """Tables of a roll decay from a heel [deg]."""
+    if "roll" not in vessel.freedoms:
+        raise BadInput(f"{vessel.name} does not roll; its freedoms are {', '.join(vessel.freedoms)}")
+    period = _roll_period(vessel)
+    step = _rounded(period / 200)
+    return {
+        "duration": ROLLS * period,
+        "step": step,
+        "start": {"phi": radians(angle)},
+        "controller": {"use": "open_loop", "period": step},
+        "measure": "roll_decay",
+    }
+
+
+def _roll_period(vessel: Vessel) -> float:
+    """Time [s] between two upward crossings of a small free roll. Raises BadInput for a hull that does not swing."""
+    guess = 2.0 * float(np.sqrt(vessel.beam))  # [s] of a ship of usual stability, GM a twentieth of the beam
+    twin = Twin(vessel, guess / 400)
+    start = [0.0] * (2 * _half(vessel))
+    roll = 0 if _half(vessel) == 1 else 3
+    start[roll] = radians(1.0)
+    rows = np.zeros((8000, len(vessel.commands)))
+    phi = twin.rollout(start, rows, guess / 400)[:, roll]
+    crossings = np.flatnonzero((phi[:-1] > 0.0) & (phi[1:] <= 0.0))
+    if len(crossings) < 2:
+        raise BadInput(f"{vessel.name} does not swing when it is heeled and released")
+    return float(crossings[1] - crossings[0]) * guess / 400

@@ -1,0 +1,56 @@
+"""What a measure is: it turns the log of a run into named numbers that norms.json holds beside the paper's."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.physics.base import Array, Checked
+from boatsim.recordings.table import Recording
+
+
+@dataclass(frozen=True)
+class Measure(Checked):
+    """Base of measures: `measure = { use = "arrival", x = 20.0 }` in a scenario makes one and asks it for its values.
+
+    Numbers that people read are in degrees, their unit says so.
+    """
+
+    words: ClassVar[str] = ""  # one line for `boatsim list`
+    units: ClassVar[Mapping[str, str]] = {}  # norm -> its unit
+
+    def unit(self, norm: str) -> str:
+        """Unit of one of its norms; a measure of any signal goes by that signal's."""
+        return type(self).units[norm]
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Norms of a run; one that the run never got as far as is left out."""
+        raise NotImplementedError
+
+
+def crossing(t: Array, above: Array) -> float | None:
+    """First time [s] at which a signal (N,) is not negative, interpolated between its rows; None if it never is."""
+    at = int(np.argmax(above >= 0.0))
+    if above[at] < 0.0:
+        return None
+    if at == 0:
+        return float(t[0])
+    share = above[at - 1] / (above[at - 1] - above[at])
+    return float(t[at - 1] + share * (t[at] - t[at - 1]))
+
+
+def travelled(log: Recording) -> Array:
+    """(N,) integral of the surge speed [m] since the first row, trapezoid rule."""
+    u = log["u_mps"]
+    return np.concatenate(([0.0], np.cumsum(0.5 * (u[1:] + u[:-1]) * np.diff(log.t))))
+
+
+def at(log: Recording, time: float, name: str) -> float:
+    """Value of a column at a time [s], between the rows."""
+    return float(np.interp(time, log.t, log[name]))
+
+
+def track(log: Recording) -> Array:
+    """Distance (N,) travelled up to each row [m]."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(log["x_m"]), np.diff(log["y_m"])))])

@@ -1,0 +1,267 @@
+"""Runs a scenario: every period sensors, controller, commands; every step actuators and physics; all of it logged."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from math import nan
+from typing import Any
+
+import numpy as np
+
+from boatsim.control.base import Sense
+from boatsim.physics.base import Array, motion
+from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.sensors import Frame
+from boatsim.simulate.world import Tank
+
+SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
+FIELDS = ("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
+CAMERA = ("led_x_m", "led_y_m", "button_x_m", "button_y_m", "x_m", "y_m", "psi_rad")
+POSE = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw", "phi_rad": "roll"}
+RATES = {"u_mps": "surge", "v_mps": "sway", "r_radps": "yaw", "p_radps": "roll"}
+COMPONENTS = {"surge": "X_N", "sway": "Y_N", "roll": "K_Nm", "yaw": "N_Nm"}
+CHUNK = 500  # [rows] handed to a listener at a time
+Listener = Callable[[Recording], None]
+
+
+class Log:
+    """A table filled row by row, one float a column; laid out by columns, so that a recording of it copies nothing."""
+
+    def __init__(self, names: list[str], most: int) -> None:
+        """`most` is the largest number of rows; memory is taken only as rows come."""
+        self.names, self.count = names, 0
+        self.columns = np.empty((len(names), most))
+
+    def add(self, row: list[float]) -> None:
+        """One more row."""
+        self.columns[:, self.count] = row
+        self.count += 1
+
+    def recording(self, name: str, notes: Notes, start: int = 0) -> Recording:
+        """The rows from `start` on; the first column is time."""
+        t, *signals = self.columns[:, start : self.count]
+        return Recording(name, t, dict(zip(self.names[1:], signals, strict=True)), notes)
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run left: the log at every step, what the camera measured, and whether it ran to its end."""
+
+    scenario: Scenario
+    seed: int
+    recording: Recording
+    camera: Recording
+    complete: bool
+
+
+class Runner:
+    """One run in progress. `listen` gets the new rows about every 500 steps, for a live view."""
+
+    def __init__(self, scenario: Scenario, seed: int | None = None, listen: Listener | None = None) -> None:
+        """Build the engine; raises BadInput or BadPhysics."""
+        file = scenario.file
+        self.scenario, self.listen = scenario, listen
+        self.seed = file.seed if seed is None else seed
+        tank = Tank(**file.tank.model_dump()) if file.tank else None
+        vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
+        self.engine = Engine(vessel, tank, file.step)
+        self._imu, self._marks = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
+        self._pose = [n for n, axis in POSE.items() if axis in vessel.freedoms]
+        self._rates = [n for n, axis in RATES.items() if axis in vessel.freedoms]
+        self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
+        self._actuators = vessel.actuators
+        self._winds = [e for e in vessel.effects if e.name() in ("fan_wind", "wind")]
+        self._commands: dict[str, float] = {}
+        self._sense: Sense | None = None
+        self._frame = 0
+        self._frames: list[Frame] = []
+        self._due = 0.0
+        self._row_due = 0.0
+        self._sent = 0
+
+    def run(self, progress: Callable[[float], None] | None = None) -> Run:
+        """Run to the end, or to an interruption, which keeps what was logged. `progress` gets the time reached [s]."""
+        complete = False
+        self._start()  # an interruption in here has nothing to keep
+        try:
+            while not self._finished():
+                self._advance()
+                if progress and self.log.count % 100 == 0:
+                    progress(self._state.t)
+            complete = True
+        except KeyboardInterrupt:
+            pass
+        self._send(0)
+        notes = self._notes()
+        name = self.scenario.name.replace("/", "_")
+        return Run(
+            self.scenario, self.seed, self.log.recording(name, notes), self._film.recording("camera", notes), complete
+        )
+
+    def _start(self) -> None:
+        start = self.scenario.file.start
+        state = State(0.0, start.x, start.y, start.psi, start.phi, start.u, start.v, start.p, start.r)
+        controller = self.scenario.controller
+        controller.reset()
+        self._commands = {**controller.initial_commands(), **start.commands}
+        self.engine.reset(state, self._commands)
+        self._state = state
+        # the log's columns are known once the controller has stepped: which estimates it has
+        self._control()
+        self._estimates = list(controller.estimates())
+        duration = self.scenario.file.duration
+        between = max(self.scenario.file.log, self.scenario.file.step)
+        self.log = Log(self._columns(), round(duration / between) + 3)
+        seen = ["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self._sent_channels]
+        self._film = Log(seen, round(duration * self.scenario.camera.rate) + 2)
+        self._average: list[list[float]] = []
+        self._frames = self._shoot(state, state)
+        self._write_row()
+
+    def _columns(self) -> list[str]:
+        limits = [f"{name}{end}" for name in self._adaptive() for end in ("", "_low", "_high")]
+        references = [n for n in self._estimates if n.startswith("reference_")]
+        force, wind = ([f"{what}_{c}" for c in self._components()] for what in ("force", "wind"))
+        return [
+            "t_s", *self._pose, *self._rates, *self._sent_channels, *(f"actual_{n}" for n in self._actuators),
+            *(f"sensed_{n}" for n in SENSED), *(f"camera_{n}" for n in CAMERA), *force, *(wind if self._winds else ()),
+            "contacts", *(f"estimate_{n}" for n in limits), *references,
+        ]  # fmt: skip
+
+    def _components(self) -> list[str]:
+        """Force components of the vessel's freedoms."""
+        return [name for axis, name in COMPONENTS.items() if axis in self.scenario.vessel.freedoms]
+
+    def _adaptive(self) -> list[str]:
+        return [n for n in self._estimates if not n.startswith("reference_")]
+
+    def _advance(self) -> None:
+        """One step of physics from the commands in force, then control at its end and a row, if they are due."""
+        before = self._state
+        self._average.append(self._sent_now())
+        self.engine.advance()
+        self._state = self.engine.state
+        self._frames += self._shoot(before, self._state)
+        self._control()
+        if self._state.t >= self._row_due - 1e-9 or self._finished():
+            self._write_row()
+
+    def _control(self) -> None:
+        """Sensors and controller, once a period."""
+        state, controller = self._state, self.scenario.controller
+        if state.t < self._due - 1e-9:
+            return
+        self._due += controller.period
+        self._sense = self.scenario.sensors.feel(
+            state.t, (state.x, state.y, state.psi), (state.u, state.v, state.r), self.engine.acceleration(), self._imu,
+            (state.phi, state.p),
+        )  # fmt: skip
+        self._commands = controller.step(self._sense, self.scenario.goal_at(state.t))
+        self.engine.command(self._commands)
+
+    def _shoot(self, before: State, after: State) -> list[Frame]:
+        """Camera frames since the last step. A frame carries the mean command from it to the next one."""
+        if not self.scenario.camera.due(self._frame, after.t):
+            return []
+        frames = list(
+            self.scenario.camera.film(
+                before.t,
+                (before.x, before.y, before.psi),
+                after.t,
+                (after.x, after.y, after.psi),
+                self._frame,
+                self._marks,
+            )  # fmt: skip
+        )
+        for f in frames:
+            self._close_frame()
+            self._film.add([f.t, f.x, f.y, f.psi, *f[1:5], *self._sent_now()])
+        self._frame += len(frames)
+        return frames
+
+    def _close_frame(self) -> None:
+        """Give the last camera row the mean of the commands sent since."""
+        if self._film.count and self._average:
+            self._film.columns[1 + len(CAMERA) :, self._film.count - 1] = np.mean(self._average, axis=0)
+        self._average.clear()
+
+    def _write_row(self) -> None:
+        s, engine, sense, frames = self._state, self.engine, self._sense, self._frames
+        self._frames, self._row_due = [], self._row_due + self.scenario.file.log
+        assert sense is not None
+        estimates = self.scenario.controller.estimates()
+        axes = [axis in self.scenario.vessel.freedoms for axis in COMPONENTS]
+        self.log.add(
+            [
+                s.t,
+                *(getattr(s, n.split("_")[0]) for n in self._pose),
+                *(getattr(s, n.split("_")[0]) for n in self._rates),
+                *self._sent_now(),
+                *engine.actuators.values(),
+                *(getattr(sense, f) for f in FIELDS),
+                *((*frames[-1][1:5], *frames[-1][5:]) if frames else [nan] * len(CAMERA)),
+                *(f for f, there in zip(engine.wrench(), axes, strict=True) if there),
+                *(f for f, there in zip(self._wind(s), axes, strict=True) if there and self._winds),
+                engine.contacts,
+                *(value for name in self._adaptive() for value in estimates[name]),
+                *(estimates[n].value for n in self._estimates if n.startswith("reference_")),
+            ]
+        )
+        if self.log.count - self._sent >= CHUNK:
+            self._send(CHUNK)
+
+    def _sent_now(self) -> list[float]:
+        """Commands in force, those the controller sets."""
+        return [self._commands.get(n, 0.0) for n in self._sent_channels]
+
+    def _wind(self, s: State) -> list[float]:
+        """Force of the wind effects (X, Y, K, N) in body axes [N, N m]."""
+        total = [0.0] * 4
+        for effect in self._winds:
+            law: Any = type(effect).law.py_func  # type: ignore[attr-defined]  # one call needs no compiling
+            w = law(motion(psi=s.psi, u=s.u, v=s.v, r=s.r), effect.values())
+            total = [a + b for a, b in zip(total, w, strict=True)]
+        return total
+
+    def _send(self, least: int) -> None:
+        """New rows to the listener."""
+        if self.listen and self.log.count > self._sent and self.log.count - self._sent >= least:
+            self.listen(self.log.recording(self.scenario.name, Notes(), self._sent))
+            self._sent = self.log.count
+
+    def _finished(self) -> bool:
+        file, s = self.scenario.file, self._state
+        if s.t >= file.duration - 1e-9 or self.scenario.controller.done:
+            return True
+        if file.until.starboard is None and file.until.turned is None:
+            return False
+        c, n = np.cos(file.start.psi), np.sin(file.start.psi)
+        starboard = c * (s.y - file.start.y) - n * (s.x - file.start.x)
+        out = file.until.starboard is not None and starboard >= file.until.starboard
+        return bool(out or (file.until.turned is not None and abs(s.psi - file.start.psi) >= file.until.turned))
+
+    def _notes(self) -> Notes:
+        """What a diagnosis of this run may know: vessel, load, values set, noise of the camera."""
+        file, camera = self.scenario.file, self.scenario.camera
+        per_axis = camera.mark_sd * np.hypot(camera.led_ahead, camera.button_ahead) / camera.baseline
+        noise = {
+            "position_sd_m": float(per_axis),
+            "heading_sd_rad": float(camera.mark_sd * np.sqrt(2) / camera.baseline),
+        }
+        return Notes(vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise)
+
+
+def run(
+    scenario: Scenario,
+    seed: int | None = None,
+    listen: Listener | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Run:
+    """Run a scenario; the same scenario and seed give the same numbers. Raises BadInput or BadPhysics."""
+    return Runner(scenario, seed, listen).run(progress)
+
+
+def commands_of(recording: Recording, names: Mapping[str, Any]) -> Array:
+    """(N, C) commands of a recording in a vessel's order; channels the recording lacks are zero."""
+    return np.column_stack([recording.signals.get(n, np.zeros(len(recording.t))) for n in names])

@@ -1,0 +1,254 @@
+"""A scenario is a file: which vessel, where, steered by what, towards what, for how long, and how it is judged."""
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi, sin
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field
+
+from boatsim.control.base import Controller
+from boatsim.errors import BadInput, unknown_name
+from boatsim.files import Table, checked, read_toml
+from boatsim.physics import vessel as vessels
+from boatsim.physics.content import find, load_class, names, root
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.measure import Measure
+from boatsim.simulate.sensors import Camera, Sensors
+
+NORMS = {  # measured on camera frames -> norms that [norms] may name; `boatsim.simulate.metrics` defines them
+    "sway": (
+        "yaw_rate_inf", "yaw_rate_l2", "yaw_rate_rms", "yaw_rate_l1", "heading_at_0.9m", "surge_offset", "time_to_0.9m",
+    ),
+    "yaw": ("position_inf", "position_rms", "position_l1", "moved", "turn_time", "excursion"),
+}  # fmt: skip
+
+
+class TankTable(Table):
+    """Water with walls; without this table the water is open."""
+
+    length: float = Field(default=1.5, gt=0)  # [m] along the start heading; the thesis' tank
+    width: float = Field(default=3.0, gt=0)  # [m]
+    depth: float = Field(default=0.1, gt=0)  # [m]
+    centre: tuple[float, float] = (0.0, 0.0)  # [m] from the start, ahead and to starboard
+
+
+class StartTable(Table):
+    """Where the boat starts and how it moves then, SNAME."""
+
+    x: float = 0.0  # [m]
+    y: float = 0.0  # [m]
+    psi: float = 0.0  # [rad]
+    phi: float = 0.0  # [rad]
+    u: float = 0.0  # [m/s]
+    v: float = 0.0  # [m/s]
+    p: float = 0.0  # [rad/s]
+    r: float = 0.0  # [rad/s]
+    commands: dict[str, float] = {}  # to which the actuators have settled; others to the controller's first, or zero
+
+
+class UntilTable(Table):
+    """The run ends early once one of these is reached."""
+
+    starboard: float | None = Field(default=None, gt=0)  # [m] travelled to starboard of the start
+    turned: float | None = Field(default=None, gt=0)  # [rad] turned either way
+
+
+class NormTable(Table):
+    """What a norm is held against: the paper's value, and the band it must lie in."""
+
+    published: float | None = None
+    low: float | None = None
+    high: float | None = None
+
+
+class CheckTable(Table):
+    """A signal that must stay small: norm of `signal` below a limit."""
+
+    signal: str
+    norm: Literal["inf", "rms", "l2", "l1"]
+    below: float = Field(gt=0)
+    source: str = ""
+
+
+class CourseTable(Table):
+    """A goal that moves: mean + slope tau + amplitude sin(2 pi tau / period), tau [s] since the goal began."""
+
+    mean: float = 0.0
+    slope: float = 0.0  # [1/s]
+    amplitude: float = 0.0
+    period: float = Field(default=1.0, gt=0)  # [s]
+
+    def at(self, tau: float) -> float:
+        """Its value."""
+        return self.mean + self.slope * tau + self.amplitude * sin(2.0 * pi * tau / self.period)
+
+
+class ScenarioFile(Table):
+    """The content of a scenario .toml."""
+
+    about: str = ""
+    vessel: str
+    load: list[str] = []
+    duration: float = Field(gt=0, le=86400)  # [s]
+    step: float = Field(default=0.02, gt=1e-4, le=1.0)  # [s]
+    seed: int = Field(default=0, ge=0)
+    tank: TankTable | None = None
+    start: StartTable = StartTable()
+    until: UntilTable = UntilTable()
+    controller: dict[str, Any]
+    sensors: dict[str, Any] = {}
+    camera: dict[str, Any] = {}
+    goal: list[dict[str, float | CourseTable]] = []
+    set: dict[str, dict[str, Any]] = {}
+    effect: list[dict[str, Any]] = []
+    measure: str | dict[str, Any] | None = None
+    log: float = Field(default=0.0, ge=0)  # [s] between rows of the log; 0: every step
+    norms: dict[str, NormTable] = {}
+    noise_widens_bars: bool = False
+    check: list[CheckTable] = []
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A scenario ready to run."""
+
+    name: str
+    file: ScenarioFile
+    vessel: Vessel
+    controller: Controller
+    sensors: Sensors
+    camera: Camera
+    measure: Measure | None = None  # on the log; those on camera frames are in `boatsim.simulate.metrics`
+
+    @cached_property
+    def _begins(self) -> list[float]:
+        return [_begin(g) for g in self.file.goal]
+
+    @cached_property
+    def _goals(self) -> list[tuple[dict[str, float], dict[str, CourseTable]]]:
+        """Of each [[goal]] the values that stay and those that move."""
+        parted: list[tuple[dict[str, float], dict[str, CourseTable]]] = []
+        for goal in self.file.goal:
+            held = {k: v for k, v in goal.items() if k != "from" and not isinstance(v, CourseTable)}
+            parted.append((held, {k: v for k, v in goal.items() if isinstance(v, CourseTable)}))
+        return parted
+
+    def goal_at(self, t: float) -> Mapping[str, float]:
+        """Goals in force at time t [s]: the last [[goal]] that has begun."""
+        at = bisect_right(self._begins, t + 1e-9) - 1
+        if at < 0:
+            return {}
+        held, courses = self._goals[at]
+        return {**held, **{k: c.at(t - self._begins[at]) for k, c in courses.items()}} if courses else held
+
+
+def load(name: str, overrides: Mapping[str, Any] | None = None) -> Scenario:
+    """A scenario by name ("joystick_boat/sway_1") or path; `overrides` replace top-level keys, for tests and studies.
+
+    Raises BadInput, one line naming file, key, value found, what is allowed and the nearest valid name.
+    """
+    path = find("scenario", name)
+    return from_table({**read_toml(path), **(overrides or {})}, path)
+
+
+def from_table(raw: dict[str, Any], path: Path) -> Scenario:
+    """A scenario from the content of a file; `path` names it and is where relative paths start."""
+    label = path.name
+    file = checked(ScenarioFile, raw, label)
+    try:
+        vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent)
+        controller = _made("controller", file.controller, path.parent)
+        sensors, camera = _settings(Sensors, file.sensors, "sensors"), _settings(Camera, file.camera, "camera")
+        measure = _measure(file.measure, path.parent)
+        _check_goals(file, vessel, controller)
+        _check_shape(file, controller)
+        _check_norms(file, camera, measure)
+    except BadInput as error:
+        raise BadInput(f"{label}: {error}") from None
+    return Scenario(_name(path), file, vessel, controller, sensors, camera, measure)
+
+
+def _name(path: Path) -> str:
+    """joystick_boat/sway_1 for shipped scenarios, the file's stem for a user's own."""
+    folder = root() / "scenarios"
+    return str(path.relative_to(folder).with_suffix("")) if path.is_relative_to(folder) else path.stem
+
+
+def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
+    """The controller of a [controller] table."""
+    if not isinstance(table.get("use"), str):
+        raise BadInput(f"[{kind}] needs use = its name")
+    found = load_class(kind, table["use"], folder)
+    return found.from_settings({k: v for k, v in table.items() if k != "use"})
+
+
+def _measure(given: str | Mapping[str, Any] | None, folder: Path) -> Measure | None:
+    """The measure on the log that a scenario asks for."""
+    if given is None or (isinstance(given, str) and given in NORMS):
+        return None
+    table = {"use": given} if isinstance(given, str) else given
+    if isinstance(use := table.get("use"), str) and use not in names("measure") and not use.endswith(".py"):
+        raise BadInput(unknown_name("measure", use, [*NORMS, *names("measure")]))
+    made: Measure = _made("measure", table, folder)
+    return made
+
+
+def _begin(goal: Mapping[str, float | CourseTable]) -> float:
+    """When a goal begins [s]."""
+    begin = goal.get("from", 0.0)
+    if isinstance(begin, CourseTable):
+        raise BadInput("[[goal]] from is a table; allowed is a time in s")
+    return begin
+
+
+def _settings(kind: Any, table: Mapping[str, Any], key: str) -> Any:
+    """Sensors or camera of its table."""
+    try:
+        return kind.from_settings(table)
+    except BadInput as error:
+        raise BadInput(f"[{key}] {error}") from None
+
+
+def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> None:
+    """Goals are named by the controller, or are command channels of the vessel for one that passes them on."""
+    allowed = type(controller).goals or tuple(vessel.commands)
+    for goal in file.goal:
+        for key in goal:
+            if key != "from" and key not in allowed:
+                raise BadInput(unknown_name("[[goal]] key", key, ["from", *allowed]))
+            channel, value = vessel.commands.get(key), goal[key]
+            if channel and isinstance(value, float) and not channel.low <= value <= channel.high:
+                raise BadInput(f"[[goal]] {key} = {value:g}; allowed {channel.low:g} to {channel.high:g}")
+    starts = [_begin(g) for g in file.goal]
+    if starts != sorted(starts):
+        raise BadInput(f"[[goal]] from = {starts}; allowed are times in ascending order")
+    if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
+        raise BadInput(f"controller {file.controller['use']} sets {unknown[0]}; {vessel.no_command(unknown[0])}")
+
+
+def _check_shape(file: ScenarioFile, controller: Controller) -> None:
+    """The boat starts inside its tank, and the controller's period holds at least one step."""
+    if controller.period < file.step - 1e-12:
+        raise BadInput(f"step = {file.step:g} s; allowed is at most the controller's period, {controller.period:g} s")
+    if file.tank:
+        dx, dy = file.start.x - file.tank.centre[0], file.start.y - file.tank.centre[1]
+        if abs(dx) > file.tank.length / 2 or abs(dy) > file.tank.width / 2:
+            raise BadInput(f"start x, y = {file.start.x:g}, {file.start.y:g} m lies outside the tank")
+
+
+def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) -> None:
+    """Only norms of what is measured are judged, and the frames they need are taken."""
+    on_film = NORMS[str(file.measure)] if file.measure in ("sway", "yaw") else ()
+    allowed = tuple(type(measure).units) if measure else on_film
+    for name in file.norms:
+        if name not in allowed:
+            raise BadInput(unknown_name("[norms] key", name, allowed))
+    if file.measure in ("sway", "yaw") and camera.rate % 6.0:
+        raise BadInput(f"[camera] rate = {camera.rate:g} Hz; allowed with this measure is a multiple of 6 Hz")
+
+
+__all__ = ["NORMS", "CheckTable", "NormTable", "Scenario", "ScenarioFile", "from_table", "load"]

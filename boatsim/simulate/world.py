@@ -1,0 +1,241 @@
+"""Tank, hull, motors, ballast and freedoms put together into one MuJoCo model. MuJoCo axes here: z up, y to port."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from boatsim.errors import BadInput, BadPhysics, unknown_name
+from boatsim.physics.base import Array
+from boatsim.physics.content import root
+from boatsim.physics.vessel import Vessel
+
+WALL = 0.02  # [m] half of a wall's thickness
+RIM = 0.08  # [m] wall above the water
+SOFT_WALL = (0.04, 1.0)  # solref: time constant [s] (two steps of 20 ms), critically damped: the hull does not bounce
+JOINTS = {  # freedom -> joint name, kind, axis; roll comes last so that its axis turns with the heading
+    "surge": ("x", mujoco.mjtJoint.mjJNT_SLIDE, (1, 0, 0)),
+    "sway": ("y", mujoco.mjtJoint.mjJNT_SLIDE, (0, 1, 0)),
+    "yaw": ("psi", mujoco.mjtJoint.mjJNT_HINGE, (0, 0, 1)),
+    "roll": ("phi", mujoco.mjtJoint.mjJNT_HINGE, (1, 0, 0)),
+}
+HALF_TURN = (0.0, 1.0, 0.0, 0.0)  # about x, exact in floating point
+
+
+@dataclass(frozen=True)
+class Tank:
+    """Rectangular water in start axes (SNAME): `length` along x, `width` along y, `centre` (x, y) of its middle."""
+
+    length: float = 1.5  # [m] Bayless 2020: tank 1.5 x 3.0 x 0.1 m, the boat heads across it
+    width: float = 3.0  # [m]
+    depth: float = 0.1  # [m]
+    walls: bool = True
+    centre: tuple[float, float] = (0.0, 0.0)  # [m]
+
+    def __post_init__(self) -> None:
+        for name in ("length", "width", "depth"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0):
+                raise BadInput(f"tank.{name} = {value:g} m; allowed is more than 0 m")
+
+
+def build(
+    vessel: Vessel,
+    tank: Tank | None = None,
+    step: float = 0.02,
+    userdata: int = 0,
+    *,
+    show: bool = True,
+    wall_solref: tuple[float, float] | None = None,
+    friction: float = 0.0,
+) -> mujoco.MjModel:
+    """Compile the vessel in its tank, free of forces, with joints x, y, psi, phi for its freedoms; RK4, `step` [s].
+
+    No gravity: buoyancy holds heave, pitch and (where roll is free) a restoring effect stands for the rest.
+    `show=False` leaves out everything that is only looked at, for speed. `wall_solref` is MuJoCo's contact solref,
+    (-stiffness, -damping) or (time constant [s], damping ratio). Raises BadPhysics if the mass matrix is not full.
+    """
+    tank = tank or Tank()
+    spec = mujoco.MjSpec.from_file(str(root() / "models" / "tank.xml"))
+    spec.option.timestep = step
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    spec.option.gravity = (0, 0, 0)
+    spec.option.disableflags |= (
+        mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    )  # a motion gone wild is an error of ours to report
+    spec.nuserdata = userdata
+    size_tank(spec, tank, vessel)
+    hull = add_hull(spec, vessel)
+    set_inertia(hull, vessel)
+    add_joints(hull, vessel)
+    if tank.walls:
+        add_contacts(spec, wall_solref or SOFT_WALL, friction)
+    if not show:
+        remove_looks(spec)
+    model = spec.compile()
+    check_mass_matrix(model, vessel)
+    return model
+
+
+def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
+    """Give water, walls, fan and cameras the size and place of the tank."""
+    a, b, d = tank.length / 2, tank.width / 2, tank.depth
+    middle, high = (RIM - d) / 2, (RIM + d) / 2  # walls stand on the floor and rise above the water
+    boxes = {
+        "side_ahead": ((a + WALL, 0, middle), (WALL, b + 2 * WALL, high)),
+        "side_astern": ((-a - WALL, 0, middle), (WALL, b + 2 * WALL, high)),
+        "side_port": ((0, b + WALL, middle), (a, WALL, high)),
+        "side_starboard": ((0, -b - WALL, middle), (a, WALL, high)),
+        "floor": ((0, 0, -d - 0.01), (a, b, 0.01)),
+        "water": ((0, 0, -d / 2), (a, b, d / 2)),
+        "wall_ahead": ((a, 0, 0), None),
+        "wall_astern": ((-a, 0, 0), None),
+        "wall_port": ((0, b, 0), None),
+        "wall_starboard": ((0, -b, 0), None),
+    }
+    middle_of_tank = np.array([tank.centre[0], -tank.centre[1], 0])
+    for name, (pos, size) in boxes.items():
+        geom = spec.geom(name)
+        geom.pos = middle_of_tank + pos
+        if size:
+            geom.size = size
+        if not tank.walls and name.startswith(("wall", "side")):
+            spec.delete(geom)
+    x, y, _ = middle_of_tank
+    spec.body("fan").pos = (x, y + b + 2 * WALL + 0.1, 0.2)
+    aim_cameras(spec, tank, vessel)
+
+
+def aim_cameras(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
+    """Show the whole tank, or six boat lengths about the start where the tank is larger."""
+    most = 6 * vessel.length
+    long, wide = min(tank.length, most), min(tank.width, most)
+    x, y = tank.centre[0] if tank.length <= most else 0.0, -tank.centre[1] if tank.width <= most else 0.0
+    target = np.array([x, y, 0.0])
+    above, oblique = spec.camera("above"), spec.camera("oblique")
+    half = math.tan(math.radians(above.fovy) / 2)
+    above.pos = target + (0, 0, 1.2 * max(long / 2, wide / 2 * 3 / 4) / half + vessel.draught)
+    eye = target + np.array([-0.72, -0.40, 0.62]) * math.hypot(long, wide) * 1.12
+    oblique.pos = eye
+    oblique.alt.xyaxes = looking_at(eye, target)
+
+
+def looking_at(eye: Array, target: Array) -> Array:
+    """MuJoCo `xyaxes` (6,) of a camera at `eye` that looks at `target` with the horizon level."""
+    forward = (target - eye) / np.linalg.norm(target - eye)
+    right = np.cross(forward, (0, 0, 1))
+    right = right / np.linalg.norm(right)
+    return np.concatenate([right, np.cross(right, forward)])
+
+
+def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> Any:
+    """Attach the vessel's hull with its body origin at the CG, at its length and draught, motors and marks in place."""
+    drawing, (length, draught) = read_drawing(Path(vessel.path) / vessel.hull, vessel)
+    stretch = vessel.length / length
+    for mesh in drawing.meshes:
+        if not mesh.name.startswith("outboard"):
+            mesh.scale = (stretch, 1, 1)
+    shift = np.array([-vessel.geometry.get("cg_from_transom", 0.0), 0, draught - vessel.draught])
+    hull = drawing.body("hull")
+    for part in (*hull.geoms, *hull.sites, *hull.bodies):
+        part.pos = part.pos * (stretch, 1, 1) + shift
+    place_fittings(drawing, vessel.geometry, shift)
+    spec.attach(drawing, prefix="boat/", frame=spec.worldbody.add_frame())
+    for part in (*spec.bodies, *spec.geoms, *spec.sites):
+        part.name = part.name.removeprefix("boat/")
+    return spec.body("hull")
+
+
+def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float, float]]:
+    """The hull's file, and length and draught [m] it was drawn for (the vessel's own where it says nothing)."""
+    try:
+        drawing = mujoco.MjSpec.from_file(str(path))
+    except ValueError as error:
+        raise BadInput(f"{path}: no hull that MuJoCo can read: {' '.join(str(error).split())}") from None
+    if drawing.body("hull") is None:
+        raise BadInput(unknown_name(f"{path}: body", "hull", (b.name for b in drawing.bodies if b.name != "world")))
+    drawn_for = drawing.numeric("drawn_for")
+    if drawn_for is None:
+        return drawing, (vessel.length, vessel.draught)
+    length, _, draught = list(drawn_for.data)
+    drawing.delete(drawn_for)
+    return drawing, (length, draught)
+
+
+def place_fittings(drawing: mujoco.MjSpec, at: dict[str, float], shift: Array) -> None:
+    """Move outboards, their mount, ballast, light and push-button to where this load has them; drop what it has not."""
+    for side, name in ((1, "outboard_port"), (-1, "outboard_starboard")):
+        body = drawing.body(name)
+        if body is not None and "motor_half_spacing" in at:
+            body.pos = (at["motor_ahead_of_cg"], side * at["motor_half_spacing"], body.pos[2])
+    for name, key in (("led", "led_ahead_of_cg"), ("button", "button_ahead_of_cg"), ("mount", "motor_ahead_of_cg")):
+        geom = drawing.geom(name)
+        if geom is not None and key in at:
+            geom.pos = (at[key], 0, geom.pos[2])
+    if (mount := drawing.geom("mount")) is not None and "motor_half_spacing" in at:
+        mount.size = (mount.size[0], at["motor_half_spacing"], mount.size[2])
+    if (ballast := drawing.geom("ballast")) is not None:
+        if at.get("ballast_mass", 0.0) > 0:
+            ballast.pos = (at["ballast_from_transom"] + shift[0], 0, ballast.pos[2])
+        else:
+            drawing.delete(ballast)
+
+
+def set_inertia(hull: Any, vessel: Vessel) -> None:
+    """Mass and inertia of the vessel file, at the CG.
+
+    The inertial frame is turned half round about x, which changes no number: MuJoCo keeps only the diagonal of the
+    mass matrix for a body whose inertial frame is its own frame, and added mass needs the whole lower triangle.
+    """
+    body = vessel.body
+    hull.explicitinertial = True
+    hull.mass = body.mass
+    hull.ipos = (0, 0, cg_height(vessel))
+    hull.iquat = HALF_TURN
+    hull.inertia = (body.roll_inertia, max(body.roll_inertia, body.yaw_inertia), body.yaw_inertia)  # pitch is held
+
+
+def cg_height(vessel: Vessel) -> float:
+    """Height of the CG above the water surface [m]; 0 where the vessel file does not say."""
+    above_keel = vessel.geometry.get("cg_above_keel")
+    return 0.0 if above_keel is None else above_keel - vessel.draught
+
+
+def add_joints(hull: Any, vessel: Vessel) -> None:
+    """One joint for each freedom; the roll axis runs through the CG."""
+    for freedom, (name, kind, axis) in JOINTS.items():
+        if freedom in vessel.freedoms:
+            pos = (0, 0, cg_height(vessel)) if freedom == "roll" else (0, 0, 0)
+            hull.add_joint(name=name, type=kind, axis=axis, pos=pos)
+
+
+def add_contacts(spec: mujoco.MjSpec, solref: tuple[float, float], friction: float) -> None:
+    """Let the hull touch the four walls and nothing else; explicit pairs are cheaper than bit masks."""
+    touching = [g.name for g in spec.body("hull").geoms if g.name.startswith("collision")]
+    for geom in touching:
+        for wall in ("wall_ahead", "wall_astern", "wall_port", "wall_starboard"):
+            pair = spec.add_pair(geomname1=geom, geomname2=wall)
+            pair.solref = solref
+            pair.condim = 3 if friction > 0 else 1
+            pair.friction = (friction, friction, 0, 0, 0)
+
+
+def remove_looks(spec: mujoco.MjSpec) -> None:
+    """Delete what neither moves nor touches: drawn geoms, marks, outboards, fan, cameras, lights."""
+    in_contact = {name for pair in spec.pairs for name in (pair.geomname1, pair.geomname2)}
+    for geom in [g for g in spec.geoms if g.name not in in_contact]:
+        spec.delete(geom)
+    for body in [b for b in spec.bodies if b.name not in ("world", "hull")]:
+        spec.delete(body)
+    for part in (*spec.sites, *spec.cameras, *spec.lights):
+        spec.delete(part)
+
+
+def check_mass_matrix(model: mujoco.MjModel, vessel: Vessel) -> None:
+    """Every lower-triangle entry of M must be stored, or added mass would be lost without a word."""
+    stored, needed = model.M_rownnz.tolist(), list(range(1, model.nv + 1))
+    if stored != needed:
+        raise BadPhysics(f"{vessel.name}: mass matrix stores {stored} entries a row; needed {needed}")

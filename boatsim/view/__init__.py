@@ -1,0 +1,1 @@
+"""Runs and recordings to look at, in rerun."""

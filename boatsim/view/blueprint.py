@@ -1,0 +1,189 @@
+"""How a log opens in rerun's viewer: scene on the left, plots in tabs on the right, colours and names of the curves."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import rerun as rr
+import rerun.blueprint as rrb
+
+from boatsim.recordings.notes import unit_of
+from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
+from boatsim.view.scene import Scene
+
+WORLD = "world"
+MISSING = {"force_X_N": "surge", "force_Y_N": "sway", "force_K_Nm": "roll", "force_N_Nm": "yaw"}
+TITLES = {"off_m": "distance from the recording [m]"}
+Colour = tuple[int, int, int]
+PALETTE: tuple[Colour, ...] = (
+    (31, 119, 180),
+    (214, 39, 40),
+    (44, 160, 44),
+    (148, 103, 189),
+    (140, 86, 75),
+    (23, 190, 207),
+)
+ORANGE, GREY, SKY = (255, 127, 14), (150, 150, 150), (238, 242, 246)
+# the same colour for the same thing in every plot; port red and starboard green as on the water
+FIXED: dict[str, Colour] = {
+    "u_mps": PALETTE[0],
+    "v_mps": PALETTE[3],
+    "r_radps": PALETTE[0],
+    "p_radps": PALETTE[3],
+    "reference_u_mps": ORANGE,
+    "reference_v_mps": (227, 119, 194),
+    "reference_r_radps": ORANGE,
+}
+
+
+def style(name: str, number: int, boat: str = "", colour: Colour | None = None) -> rr.SeriesLines:
+    """Name, colour and width of a curve."""
+    bound = name.endswith(("_low", "_high"))
+    chosen = colour or _colour(name, number)
+    return rr.SeriesLines(colors=[chosen], widths=[1.0 if bound else 2.0], names=[boat or words(name)])
+
+
+def dots(boat: str, colour: Colour) -> rr.SeriesPoints:
+    """Samples of a recording: dots, under which the curves of the models stay visible."""
+    return rr.SeriesPoints(colors=[colour], markers=["circle"], marker_sizes=[2.0], names=[boat])
+
+
+def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
+    """Curve of a missing force, its band, or the part of it that was flagged."""
+    for end, (label, colour, width) in {
+        "_flagged": ("flagged", flagged, 4.0), "_low": ("- 2 sd", GREY, 1.0), "_high": ("+ 2 sd", GREY, 1.0),
+    }.items():  # fmt: skip
+        if name.endswith(end):
+            return rr.SeriesLines(colors=[colour], widths=[width], names=[label])
+    return rr.SeriesLines(colors=[SKY], widths=[2.0], names=["missing"])
+
+
+def words(name: str) -> str:
+    """Column name as a legend has it: `actual_thrust_port_N` -> "actual thrust port [N]"."""
+    end = next((bound for bound in ("_low", "_high") if name.endswith(bound)), "")
+    plain, unit = name.removesuffix(end), unit_of(name)
+    plain = plain.rpartition("_")[0] if unit else plain
+    return f"{plain.replace('_', ' ')}{end.replace('_', ' ')}" + (f" [{unit}]" if unit else "")
+
+
+def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
+    """Layout of a run: scene, velocities with their reference, and tabs of what else the run has."""
+    speed = [n for n in names if n in ("u_mps", "v_mps", "reference_u_mps", "reference_v_mps")]
+    rate = [n for n in names if n in ("r_radps", "reference_r_radps", "p_radps")]
+    return _layout(
+        rrb.Vertical(
+            _view(scene, ["path", "camera"]), rrb.TextDocumentView(origin="norms", name="Norms"), row_shares=[3, 1]
+        ),
+        _plot("Surge and sway velocity", speed),
+        _plot("Yaw rate" if "p_radps" not in names else "Yaw and roll rate", rate),
+        rrb.Tabs(*_tabs(names)),
+    )
+
+
+def of_overlay(
+    scene: Scene,
+    boats: Sequence[str],
+    names: Iterable[str],
+    missing: Mapping[str, object],
+    span: tuple[float, float],
+) -> rrb.Blueprint:
+    """Layout of a diagnosis: all boats seen from above, their motion in tabs, and the missing force per axis.
+
+    `span` is the time [s] that all plots show, so that what is above one another happens at once.
+    """
+    moved = [n for n in ("off_m", "x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "r_radps", "p_radps")
+             if n in set(names)]  # fmt: skip
+    motion = [_plot(TITLES.get(n, words(n)), [f"{boat}/{n}" for boat in boats], span=span) for n in moved]
+    forces = [
+        _plot(
+            f"Missing {axis} {'force [N]' if axis in ('surge', 'sway') else 'moment [N m]'}",
+            [n for n in (name, f"{name}_low", f"{name}_high", f"{name}_flagged")],
+            "missing",
+            span,
+        )
+        for name, axis in MISSING.items()
+        if name in missing
+    ]
+    length, width, x, y = scene.tank
+    eye = (x - 0.2 * length, -y, 0.65 * max(length, width))
+    if "x_m" not in set(names):  # it only rolls: seen from astern
+        eye = (-1.2 * scene.length, 0.0, 0.4 * scene.length)
+    view = _view(scene, [f"paths/{boat}" for boat in boats], eye, f"{scene.vessel}: {', '.join(boats)}")
+    return _layout(view, rrb.Tabs(*motion), *forces)
+
+
+def _layout(scene: rrb.View | rrb.Container, *plots: rrb.View | rrb.Container) -> rrb.Blueprint:
+    return rrb.Blueprint(
+        rrb.Horizontal(scene, rrb.Vertical(*plots), column_shares=[5, 4]),
+        rrb.SelectionPanel(state="hidden"),
+        rrb.BlueprintPanel(state="hidden"),
+        rrb.TimePanel(state="collapsed", timeline=TIMELINE),
+        auto_layout=False,
+        auto_views=False,
+    )
+
+
+def _view(
+    scene: Scene, trails: Sequence[str], eye: tuple[float, float, float] | None = None, title: str = ""
+) -> rrb.Spatial3DView:
+    """The scene seen from astern and above, or from `eye`; trails show everything up to the time cursor."""
+    so_far = rrb.VisibleTimeRanges(
+        timeline=TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
+    )
+    return rrb.Spatial3DView(
+        origin=WORLD,
+        name=title or f"{scene.vessel} in {'open water' if scene.open else 'its tank'}",
+        background=SKY,
+        line_grid=False,
+        eye_controls=_with_boat() if scene.open and eye is None else _still(scene, eye),
+        overrides={f"{WORLD}/{trail}": so_far for trail in trails},
+    )
+
+
+def _with_boat() -> rrb.EyeControls3D:
+    """An eye for open water: it turns about the boat and begins with all of its path in view."""
+    return rrb.EyeControls3D(tracking_entity=f"{WORLD}/boat", eye_up=(0.0, 0.0, 1.0))
+
+
+def _still(scene: Scene, eye: tuple[float, float, float] | None) -> rrb.EyeControls3D:
+    """An eye at a place, or astern and above, that looks at the middle of the tank."""
+    length, width, x, y = scene.tank
+    place = eye or (x - 0.6 * max(length, width), -y, 0.6 * max(length, width))
+    return rrb.EyeControls3D(position=place, look_target=(x, -y, 0.0), eye_up=(0.0, 0.0, 1.0))
+
+
+def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
+    """What a run has beside its velocities, grouped by what one wants to see together."""
+    actual = [n for n in names if n.startswith("actual_")]
+    command = [n.removeprefix("actual_") for n in actual if n.removeprefix("actual_") in names]
+    groups = {
+        "Thrust": [n for n in (*command, *actual) if "thrust" in n],
+        "Steering": [n for n in (*command, *actual) if "thrust" not in n],
+        "PWM": [n for n in names if n.startswith("pwm_")],
+        "Estimates": [n for n in names if n.startswith("estimate_")],
+        "Forces": [n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_N")],
+        "Yaw moments": [n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_Nm")],
+        "Heading": [n for n in names if n.endswith("psi_rad")],
+        "Position": [n for n in names if n in ("x_m", "y_m", "camera_x_m", "camera_y_m")],
+    }
+    return [_plot(title, members) for title, members in groups.items() if members]
+
+
+def _plot(
+    title: str, names: Sequence[str], under: str = SIGNALS, span: tuple[float, float] | None = None
+) -> rrb.TimeSeriesView:
+    ends = [rrb.TimeRangeBoundary.absolute(seconds=end) for end in span or ()]
+    return rrb.TimeSeriesView(
+        origin="/",
+        name=title,
+        contents=[f"/{under}/{name}" for name in names],
+        plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop),
+        axis_x=rrb.TimeAxis(view_range=rrb.TimeRange(start=ends[0], end=ends[1])) if ends else None,
+    )
+
+
+def _colour(name: str, number: int) -> Colour:
+    if name.endswith(("_low", "_high")):
+        return GREY
+    for side, light, dark in (("port", (240, 150, 150), (200, 30, 40)), ("starboard", (140, 210, 140), (20, 130, 50))):
+        if side in name.split("_"):
+            return dark if name.startswith("actual_") else light
+    return FIXED.get(name, PALETTE[number % len(PALETTE)])

@@ -1,0 +1,422 @@
+"""Runs as rerun logs: streamed to a viewer and a `.rrd` while they run, overlaid for a diagnosis, and read back.
+
+Every column of a recording is logged as float64 scalars under `signals/`, so a log holds what `recording.csv` holds;
+the 3D scene is drawn from the same columns. rerun is imported here and in `blueprint.py` only (0.5 s).
+"""
+
+import math
+import socket
+import sys
+import warnings
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import rerun as rr
+
+from boatsim.physics.base import Array
+from boatsim.recordings.table import Notes, Recording
+from boatsim.view import blueprint
+from boatsim.view.blueprint import SIGNALS, TIMELINE, WORLD
+from boatsim.view.scene import OUTBOARD, Scene, Solid
+
+PORT = 9876  # where a viewer listens unless told otherwise
+PATIENCE = 10.0  # [s] for a viewer to take what is left at the end of a run
+BUFFER = 1000  # rows kept back before they are written, unless somebody watches: small chunks make large files
+TRAIL_STEP = 0.1  # [s] between points of the path drawn
+ABOVE = 0.02  # [m] arrows and paths lie this far above the water
+COLOURS = {
+    "thrust": (235, 120, 20),
+    "wind": (60, 150, 220),
+    "force": (200, 40, 60),
+    "path": (30, 60, 120),
+    "camera": (240, 190, 30),
+    "wall": (150, 155, 160),
+    "water": (150, 190, 215),
+    "flagged": (230, 0, 40),
+}
+BOATS = {  # as in the report; told apart by colour-blind readers too, on dark plots and on the light scene
+    "recording": (165, 173, 180),
+    "nominal": (230, 105, 25),
+    "recalibrated": (45, 140, 225),
+    "patched": (0, 165, 120),
+}
+PARTING = 1e-9  # [s] between the end of one stretch, a gap, and the begin of the next at the same time
+
+
+class RunLog:
+    """A run's log: `chunk` takes new rows while it runs, `finish` the norms; leaving the `with` block keeps all of it.
+
+    `path` is the `.rrd` to write (None: none), `live` feeds the viewer that listens on this machine, or a new one.
+    """
+
+    def __init__(self, path: Path | str | None, live: bool, scene: Scene) -> None:
+        self.scene, self.live = scene, live
+        self.stream = rr.RecordingStream("boatsim", send_properties=False)
+        self._waiting: list[Recording] = []
+        self._trail: tuple[float, Array] | None = None  # time and place of the last point of the path
+        self._known: set[str] = set()
+        self._heard = _open(self.stream, path, live)
+        if self._heard:
+            _draw_tank(self.stream, scene)
+            _draw_hull(self.stream, scene, "boat")
+            self._say("Norms follow when the run is over.")
+
+    def chunk(self, rows: Recording) -> None:
+        """Log new rows, which follow those logged before."""
+        if len(rows) and self._heard:
+            self._waiting.append(rows)
+        if self.live or sum(map(len, self._waiting)) >= BUFFER:
+            self._write()
+
+    def finish(self, norms: Mapping[str, Mapping[str, Any]]) -> None:
+        """Add the table of norms: name -> value, unit, published, bar {low, high}, ok."""
+        self._write()
+        if self._heard:
+            self._say(norms_table(norms))
+
+    def close(self) -> None:
+        """Write what is waiting and end the file."""
+        self._write()
+        _end(self.stream)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+    def _say(self, text: str) -> None:
+        self.stream.log("norms", rr.TextDocument(text, media_type="text/markdown"), static=True)
+
+    def _write(self) -> None:
+        if not self._waiting:
+            return
+        rows = _joined(self._waiting)
+        self._waiting = []
+        if new := rows.signals.keys() - self._known:
+            self._known |= new
+            for number, name in enumerate(n for n in rows.signals if n in new):
+                self.stream.log(f"{SIGNALS}/{name}", blueprint.style(name, number), static=True)
+            self.stream.send_blueprint(blueprint.of_run(self.scene, sorted(self._known)))
+        _log_signals(self.stream, rows, SIGNALS)
+        _move(self.stream, rows, self.scene, "boat")
+        _log_arrows(self.stream, rows, self.scene)
+        self._trail = _log_path(self.stream, rows, "path", COLOURS["path"], self._trail)
+        _log_camera(self.stream, rows)
+
+
+def log_overlay(
+    path: Path | str,
+    boats: Mapping[str, Sequence[Recording]],
+    missing: Recording | None,
+    intervals: Sequence[Mapping[str, Any]],
+    scene: Scene,
+) -> None:
+    """diagnosis.rrd: all boats in one scene on one time line, the missing force per axis with its band.
+
+    `boats` are "recording", "nominal", "recalibrated", "patched", the first of them drawn as a hull and the others as
+    its outline, so that boats a few centimetres apart can be told; each comes in stretches, and nothing is drawn from
+    the end of one to the begin of the next. `missing` has `force_X_N` (and `_Y_N`, `_K_Nm`, `_N_Nm`) with `..._low`
+    and `..._high`; `intervals` are `where.intervals` of diagnosis.json (from_s, to_s, axis).
+    """
+    stream = rr.RecordingStream("boatsim_diagnosis", send_properties=False)
+    _open(stream, path, live=False)
+    _draw_tank(stream, scene)
+    for number, (boat, stretches) in enumerate(boats.items()):
+        colour = BOATS.get(boat, blueprint.PALETTE[number % len(blueprint.PALETTE)])
+        if number == 0:
+            _draw_hull(stream, scene, f"boats/{boat}", colour)
+        _draw_outline(stream, scene, boat, number, colour)
+        apart = _apart(stretches)
+        for stretch in apart:
+            _move(stream, stretch, scene, f"boats/{boat}")
+            _log_path(stream, stretch, f"paths/{boat}", colour, None, _above(scene, number))
+        for name in stretches[0].signals:
+            look = blueprint.dots(boat, colour) if number == 0 else blueprint.style(name, number, boat, colour)
+            stream.log(f"{SIGNALS}/{boat}/{name}", look, static=True)
+        _log_signals(stream, _with_gaps(apart), f"{SIGNALS}/{boat}")
+    if missing is not None:
+        marked = replace(missing, signals={**missing.signals, **_flagged(missing, intervals)})
+        for name in marked.signals:
+            stream.log(f"missing/{name}", blueprint.band_style(name, COLOURS["flagged"]), static=True)
+        _log_signals(stream, marked, "missing")
+    names = [name for run in reversed(list(boats.values())) for name in run[0].signals]
+    times = [r.t for run in boats.values() for r in run] + ([missing.t] if missing is not None else [])
+    span = min((float(t[0]) for t in times), default=0.0), max((float(t[-1]) for t in times), default=1.0)
+    forces = missing.signals if missing is not None else {}
+    stream.send_blueprint(blueprint.of_overlay(scene, list(boats), names, forces, span))
+    _end(stream)
+
+
+def norms_table(norms: Mapping[str, Mapping[str, Any]]) -> str:
+    """Markdown table norm, value, published, bar, met."""
+    lines = ["| norm | value | published | bar | met |", "|:---|---:|---:|:---:|:---:|"]
+    for name, norm in norms.items():
+        bar, ok = norm.get("bar") or {}, norm.get("ok")
+        ends = [_short(bar.get(end)) for end in ("low", "high")]
+        met = "" if ok is None else "yes" if ok else "**no**"
+        span = " to ".join(ends) if all(ends) else f"at least {ends[0]}" if ends[0] else f"at most {ends[1]}"
+        value = f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
+        lines.append(f"| {name} | {value} | {_short(norm.get('published'))} | {span if any(ends) else ''} | {met} |")
+    return "\n".join(lines) + "\n"
+
+
+def _short(value: float | None) -> str:
+    return "" if value is None else f"{value:.4g}"
+
+
+def _open(stream: rr.RecordingStream, path: Path | str | None, live: bool) -> bool:
+    """Point a stream at its file, a viewer, or both; False if there is neither."""
+    sinks: list[Any] = []
+    if path is not None:
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        sinks.append(rr.FileSink(str(path)))
+    if live:
+        if not _listening():
+            with suppress(RuntimeError):  # no viewer to start: said below
+                rr.spawn(connect=False, recording=stream, executable_path=_viewer())
+        if _listening():
+            sinks.append(rr.GrpcSink(f"rerun+http://127.0.0.1:{PORT}/proxy"))
+        else:
+            warnings.warn("no rerun viewer could be started (is there a display?); the run goes on", stacklevel=3)
+    if sinks:
+        stream.set_sinks(*sinks)
+        stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    return bool(sinks)
+
+
+def _viewer() -> str | None:
+    """The viewer beside the running Python, which need not be on the path; None: wherever rerun finds it."""
+    beside = Path(sys.executable).parent / "rerun"
+    return str(beside) if beside.is_file() else None
+
+
+def _end(stream: rr.RecordingStream) -> None:
+    try:
+        stream.flush(timeout_sec=PATIENCE)
+    except (RuntimeError, TimeoutError, ValueError) as error:  # a viewer that was closed while the run went on
+        warnings.warn(f"the viewer did not take all of the log ({error})", stacklevel=3)
+    stream.disconnect()
+
+
+def _listening() -> bool:
+    """Whether somebody listens at the viewer's port."""
+    try:
+        socket.create_connection(("127.0.0.1", PORT), 1.0).close()
+    except OSError:
+        return False
+    return True
+
+
+def _joined(parts: Sequence[Recording]) -> Recording:
+    names = list(dict.fromkeys(name for part in parts for name in part.signals))
+    signals = {n: np.concatenate([p.signals.get(n, np.full(len(p), math.nan)) for p in parts]) for n in names}
+    return Recording(parts[0].name, np.concatenate([p.t for p in parts]), signals, Notes())
+
+
+def _apart(stretches: Sequence[Recording]) -> list[Recording]:
+    """Stretches whose ends come just before the begin of the next one, which may have the same time."""
+    ends = [next_one.t[0] - 2 * PARTING for next_one in stretches[1:]]
+    times = [np.append(s.t[:-1], min(s.t[-1], end)) for s, end in zip(stretches, ends, strict=False)]
+    return [replace(s, t=t) for s, t in zip(stretches, [*times, stretches[-1].t], strict=True)]
+
+
+def _with_gaps(stretches: Sequence[Recording]) -> Recording:
+    """Stretches as one recording, with a row of nan before each begin but the first: curves break there."""
+    parts = [stretches[0]]
+    for stretch in stretches[1:]:
+        parts += [Recording("", stretch.t[:1] - PARTING, {n: np.full(1, np.nan) for n in stretch.signals}), stretch]
+    return _joined(parts)
+
+
+def _when(t: Array) -> list[rr.TimeColumn]:
+    return [rr.TimeColumn(TIMELINE, duration=np.round(t * 1e9).astype("timedelta64[ns]"))]
+
+
+def _log_signals(stream: rr.RecordingStream, rows: Recording, under: str) -> None:
+    when = _when(rows.t)
+    for name, values in rows.signals.items():
+        stream.send_columns(f"{under}/{name}", when, rr.Scalars.columns(scalars=values))
+
+
+def _flat(x: Array, y: Array, z: float = 0.0) -> Array:
+    """SNAME x, y as points (N, 3) of the picture, whose z points up and y to port."""
+    return np.column_stack([x, -y, np.full(len(x), z)])
+
+
+def _draw_tank(stream: rr.RecordingStream, scene: Scene) -> None:
+    length, width, x, y = scene.tank
+    for solid in scene.solids:
+        if solid.part == "tank":
+            stream.log(f"{WORLD}/tank/{solid.name}", _mesh(_surface(solid)), static=True)
+    if any(solid.part == "tank" for solid in scene.solids):
+        return
+    corners = [(x + i * length / 2, -y + j * width / 2, ABOVE) for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1), (1, 1))]
+    edge = rr.LineStrips3D([corners], colors=[COLOURS["wall"]], radii=[0.004 * max(length, width)])
+    stream.log(f"{WORLD}/tank/walls", edge, static=True)
+    water = rr.Mesh3D(
+        vertex_positions=[(a, b, -0.01) for a, b, _ in corners[:4]],
+        vertex_normals=[(0, 0, 1)] * 4,
+        triangle_indices=[(0, 2, 1), (0, 3, 2)],
+        albedo_factor=COLOURS["water"],
+    )
+    stream.log(f"{WORLD}/tank/water", water, static=True)
+
+
+def _draw_hull(stream: rr.RecordingStream, scene: Scene, boat: str, tint: tuple[int, int, int] | None = None) -> None:
+    """The hull's shapes under the entity of a boat; outboards hang from entities of their own so that they can turn."""
+    for solid in scene.solids:
+        if solid.part != "tank":
+            part = "hull" if solid.part == "hull" else solid.part
+            stream.log(f"{WORLD}/{boat}/{part}/{solid.name}", _mesh(solid, tint), static=True)
+    for thruster in scene.thrusters:
+        at = rr.Transform3D(translation=(thruster.x, -thruster.y, 0.0))
+        stream.log(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", at, static=True)
+
+
+def _above(scene: Scene, number: int) -> float:
+    """Height [m] above everything on the hull, a little more for each boat: lines of different boats do not flicker."""
+    top = max((float(s.vertices[:, 2].max()) for s in scene.solids if s.part != "tank"), default=0.0)
+    return top + (5 + number) * 0.002 * scene.length
+
+
+def _draw_outline(
+    stream: rr.RecordingStream, scene: Scene, boat: str, number: int, colour: tuple[int, int, int]
+) -> None:
+    """Outline of the hull from above with a line from its middle to the bow, and its name on one of its sides."""
+    ring = scene.outline()
+    height, bow, stern = _above(scene, number), float(ring[:, 0].max()), float(ring[:, 0].min())
+    side = float(np.abs(ring[:, 1]).max())
+    edge, middle = np.column_stack([ring, np.full(len(ring), height)]), np.array([(0, 0, height), (bow, 0, height)])
+    entity = f"{WORLD}/boats/{boat}/outline"
+    stream.log(entity, rr.LineStrips3D([edge, middle], colors=[colour], radii=[-1.5]), static=True)
+    place = [(stern, 0.0), (bow, side), (bow, -side), (stern, side)][number % 4]
+    name = rr.Points3D([(*place, height)], colors=[colour], radii=[-2.0], labels=[boat])
+    stream.log(f"{entity}/name", name, static=True)
+
+
+def _surface(solid: Solid) -> Solid:
+    """Of something one can see through, such as water, only what faces up: its floor would flicker with the tank's."""
+    if solid.colour[3] >= 1.0:
+        return solid
+    corners = solid.vertices[solid.triangles]
+    upward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 1e-12
+    return solid._replace(triangles=solid.triangles[upward])
+
+
+def _mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
+    """Flat-shaded triangles: rerun lights only meshes with normals."""
+    corners = solid.vertices[solid.triangles]  # (T, 3, 3)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    colour = [round(255 * c) for c in solid.colour] if tint is None else [*tint, 255]
+    return rr.Mesh3D(
+        vertex_positions=corners.reshape(-1, 3), vertex_normals=np.repeat(normals, 3, axis=0), albedo_factor=colour
+    )
+
+
+def _move(stream: rr.RecordingStream, rows: Recording, scene: Scene, boat: str) -> None:
+    """Pose of the hull and angles of the outboards; a boat that only rolls stays at the origin."""
+    zero = np.zeros(len(rows))
+    x, y, psi, phi = (rows.signals.get(name, zero) for name in ("x_m", "y_m", "psi_rad", "phi_rad"))
+    place = rr.Transform3D.columns(translation=_flat(x, y), quaternion=_attitude(psi, phi))
+    stream.send_columns(f"{WORLD}/{boat}", _when(rows.t), place)
+    for thruster in scene.thrusters:
+        if (steer := rows.signals.get(thruster.steer)) is not None:
+            # the force points a to starboard when the leg is turned by a, clockwise seen from above
+            turned = rr.Transform3D.columns(quaternion=_attitude(steer, zero))
+            stream.send_columns(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", _when(rows.t), turned)
+
+
+def _attitude(psi: Array, phi: Array) -> Array:
+    """(N, 4) quaternions x, y, z, w of heading (clockwise) after roll (starboard down) for the picture's axes."""
+    c, s, cr, sr = np.cos(psi / 2), -np.sin(psi / 2), np.cos(phi / 2), np.sin(phi / 2)
+    return np.column_stack([c * sr, s * sr, s * cr, c * cr])
+
+
+def _log_arrows(stream: rr.RecordingStream, rows: Recording, scene: Scene) -> None:
+    zero = np.zeros(len(rows))
+    for thruster in scene.thrusters:
+        if (thrust := rows.signals.get(thruster.thrust)) is not None:
+            steer = rows.signals.get(thruster.steer, zero)
+            vector = _flat(thrust * np.cos(steer), thrust * np.sin(steer))
+            at = _flat(zero + thruster.x, zero + thruster.y, ABOVE)
+            _arrow(stream, rows.t, f"thrust_{thruster.name}", scene, vector, at, COLOURS["thrust"])
+    for what in ("force", "wind"):
+        if f"{what}_X_N" in rows.signals and f"{what}_Y_N" in rows.signals:
+            vector = _flat(rows[f"{what}_X_N"], rows[f"{what}_Y_N"])
+            height = scene.length * (0.2 if what == "force" else 0.35)  # one above the other, so that both can be read
+            _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, height), COLOURS[what])
+
+
+def _arrow(
+    stream: rr.RecordingStream,
+    t: Array,
+    name: str,
+    scene: Scene,
+    newtons: Array,
+    at: Array,
+    colour: tuple[int, int, int],
+) -> None:
+    """Arrows (N, 3) N in axes of the hull, one a row."""
+    entity = f"{WORLD}/boat/{name}"
+    words = {"force": "total force"}.get(name, name.replace("_", " "))
+    look = rr.Arrows3D.from_fields(
+        colors=[colour], radii=[0.012 * scene.length], labels=[words], show_labels=not name.startswith("thrust")
+    )
+    stream.log(entity, look, static=True)
+    stream.send_columns(entity, _when(t), rr.Arrows3D.columns(vectors=scene.reach * newtons, origins=at))
+
+
+def _log_path(
+    stream: rr.RecordingStream,
+    rows: Recording,
+    name: str,
+    colour: tuple[int, int, int],
+    last: tuple[float, Array] | None,
+    height: float = ABOVE,
+) -> tuple[float, Array] | None:
+    """One short line for each step; the view shows all up to its time. Returns the last point's time and place."""
+    if not {"x_m", "y_m"} <= rows.signals.keys():
+        return last
+    due = np.unique(np.floor(rows.t / TRAIL_STEP + 1e-6), return_index=True)[1]
+    t, points = rows.t[due], _flat(rows["x_m"][due], rows["y_m"][due], height)
+    if last is not None:
+        t, points = np.append(last[0], t), np.vstack([last[1], points])
+    entity = f"{WORLD}/{name}"
+    if len(t) > 1:
+        pairs = np.stack([points[:-1], points[1:]], axis=1)
+        stream.log(entity, rr.LineStrips3D.from_fields(colors=[colour], radii=[-2.0]), static=True)
+        stream.send_columns(entity, _when(t[1:]), rr.LineStrips3D.columns(strips=list(pairs)))
+    return float(t[-1]), points[-1]
+
+
+def _log_camera(stream: rr.RecordingStream, rows: Recording) -> None:
+    """What the camera measured, at the rows in which it measured something new."""
+    if not {"camera_x_m", "camera_y_m"} <= rows.signals.keys():
+        return
+    x, y = rows["camera_x_m"], rows["camera_y_m"]
+    fresh = np.isfinite(x) & np.isfinite(y) & (np.append(True, np.diff(x) != 0) | np.append(True, np.diff(y) != 0))
+    if fresh.any():
+        entity = f"{WORLD}/camera"
+        stream.log(entity, rr.Points3D.from_fields(colors=[COLOURS["camera"]], radii=[-1.2]), static=True)
+        points = rr.Points3D.columns(positions=_flat(x[fresh], y[fresh], 1.5 * ABOVE))
+        stream.send_columns(entity, _when(rows.t[fresh]), points)
+
+
+def _flagged(missing: Recording, intervals: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+    """The missing force where it was flagged, nan elsewhere, as signals of their own."""
+    found: dict[str, Array] = {}
+    for name, axis in blueprint.MISSING.items():
+        inside = np.zeros(len(missing), dtype=bool)
+        for flagged in intervals:
+            if flagged["axis"] == axis:
+                inside |= (missing.t >= flagged["from_s"]) & (missing.t <= flagged["to_s"])
+        if name in missing.signals and inside.any():
+            found[f"{name}_flagged"] = np.where(inside, missing[name], math.nan)
+    return found

@@ -1,0 +1,175 @@
+"""What a 3D log shows of boat and tank: coloured triangles and arrows' places, taken from a compiled MuJoCo model.
+
+Axes are those of the picture: z up, x forward, y to port; SNAME (x, y, psi) appears as (x, -y, -psi).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+from boatsim.physics.base import Array
+
+if TYPE_CHECKING:
+    from boatsim.physics.vessel import Vessel
+
+Triangles = NDArray[np.uint32]
+SEEN = 2  # MuJoCo geom group of what is drawn; touching shapes are in group 3
+OUTBOARD = "outboard_"  # bodies of this name turn with the steering of their side
+BALL, BARREL, BRICK, MESH = 4, 5, 6, 7  # mjtGeom: ellipsoid, cylinder, box, mesh
+ROUND = 2  # mjtGeom: sphere
+REACH = 0.6  # a full-thrust arrow is this part of the boat's length
+PUSH = 0.05  # share of the weight that a force as long as REACH has on a boat whose thrust is not a command
+GRAVITY = 9.81  # [m/s^2]
+
+
+class Solid(NamedTuple):
+    """A coloured shape of one part: "hull", "outboard_port" ..., or "tank"."""
+
+    part: str
+    name: str
+    vertices: Array  # (V, 3) m, in the axes of the part
+    triangles: Triangles  # (T, 3) indices into vertices
+    colour: tuple[float, float, float, float]  # red, green, blue, opacity, 0 to 1
+
+
+class Thruster(NamedTuple):
+    """Where an arrow of thrust starts, and the signals it shows."""
+
+    name: str  # "port"
+    x: float  # [m] forward of the CG
+    y: float  # [m] to starboard
+    thrust: str  # column of the recording: "actual_thrust_port_N"
+    steer: str  # "actual_steer_port_rad"; a column that does not exist means straight ahead
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Boat, tank and arrows of a 3D log."""
+
+    vessel: str
+    length: float  # [m]
+    tank: tuple[float, float, float, float]  # [m] length along x, width along y, centre x, centre y (SNAME)
+    solids: tuple[Solid, ...] = ()
+    thrusters: tuple[Thruster, ...] = ()
+    reach: float = 0.3  # [m/N] length of an arrow per newton
+    open: bool = False  # no walls: the boat may go anywhere, and the eye goes with it
+
+    def outline(self) -> Array:
+        """(V, 2) m, closed, of what is drawn of the hull, seen from above (its convex hull)."""
+        points = np.concatenate([s.vertices[:, :2] for s in self.solids if s.part == "hull"])
+        corners = ConvexHull(points).vertices
+        return np.asarray(points[np.append(corners, corners[0])], dtype=float)
+
+
+def scene_from(model: Any, vessel: "Vessel", tank: Any) -> Scene:
+    """The scene of a compiled model: `model` is its MjModel, `tank` the world.Tank (length, width, centre)."""
+    thrust = [c.high for c in vessel.commands.values() if c.family == "thrust" and c.actuator]
+    return Scene(
+        vessel.name,
+        vessel.length,
+        (tank.length, tank.width, *tank.centre),
+        tuple(_solids(model)),
+        tuple(_thrusters(model)),
+        REACH * vessel.length / max(thrust, default=PUSH * GRAVITY * vessel.body.mass),
+        open=not tank.walls,
+    )
+
+
+def plain_scene(length: float, beam: float, tank: tuple[float, float, float, float], name: str = "boat") -> Scene:
+    """A scene without a model: a box of the boat's size [m] with a pointed bow, thrusters at the transom."""
+    half, side, low, high = 0.5 * length, 0.5 * beam, -0.05 * length, 0.08 * length
+    outline = [(-half, side), (-half, -side), (0.5 * half, -side), (half, 0.0), (0.5 * half, side)]
+    vertices = np.array([(x, y, z) for z in (low, high) for x, y in outline])
+    caps = [(0, i + 1, i) for i in (1, 2, 3)] + [(5, 5 + i, 6 + i) for i in (1, 2, 3)]
+    sides = [t for i in range(5) for j in [(i + 1) % 5] for t in ((i, j, 5 + j), (i, 5 + j, 5 + i))]
+    solid = Solid("hull", "hull", vertices, np.array(caps + sides, dtype=np.uint32), (0.93, 0.62, 0.13, 1.0))
+    thrusters = [
+        Thruster(n, -half, s * 0.6 * side, f"actual_thrust_{n}_N", f"actual_steer_{n}_rad")
+        for n, s in (("port", -1), ("starboard", 1))
+    ]
+    return Scene(name, length, tank, (solid,), tuple(thrusters), REACH * length)
+
+
+def _thrusters(model: Any) -> Iterator[Thruster]:
+    """One for each outboard's body in the hull."""
+    for body in range(model.nbody):
+        name = model.body(body).name
+        if name.startswith(OUTBOARD):
+            side = name.removeprefix(OUTBOARD)
+            x, y, _ = model.body_pos[body]
+            yield Thruster(side, float(x), -float(y), f"actual_thrust_{side}_N", f"actual_steer_{side}_rad")
+
+
+def _solids(model: Any) -> Iterator[Solid]:
+    """Every drawn shape, in the axes of its part."""
+    for geom in range(model.ngeom):
+        if model.geom_group[geom] != SEEN:
+            continue
+        body = int(model.geom_bodyid[geom])
+        shape = _shape(model, geom)
+        if shape is not None:
+            vertices, triangles = shape
+            part, placed = _in_part(model, body, _turned(model.geom_quat[geom], vertices) + model.geom_pos[geom])
+            material = int(model.geom_matid[geom])
+            rgba = model.mat_rgba[material] if material >= 0 else model.geom_rgba[geom]
+            r, g, b, a = map(float, rgba)
+            yield Solid(part, model.geom(geom).name or f"shape_{geom}", placed, triangles, (r, g, b, a))
+
+
+def _in_part(model: Any, body: int, vertices: Array) -> tuple[str, Array]:
+    """Name of the part a body belongs to and the vertices in that part's axes."""
+    while body:
+        name = model.body(body).name
+        if name == "hull" or name.startswith(OUTBOARD):
+            return name, vertices
+        vertices = _turned(model.body_quat[body], vertices) + model.body_pos[body]
+        body = int(model.body_parentid[body])
+    return "tank", vertices
+
+
+def _turned(quaternion: Array, vertices: Array) -> Array:
+    """Vertices (V, 3) rotated by a unit quaternion (w, x, y, z)."""
+    w, axis = quaternion[0], quaternion[1:]
+    cross = 2.0 * np.cross(axis, vertices)
+    turned: Array = vertices + w * cross + np.cross(axis, cross)
+    return turned
+
+
+def _shape(model: Any, geom: int) -> tuple[Array, Triangles] | None:
+    kind, size = int(model.geom_type[geom]), model.geom_size[geom]
+    if kind == MESH:
+        mesh = int(model.geom_dataid[geom])
+        at, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+        face, faces = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
+        return np.array(model.mesh_vert[at : at + count], dtype=float), model.mesh_face[face : face + faces].astype(
+            "u4"
+        )
+    if kind in (ROUND, BALL):
+        vertices, triangles = _lathe([(np.cos(a), np.sin(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 17)])
+        return vertices * (size if kind == BALL else size[0]), triangles
+    if kind == BARREL:
+        vertices, triangles = _lathe([(0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)])
+        return vertices * (size[0], size[0], size[1]), triangles
+    if kind == BRICK:
+        vertices, triangles = _lathe([(0.0, -1.0), (2**0.5, -1.0), (2**0.5, 1.0), (0.0, 1.0)], 4, np.pi / 4)
+        return vertices * size, triangles
+    return None
+
+
+def _lathe(profile: list[tuple[float, float]], around: int = 32, start: float = 0.0) -> tuple[Array, Triangles]:
+    """Surface of revolution about z of a profile of (radius, z), every strip with vertices of its own."""
+    angles = start + np.linspace(0.0, 2.0 * np.pi, around, endpoint=False)
+    vertices: list[Array] = []
+    triangles: list[NDArray[np.int64]] = []
+    for (r0, z0), (r1, z1) in zip(profile[:-1], profile[1:], strict=True):
+        base = 2 * around * len(triangles)
+        for r, z in ((r0, z0), (r1, z1)):
+            vertices.append(np.column_stack([r * np.cos(angles), r * np.sin(angles), np.full(around, z)]))
+        i, j = np.arange(around), (np.arange(around) + 1) % around
+        strip = [(i, j, around + j), (i, around + j, around + i)]
+        triangles.append(base + np.concatenate([np.column_stack(corner) for corner in strip]))
+    return np.concatenate(vertices), np.concatenate(triangles).astype(np.uint32)
