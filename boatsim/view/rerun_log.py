@@ -19,9 +19,10 @@ import numpy as np
 import rerun as rr
 
 from boatsim.physics.base import Array
+from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
 from boatsim.view import blueprint
-from boatsim.view.blueprint import SIGNALS, TIMELINE, WORLD
+from boatsim.view.blueprint import WORLD
 from boatsim.view.scene import OUTBOARD, Scene, Solid
 
 PORT = 9876  # where a viewer listens unless told otherwise
