@@ -26,7 +26,7 @@ from boatsim.simulate.world import Tank
 
 ROUNDS = 5
 STEP = 0.02  # [s]
-START = State(0.0, 0.0, 0.0, 0.3, 0.0, 0.2, 0.05, 0.0, 0.1)
+START = State(psi=0.3, u=0.2, v=0.05, r=0.1)
 COMMANDS = {"pwm_port": 120.0, "pwm_starboard": -90.0, "steer_port_rad": 0.4, "steer_starboard_rad": -0.3}
 EXTRA = (
     {"use": "weak_reverse", "astern_factor": 0.694},

@@ -87,7 +87,7 @@ def random_waves(periods: int = 240) -> Array:
 def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> Array:
     """(N + 1, 5) states of the same run in the engine."""
     engine, mass = Engine(boat, step=step), inertia(boat).diagonal()
-    engine.reset(State(0, 0, 0, 0, 0, speed_of(boat), 0, 0, 0))
+    engine.reset(State(u=speed_of(boat)))
     at, rows = [engine.program.index("push", n) for n in PUSHES], [[0.0] * 5]
     for angle, wave in zip(rudder, waves, strict=True):
         engine._values[at] = wave * mass
@@ -158,7 +158,7 @@ def main() -> None:
     engine = Engine(
         vessel.load("eastward_ho", ["condition_3"], {"irregular_sea": {"significant_height": 0.88}}), step=0.1
     )
-    engine.reset(State(0, 0, 0, 0, 0, 6.68777, 0, 0, 0))
+    engine.reset(State(u=6.68777))
     start = process_time()
     engine.advance(6000)
     console.print(f"600 s in 160 waves, steps of 0.1 s: {process_time() - start:.2f} s of processor time")

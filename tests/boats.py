@@ -27,10 +27,10 @@ draught = 0.1
 body = { mass = 6.0, roll_inertia = 0.1, yaw_inertia = 0.5 }
 
 [channels]
-thrust_port_N = { low = -100.0, high = 100.0, family = "thrust", side = -1 }
-thrust_starboard_N = { low = -100.0, high = 100.0, family = "thrust", side = 1 }
-steer_port_rad = { low = -3.2, high = 3.2, family = "steer", side = -1 }
-steer_starboard_rad = { low = -3.2, high = 3.2, family = "steer", side = 1 }
+thrust_port_N = { low = -100.0, high = 100.0 }
+thrust_starboard_N = { low = -100.0, high = 100.0 }
+steer_port_rad = { low = -3.2, high = 3.2 }
+steer_starboard_rad = { low = -3.2, high = 3.2 }
 
 [[effect]]
 use = "added_mass"
@@ -54,9 +54,16 @@ yaw = 1.0
 use = "current"
 
 [[effect]]
-use = "outboards"
-x = 0.0
-half_spacing = 0.5
+use = "thruster"
+name = "port"
+on = { thrust = "thrust_port_N", angle = "steer_port_rad" }
+y = -0.5
+
+[[effect]]
+use = "thruster"
+name = "starboard"
+on = { thrust = "thrust_starboard_N", angle = "steer_starboard_rad" }
+y = 0.5
 
 [loads.laden]
 length = 1.5

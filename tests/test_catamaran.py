@@ -156,7 +156,7 @@ def test_left_and_right_are_mirror_images() -> None:
 
 def test_without_thrust_and_disturbance_the_energy_only_falls() -> None:
     engine = Engine(vessel.load("catamaran"), step=0.01)
-    engine.reset(State(0.0, 0.0, 0.0, 0.3, 0.0, 1.2, -0.4, 0.0, 1.5))
+    engine.reset(State(psi=0.3, u=1.2, v=-0.4, r=1.5))
     mass, energy = np.array([7.35, 7.0 + 3.1809, 0.75979 + 0.27389]), []
     for _ in range(500):
         s = engine.state

@@ -16,8 +16,9 @@ import pytest
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array
+from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.engine import Engine, State, from_joints, installed, to_joints
+from boatsim.simulate.engine import Engine, State, installed
 from boatsim.simulate.twin import Twin
 from boatsim.simulate.world import Tank
 
@@ -32,7 +33,7 @@ VESSELS = [
     *(("joystick_boat", loads) for loads in [("light",), ("heavy",), ("light", "wide"), ("heavy", "wide")]),
     *((name, ()) for name in content.names("vessel") if name != "joystick_boat"),
 ]
-START = State(0.0, 0.1, -0.2, 0.4, 0.1, 0.2, -0.1, 0.05, 0.3)
+START = State(x=0.1, y=-0.2, psi=0.4, phi=0.1, u=0.2, v=-0.1, p=0.05, r=0.3)
 
 
 @cache
@@ -53,10 +54,7 @@ def held_commands(boat: Vessel, rows: int, seed: int) -> Array:
 
 def pose_and_rates(boat: Vessel, s: State) -> list[float]:
     """A state as the twin has it."""
-    if "yaw" not in boat.freedoms:
-        return [s.phi, s.p]
-    heel = "roll" in boat.freedoms
-    return [s.x, s.y, s.psi, *([s.phi] if heel else []), s.u, s.v, s.r, *([s.p] if heel else [])]
+    return [getattr(s, signal.symbol) for signal in signals_of(boat.freedoms)]
 
 
 def sailed(engine: Engine, rows: Array, steps: int, start: State = START) -> Array:
@@ -158,7 +156,7 @@ def contact_force(engine: Engine, probe: Any) -> tuple[Array, int]:
 
 def moving(psi: float, u: float, v: float = 0.0, r: float = 0.0) -> State:
     """In the middle of the tank, on its way to the wall ahead."""
-    return State(0.0, 0.0, 0.0, psi, 0.0, u, v, 0.0, r)
+    return State(psi=psi, u=u, v=v, r=r)
 
 
 @pytest.mark.parametrize(
@@ -190,7 +188,7 @@ def test_impulse_of_an_elastic_wall(tmp_path: Path, start: State, callback: str)
 def test_a_boat_in_a_tank_stays_in_it() -> None:
     boat = on_water("joystick_boat")
     engine = Engine(boat, Tank(1.5, 3.0, 0.1))
-    engine.reset(State(*[0.0] * 9))
+    engine.reset(State())
     full = {"pwm_port": 255.0, "pwm_starboard": 255.0}
     engine.command(full)
     engine.advance(1000)
@@ -208,7 +206,7 @@ def mirror_commands(boat: Vessel, rows: Array) -> Array:
     """Port and starboard change places; angles change sign."""
     names = list(boat.commands)
     other = [n.replace("starboard", "port") if "starboard" in n else n.replace("port", "starboard") for n in names]
-    sign = [-1.0 if boat.commands[n].family == "steer" else 1.0 for n in names]
+    sign = [-1.0 if n in boat.angles else 1.0 for n in names]
     return rows[:, [names.index(n) for n in other]] * sign
 
 
@@ -236,18 +234,20 @@ def test_a_uniform_current_only_carries_the_boat_along() -> None:
     assert adrift[:, [2, 5]] == pytest.approx(at_rest[:, [2, 5]], abs=1e-7)
 
 
-def test_joints_are_z_up_and_states_are_sname() -> None:
-    names = ["x", "y", "psi", "phi"]
-    q, qd = to_joints(START, names)
-    assert q == pytest.approx([START.x, -START.y, -START.psi, START.phi])
+def test_joints_are_z_up_and_states_are_sname(tmp_path: Path) -> None:
+    engine = Engine(vessel.load("jet_ski"))
+    engine.reset(START)
     c, s = cos(START.psi), sin(START.psi)
-    assert qd == pytest.approx([c * START.u - s * START.v, -(s * START.u + c * START.v), -START.r, START.p])
-    assert from_joints(START.t, q, qd, names) == pytest.approx(START)
+    assert [engine.model.joint(i).name for i in range(4)] == ["x", "y", "psi", "phi"]
+    assert engine.data.qpos == pytest.approx([START.x, -START.y, -START.psi, START.phi])
+    north, east = c * START.u - s * START.v, s * START.u + c * START.v
+    assert engine.data.qvel == pytest.approx([north, -east, -START.r, START.p])
+    assert engine.state == pytest.approx(START)
 
 
 def test_positive_heading_is_clockwise_and_positive_y_is_to_starboard_in_mujoco(tmp_path: Path) -> None:
     engine = Engine(boats.planar(tmp_path))
-    engine.reset(State(0.0, 1.0, 2.0, 0.5, 0.0, 0.3, 0.0, 0.0, 0.0))
+    engine.reset(State(x=1.0, y=2.0, psi=0.5, u=0.3))
     mujoco.mj_forward(engine.model, engine.data)
     hull = engine.data.body("hull")
     assert hull.xpos == pytest.approx([1.0, -2.0, 0.0])
@@ -335,7 +335,7 @@ def test_two_engines_do_not_disturb_each_other(tmp_path: Path) -> None:
 def test_a_motion_that_is_no_longer_finite_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)  # MuJoCo writes its warning into the working directory
     engine = Engine(boats.planar(tmp_path))
-    engine.reset(State(0.0, 0.0, 0.0, 0.0, 0.0, 1e200, 0.0, 0.0, 0.0))
+    engine.reset(State(u=1e200))
     with pytest.raises(BadPhysics, match="test_boat: the motion is no longer finite"):
         engine.advance(5)
     assert mujoco.get_mjcb_passive() is None

@@ -67,7 +67,7 @@ def test_engine_twin_and_an_independent_integrator_agree(tmp_path: Path, current
     boat = heeling(tmp_path, linear_damping={"roll": 0.4}, current={"north": north, "east": east})
     commands, x = boats.push(2.0, 0.3), START
     engine = Engine(boat, step=0.01)
-    engine.reset(State(0.0, x[0], x[1], x[2], x[3], x[4], x[5], x[7], x[6]), commands)
+    engine.reset(State(x=x[0], y=x[1], psi=x[2], phi=x[3], u=x[4], v=x[5], p=x[7], r=x[6]), commands)
     engine.advance(1000)
     s = engine.state
     twin = Twin(boat, 0.01)

@@ -37,7 +37,7 @@ def on_engine(name: str, start: list[float], commands: dict[str, float], until: 
     """The same on MuJoCo, its actuators settled from the start."""
     engine = Engine(vessel.load(name), step=step)
     x, y, psi, u, v, r = start
-    engine.reset(State(0.0, x, y, psi, 0.0, u, v, 0.0, r), commands)
+    engine.reset(State(x=x, y=y, psi=psi, u=u, v=v, r=r), commands)
     engine.advance(round(until / step))
     s = engine.state
     return np.array([s.x, s.y, s.psi, s.u, s.v, s.r])

@@ -130,7 +130,7 @@ def test_engine_and_twin_follow_an_integration_of_the_printed_equations(throttle
     start = (0.0, 0.0, 0.3, 0.05, 20.0, 0.2, 0.1, -0.1)  # x, y, psi, phi, u, v, p, r
     truth = solved(Craft(), throttle, jet, np.array(start), np.array([0.0, 10.0]))[-1]
     engine = Engine(CRAFT, step=0.01)
-    engine.reset(State(0.0, *start), {"throttle": throttle, "jet_rad": jet})
+    engine.reset(State(**dict(zip(("x", "y", "psi", "phi", "u", "v", "p", "r"), start, strict=True))), {"throttle": throttle, "jet_rad": jet})
     engine.advance(1000)
     s = engine.state
     assert [s.x, s.y, s.psi, s.phi, s.u, s.v, s.p, s.r] == pytest.approx(truth.tolist(), abs=1e-6)

@@ -144,7 +144,7 @@ def test_hull_in_waves_turns_with_their_yaw_rate(seed: int) -> None:
         return np.asarray(np.cos(np.multiply.outer(t, w) + phases) @ size)
 
     engine = Engine(boat, step=0.01)
-    engine.reset(State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, float(r_w(np.array(0.0)))))
+    engine.reset(State(r=float(r_w(np.array(0.0)))))
     found = []
     for _ in range(40):
         engine.advance(50)

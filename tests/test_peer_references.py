@@ -67,7 +67,7 @@ def sampled(how: str, folder: Path, case: Case, until: float, more: Mapping[str,
         return twin.rollout(case.start, rows, 0.1)
     engine = Engine(vessel, step=STEP)
     x, y, psi, u, v, r = case.start
-    engine.reset(State(0.0, x, y, psi, 0.0, u, v, 0.0, r), case.commands)
+    engine.reset(State(x=x, y=y, psi=psi, u=u, v=v, r=r), case.commands)
     out = [list(case.start)]
     for _ in range(round(10 * until)):
         engine.advance(10)

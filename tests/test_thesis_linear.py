@@ -57,7 +57,7 @@ def test_engine_is_the_state_space_of_the_thesis(loads: tuple[str, str]) -> None
     load, motors = loads
     (m, inertia), L, B, d, F = INERTIA[load], LEVERS[load], LEVERS[motors], 0.3, 0.5
     engine = Engine(vessel.load("thesis_linear", loads), step=0.01)
-    engine.reset(State(0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.02, 0.0, -0.01), sideways(F, d))
+    engine.reset(State(psi=0.4, v=0.02, r=-0.01), sideways(F, d))
     engine.advance(2000)
     push = np.array([F * sin(d) / m, F * (B * cos(d) - L * sin(d)) / inertia])
     whole = np.block([[A[load], push[:, None]], [np.zeros((1, 3))]])
@@ -88,7 +88,7 @@ def test_wind_of_t12_is_a_force_and_a_moment_that_turn_with_the_boat() -> None:
     boat = vessel.load("thesis_linear", ["light", "wide"], {"gust": {"mean": 0.2}})
     engine = Engine(boat, step=0.01)
     for psi in (0.0, 1.0):
-        engine.reset(State(0.0, 0.0, 0.0, psi, 0.0, 0.0, 0.0, 0.0, 0.0))
+        engine.reset(State(psi=psi))
         assert engine.wrench() == pytest.approx((0.0, 0.2, 0.0, 0.2), abs=1e-8)
 
 

@@ -13,6 +13,7 @@ from typing import Any
 from boatsim.errors import BadInput, unknown_name
 
 PACKAGES = {  # kinds that are modules of ours, one a file
+    "kind": "physics.kinds",
     "effect": "physics.effects",
     "measure": "measures",
     "reader": "recordings.readers",
@@ -122,7 +123,7 @@ def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
 def address(effect: Any) -> str:
     """What an effect class is found by from anywhere: its name if it is on the shelf, else the path of its file."""
     if effect.__module__.startswith("boatsim.physics.effects."):
-        return str(effect.name())
+        return str(effect.idea())
     return str(Path(sys.modules[effect.__module__].__file__ or "").resolve())
 
 

@@ -1,7 +1,8 @@
 """A vessel is data: hull, freedoms, effects with values, command channels, loads, and what a diagnosis may assume."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -9,31 +10,33 @@ from pydantic import Field, PositiveFloat
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, checked, read_toml
-from boatsim.physics.base import Effect
 from boatsim.physics.content import find, load_class
+from boatsim.physics.kernel.equations import tilts
+from boatsim.physics.kinds.channel import Channel
+from boatsim.physics.kinds.effect import Effect
 
-Freedom = Literal["surge", "sway", "roll", "yaw"]
-Noise = Literal[
-    "position_sd_m", "heading_sd_rad", "roll_sd_rad", "speed_sd_mps", "yaw_rate_sd_radps", "roll_rate_sd_radps"
-]
+Freedom = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]  # AXES, as a type checker reads it
 
 
 class Body(Table):
-    """Rigid body about its mass centre, which is the origin of motion."""
+    """Rigid body; inertia about its mass centre, which is the origin of motion unless `centre` says otherwise."""
 
     mass: float = Field(gt=0)  # [kg]
     roll_inertia: float = Field(gt=0)  # [kg m^2]
     yaw_inertia: float = Field(gt=0)  # [kg m^2]
+    pitch_inertia: float | None = Field(default=None, gt=0)  # [kg m^2]; needed where the hull pitches
+    centre: tuple[float, float] = (0.0, 0.0)  # [m] ahead of the origin and below it
+
+    def pitched(self) -> float:
+        """Inertia in pitch; of a hull that does not pitch it is that in yaw, so that rolling turns nothing else."""
+        return max(self.roll_inertia, self.yaw_inertia) if self.pitch_inertia is None else self.pitch_inertia
 
 
 class CommandChannel(Table):
-    """A command the vessel takes. `family` groups the sides ("thrust", "steer", "pwm")."""
+    """A command the vessel takes."""
 
     low: float
     high: float
-    family: str
-    side: Literal[-1, 0, 1] = 0  # port, middle, starboard
-    actuator: bool = True  # False: only feeds an actuator of the same side (PWM feeds thrust)
     turns: Literal["", "starboard", "port"] = ""  # what a positive rudder does; recordings that differ are turned
     about: str = ""
 
@@ -52,7 +55,7 @@ class DiagnosisTable(Table):
     coefficient_uncertainty: dict[
         Literal["damping", "thrust", "restoring"], PositiveFloat
     ] = {}  # relative sd: damping, thrust, restoring
-    noise: dict[Noise, PositiveFloat] = {}  # sensor noise where a recording states none
+    noise: dict[str, PositiveFloat] = {}  # by family; sensor noise where a recording states none
 
 
 class ManoeuvringTable(Table):
@@ -115,17 +118,76 @@ class Vessel:
 
     @property
     def actuators(self) -> tuple[str, ...]:
-        """Channels the force laws see."""
-        return tuple(n for n, c in self.commands.items() if c.actuator)
+        """Channels that laws see: those bound to a role of an effect. The others only feed them (PWM feeds thrust)."""
+        return tuple(n for n in self.commands if n in self.roles)
+
+    @cached_property
+    def roles(self) -> Mapping[str, str]:
+        """Channel -> the role in which an effect takes it first."""
+        found: dict[str, str] = {}
+        for effect in self.effects:
+            for role, channel in self.stated(effect).items():
+                if isinstance(channel, str):
+                    found.setdefault(channel, role)
+        return found
+
+    @cached_property
+    def angles(self) -> tuple[str, ...]:
+        """Actuators that are angles: laws see their cosine and sine too."""
+        units = {c: type(e).roles[r].unit for e in self.effects for r, c in self.stated(e).items()}
+        return tuple(n for n in self.actuators if units.get(n) == "rad")
 
     def effect(self, name: str) -> Effect | None:
-        """The vessel's own effect of that name."""
-        return next((e for e in self.effects if e.name() == name), None)
+        """The vessel's own effect of that name, or the only one of that idea."""
+        named = next((e for e in self.effects if e.name == name), None)
+        alike = [e for e in self.effects if type(e).idea() == name]
+        return named or (alike[0] if len(alike) == 1 else None)
 
-    def beside(self, command: str, family: str) -> str | None:
-        """The command of another family on the same side."""
-        side = self.commands[command].side
-        return next((n for n, c in self.commands.items() if c.family == family and c.side == side), None)
+    def all_of(self, idea: str) -> list[Effect]:
+        """The vessel's own effects of one idea, in the order of its file."""
+        return [e for e in self.effects if type(e).idea() == idea]
+
+    @staticmethod
+    def stated(effect: Effect) -> Mapping[str, str | float]:
+        """What an effect's own table binds its roles to: a channel's name, or a number that is held."""
+        return effect.on if isinstance(effect.on, Mapping) else {}
+
+    def bound(self, effect: Effect) -> dict[str, str | float]:
+        """What each role of an effect is bound to: as stated, else the vessel's only channel in that role."""
+        found = dict(self.stated(effect))
+        for role in type(effect).roles:
+            there = [n for n in self.actuators if self.roles[n] == role]
+            if role not in found and len(there) == 1:
+                found[role] = there[0]
+        return found
+
+    def ridden(self, effect: Effect) -> list[Effect]:
+        """The instances that an effect rides on: those it names, else all of the idea."""
+        there = self.all_of(type(effect).rides)
+        return [e for e in there if not effect.on or e.name in effect.on]
+
+    def targets(self, effect: Effect) -> tuple[str, ...]:
+        """Actuators that a channel effect acts on: those it names, else all in its role."""
+        if not isinstance(effect, Channel):
+            return ()
+        if effect.on:
+            return tuple(n for n in self.actuators if n in effect.on)
+        return tuple(n for n in self.actuators if type(effect).acts_on in ("", self.roles[n]))
+
+    def feeder(self, effect: Effect, actuator: str) -> str | None:
+        """The command that feeds an actuator through a channel effect: its `fed_by` in the actuator's place."""
+        if not isinstance(effect, Channel) or actuator not in effect.on:
+            return None
+        return dict(zip(effect.on, effect.fed_by, strict=False)).get(actuator)
+
+    def side(self, channel: str) -> int:
+        """-1 port, +1 starboard, 0 middle: where what a channel drives, itself or through another, is mounted."""
+        for effect in self.effects:
+            if channel in self.stated(effect).values():
+                y = float(getattr(effect, "y", 0.0))
+                return int(y > 0.0) - int(y < 0.0)
+        fed = [a for e in self.effects for a in self.targets(e) if self.feeder(e, a) == channel]
+        return self.side(fed[0]) if fed else 0
 
     def no_command(self, name: str) -> str:
         """Line for a command this vessel does not take."""
@@ -160,11 +222,12 @@ def load(
         raw = _overlaid(raw, known[one], label)
     raw = _overlaid(raw, dict(settings or {}), label)
     file = checked(VesselFile, raw, label)
-    own = [table["use"] for table in file.effect if "use" in table]
+    own = [_called(table) for table in file.effect]
     for table in extra:
-        if table.get("use") in own:
+        if _called(table) in own:
             raise BadInput(
-                f"{table['use']} is one of {called}'s own effects; change its values in [set.{table['use']}]"
+                f"{_called(table)} is one of {called}'s own effects; change its values in [set.{_called(table)}], or "
+                "give the further one a name of its own"
             )
     folder = _base(file.based_on, path, label)
     vessel = Vessel(
@@ -172,7 +235,58 @@ def load(
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
         file.scale, file.scales, file.columns, file.manoeuvring,
     )  # fmt: skip
-    return with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
+    whole = with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
+    check_bindings(whole, label)
+    if "pitch" in whole.freedoms and whole.body.pitch_inertia is None:
+        raise BadInput(f"{label}: body.pitch_inertia is missing; {called} pitches")
+    if whole.body.centre[1] and "roll" in whole.freedoms and not tilts(frozenset(whole.freedoms)):
+        raise BadInput(f"{label}: body.centre = {whole.body.centre}; allowed is a height of 0 where pitch is held")
+    return whole
+
+
+def _called(table: Mapping[str, Any]) -> str:
+    """Name of the instance that an [[effect]] table makes."""
+    return str(table.get("name", table.get("use")))
+
+
+def check_bindings(vessel: Vessel, label: str) -> None:
+    """Every effect has a name of its own and finds what it acts on. Raises BadInput."""
+    names = [e.name for e in vessel.effects]
+    for effect in vessel.effects:
+        what = f"{label}: effect {effect.name}"
+        if names.count(effect.name) > 1:
+            raise BadInput(f"{what} is there {names.count(effect.name)} times; give each a name of its own")
+        _check_roles(vessel, effect, what)
+        kind = type(effect)
+        if isinstance(effect, Channel):
+            for name in (*effect.on, *effect.fed_by):
+                if name not in vessel.commands:
+                    raise BadInput(unknown_name(f"{what}: channel", name, vessel.commands))
+            if effect.fed_by and len(effect.fed_by) != len(effect.on):
+                raise BadInput(
+                    f"{what}: fed_by names {len(effect.fed_by)} channels, on {len(effect.on)}; each needs one"
+                )
+        elif kind.rides:
+            there = [e.name for e in vessel.all_of(kind.rides)]
+            for name in effect.on:
+                if name not in there:
+                    raise BadInput(unknown_name(f"{what}: {kind.rides}", name, there))
+            if not there:
+                raise BadInput(f"{what} needs a vessel with {kind.rides}")
+
+
+def _check_roles(vessel: Vessel, effect: Effect, what: str) -> None:
+    """Roles that exist, bound to channels that exist, none left out that is needed."""
+    roles, stated = type(effect).roles, vessel.stated(effect)
+    for role, channel in stated.items():
+        if role not in roles:
+            raise BadInput(unknown_name(f"{what}: on", role, roles))
+        if isinstance(channel, str) and channel not in vessel.commands:
+            raise BadInput(unknown_name(f"{what}: on.{role} channel", channel, vessel.commands))
+    for role, about in roles.items():
+        if role not in vessel.bound(effect) and about.fixed is None:
+            there = ", ".join(vessel.commands)
+            raise BadInput(f"{what}: on.{role} is missing: the channel of {about.words}; there are: {there}")
 
 
 def _base(name: str, path: Path, label: str) -> Path:
@@ -192,8 +306,6 @@ def with_effects(vessel: Vessel, tables: Sequence[Mapping[str, Any]], folder: Pa
 
 def added(vessel: Vessel, effect: Effect) -> Vessel:
     """The vessel with one more effect."""
-    from dataclasses import replace
-
     return replace(vessel, effects=(*vessel.effects, effect.completed(vessel)))
 
 
@@ -232,7 +344,7 @@ def _overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) ->
     out = dict(raw)
     effects = [dict(t) for t in raw.get("effect", [])]
     for key, value in load_table.items():
-        mine = next((t for t in effects if t.get("use") == key), None)
+        mine = next((t for t in effects if _called(t) == key), None)
         if mine is not None:
             mine.update(value)
         elif isinstance(value, dict) and key in ("body", "geometry", "manoeuvring", "diagnosis"):
@@ -241,7 +353,7 @@ def _overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) ->
             out[key] = value
         else:
             tables = ("body", "geometry", "manoeuvring", "diagnosis", "length", "beam", "draught")
-            names = [*(str(t.get("use")) for t in effects), *tables]
+            names = [*(_called(t) for t in effects), *tables]
             raise BadInput(unknown_name(f"{label}: table to change", key, names))
     out["effect"] = effects
     return out

@@ -1,60 +1,44 @@
 """Steps a vessel on MuJoCo: added mass and all forces enter through the passive-force callback.
 
-Files, controllers and effects are SNAME (z down); MuJoCo's model is z up. The translation is `to_joints` and
-`from_joints` here for people and files, and `add_to_mujoco` in the kernels for the compiled step; nowhere else.
+Files, controllers and effects are SNAME (z down); MuJoCo's model is z up. The translation is here for people and files,
+and in `add_to_mujoco` of the equations for the compiled step; nowhere else.
 """
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from math import cos, isfinite, sin
+from math import isfinite
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 
 from boatsim.errors import BadPhysics
-from boatsim.physics.base import Array
+from boatsim.physics.kernel.equations import COORDINATES, SIGN
 from boatsim.physics.program import Program
+from boatsim.physics.signals import Array, Wrench
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import native, world
 from boatsim.simulate.world import Tank
 
-SIGN = {"x": 1.0, "y": -1.0, "psi": -1.0, "phi": 1.0}  # SNAME = sign * z-up, coordinate and rate alike
 SAME = 1e-12  # relative: native and Python callback must agree to this at start-up
 
 
 class State(NamedTuple):
     """Where the boat is and how it moves: SNAME, pose in start axes, velocities in body axes over ground."""
 
-    t: float  # [s]
-    x: float  # [m]
-    y: float  # [m]
-    psi: float  # [rad]
-    phi: float  # [rad]
-    u: float  # [m/s]
-    v: float  # [m/s]
-    p: float  # [rad/s]
-    r: float  # [rad/s]
-
-
-def to_joints(state: State, names: list[str]) -> tuple[Array, Array]:
-    """Joint positions and rates, z up, of a state."""
-    c, s = np.cos(state.psi), np.sin(state.psi)
-    rates = {"x": c * state.u - s * state.v, "y": s * state.u + c * state.v, "psi": state.r, "phi": state.p}
-    q = np.array([SIGN[n] * getattr(state, n) for n in names])
-    return q, np.array([SIGN[n] * rates[n] for n in names])
-
-
-def from_joints(t: float, q: Array, qd: Array, names: list[str]) -> State:
-    """State of joint positions and rates, z up."""
-    pose = {n: SIGN[n] * a for n, a in zip(names, q.tolist(), strict=True)}
-    rate = {n: SIGN[n] * a for n, a in zip(names, qd.tolist(), strict=True)}
-    psi, xd, yd = pose.get("psi", 0.0), rate.get("x", 0.0), rate.get("y", 0.0)
-    c, s = cos(psi), sin(psi)
-    return State(
-        t, pose.get("x", 0.0), pose.get("y", 0.0), psi, pose.get("phi", 0.0), c * xd + s * yd, c * yd - s * xd,
-        rate.get("phi", 0.0), rate.get("psi", 0.0),
-    )  # fmt: skip
+    t: float = 0.0  # [s]
+    x: float = 0.0  # [m]
+    y: float = 0.0  # [m]
+    z: float = 0.0  # [m]
+    phi: float = 0.0  # [rad]
+    theta: float = 0.0  # [rad]
+    psi: float = 0.0  # [rad]
+    u: float = 0.0  # [m/s]
+    v: float = 0.0  # [m/s]
+    w: float = 0.0  # [m/s]
+    p: float = 0.0  # [rad/s]
+    q: float = 0.0  # [rad/s]
+    r: float = 0.0  # [rad/s]
 
 
 class Engine:
@@ -75,24 +59,29 @@ class Engine:
         self._on = self.program.switches()
         self._k = np.zeros(self.code.K)
         self.code.constants(self.program.body, self._values, self._on, self._k)
-        size = len(self._values) + self.code.K + self.code.HELD
+        size = len(self._values) + self.code.K + self.program.held_size + 2
         with no_callback():
             self.model = world.build(vessel, self.tank, step, size, **look)
             self.data = mujoco.MjData(self.model)
-        self.joints = [self.model.joint(i).name for i in range(self.model.njnt)]
+        joints = [self.model.joint(i).name for i in range(self.model.njnt)]
+        coordinates = [COORDINATES[i] for i in self.code.FREE]
+        self._place = np.array([joints.index(n) for n in coordinates])  # of each coordinate among MuJoCo's joints
+        self._sign = np.array([float(SIGN[n]) for n in coordinates])  # SNAME = sign * z-up, coordinate and rate alike
         self._commands = np.zeros(len(vessel.commands))
         self._memory = np.zeros(self.program.memory_size)
-        self._act = np.zeros(self.code.HELD)
-        self._held = self.data.userdata[-self.code.HELD :]
+        self._act = np.zeros(self.program.held_size)
+        self._held = self.data.userdata[-self.program.held_size - 2 :]
         self.callback = self._choose(callback, size)
         self.reset()
 
     def reset(self, state: State | None = None, commands: Mapping[str, float] | None = None) -> None:
         """Put the boat at a state (default: origin, at rest, t = 0), its actuators settled at the given commands."""
-        state = state or State(*[0.0] * 9)
+        state = state or State()
         mujoco.mj_resetData(self.model, self.data)
         self.data.time = state.t
-        self.data.qpos[:], self.data.qvel[:] = to_joints(state, self.joints)
+        y = self.program.joint_rates(np.array(state[1:])[list(self.code.SHOWS)])
+        self.data.qpos[self._place] = self._sign * y[: self.code.NQ]
+        self.data.qvel[self._place] = self._sign * y[self.code.NQ :]
         self._memory[:] = 0.0
         self.command(commands or {})
         self.settle()
@@ -119,13 +108,12 @@ class Engine:
         left = self.step
         while left > 1e-9:
             dt = left
-            if self.code.PAUSES:
-                dt = min(
-                    left, max(self.code.pause(self._commands, self._memory, self._values, self._on), self.code.SHORTEST)
-                )
+            if self.code.HAS_PAUSE:
+                dt = self.code.until_bend(self._commands, self._memory, left, self._values, self._on)
                 self.model.opt.timestep = dt
             self.code.actuate_in_place(self._commands, self._memory, dt, self._values, self._on, self._act)
-            self._held[:] = self._act
+            self._held[:-2] = self._act
+            self._held[-2:] = self.data.time, 1.0 / dt
             mujoco.mj_step(self.model, self.data)
             left -= dt
 
@@ -137,39 +125,40 @@ class Engine:
     @property
     def state(self) -> State:
         """The present state."""
-        return from_joints(self.data.time, self.data.qpos, self.data.qvel, self.joints)
+        return State(self.data.time, *self.code.moved.py_func(self._joint_state().tolist()))
+
+    def _joint_state(self) -> Array:
+        """(2 NQ,) joint coordinates and rates, SNAME."""
+        q, qd = self.data.qpos[self._place], self.data.qvel[self._place]
+        return np.concatenate([self._sign * q, self._sign * qd])
 
     @property
     def actuators(self) -> dict[str, float]:
         """Mean of each actuator over the last step."""
-        return dict(zip(self.vessel.actuators, self._act.tolist(), strict=False))
+        begin, middle, end = self._act.reshape(3, -1)
+        return dict(zip(self.vessel.actuators, ((begin + 4.0 * middle + end) / 6.0).tolist(), strict=False))
 
     @property
     def contacts(self) -> int:
         """How many contacts the hull has now."""
         return int(self.data.ncon)
 
-    def wrench(self) -> tuple[float, float, float, float]:
-        """Sum of all force laws (X, Y, K, N) in body axes at the present state [N, N m]."""
-        s = self.state
-        q, qd = self.data.qpos, self.data.qvel
-        y = np.array([SIGN[n] * x for values in (q, qd) for n, x in zip(self.joints, values, strict=True)])
-        total = [0.0] * 4
-        found = self.code.forces(s.t, y, self._act, self._values, self._on)
-        for axis, force in zip(self.code.FREEDOMS, found, strict=True):
-            total[axis] = force
-        return total[0], total[1], total[2], total[3]
+    def wrench(self) -> Wrench:
+        """Sum of all force laws in body axes at the present state [N, N m]; zero along freedoms that are held."""
+        last = np.int64(2 * self.code.HELD)  # the actuators at the end of the last step
+        found = self.code.forces(self.data.time, self._joint_state(), self._act, last, self._values, self._on)
+        return Wrench(**dict(zip((Wrench._fields[i] for i in self.code.FREE), found, strict=True)))
 
     def acceleration(self) -> tuple[float, float]:
-        """Acceleration of the CG over ground along body x and y [m/s^2], as an accelerometer there feels it."""
-        qdd = dict(zip(self.joints, self.data.qacc.tolist(), strict=True))
-        psi = -float(self.data.qpos[self.joints.index("psi")]) if "psi" in self.joints else 0.0
-        c, s = cos(psi), sin(psi)
-        xdd, ydd = qdd.get("x", 0.0), -qdd.get("y", 0.0)
-        return c * xdd + s * ydd, c * ydd - s * xdd
+        """Acceleration of the origin over ground along body x and y [m/s^2], as an accelerometer there feels it."""
+        J = np.zeros((6, self.code.NQ))
+        self.code.jacobian.py_func(self._joint_state(), J)
+        moving = [k for k, i in enumerate(self.code.FREE) if i < 3]
+        ahead, aside, _ = J[:3, moving] @ (self._sign * self.data.qacc[self._place])[moving]
+        return float(ahead), float(aside)
 
     def _write_userdata(self) -> None:
-        self.data.userdata[:] = np.concatenate([self._values, self._k, self._act])
+        self.data.userdata[:] = np.concatenate([self._values, self._k, self._act, [self.data.time, 1.0 / self.step]])
 
     def _choose(self, wanted: str, size: int) -> Any:
         """The native callback if it gives the numbers of the Python one, which is in any case there."""

@@ -151,9 +151,8 @@ class BoatTask(control.Task):
         """The scenario's start, actuators settled at the commands its controller begins with."""
         start, length = self.scenario.file.start, self.scenario.vessel.length
         x, y, psi = self._random.uniform(-self.scatter, self.scatter, 3) * (length, length, 1.0)
-        state = State(
-            0.0, start.x + x, start.y + y, start.psi + psi, start.phi, start.u, start.v, start.p, start.r
-        )  # fmt: skip
+        scattered = {"x": start.x + x, "y": start.y + y, "psi": start.psi + psi}
+        state = State(**{**start.motion(), **scattered})
         physics.engine.reset(state, self.scenario.controller.initial_commands())
 
     def before_step(self, action: Any, physics: BoatPhysics) -> None:

@@ -101,7 +101,7 @@ class Runner:
 
     def _start(self) -> None:
         start = self.scenario.file.start
-        state = State(0.0, start.x, start.y, start.psi, start.phi, start.u, start.v, start.p, start.r)
+        state = State(x=start.x, y=start.y, psi=start.psi, phi=start.phi, u=start.u, v=start.v, p=start.p, r=start.r)
         controller = self.scenario.controller
         controller.reset()
         self._commands = {**controller.initial_commands(), **start.commands}

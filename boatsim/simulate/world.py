@@ -9,17 +9,19 @@ import mujoco
 import numpy as np
 
 from boatsim.errors import BadInput, BadPhysics, unknown_name
-from boatsim.physics.base import Array
+from boatsim.physics.signals import Array
 from boatsim.physics.content import root
 from boatsim.physics.vessel import Vessel
 
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
 SOFT_WALL = (0.04, 1.0)  # solref: time constant [s] (two steps of 20 ms), critically damped: the hull does not bounce
-JOINTS = {  # freedom -> joint name, kind, axis; roll comes last so that its axis turns with the heading
+JOINTS = {  # freedom -> joint name, kind, axis; each axis turns with the angles before it: yaw, pitch, roll
     "surge": ("x", mujoco.mjtJoint.mjJNT_SLIDE, (1, 0, 0)),
     "sway": ("y", mujoco.mjtJoint.mjJNT_SLIDE, (0, 1, 0)),
+    "heave": ("z", mujoco.mjtJoint.mjJNT_SLIDE, (0, 0, 1)),
     "yaw": ("psi", mujoco.mjtJoint.mjJNT_HINGE, (0, 0, 1)),
+    "pitch": ("theta", mujoco.mjtJoint.mjJNT_HINGE, (0, 1, 0)),
     "roll": ("phi", mujoco.mjtJoint.mjJNT_HINGE, (1, 0, 0)),
 }
 HALF_TURN = (0.0, 1.0, 0.0, 0.0)  # about x, exact in floating point
@@ -52,7 +54,7 @@ def build(
     wall_solref: tuple[float, float] | None = None,
     friction: float = 0.0,
 ) -> mujoco.MjModel:
-    """Compile the vessel in its tank, free of forces, with joints x, y, psi, phi for its freedoms; RK4, `step` [s].
+    """Compile the vessel in its tank, free of forces, with joints x, y, z, psi, theta, phi for its freedoms; RK4, `step` [s].
 
     No gravity: buoyancy holds heave, pitch and (where roll is free) a restoring effect stands for the rest.
     `show=False` leaves out everything that is only looked at, for speed. `wall_solref` is MuJoCo's contact solref,
@@ -193,22 +195,23 @@ def set_inertia(hull: Any, vessel: Vessel) -> None:
     body = vessel.body
     hull.explicitinertial = True
     hull.mass = body.mass
-    hull.ipos = (0, 0, cg_height(vessel))
+    ahead, below = body.centre
+    hull.ipos = (ahead, 0, origin_height(vessel) - below)
     hull.iquat = HALF_TURN
-    hull.inertia = (body.roll_inertia, max(body.roll_inertia, body.yaw_inertia), body.yaw_inertia)  # pitch is held
+    hull.inertia = (body.roll_inertia, body.pitched(), body.yaw_inertia)
 
 
-def cg_height(vessel: Vessel) -> float:
-    """Height of the CG above the water surface [m]; 0 where the vessel file does not say."""
+def origin_height(vessel: Vessel) -> float:
+    """Height of the origin of motion above the water surface [m]; 0 where the vessel file does not say."""
     above_keel = vessel.geometry.get("cg_above_keel")
     return 0.0 if above_keel is None else above_keel - vessel.draught
 
 
 def add_joints(hull: Any, vessel: Vessel) -> None:
-    """One joint for each freedom; the roll axis runs through the CG."""
+    """One joint for each freedom; the axes of roll and pitch run through the origin of motion."""
     for freedom, (name, kind, axis) in JOINTS.items():
         if freedom in vessel.freedoms:
-            pos = (0, 0, cg_height(vessel)) if freedom == "roll" else (0, 0, 0)
+            pos = (0, 0, origin_height(vessel)) if freedom in ("roll", "pitch") else (0, 0, 0)
             hull.add_joint(name=name, type=kind, axis=axis, pos=pos)
 
 

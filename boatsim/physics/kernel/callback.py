@@ -1,6 +1,7 @@
 """MuJoCo's passive-force callback for this vessel: parameters and actuators lie in `userdata`, so nothing is global.
 
-userdata: [parameters..., constants k..., actuators held over the step...]. Offsets of struct fields are words.
+userdata: [parameters..., constants k..., actuators at begin, middle and end of the step..., its begin [s], its inverse
+length [1/s]]. Offsets of struct fields are words.
 """
 
 from collections.abc import Callable
@@ -11,20 +12,29 @@ from numba import carray, cfunc, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from boatsim.physics.base import Array
-from boatsim.physics.kernel.compiling import lean
-from boatsim.physics.kernel.laws import HELD
-from boatsim.physics.kernel.planar import NQ, K, add_to_mujoco
+from boatsim.physics.kernel.compiling import inlined, lean
+from boatsim.physics.signals import Array
+
+from .laws import HELD
+from .motion import NQ, K, add_to_mujoco
 
 NM = NQ * (NQ + 1) // 2  # stored entries of MuJoCo's joint-space inertia
 factor_mass = types.ExternalFunction("mj_factorM", types.void(types.voidptr, types.voidptr))
 
 
+@inlined
+def passive(t: float, q: Array, qd: Array, user: Array, n: int, f: Array, M: Array) -> None:
+    """Add forces and inertia; the stage of the Runge-Kutta step is known by its time."""
+    act = n + K
+    share = (t - user[act + 3 * HELD]) * user[act + 3 * HELD + 1]
+    at = np.int64(0) if share < 0.25 else np.int64(HELD) if share < 0.75 else np.int64(2 * HELD)
+    add_to_mujoco(t, q, qd, user[act : act + 3 * HELD], at, user[:n], user[n:act], f, M)
+
+
 @lean
 def passive_in_place(t: float, q: Array, qd: Array, user: Array, f: Array, M: Array) -> None:
     """What the native callback does, for the callback written in Python."""
-    n = user.size - HELD - K
-    add_to_mujoco(t, q, qd, user[n + K :], user[:n], user[n : n + K], f, M)
+    passive(t, q, qd, user, user.size - 3 * HELD - 2 - K, f, M)
 
 
 @intrinsic
@@ -43,10 +53,10 @@ def make_native(offsets: dict[str, int], size: int) -> Callable[..., Any]:
     of_q, of_qd, of_user = offsets["qpos"], offsets["qvel"], offsets["userdata"]
     of_f, of_M = offsets["qfrc_passive"], offsets["M"]
     words = max(offsets.values()) + 1
-    n = size - HELD - K
+    n = size - 3 * HELD - 2 - K
 
     @cfunc(types.void(types.voidptr, types.voidptr), nopython=True, error_model="numpy", cache=True)
-    def passive(model, data):  # type: ignore[no-untyped-def]
+    def called(model, data):  # type: ignore[no-untyped-def]
         if carray(model, (of_size + 1,), np.int32)[of_size] != size:
             return
         w = carray(data, (words,), np.int64)
@@ -56,7 +66,7 @@ def make_native(offsets: dict[str, int], size: int) -> Callable[..., Any]:
         qd = carray(pointer(w[of_qd]), (NQ,), np.float64)
         f = carray(pointer(w[of_f]), (NQ,), np.float64)
         M = carray(pointer(w[of_M]), (NM,), np.float64)
-        add_to_mujoco(t, q, qd, user[n + K :], user[:n], user[n : n + K], f, M)
+        passive(t, q, qd, user, n, f, M)
         factor_mass(model, data)
 
-    return passive
+    return called

@@ -10,26 +10,29 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.physics.base import Array, Shown, Swell
-from boatsim.physics.kernel.common import SHORTEST, actuate_in_place, settle
 from boatsim.physics.kernel.compiling import compiled, lean
-from boatsim.physics.kernel.laws import HELD, MEMORY, SWELLS, distorted, late, pause, shown, swell
-from boatsim.physics.kernel.planar import (
+from boatsim.physics.signals import Array, Swell
+
+from .inertia import constants
+from .laws import HAS_SWELL, HELD, MEMORY, distorted, late, shown, swell
+from .motion import (
     BESIDE,
-    FREEDOMS,
+    FREE,
     NQ,
     SHOWS,
+    TILTS,
     K,
-    constants,
     force_slopes,
     moved,
+    observe_level,
     slopes,
     step_in_place,
 )
+from .run import actuate_in_place, settle, until_bend
 
 NY = 2 * NQ
 CALM = 3 * NQ
-NZ = CALM + (2 * NQ if SWELLS else 0)
+NZ = CALM + (2 * NQ if HAS_SWELL else 0)
 # [sd] a measurement further off is taken for an outlier: its pull falls with its distance, its penalty grows with the
 # logarithm (as of a Cauchy distribution), neither with a jump at which a fit would get stuck
 GATE = 5.0
@@ -54,7 +57,7 @@ def predict(
     while h - done > 1e-9:
         while row + 1 < len(times) and times[row + 1] <= begin + done + 1e-9:
             row += 1
-        dt = min(longest, h - done, max(pause(commands[row], memory, p, on), SHORTEST))
+        dt = until_bend(commands[row], memory, min(longest, h - done), p, on)
         if row + 1 < len(times):
             dt = min(dt, times[row + 1] - begin - done)
         actuate_in_place(commands[row], memory, dt, p, on, act)
@@ -136,7 +139,7 @@ def diffuse(h: float, n: int, sigma: Array, tau: float, s: Swell, P: Array) -> N
         f11, f12, f21, f22, _, _ = oscillation(h, s)
         w2 = s.frequency * s.frequency
         for j in range(NQ):
-            v, a = s[FREEDOMS[j]] ** 2, CALM + 2 * j
+            v, a = s[FREE[j]] ** 2, CALM + 2 * j
             P[a, a] += v * (1.0 - f11 * f11 - w2 * f12 * f12)
             P[a + 1, a + 1] += v * (w2 - f21 * f21 - w2 * f22 * f22)
             cross = v * (f11 * f21 + w2 * f12 * f22)
@@ -187,8 +190,7 @@ def carry(F: Array, P: Array, work: Array, n: int) -> None:
 @lean
 def shows(y: Array, code: int, p: Array, on: Any) -> float:
     """What the recording shows of one channel in a state y (2 NQ,)."""
-    x, north, psi, phi, u, v, roll_rate, r = moved(y)
-    return float(shown(Shown(x, north, psi, phi, u, v, roll_rate, r), p, on)[SHOWS[code]])
+    return float(shown(moved(y), p, on)[SHOWS[code]])
 
 
 @lean
@@ -196,27 +198,15 @@ def observe(z: Array, code: int, row: Array, p: Array, on: Any) -> float:
     """Expected value of one channel; fills its row (n,) of the measurement matrix."""
     for j in range(NZ):
         row[j] = 0.0
-    if distorted(on):
-        value = shows(z, code, p, on)
-        for j in range(NY):
-            here = z[j]
-            z[j] = here + BESIDE
-            row[j] = (shows(z, code, p, on) - value) / BESIDE
-            z[j] = here
-        return value
-    if code < NQ:
-        row[code] = 1.0
-        return float(z[code])
-    if NQ == 1 or code > NQ + 1:
-        row[code] = 1.0
-        return float(z[code])
-    c, s = cos(z[2]), sin(z[2])
-    xd, yd = z[NQ], z[NQ + 1]
-    if code == NQ:  # u
-        row[NQ], row[NQ + 1], row[2] = c, s, c * yd - s * xd
-        return float(c * xd + s * yd)
-    row[NQ], row[NQ + 1], row[2] = -s, c, -s * yd - c * xd
-    return float(c * yd - s * xd)
+    if not TILTS and not distorted(on):
+        return observe_level(z, code, row)
+    value = shows(z, code, p, on)
+    for j in range(NY):
+        here = z[j]
+        z[j] = here + BESIDE
+        row[j] = (shows(z, code, p, on) - value) / BESIDE
+        z[j] = here
+    return value
 
 
 @compiled
@@ -261,7 +251,7 @@ def kalman(
     otherwise reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM); otherwise take it from there.
     white (N, C) gets the whitened innovations. keep: store what the smoother needs. Returns log likelihood.
     """
-    k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
+    k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
     settle(commands[0], memory, p, on, act)
     s, lateness = swell(p, on), late(p, on)
@@ -273,8 +263,8 @@ def kalman(
     undistorted(z, p, on)
     if n > CALM:
         for j in range(NQ):
-            P[CALM + 2 * j, CALM + 2 * j] = s[FREEDOMS[j]] ** 2
-            P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[FREEDOMS[j]]) ** 2
+            P[CALM + 2 * j, CALM + 2 * j] = s[FREE[j]] ** 2
+            P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[FREE[j]]) ** 2
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
     y, force, Ph = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
     f11, f12, f21, f22, mean1, mean2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -410,7 +400,7 @@ def free_runs(
     Actuator memory runs from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ) with every channel
     as the recording would show it.
     """
-    k, act, memory = np.zeros(K), np.zeros(HELD), np.zeros(MEMORY)
+    k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
     settle(commands[0], memory, p, on, act)
     nothing, y, lateness, held = np.zeros(NQ), np.zeros(NY), late(p, on), np.int64(0)

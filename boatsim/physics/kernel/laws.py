@@ -1,29 +1,21 @@
-"""Signatures of what a vessel's effects compose to. `boatsim.physics.program` puts the real ones in place of this file.
+"""Signatures of what a vessel's effects compose to. `boatsim.physics.compose` writes the real ones in its place.
 
-p is the flat array of all effects' parameters, on says which optional effects act, act holds the actuators and the
-cosine and sine of those that are angles.
+p is the flat array of all effects' parameters, on says which optional effects act; act holds the actuators and the
+cosine and sine of those that are angles, HELD numbers each at begin, middle and end of a step.
 """
 
 from typing import Any
 
-from boatsim.physics.base import Array, Shown, Swell, Wrench
+from boatsim.physics.signals import Array, Motion, Shown, Swell, Wrench
 
-HELD = 0  # length of act
+HELD = 0
 MEMORY = 1  # floats that all channels together remember
-PAUSES = False  # whether the signal of any channel may jump while its command is held
-SWELLS = False  # whether any effect of the vessel is a swell
+HAS_PAUSE = False  # whether the signal of any channel may jump or bend while its command is held
+HAS_SWELL = False  # whether any effect of the vessel is a swell
 
 
-def sees(
-    t: float, x: float, y: float, psi: float, phi: float, u: float, v: float, p: float, r: float,
-    ur: float, vr: float, c: float, s: float, act: Array,
-) -> Any:  # fmt: skip
-    """The vessel's own motion tuple."""
-    raise NotImplementedError
-
-
-def wrench(m: Any, p: Array, on: Any) -> Wrench:
-    """Sum of all force laws."""
+def wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
+    """Sum of all force laws under the actuators act[at:]."""
     raise NotImplementedError
 
 
@@ -33,17 +25,17 @@ def flow(p: Array, on: Any) -> tuple[float, float]:
 
 
 def inertias(p: Array, on: Any, water: Array, hull: Array) -> None:
-    """Add the `Mass` entries (7,) of effects that move with the water and with the hull."""
+    """Add the `Mass` entries (12,) of effects that move with the water and with the hull."""
     raise NotImplementedError
 
 
-def actuate(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array) -> None:
-    """One step of all channels: commands (those the vessel takes) to act, the mean over the step that begins now."""
+def actuate(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array, held: int) -> None:
+    """One step of all channels: commands (those the vessel takes) to act (3 held,): begin, middle, end of the step."""
     raise NotImplementedError
 
 
 def pause(commands: Array, memory: Array, p: Array, on: Any) -> float:
-    """Time until a channel's signal jumps of itself [s]; a step must not reach beyond it."""
+    """Time until a channel's signal jumps or bends of itself [s]; a step must not reach beyond it."""
     raise NotImplementedError
 
 

@@ -1,22 +1,25 @@
-"""What is the same for every freedom: a run of many steps under recorded commands."""
+"""Actuators, and runs of many steps under given commands."""
 
 from typing import Any
 
 import numpy as np
 
-from boatsim.physics.base import Array
 from boatsim.physics.kernel.compiling import compiled, lean
-from boatsim.physics.kernel.laws import HELD, PAUSES, actuate, pause
-from boatsim.physics.kernel.planar import NQ, K, constants, step_in_place
+from boatsim.physics.signals import Array
+
+from .inertia import constants
+from .laws import HAS_PAUSE, HELD, actuate, pause
+from .motion import NQ, K, step_in_place
 
 SHORTEST = 1e-3  # [s] of a step; within one, a signal that jumps counts with its mean
 LONG = 1e4  # [s] longer than any actuator takes
+ENOUGH = 1e-9  # [s] a step is done
 
 
 @lean
 def actuate_in_place(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array) -> None:
-    """One step of all channels."""
-    actuate(commands, memory, dt, p, on, act)
+    """One step of all channels: act holds the actuators at its begin, in its middle and at its end."""
+    actuate(commands, memory, dt, p, on, act, np.int64(HELD))
 
 
 @compiled
@@ -24,6 +27,16 @@ def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> Non
     """Let the actuators reach their commands: a few steps far longer than any actuator takes, in place."""
     for _ in range(3):
         actuate_in_place(commands, memory, LONG, p, on, act)
+    for i in range(HELD):
+        act[i] = act[HELD + i] = act[2 * HELD + i]
+
+
+@lean
+def until_bend(commands: Array, memory: Array, left: float, p: Array, on: Any) -> float:
+    """Length of the next step: no further than `left`, nor than where an actuator's signal jumps or bends."""
+    if HAS_PAUSE:
+        return min(left, max(pause(commands, memory, p, on), SHORTEST))
+    return left
 
 
 @compiled
@@ -32,19 +45,15 @@ def rollout(
     extra: Array, out: Array,
 ) -> None:  # fmt: skip
     """Free run: row i of commands (N, C) is held for `substeps` steps of dt; states to out (N + 1, 2 NQ)."""
-    k, act = np.zeros(K), np.zeros(HELD)
+    k, act = np.zeros(K), np.zeros(3 * HELD)
     constants(body, p, on, k)
     out[0] = y
     for i in range(commands.shape[0]):
         for j in range(substeps):
             t, left = t0 + (i * substeps + j) * dt, dt
-            if PAUSES:  # cut the step where an actuator's signal jumps
-                part = max(pause(commands[i], memory, p, on), SHORTEST)
-                while part < left - 1e-9:
-                    actuate_in_place(commands[i], memory, part, p, on, act)
-                    step_in_place(t, y, part, act, p, on, k, extra)
-                    t, left = t + part, left - part
-                    part = max(pause(commands[i], memory, p, on), SHORTEST)
-            actuate_in_place(commands[i], memory, left, p, on, act)
-            step_in_place(t, y, left, act, p, on, k, extra)
+            while left > ENOUGH:
+                part = until_bend(commands[i], memory, left, p, on)
+                actuate_in_place(commands[i], memory, part, p, on, act)
+                step_in_place(t, y, part, act, p, on, k, extra)
+                t, left = t + part, left - part
         out[i + 1] = y[: 2 * NQ]

@@ -1,0 +1,162 @@
+"""Keeps composed programs on disk, so that numba compiles each once.
+
+A program is a package of its own in the user's cache folder: the generated `laws.py` and `motion.py` beside copies of
+the kernel's files, under a name made from their content and from the content of every file that a law can reach. Numba
+watches each file's own content only; a law, a constant or a kernel edited since has another name.
+"""
+
+import ast
+import hashlib
+import importlib.util
+import os
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Iterable
+from contextlib import suppress
+from functools import cache
+from inspect import getsourcefile
+from pathlib import Path
+from types import ModuleType
+
+import numba
+
+from boatsim.errors import BadInput
+from boatsim.physics.kinds.effect import Effect
+
+KERNEL = Path(__file__).parent / "kernel"
+WRITTEN = ("laws.py", "motion.py")  # generated in place of the kernel's files of these names
+LEFT_OUT = ("algebra.py", "compiling.py", "equations.py")  # write or compile programs, and are no part of one
+EXPORTS = '''"""A vessel's program, composed by boatsim; not meant to be edited."""
+
+from .callback import *
+from .filter import *
+from .inertia import *
+from .laws import *
+from .motion import *
+from .run import *
+'''
+KEPT = 90 * 86400.0  # [s] after its last use that a composed program stays in the cache
+
+
+def module(written: dict[str, str], classes: Iterable[type[Effect]]) -> ModuleType:
+    """The program whose generated files are `written`, compiled before if the same one was composed before."""
+    files = {p.name: p.read_text(encoding="utf-8") for p in sorted(KERNEL.glob("*.py")) if p.name not in LEFT_OUT}
+    files |= written | {"__init__.py": EXPORTS}
+    stamp = stamp_of(files, classes)
+    folder = cache_folder()
+    path = folder / f"program_{stamp}"
+    if (path / "__init__.py").exists():
+        with suppress(OSError):
+            os.utime(path)  # it is in use
+    else:
+        _write(files, path)
+        _prune(folder)
+    return _imported(path, f"boatsim_program_{stamp}")
+
+
+def stamp_of(files: dict[str, str], classes: Iterable[type[Effect]]) -> str:
+    """Name of a composition: its text, all that its laws can reach, and what compiles it."""
+    digest = hashlib.sha256()
+    for name, text in sorted(files.items()):
+        digest.update(f"{name}\n{text}".encode())
+    sources = {getsourcefile(kind) for kind in classes} | {str(KERNEL / "compiling.py")}
+    for path in sorted({file for source in sources if source for file in reach(Path(source))}):
+        digest.update(content(path))
+    digest.update(f"{numba.__version__} {sys.version}".encode())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def content(path: Path) -> bytes:
+    """What a file held when it was first asked for: what is imported does not change with the file."""
+    return path.read_bytes()
+
+
+@cache
+def reach(path: Path) -> frozenset[Path]:
+    """A file and all of ours that it imports, by whatever way."""
+    found, ahead = {path}, [path]
+    while ahead:
+        for file in _imports(ahead.pop()) - found:
+            found.add(file)
+            ahead.append(file)
+    return frozenset(found)
+
+
+@cache
+def _imports(path: Path) -> frozenset[Path]:
+    """Files of ours that a file imports."""
+    found = set()
+    for node in ast.walk(ast.parse(content(path))):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        for name in names:
+            if name.partition(".")[0] == "boatsim" and (file := _file_of(name)) is not None:
+                found.add(file)
+    return frozenset(found)
+
+
+def _file_of(name: str) -> Path | None:
+    """File of one of our modules; None for what is a name inside one."""
+    below = Path(__file__).parents[1].joinpath(*name.split(".")[1:])
+    return next((p for p in (below.with_suffix(".py"), below / "__init__.py") if p.is_file()), None)
+
+
+def cache_folder() -> Path:
+    """~/.cache/boatsim, or a folder of the user's own under the temporary one where home is not writable."""
+    wanted = Path(os.environ.get("BOATSIM_CACHE") or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")) / "boatsim")
+    for folder in (wanted.expanduser(), Path(tempfile.gettempdir()) / f"boatsim-{os.getuid()}"):
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if os.access(folder, os.W_OK):
+                return folder
+        except OSError:
+            continue
+    raise BadInput(f"{wanted}: no folder to keep compiled programs in; set BOATSIM_CACHE to one that can be written")
+
+
+def _write(files: dict[str, str], path: Path) -> None:
+    """A program's folder, whole or not at all: another process may be as quick."""
+    temporary = Path(tempfile.mkdtemp(dir=path.parent, prefix=".new_"))
+    try:
+        for name, text in files.items():
+            (temporary / name).write_text(text, encoding="utf-8")
+        with suppress(OSError):
+            temporary.rename(path)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _imported(path: Path, name: str) -> ModuleType:
+    """The package at a folder, once."""
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, path / "__init__.py", submodule_search_locations=[str(path)])
+    assert spec is not None and spec.loader is not None
+    found = importlib.util.module_from_spec(spec)
+    sys.modules[name] = found
+    try:
+        spec.loader.exec_module(found)
+    except BaseException:
+        for known in [n for n in sys.modules if n == name or n.startswith(f"{name}.")]:
+            del sys.modules[known]
+        raise
+    return found
+
+
+def _prune(folder: Path) -> None:
+    """Remove programs that nobody has used for long.
+
+    Safe beside other processes: one that has loaded a program needs its files no more, one that finds them gone writes
+    them anew.
+    """
+    for old in folder.glob("program_*"):
+        with suppress(OSError):  # another process may be as quick
+            if time.time() - old.stat().st_mtime > KEPT:
+                if old.is_dir():
+                    shutil.rmtree(old)
+                else:
+                    old.unlink()

@@ -1,0 +1,194 @@
+"""Writes a vessel's effects out as the source of one program: `laws.py`, what they add up to, unrolled.
+
+Kinds say what they add (`boatsim.physics.kinds`); this module gathers their lines, part by part. The text is meant to
+be read: `python -m boatsim.physics.compose VESSEL` prints it.
+"""
+
+import sys
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from math import cos, sin
+
+from boatsim.errors import BadInput
+from boatsim.physics.content import address, load_class, module_of, names
+from boatsim.physics.kinds.channel import Channel
+from boatsim.physics.kinds.effect import Effect, Kind, Part, Site
+from boatsim.physics.vessel import Vessel
+
+
+def kinds() -> list[type[Kind]]:
+    """All kinds of effects, one a file of `boatsim/physics/kinds`."""
+    found: list[type[Kind]] = []
+    for name in names("kind"):
+        module = module_of("kind", name)
+        found += [
+            k for k in vars(module).values()
+            if isinstance(k, type) and issubclass(k, Kind) and k is not Kind and k.__module__ == module.__name__
+        ]  # fmt: skip
+    return found
+
+
+class Composition:
+    """Effects in their places: what each is called with, which signals pass through it."""
+
+    def __init__(self, vessel: Vessel, suspects: Sequence[Effect], offsets: Sequence[int]) -> None:
+        """The suspects stand behind switches; `offsets` says where each effect's parameters begin."""
+        self.vessel, self.offsets = vessel, tuple(offsets)
+        self.effects = (*vessel.effects, *suspects)
+        self.actuators, self.commands = vessel.actuators, tuple(vessel.commands)
+        self.held = [*self.actuators, *(f"{part}_{a}" for a in vessel.angles for part in ("cos", "sin"))]
+
+    # What kinds may ask -----------------------------------------------------------------------------------------------
+
+    def sites(self, number: int) -> Sequence[Site]:
+        """The calls of an effect's laws: one, or one for each instance that it rides on."""
+        effect = self.effects[number]
+        own = self._values(number)
+        if type(effect).rides:
+            carriers = [self.effects.index(e) for e in self.vessel.ridden(effect)]
+            return [Site(number, own, (self._signals(i), self._values(i))) for i in carriers]
+        return [Site(number, own, (self._signals(number),) if type(effect).roles else ())]
+
+    def targets(self, number: int) -> Sequence[str]:
+        """Actuators that a channel effect acts on."""
+        return self.vessel.targets(self.effects[number])
+
+    def source(self, number: int, actuator: str) -> str | None:
+        """The command that feeds an actuator through a channel effect, if it takes one."""
+        return self.vessel.feeder(self.effects[number], actuator)
+
+    def side(self, actuator: str) -> float:
+        """-1 port, +1 starboard, 0 middle of what an actuator drives."""
+        return self.vessel.side(actuator)
+
+    def memory(self, number: int, actuator: str) -> int:
+        """Where a channel effect's memory of an actuator begins."""
+        return self._memory[number, actuator]
+
+    @cached_property
+    def memory_size(self) -> int:
+        """Floats that all channels together remember."""
+        return sum(type(e).slots * len(self.targets(i)) for i, e in enumerate(self.effects) if isinstance(e, Channel))
+
+    @cached_property
+    def _memory(self) -> dict[tuple[int, str], int]:
+        found, at = {}, 0
+        for actuator in self.actuators:
+            for i, effect in enumerate(self.effects):
+                if isinstance(effect, Channel) and actuator in self.targets(i):
+                    found[i, actuator], at = at, at + type(effect).slots
+        return found
+
+    def _values(self, i: int) -> str:
+        """`V3(p[7], p[8])`: an effect's parameters as its law receives them."""
+        first = self.offsets[i]
+        return f"V{i}({', '.join(f'p[{first + j}]' for j in range(len(type(self.effects[i]).params())))})"
+
+    def _signals(self, i: int) -> str:
+        """`S3(act[at], act[at + 4], ...)`: the signals bound to an effect's roles."""
+        effect, texts = self.effects[i], []
+        bound = self.vessel.bound(effect)
+        for role, about in type(effect).roles.items():
+            texts.append(self._signal(bound.get(role, about.fixed)))
+        for role, about in type(effect).roles.items():
+            if about.unit == "rad":
+                channel = bound.get(role, about.fixed)
+                for part, of in (("cos", cos), ("sin", sin)):
+                    held = isinstance(channel, str)
+                    texts.append(self._signal(f"{part}_{channel}" if held else of(float(channel or 0.0))))
+        return f"S{i}({', '.join(texts)})"
+
+    def _signal(self, bound: str | float | None) -> str:
+        """A held signal by its place, a fixed one by its number."""
+        if isinstance(bound, str):
+            return f"act[at + {self.held.index(bound)}]"
+        if bound is None:
+            raise BadInput(f"{self.vessel.name}: a signal is bound to no channel")
+        return repr(float(bound))
+
+    # The text ---------------------------------------------------------------------------------------------------------
+
+    def source_text(self) -> str:
+        """`laws.py`."""
+        functions: list[str] = []
+        used: set[str] = set()
+        constants = [f"HELD, MEMORY = {max(len(self.held), 1)}, {max(self.memory_size, 1)}"]
+        everything = kinds()
+        for part in (part for kind in everything for part in kind.parts):
+            body, busy = self._body(part, everything)
+            functions.append(
+                "\n".join(
+                    [f"@{part.compiled}", f"def {part.name}({part.arguments}):", *(f"    {line}" for line in body),
+                     f"    return {part.result}".rstrip(), "", ""]
+                )
+            )  # fmt: skip
+            constants.append(f"HAS_{part.name.upper()} = {busy}")
+            used |= {word for line in body for word in _calls(line)}
+        return "\n".join([*self._head(used), *constants, "", "", *functions])
+
+    def _head(self, used: set[str]) -> Iterator[str]:
+        """Imports, and the compiled functions and types that the text below calls by number."""
+        yield f'"""Effects of {self.vessel.name}, composed by boatsim; not meant to be edited."""'
+        yield ""
+        yield "from math import cos, sin"
+        yield ""
+        yield "import numpy as np"
+        yield ""
+        yield "from boatsim.physics.compose import classes_of"
+        yield "from boatsim.physics.kernel.compiling import inlined, merged"
+        yield "from boatsim.physics.signals import Course, Swell, Wrench"
+        yield ""
+        yield f"E = classes_of({[address(type(e)) for e in self.effects]!r})"
+        for i, effect in enumerate(self.effects):
+            if f"V{i}" in used:
+                yield f"V{i} = E[{i}].values_type()  # {effect.name}"
+            if f"S{i}" in used:
+                yield f"S{i} = E[{i}].signals_type()"
+            for law in dict.fromkeys(law for kind in type(effect).__mro__ for law in getattr(kind, "laws", ())):
+                if f"{law}{i}" in used:
+                    yield f"{law}{i} = E[{i}].{law}"
+
+    def _body(self, part: Part, everything: Sequence[type[Kind]]) -> tuple[list[str], bool]:
+        """Lines of a part, and whether any effect adds to it."""
+        body, busy = list(part.begin), False
+        for station in part.stations(self):
+            body += station.begin
+            for i, effect in enumerate(self.effects):
+                lines = [
+                    line
+                    for kind in everything
+                    if isinstance(effect, kind)
+                    for line in kind.lines(part, station, i, self)
+                ]
+                busy = busy or bool(lines)
+                if lines and i >= len(self.vessel.effects):  # behind the switch of an effect that is optional
+                    lines = [f"if on[{i}] != 0.0:", *(f"    {line}" for line in lines)]
+                body += lines
+            body += station.end
+        return body, busy
+
+
+def _calls(line: str) -> Iterator[str]:
+    """Names that a line calls."""
+    for piece in line.split("(")[:-1]:
+        word = piece
+        for mark in " ,=":
+            word = word.rsplit(mark, 1)[-1]
+        yield word
+
+
+def classes_of(addresses: Sequence[str]) -> list[type[Effect]]:
+    """Effect classes of a composed program, for the program's own use."""
+    return [load_class("effect", a) for a in addresses]
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Print a vessel's composed laws."""
+    from boatsim.physics import vessel as vessels
+    from boatsim.physics.program import Program
+
+    print(Program(vessels.load(arguments[0])).composition.source_text())
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

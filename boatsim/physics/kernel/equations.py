@@ -1,0 +1,454 @@
+"""Writes the equations of motion of any set of freedoms out as scalar code: one source, what is held left out.
+
+    M nu' = f - C(nu) nu + M_water nu_c',   nu = J(q) q'
+
+q are joint coordinates (x, y, z, phi, theta, psi; those that are free), nu body-axes velocities, nu_c the velocity of a
+uniform current in body axes, whose rate is that of a hull turning in it. The Coriolis force of added mass and ballast
+belongs to the laws of those effects. State s = (q, q'), SNAME.
+
+Axes are fixed in the hull where it may pitch, or heave and roll (`TILTS`). Otherwise they turn with the heading alone,
+as manoeuvring models have it, and roll leaves them level. Where as many body rates as coordinates are free (`closed`),
+the whole mass matrix is inverted once; otherwise J' M J is solved at every evaluation. T. I. Fossen, Handbook of Marine
+Craft Hydrodynamics and Motion Control, 2nd ed. 2021, chapters 2, 3 and 6.
+"""
+
+from dataclasses import dataclass
+
+from boatsim.physics.kernel.algebra import ONE, ZERO, Lines, Sum, name, total
+from boatsim.physics.signals import AXES, MASS_ENTRIES, Motion, Wrench
+
+COORDINATES = ("x", "y", "z", "phi", "theta", "psi")
+JOINTS = ("x", "y", "z", "psi", "theta", "phi")  # MuJoCo's order: yaw, then pitch, then roll
+SIGN = {"x": 1, "y": -1, "z": -1, "phi": 1, "theta": -1, "psi": -1}  # SNAME = sign * z-up, coordinate and rate alike
+RIGID, WATER, HULL, WHOLE = 0, 6, 18, 30  # where constants begin: m, x_G, z_G, I_x, I_y, I_z; then 12 entries each
+CONSTANTS = 42
+LINEAR, ANGULAR = range(3), range(3, 6)
+
+
+def tilts(free: frozenset[str]) -> bool:
+    """Whether axes are fixed in the hull, not level."""
+    return "pitch" in free or {"heave", "roll"} <= free
+
+
+def closed(free: frozenset[str]) -> bool:
+    """Whether body rates follow from as many coordinates: all six, or level axes that turn with both surge and sway."""
+    if tilts(free):
+        return free == frozenset(AXES)
+    return "yaw" not in free or len(free & {"surge", "sway"}) != 1
+
+
+def entry(begin: int, i: int, j: int) -> Sum:
+    """An entry of one of the constant 6 by 6 matrices, symmetric and alike on both sides of the hull."""
+    pair = (min(i, j), max(i, j))
+    return name(f"k[{begin + MASS_ENTRIES.index(pair)}]") if pair in MASS_ENTRIES else ZERO
+
+
+def cross(a: list[Sum], b: list[Sum]) -> list[Sum]:
+    """Vector product."""
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+@dataclass
+class Frame:
+    """Kinematics at one state, by the names its numbers have in the code written so far."""
+
+    R: list[list[Sum]]  # body axes to earth axes
+    J: list[list[Sum]]  # 6 by 6: body rates per joint rate, all coordinates; columns of held ones are not used
+    nu: list[Sum]  # (6,) body rates
+    turning: list[Sum]  # (3,) rate at which the axes turn
+    drift: list[Sum]  # (6,) J' q': body acceleration at constant joint rates
+    water: list[Sum]  # (3,) velocity of the current in body axes
+
+
+class Writer:
+    """The functions of one set of freedoms as text."""
+
+    def __init__(self, freedoms: tuple[str, ...], centred: bool) -> None:
+        """`centred`: the mass centre is the origin of motion."""
+        self.free = [i for i, axis in enumerate(AXES) if axis in freedoms]
+        self.set = frozenset(freedoms)
+        self.tilts, self.closed, self.centred = tilts(self.set), closed(self.set), centred
+        self.n = len(self.free)
+
+    # Kinematics -------------------------------------------------------------------------------------------------------
+
+    def coordinate(self, i: int) -> Sum:
+        """A joint coordinate's name, zero if it is held."""
+        return name(COORDINATES[i]) if i in self.free else ZERO
+
+    def rate(self, i: int) -> Sum:
+        """A joint rate's name, zero if it is held."""
+        return name(COORDINATES[i] + "d") if i in self.free else ZERO
+
+    def turn(self, lines: Lines, i: int) -> tuple[Sum, Sum]:
+        """Cosine and sine of an angle; level axes know nothing of roll."""
+        angle = COORDINATES[i]
+        if i not in self.free or (i != 5 and not self.tilts):
+            return ONE, ZERO
+        lines.say(f"c_{angle}, s_{angle} = cos({angle}), sin({angle})")
+        return name(f"c_{angle}"), name(f"s_{angle}")
+
+    def frame(self, lines: Lines, current: bool = True) -> Frame:
+        """Kinematics of the coordinates and rates whose names stand; reads the current from `flow` if asked."""
+        (cf, sf), (ct, st), (cp, sp) = (self.turn(lines, i) for i in ANGULAR)
+        R = [
+            [cp * ct, cp * st * sf - sp * cf, sp * sf + cp * st * cf],
+            [sp * ct, cp * cf + sp * st * sf, sp * st * cf - cp * sf],
+            [-st, ct * sf, ct * cf],
+        ]
+        R = [[lines.let(f"R{i}{j}", R[i][j]) for j in LINEAR] for i in LINEAR]
+        T = [[ONE, ZERO, -st], [ZERO, cf, lines.let("T12", ct * sf)], [ZERO, -sf, lines.let("T22", ct * cf)]]
+        J = [[ZERO] * 6 for _ in range(6)]
+        for i in LINEAR:
+            for j in LINEAR:
+                J[i][j], J[3 + i][3 + j] = R[j][i], T[i][j]
+        nu = [lines.let("uvwpqr"[i] + "_", total(J[i][j] * self.rate(j) for j in self.free)) for i in range(6)]
+        turning = nu[3:] if self.tilts else [ZERO, ZERO, nu[5]]
+        phid, thetad, psid = (self.rate(i) for i in ANGULAR)
+        bend = [ZERO, ZERO, ZERO]
+        if self.tilts:
+            bend = [
+                -(ct * thetad * psid),
+                ct * cf * phid * psid - sf * phid * thetad - st * sf * thetad * psid,
+                -(cf * phid * thetad) - st * cf * thetad * psid - ct * sf * phid * psid,
+            ]
+        drift = [-a for a in cross(turning, nu[:3])] + [lines.let(f"bend{i}", a) for i, a in enumerate(bend)]
+        water = [ZERO, ZERO, ZERO]
+        if current and {0, 1} & set(self.free):
+            lines.say("north, east = flow(p, on)")
+            water = [
+                lines.let(f"{n}_water", R[0][i] * name("north") + R[1][i] * name("east")) for i, n in enumerate("uvw")
+            ]
+        return Frame(R, J, nu, turning, drift, water)
+
+    def seen(self, frame: Frame) -> str:
+        """The motion as a force law sees it."""
+        through = [frame.nu[i] - frame.water[i] for i in LINEAR]
+        psi = ("c_psi", "s_psi") if 5 in self.free else ("1.0", "0.0")
+        values = [*(str(self.coordinate(i)) for i in range(6)), *map(str, frame.nu), *map(str, through), *psi]
+        assert len(values) + 1 == len(Motion._fields)
+        return f"Motion(t, {', '.join(values)})"
+
+    # Forces -----------------------------------------------------------------------------------------------------------
+
+    def carried(self, frame: Frame, axis: int) -> Sum:
+        """Force on a turning hull of the water that moves with it: its share of a uniform current turns away below."""
+        away = [-a for a in cross(frame.turning, frame.water)]
+        return total(entry(WATER, axis, j) * away[j] for j in LINEAR)
+
+    def rigid(self, lines: Lines, frame: Frame) -> list[Sum]:
+        """Coriolis and centripetal force (6,) of the rigid body about the origin."""
+        m, inertia = name("k[0]"), [name(f"k[{3 + i}]") for i in LINEAR]
+        spin = frame.turning
+        p, q, r = frame.nu[3:]
+        at_centre = cross(spin, frame.nu[:3])
+        lever = [ZERO, ZERO, ZERO] if self.centred else [name("k[1]"), ZERO, name("k[2]") if self.tilts else ZERO]
+        at_centre = [a + b for a, b in zip(at_centre, cross(spin, cross(spin, lever)), strict=True)]
+        force = [lines.let(f"rigid{i}", -(m * a)) for i, a in enumerate(at_centre)]
+        gyroscopic = [(q * r, 1, 2), (r * p, 2, 0), (p * q, 0, 1)]
+        moment = [a * (inertia[i] - inertia[j]) for a, i, j in gyroscopic] if self.tilts else [ZERO, ZERO, ZERO]
+        return force + [a + b for a, b in zip(cross(lever, force), moment, strict=True)]
+
+    def load(self, lines: Lines, frame: Frame, extra: str) -> list[Sum]:
+        """(6,) what drives M nu': laws, an extra force over the freedoms, Coriolis force, turning current."""
+        lines.say(f"f = wrench({self.seen(frame)}, p, on, act, at)")
+        rigid = self.rigid(lines, frame)
+        found = []
+        for i, component in enumerate(Wrench._fields):
+            more = name(f"{extra}[{self.free.index(i)}]") if i in self.free else ZERO
+            found.append(name(f"f.{component}") + more + rigid[i] + self.carried(frame, i))
+        return found
+
+    def unpack(self, lines: Lines) -> None:
+        """Names of the state's numbers."""
+        for more, first in (("", 0), ("d", self.n)):
+            names = ", ".join(COORDINATES[i] + more for i in self.free)
+            lines.say(f"{names} = {', '.join(f's[{first + j}]' for j in range(self.n))}")
+
+    # Accelerations ----------------------------------------------------------------------------------------------------
+
+    def accelerations(self) -> list[str]:
+        """Body of `accelerations`."""
+        lines = Lines()
+        self.unpack(lines)
+        frame = self.frame(lines)
+        load = self.load(lines, frame, "extra")
+        if not self.closed:
+            load = [a - b for a, b in zip(load, self.weighed(WHOLE, frame.drift), strict=True)]
+            named = [lines.let(f"load{i}", a) for i, a in enumerate(load)]
+            self.factor(lines, frame)
+            found = self.solved(lines, [total(frame.J[a][i] * named[a] for a in range(6)) for i in self.free], "")
+            lines.say(f"return {self.tuple(found)}")
+            return lines.text
+        named = {i: lines.let(f"load{i}", load[i]) for i in self.free}
+        nudot = {i: total(entry(WHOLE, i, j) * named[j] for j in self.free) for i in self.free}
+        for i in LINEAR:
+            if i in nudot:  # the drift of level or tilting axes taken out: acceleration along them, over ground
+                nudot[i] = nudot[i] - frame.drift[i]
+        named = {i: lines.let(f"a{i}", a) for i, a in nudot.items()}
+        lines.say(f"return {self.tuple(self.joints(lines, frame, named, moving=True))}")
+        return lines.text
+
+    def joints(self, lines: Lines, frame: Frame, body: dict[int, Sum], moving: bool) -> list[str]:
+        """Joint accelerations of body accelerations; `moving`: with what the Euler rates themselves bring about."""
+        found = {i: str(total(frame.R[i][j] * body[j] for j in LINEAR if j in body)) for i in LINEAR if i in self.free}
+        if not self.tilts:
+            return [*found.values(), *(str(body[i]) for i in ANGULAR if i in body)]
+        cf, sf, ct, st = (name(n) for n in ("c_phi", "s_phi", "c_theta", "s_theta"))
+        phid, thetad, psid = (self.rate(i) for i in ANGULAR)
+        along = sf * body[4] + cf * body[5] + (phid * thetad if moving else ZERO)
+        lines.say(f"along = {along}")
+        rest = [
+            body[3] + (thetad * psid * name("secant") if moving else ZERO) + name("along") * st * name("secant"),
+            cf * body[4] - sf * body[5] - (phid * psid * ct if moving else ZERO),
+            name("along") * name("secant") + (thetad * psid * st * name("secant") if moving else ZERO),
+        ]
+        if moving:
+            lines.text.insert(len(lines.text) - 1, "secant = 1.0 / c_theta")
+        return [*found.values(), *map(str, rest)]
+
+    def weighed(self, begin: int, motion: list[Sum]) -> list[Sum]:
+        """A constant matrix times a body motion (6,)."""
+        return [total(entry(begin, i, j) * motion[j] for j in range(6)) for i in range(6)]
+
+    def factor(self, lines: Lines, frame: Frame) -> None:
+        """J' M J of the free coordinates, factored L D L'."""
+        for b, j in enumerate(self.free):
+            column = [total(entry(WHOLE, i, a) * frame.J[a][j] for a in range(6)) for i in range(6)]
+            for a, i in enumerate(self.free[b:], b):
+                value = total(frame.J[c][i] * column[c] for c in range(6))
+                lines.say(f"M{a}{b} = {value}")
+        for j in range(self.n):
+            lines.say(f"D{j} = M{j}{j}" + "".join(f" - L{j}{k} * L{j}{k} * D{k}" for k in range(j)))
+            for i in range(j + 1, self.n):
+                taken = "".join(f" - L{i}{k} * L{j}{k} * D{k}" for k in range(j))
+                lines.say(f"L{i}{j} = (M{i}{j}{taken}) / D{j}")
+
+    def solved(self, lines: Lines, right: list[Sum], tag: str) -> list[str]:
+        """Solution of the factored system, as names."""
+        for i, value in enumerate(right):
+            lines.say(f"y{tag}{i} = {value}" + "".join(f" - L{i}{k} * y{tag}{k}" for k in range(i)))
+        for i in reversed(range(self.n)):
+            lines.say(
+                f"x{tag}{i} = y{tag}{i} / D{i}" + "".join(f" - L{k}{i} * x{tag}{k}" for k in range(i + 1, self.n))
+            )
+        return [f"x{tag}{i}" for i in range(self.n)]
+
+    def force_slopes(self) -> list[str]:
+        """Body of `force_slopes`: what a body force along each freedom does to the joint accelerations."""
+        lines = Lines()
+        self.unpack(lines)
+        frame = self.frame(lines, current=False)
+        if self.tilts and self.closed:
+            lines.say("secant = 1.0 / c_theta")
+        if not self.closed:
+            self.factor(lines, frame)
+        for b, j in enumerate(self.free):
+            if self.closed:
+                body = {i: entry(WHOLE, i, j) for i in self.free}
+                found = self.joints(lines, frame, body, moving=False)
+            else:
+                found = self.solved(lines, [frame.J[j][i] for i in self.free], f"{b}_")
+            for a, text in enumerate(found):
+                lines.say(f"A[row + {a}, column + {b}] = {text}")
+        return lines.text
+
+    # Beside the motion ------------------------------------------------------------------------------------------------
+
+    def forces(self) -> list[str]:
+        """Body of `forces`."""
+        lines = Lines()
+        self.unpack(lines)
+        frame = self.frame(lines)
+        lines.say(f"f = wrench({self.seen(frame)}, p, on, act, at)")
+        lines.say(f"return {self.tuple([f'f.{Wrench._fields[i]}' for i in self.free])}")
+        return lines.text
+
+    def moved(self) -> list[str]:
+        """Body of `moved`."""
+        lines = Lines()
+        self.unpack(lines)
+        frame = self.frame(lines, current=False)
+        values = [*(str(self.coordinate(i)) for i in range(6)), *map(str, frame.nu)]
+        lines.say(f"return Shown({', '.join(values)})")
+        return lines.text
+
+    def jacobian(self) -> list[str]:
+        """Body of `jacobian`."""
+        lines = Lines()
+        self.unpack(lines)
+        frame = self.frame(lines, current=False)
+        for i in range(6):
+            for b, j in enumerate(self.free):
+                if frame.J[i][j]:
+                    lines.say(f"J[{i}, {b}] = {frame.J[i][j]}")
+        return lines.text
+
+    def level_rates(self) -> list[str]:
+        """Body of `observe`: a state's rate along level axes; what turns with the hull only where it yaws."""
+        lines = Lines()
+        lines.say("if code < NQ:")
+        lines.say("    row[code] = 1.0")
+        lines.say("    return float(s[code])")
+        if not self.tilts and {0, 1, 5} <= set(self.free):
+            psi, north, east = self.free.index(5), self.n, self.n + 1
+            lines.say("if code < NQ + 2:")
+            lines.say(f"    c, s_ = cos(s[{psi}]), sin(s[{psi}])")
+            lines.say(f"    along, across = c * s[{north}] + s_ * s[{east}], c * s[{east}] - s_ * s[{north}]")
+            lines.say("    if code == NQ:")
+            lines.say(f"        row[{north}], row[{east}], row[{psi}] = c, s_, across")
+            lines.say("        return float(along)")
+            lines.say(f"    row[{north}], row[{east}], row[{psi}] = -s_, c, -along")
+            lines.say("    return float(across)")
+        lines.say("row[code] = 1.0")
+        lines.say("return float(s[code])")
+        return lines.text
+
+    def add_to_mujoco(self) -> list[str]:
+        """Body of `add_to_mujoco`: what its own rigid body lacks, in z-up joint coordinates."""
+        lines = Lines()
+        order = [i for i in (COORDINATES.index(n) for n in JOINTS) if i in self.free]
+        for b, i in enumerate(order):
+            flip = "-" if SIGN[COORDINATES[i]] < 0 else ""
+            lines.say(f"{COORDINATES[i]}, {COORDINATES[i]}d = {flip}q[{b}], {flip}qd[{b}]")
+        lines.say("on = ()")
+        frame = self.frame(lines)
+        lines.say(f"f = wrench({self.seen(frame)}, p, on, act, at)")
+        added = [[entry(WATER, i, j) + entry(HULL, i, j) for j in range(6)] for i in range(6)]
+        needed = [a for a in range(6) if any(frame.J[a][i] for i in self.free)]
+        load = {}
+        for a in needed:
+            bent = total(added[a][j] * frame.drift[j] for j in range(6))
+            load[a] = lines.let(f"load{a}", name(f"f.{Wrench._fields[a]}") + self.carried(frame, a) - bent)
+        for b, i in enumerate(order):
+            force = total(frame.J[a][i] * load[a] for a in needed)
+            lines.say(f"force[{b}] += {force if SIGN[COORDINATES[i]] > 0 else -force}")
+        mass = [
+            [lines.let(f"M{a}{c}", added[a][c]) if c >= a else ZERO for c in range(6)] if a in needed else [ZERO] * 6
+            for a in range(6)
+        ]
+        mass = [[mass[min(a, c)][max(a, c)] for c in range(6)] for a in range(6)]
+        for b, i in enumerate(order):
+            for d, j in enumerate(order[: b + 1]):
+                value = total(frame.J[a][i] * mass[a][c] * frame.J[c][j] for a in needed for c in needed)
+                if value:
+                    same = SIGN[COORDINATES[i]] == SIGN[COORDINATES[j]]
+                    lines.say(f"M[{b * (b + 1) // 2 + d}] += {value if same else -value}")
+        return lines.text
+
+    def tuple(self, items: list[str]) -> str:
+        """Items as the text of a tuple."""
+        return f"({', '.join(items)},)"
+
+
+def function(head: str, about: str, body: list[str], compiled: str) -> str:
+    """A compiled function of the written program."""
+    return "\n".join([f"@{compiled}", head, f'    """{about}"""', *(f"    {line}" for line in body), "", ""])
+
+
+def written(freedoms: tuple[str, ...], centred: bool) -> str:
+    """`motion.py` of a program: what a kernel needs to know of the freedoms, as Python source."""
+    w = Writer(freedoms, centred)
+    n = w.n
+    s = ", ".join(f"s[{i}]" for i in range(2 * n))
+    beside = ", ".join(f"s[{i}] + BESIDE * (j == {i})" for i in range(2 * n))
+    ys = ", ".join(f"y[{i}]" for i in range(2 * n))
+    nothing = w.tuple(["0.0"] * n)
+    sums = [f"{c}{i}" for c in "vr" for i in range(n)]
+    moved = [f"s[{i}] + h * z[{n + i}]" for i in range(n)] + [f"s[{n + i}] + h * a[{i}]" for i in range(n)]
+    ended = [f"s[{i}] + w * v{i}" for i in range(n)] + [f"s[{n + i}] + w * r{i}" for i in range(n)]
+    step = [
+        "begin, middle, end = np.int64(0), np.int64(HELD), np.int64(2 * HELD)  # plain integers count as types",
+        f"z, h, at = ({s}), 0.0, begin",
+        f"{' = '.join(sums)} = 0.0",
+        "for stage in range(4):  # a loop, so that the laws are compiled once",
+        "    a = accelerations(t + h, z, act, at, p, on, k, extra)",
+        "    w = 1.0 if stage == 0 or stage == 3 else 2.0",
+        *(f"    v{i} += w * z[{n + i}]" for i in range(n)),
+        *(f"    r{i} += w * a[{i}]" for i in range(n)),
+        "    h, at = (dt, end) if stage == 2 else (0.5 * dt, middle)",
+        f"    z = ({', '.join(moved)})",
+        "w = dt / 6.0",
+        f"return ({', '.join(ended)})",
+    ]
+    slopes = [
+        f"force = {w.tuple([f'extra[{i}]' for i in range(n)])}",
+        f"{' = '.join(f'b{i}' for i in range(n))} = 0.0",
+        f"for j in range(-1, {2 * n}):  # a loop, so that the laws are compiled once",
+        f"    a = accelerations(t, ({beside}), act, np.int64(HELD), p, on, k, force)",
+        "    if j < 0:",
+        f"        {', '.join(f'b{i}' for i in range(n))}{',' if n == 1 else ''} = a",
+        "    else:",
+        *(f"        out[{i}, j] = (a[{i}] - b{i}) / BESIDE" for i in range(n)),
+    ]
+    shows = [i for i in w.free] + [6 + i for i in w.free]
+    parts = [
+        f'"""Equations of motion in {", ".join(AXES[i] for i in w.free)}, written by boatsim; not meant to be edited."""',
+        "",
+        "from math import cos, sin",
+        "",
+        "import numpy as np",
+        "",
+        "from boatsim.physics.kernel.compiling import inlined, lean",
+        "from boatsim.physics.signals import Motion, Shown",
+        "",
+        "from .laws import HELD, flow, wrench",
+        "",
+        f"NQ = {n}  # positions; the state has twice as many",
+        f"K = {CONSTANTS}  # constants of a pass",
+        f"FREE = {tuple(w.free)}  # of (surge, sway, heave, roll, pitch, yaw)",
+        f"FREED = {tuple(1.0 if i in w.free else 0.0 for i in range(6))}  # 1 for each of the six that is free",
+        f"SHOWS = {tuple(shows)}  # entries of `Shown` in the order of a state",
+        f"TILTS = {w.tilts}  # axes are fixed in the hull",
+        f"CLOSED = {w.closed}  # the whole mass matrix is inverted once",
+        "BESIDE = 1e-6  # [m, rad, m/s, rad/s] of a one-sided difference",
+        "",
+        "",
+        function(
+            "def accelerations(t, s, act, at, p, on, k, extra):",
+            "Joint accelerations; extra is a further body force over the freedoms, act[at:] the actuators now.",
+            w.accelerations(), "inlined",
+        ),
+        function(
+            "def step(t, s, dt, act, p, on, k, extra):",
+            "One Runge-Kutta step of fourth order; act: the actuators at its begin, middle and end.",
+            step, "inlined",
+        ),
+        function(
+            "def step_in_place(t, y, dt, act, p, on, k, extra):", "`step` on arrays.",
+            [
+                f"z = step(t, ({ys}), dt, act, p, on, k, {w.tuple([f'extra[{i}]' for i in range(n)])})",
+                *(f"y[{i}] = z[{i}]" for i in range(2 * n)),
+            ], "lean",
+        ),
+        function(
+            "def steps(t, y, dt, n, act, p, on, k):", "N steps with the actuators held, in place.",
+            [
+                f"z = ({ys})", "for i in range(n):", f"    z = step(t + i * dt, z, dt, act, p, on, k, {nothing})",
+                *(f"y[{i}] = z[{i}]" for i in range(2 * n)),
+            ], "lean",
+        ),
+        function("def forces(t, s, act, at, p, on):", "Body force of all laws, over the freedoms.", w.forces(), "lean"),
+        function(
+            "def slopes(t, s, act, p, on, k, extra, out):",
+            "Derivatives of the joint accelerations by the state, one-sided.", slopes, "lean",
+        ),
+        function(
+            "def force_slopes(s, k, A, row, column):",
+            "Derivatives of the joint accelerations by a body force over the freedoms, to A[row:, column:].",
+            w.force_slopes(), "lean" if not w.closed else "inlined",
+        ),
+        function("def moved(s):", "What instruments that show the truth would show of a state.", w.moved(), "inlined"),
+        function("def jacobian(s, J):", "Body rates per joint rate, to J (6, NQ) of zeros.", w.jacobian(), "inlined"),
+        function(
+            "def observe_level(s, code, row):",
+            "Expected value of one measured channel and its row of the measurement matrix, axes that do not tilt.",
+            w.level_rates(), "inlined",
+        ),
+        function(
+            "def add_to_mujoco(t, q, qd, act, at, p, k, force, M):",
+            "Add the passive force and the lower triangle of J' M J, MuJoCo's z-up joints (yaw, pitch, roll last).",
+            w.add_to_mujoco(), "inlined",
+        ),
+    ]  # fmt: skip
+    return "\n".join(parts)

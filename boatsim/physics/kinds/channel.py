@@ -1,0 +1,75 @@
+"""Channel: a signal on its way from command to actuator."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
+from boatsim.physics.signals import Array, Course
+
+
+def actuators(program: Composed) -> Sequence[Station]:
+    """Each actuator's signal begins as its command, held over the step, and ends in the rows of `act`."""
+    stations = []
+    for name in program.actuators:
+        places = {"x.{0}": program.held.index(name)}
+        for part in ("cos", "sin"):
+            if f"{part}_{name}" in program.held:
+                places[f"{part}(x.{{0}})"] = program.held.index(f"{part}_{name}")
+        end = [
+            f"act[{row}{k}] = {text.format(when)}"
+            for text, k in places.items()
+            for row, when in (("", "begin"), ("held + ", "middle"), ("2 * held + ", "end"))
+        ]
+        begin = (f"c = commands[{program.commands.index(name)}]", "x = Course(c, c, c)")
+        stations.append(Station(begin, tuple(end), name))
+    return stations
+
+
+def pausing(program: Composed) -> Sequence[Station]:
+    """Each actuator's command."""
+    return [Station((f"x = commands[{program.commands.index(name)}]",), (), name) for name in program.actuators]
+
+
+ACTUATE = Part("actuate", "commands, memory, dt, p, on, act, held", ("pass",), "", stations=actuators)
+PAUSE = Part("pause", "commands, memory, p, on", ("left = np.inf",), "left", stations=pausing)
+
+
+@dataclass(frozen=True)
+class Channel(Kind):
+    """What happens to each signal in `on`: compiled `channel(x, side, source, memory, at, dt, values) -> Course`.
+
+    x is the signal so far over the step dt [s] that begins now; side -1 port, +1 starboard, 0 middle of what it
+    drives; source the raw command of `fed_by` for it; memory[at:at + slots] this actuator's own memory.
+    `pause(x, memory, at, values)`, where there is one, says in how many s the signal will jump or bend while its
+    command x is held (a delayed command arrives, a ramp ends): no step reaches beyond.
+    """
+
+    parts: ClassVar = (ACTUATE, PAUSE)
+    laws: ClassVar = ("channel", "pause")
+    acts_on: ClassVar[str] = "thrust"  # role of the signals it acts on where `on` names none; "": every actuator
+    slots: ClassVar[int] = 0
+    pause: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
+    channel: ClassVar[Callable[[Course, float, float, Array, int, float, Any], Course]]
+
+    fed_by: Sequence[str] = field(default=(), kw_only=True)  # commands that feed the channels in `on`, one for each
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "fed_by", (self.fed_by,) if isinstance(self.fed_by, str) else tuple(self.fed_by))
+
+    @classmethod
+    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+        """Pass the actuator's signal on, if the effect acts on it."""
+        effect: Any = program.effects[number]
+        if station.channel not in program.targets(number):
+            return
+        at = f"np.int64({program.memory(number, station.channel)})"  # plain integers count as types
+        site = program.sites(number)[0]
+        if part is ACTUATE:
+            source = program.source(number, station.channel)
+            raw = f"commands[{program.commands.index(source)}]" if source else "0.0"
+            side = str(program.side(station.channel))
+            yield f"x = {site.call('channel', 'x', side, raw, 'memory', at, 'dt')}"
+        if part is PAUSE and type(effect).pause is not None:
+            yield f"left = min(left, {site.call('pause', 'x', 'memory', at)})"

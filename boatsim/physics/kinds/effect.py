@@ -1,0 +1,175 @@
+"""An effect: one idea of physics or of measurement, and how a kind of effect adds its lines to the composed program."""
+
+from collections import namedtuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
+from operator import attrgetter
+from typing import Any, ClassVar, NamedTuple, Protocol, Self
+
+from boatsim.errors import BadInput
+from boatsim.physics.param import Checked, snake_case
+
+
+@dataclass(frozen=True)
+class Role:
+    """A signal that a law takes, whatever the vessel calls its channel: `thrust`, `angle`, `shaft`."""
+
+    unit: str
+    words: str
+    fixed: float | None = None  # what it is where nothing is bound to it; None: a channel must be named
+
+
+@dataclass(frozen=True)
+class Effect(Checked):
+    """One instance of an idea on a vessel. Subclasses are of one or several of the kinds in this folder."""
+
+    words: ClassVar[str] = ""  # the sentence a report prints: "a steady wind pushes the hull downwind ..."
+    shown_by: ClassVar[str] = ""  # the manoeuvre that shows it best
+    kind: ClassVar[str] = "physics"  # or "measurement"
+    source: ClassVar[str] = ""  # paper, equation or table of the law
+    strength: ClassVar[tuple[str, ...]] = ()  # parameters that say how strong it is; empty: all that may be fitted
+    facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # fact in a recording's notes -> the parameters it states
+    starts: ClassVar[tuple[Mapping[str, float], ...]] = ()  # where a fit starts; empty: a tenth of each spread
+    roles: ClassVar[Mapping[str, Role]] = {}  # signals its law takes as its third argument, each with a channel
+    rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
+
+    name: str = field(default="", kw_only=True)  # of this instance; that of the idea where there is one only
+    # role -> channel or a number that is held; or the channels, or the instances it rides on, that it acts on
+    on: Mapping[str, str | float] | Sequence[str] = field(default=(), kw_only=True, hash=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "name", self.name or type(self).idea())
+        object.__setattr__(self, "on", self._acting_on())
+
+    def _acting_on(self) -> Mapping[str, str | float] | tuple[str, ...]:
+        """`on` as the class takes it. Raises BadInput."""
+        on, wants_table = self.on, bool(type(self).roles)
+        if isinstance(on, str):
+            on = (on,)
+        if isinstance(on, Mapping):
+            good = wants_table and all(isinstance(c, str | float | int) for c in on.values())
+        else:
+            good = isinstance(on, Sequence) and all(isinstance(c, str) for c in on) and not (wants_table and on)
+        if not good:
+            allowed = f"a table of {', '.join(type(self).roles)}" if wants_table else "a name or a list of names"
+            raise BadInput(f"{self.name}: on = {self.on!r}; allowed is {allowed}")
+        return dict(on) if isinstance(on, Mapping) else tuple(on)
+
+    @classmethod
+    def idea(cls) -> str:
+        """File name, and the word that files `use`."""
+        return snake_case(cls.__name__)
+
+    @classmethod
+    @cache
+    def values_type(cls) -> Any:
+        """NamedTuple type of the parameters, as the compiled law receives them."""
+        return namedtuple(f"{cls.__name__}Values", list(cls.params()))
+
+    @classmethod
+    @cache
+    def signals_type(cls) -> Any:
+        """NamedTuple type of the signals of its roles, with cosine and sine of those that are angles."""
+        angles = [f"{part}_{n}" for n, role in cls.roles.items() if role.unit == "rad" for part in ("cos", "sin")]
+        return namedtuple(f"{cls.__name__}Signals", [*cls.roles, *angles])
+
+    def values(self) -> Any:
+        """The parameters as the law's second argument."""
+        return type(self).values_type()(*(float(getattr(self, n)) for n in type(self).params()))
+
+    def completed(self, vessel: Any) -> Self:
+        """The effect with what it must know of the vessel it is put on (`follows`) filled in. Raises BadInput."""
+        taken = {}
+        for name, about in type(self).params().items():
+            owner, _, key = about.follows.partition(".")
+            if owner == "vessel":
+                taken[name] = getattr(self, name) or attrgetter(key)(vessel)
+            elif owner:
+                taken[name] = getattr(self.needed(vessel, owner), key)
+        return replace(self, **taken)
+
+    def needed(self, vessel: Any, owner: str) -> Any:
+        """The vessel's effect that this one builds on. Raises BadInput where it has none."""
+        own = vessel.effect(owner)
+        if own is None:
+            raise BadInput(f"{vessel.name}: {self.name} needs a vessel with {owner}")
+        return own
+
+    def seeded(self, seed: int) -> Self:
+        """The effect with its random course, if it has one, drawn from a scenario's seed."""
+        return self
+
+
+class Site(NamedTuple):
+    """One call of an effect's law: its place in the program and the text of what it is called with."""
+
+    number: int  # of the effect
+    values: str  # V3(p[7], p[8])
+    signals: tuple[str, ...] = ()  # further arguments: the bound signals, and the values of what the effect rides on
+
+    def call(self, law: str, *first: str) -> str:
+        """Text of a call of one of the effect's compiled functions."""
+        return f"{law}{self.number}({', '.join((*first, self.values, *self.signals))})"
+
+
+class Station(NamedTuple):
+    """A place in a composed function where effects may stand, between lines of its own."""
+
+    begin: tuple[str, ...] = ()
+    end: tuple[str, ...] = ()
+    channel: str = ""  # the actuator whose signal this station works on
+
+
+class Composed(Protocol):
+    """What a kind may ask of the program it is written into."""
+
+    effects: tuple[Effect, ...]
+    actuators: tuple[str, ...]
+    commands: tuple[str, ...]
+    held: Sequence[str]  # what `act` holds: the actuators, then cosine and sine of those that are angles
+
+    def sites(self, number: int) -> Sequence[Site]:
+        """The calls of an effect's laws: one, or one for each instance that it rides on."""
+
+    def targets(self, number: int) -> Sequence[str]:
+        """Actuators that a channel effect acts on."""
+
+    def source(self, number: int, actuator: str) -> str | None:
+        """The command that feeds an actuator through a channel effect, if it takes one."""
+
+    def side(self, actuator: str) -> float:
+        """-1 port, +1 starboard, 0 middle of what an actuator drives."""
+
+    def memory(self, number: int, actuator: str) -> int:
+        """Where a channel effect's memory of an actuator begins."""
+
+
+def once(program: Composed) -> Sequence[Station]:
+    """One station: the body of a plain sum."""
+    return (Station(),)
+
+
+@dataclass(frozen=True)
+class Part:
+    """A function of the composed program to which kinds add lines."""
+
+    name: str
+    arguments: str
+    begin: tuple[str, ...]
+    result: str
+    compiled: str = "inlined"  # which decorator of `boatsim.physics.kernel.compiling`
+    stations: Callable[[Composed], Sequence[Station]] = once
+
+
+class Kind(Effect):
+    """Base of the kinds: what effects of one add to the program."""
+
+    parts: ClassVar[tuple[Part, ...]] = ()  # functions that this kind brings along
+    laws: ClassVar[tuple[str, ...]] = ()  # its compiled functions, those that an effect may leave out being None
+
+    @classmethod
+    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+        """Lines that effect `number` of the program adds to a part at a station."""
+        yield from ()

@@ -1,0 +1,49 @@
+"""Force: what the water, the air or a machine does to the hull, as a function of its motion."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from boatsim.physics.kinds.effect import Composed, Effect, Kind, Part, Station
+from boatsim.physics.signals import Wrench
+
+COMPONENTS = Wrench._fields
+ADD = "; ".join(f"{c} += f.{c}" for c in COMPONENTS)
+WRENCH = Part(
+    "wrench",
+    "m, p, on, act, at",
+    (f"{' = '.join(COMPONENTS)} = 0.0",),
+    f"Wrench({', '.join(COMPONENTS)})",
+    compiled="merged",
+)
+
+
+@dataclass(frozen=True)
+class Force(Kind):
+    """Memoryless force: compiled `law(motion, values) -> Wrench`.
+
+    With `roles` the law takes the bound signals as a third argument; an effect that `rides` on an idea is called once
+    for each of its instances, with that one's signals and values.
+    """
+
+    parts: ClassVar = (WRENCH,)
+    laws: ClassVar = ("law",)
+    of_the_air: ClassVar[bool] = False  # logged apart, as the force of the wind
+    law: ClassVar[Callable[..., Wrench]]
+
+    @classmethod
+    def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
+        """Add the law's force to the sum."""
+        if part is WRENCH:
+            for site in program.sites(number):
+                yield f"f = {site.call('law', 'm')}"
+                yield ADD
+
+    def wrench(self, m: Any, *signals: Any) -> Wrench:
+        """The force at one motion."""
+        return Wrench(*type(self).law(m, self.values(), *signals))
+
+
+def is_force(effect: Effect) -> bool:
+    """Whether an effect pushes the hull."""
+    return isinstance(effect, Force)
