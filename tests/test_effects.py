@@ -4,6 +4,7 @@ import inspect
 import re
 import sys
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from math import cos, exp, hypot, pi, sin
 from typing import Any
@@ -172,6 +173,33 @@ def test_mirror_image_of_motion_and_forces_gives_the_mirror_image_of_the_reactio
     turned = Wrench(*(others * (1, -1, -1, -1)))
     image = type(effect).reaction(motion(**mirrored_motion(given)), turned, mirrored(effect).values())
     assert image == pytest.approx((seen.X, -seen.Y, -seen.K, -seen.N), rel=1e-12, abs=1e-12)
+
+
+OTHERS = Wrench(1.0, -2.0, 0.5, 0.7)
+
+
+def in_a_current(given: dict[str, float], north: float, east: float) -> dict[str, float]:
+    """The same motion through water that flows: carried along over the ground since t = 0."""
+    c, s = cos(given["psi"]), sin(given["psi"])
+    moved = {"x": given["x"] + north * given["t"], "y": given["y"] + east * given["t"]}
+    return given | moved | {"u": given["u"] + c * north + s * east, "v": given["v"] + c * east - s * north}
+
+
+@pytest.mark.parametrize("name", [n for n, e in SHELF.items() if issubclass(e, Force | Reaction)])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_uniform_current_changes_no_force_but_of_what_holds_on_to_the_world(name: str, seed: int) -> None:
+    """Inertia over ground feels the current turn in body axes: its Coriolis force changes by M (r v_c, -r u_c)."""
+    kind, effect, given = SHELF[name], drawn(SHELF[name], seed), drawn_motion(seed) | {"t": 3.0, "x": 0.4, "y": -0.3}
+    if "course_kept" in kind.params():  # then the waves are met as on a course laid down beforehand
+        effect = replace(effect, course_kept=0.0)
+    law: Any = partial(kind.reaction, w=OTHERS) if issubclass(kind, Reaction) else kind.law  # type: ignore[attr-defined]
+    still, carried = motion(**given), motion(current=(0.7, -0.4), **in_a_current(given, 0.7, -0.4))
+    before, after = (np.array(law(m=m, q=effect.values())) for m in (still, carried))
+    wanted = np.zeros(4)
+    if getattr(kind, "moves_with", "") == "hull":
+        wanted = mass_of(effect) @ (still.r * (carried.v - still.v), -still.r * (carried.u - still.u), 0.0, 0.0)
+    same = after - before == pytest.approx(wanted, abs=1e-12 * max(1.0, np.abs(before).max()))
+    assert same != bool(kind.anchored), kind.anchored or after - before
 
 
 @pytest.mark.parametrize("name", CHANNELS)

@@ -220,6 +220,7 @@ class Effect(Checked):
     strength: ClassVar[tuple[str, ...]] = ()  # parameters that say how strong it is; empty: all that may be fitted
     facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # fact in a recording's notes -> the parameters it states
     starts: ClassVar[tuple[Mapping[str, float], ...]] = ()  # where a fit starts; empty: a tenth of each spread
+    anchored: ClassVar[str] = ""  # what its force holds on to beside the water: "the air", "walls"; empty: nothing
 
     @classmethod
     def name(cls) -> str:

@@ -16,7 +16,8 @@ def law(m: Any, q: Any) -> Wrench:
     """Model accelerations, times the body's mass and inertia, less what a rigid body turning brings along by itself.
 
     The model's own inertia, which need not be symmetric, is solved here; nondimensional as in the source: speeds over
-    the instantaneous U, times over L / U, the rudder's sign turned so that a positive angle steers to starboard.
+    the instantaneous U, times over L / U, the rudder's sign turned so that a positive angle steers to starboard. All of
+    it goes with the speed through the water: a uniform current carries ship, water and model along.
     """
     U = max(sqrt(m.ur * m.ur + m.vr * m.vr), SLOWEST * q.speed)
     u, v, r, d = (m.ur - q.speed) / U, m.vr / U, m.r * q.length / U, -m.delta_rad
@@ -38,7 +39,7 @@ def law(m: Any, q: Any) -> Wrench:
     along = X / q.m11 * U * U / q.length
     across = (q.m33 * Y - q.m23 * N) / determinant * U * U / q.length
     turning = (q.m22 * N - q.m32 * Y) / determinant * U * U / (q.length * q.length)
-    return Wrench(q.mass * (along - m.v * m.r), q.mass * (across + m.u * m.r), 0.0, q.yaw_inertia * turning)
+    return Wrench(q.mass * (along - m.vr * m.r), q.mass * (across + m.ur * m.r), 0.0, q.yaw_inertia * turning)
 
 
 def derivative(name: str) -> Any:

@@ -88,6 +88,7 @@ class IrregularSea(Force):
     words: ClassVar[str] = "wind waves push, turn and heel the hull"
     shown_by: ClassVar[str] = "lying across the sea without steering"
     source: ClassVar[str] = "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V"
+    anchored: ClassVar[str] = "the ground, where the phase of its waves is counted from"
     law: ClassVar = law
 
     significant_height: float = param(

@@ -14,7 +14,7 @@ def law(m: Any, q: Any) -> Wrench:
     """Sway force at a depth below the mass centre; `arm` turns what accelerates the hull in sway into a roll moment."""
     Y = -q.sway * m.vr - q.sway_by_yaw * m.r
     N = -q.yaw_by_sway * m.vr - q.yaw * m.r + q.yaw_by_heel * m.phi
-    return Wrench(0.0, Y, -q.below * Y + q.arm * (Y - q.mass * m.u * m.r), N)
+    return Wrench(0.0, Y, -q.below * Y + q.arm * (Y - q.mass * m.ur * m.r), N)
 
 
 @dataclass(frozen=True)

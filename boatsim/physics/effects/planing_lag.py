@@ -14,7 +14,7 @@ def reaction(m: Any, w: Wrench, q: Any) -> Wrench:
     if q.full_speed <= 0.0:
         return Wrench(0.0, 0.0, 0.0, 0.0)
     kappa = min(max(m.ur / q.full_speed, q.least), 1.0)
-    return Wrench((kappa - 1.0) * (w.X + q.hull_mass * m.v * m.r), 0.0, 0.0, 0.0)
+    return Wrench((kappa - 1.0) * (w.X + q.hull_mass * m.vr * m.r), 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)

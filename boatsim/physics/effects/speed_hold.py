@@ -10,15 +10,15 @@ from boatsim.physics.base import Force, Wrench, param
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """-m v r - gain (u - speed): with no other surge force u stays at the speed exactly."""
-    return Wrench(-q.mass * m.v * m.r - q.gain * (m.u - q.speed), 0.0, 0.0, 0.0)
+    """-m v r - gain (u - speed), through the water: with no other surge force u stays at the speed exactly."""
+    return Wrench(-q.mass * m.vr * m.r - q.gain * (m.ur - q.speed), 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class SpeedHold(Force):
     """An ideal propulsion that takes up the rigid body's Coriolis force and every deviation of the speed."""
 
-    words: ClassVar[str] = "the speed ahead is held constant"
+    words: ClassVar[str] = "the speed ahead through the water is held constant"
     shown_by: ClassVar[str] = "turning hard at constant power"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.5: u = u0"
     law: ClassVar = law

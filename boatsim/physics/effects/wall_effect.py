@@ -37,6 +37,7 @@ class WallEffect(Force):
     words: ClassVar[str] = "near the walls of the tank the boat drags more and is drawn towards them"
     shown_by: ClassVar[str] = "approaching a wall slowly and leaving it again"
     source: ClassVar[str] = "assumption: exponential fall-off; its reach is half a boat length of the trial boat"
+    anchored: ClassVar[str] = "walls"
     law: ClassVar = law
     strength: ClassVar = ("damping_rise", "pull")
     facts: ClassVar = {"walls_m": ("x_low", "x_high", "y_low", "y_high")}
