@@ -9,6 +9,7 @@ from numba import njit
 from boatsim.physics.base import Force, Wrench, param
 from boatsim.physics.effects.abkowitz_hull import derivative
 
+BOW_ON = 2.0  # R_0 is taken whole where u / U is above its inverse, up to 60 deg of drift; the model is for much less
 FASTEST = 3.0  # [-] r L / U up to which the polynomials are taken; the tightest turns of a ship under way are below 1.5
 
 
@@ -16,11 +17,13 @@ FASTEST = 3.0  # [-] r L / U up to which the polynomials are taken; the tightest
 def law(m: Any, q: Any) -> Wrench:
     """Polynomials of v/U and r L/U, and the Coriolis force of the added mass in surge and sway.
 
-    In yaw that force is part of N_v. A hull that hardly moves but turns takes the speed of its fastest turn for U.
+    In yaw that force is part of N_v. A hull that hardly moves but turns takes the speed of its fastest turn for U. The
+    resistance is against the way: beyond the drift of any turn under way it goes to zero broadside on, and turns round.
     """
     U = max(sqrt(m.ur * m.ur + m.vr * m.vr), abs(m.r) * q.length / FASTEST, 1e-9)
     v, r = m.vr / U, m.r * q.length / U
-    X = -q.R_0 + v * v * (q.X_vv + q.X_vvvv * v * v) + r * (q.X_vr * v + q.X_rr * r)
+    against = min(max(BOW_ON * m.ur / U, -1.0), 1.0)
+    X = -q.R_0 * against + v * v * (q.X_vv + q.X_vvvv * v * v) + r * (q.X_vr * v + q.X_rr * r)
     Y = v * (q.Y_v + v * (q.Y_vvv * v + q.Y_vvr * r)) + r * (q.Y_r + r * (q.Y_vrr * v + q.Y_rrr * r))
     N = v * (q.N_v + v * (q.N_vvv * v + q.N_vvr * r)) + r * (q.N_r + r * (q.N_vrr * v + q.N_rrr * r))
     k = 0.5 * q.density * q.length * q.draught * U * U  # [N]

@@ -10,19 +10,28 @@ from boatsim.physics.base import Force, Wrench, param
 
 
 @njit(inline="always")
+def drift_angle(m: Any) -> float:
+    """Drift angle beta [rad], counted from the end that leads: a ship that goes straight astern has none."""
+    return atan2(-m.vr, abs(m.ur))
+
+
+@njit(inline="always")
 def inflow(m: Any, q: Any) -> float:
     """Speed of the water through the propeller [m/s]; the wake is thinner the more askew the stern moves."""
     U = max(sqrt(m.ur * m.ur + m.vr * m.vr), 1e-9)
-    drift = atan2(-m.vr, m.ur) - q.propeller_at * m.r * q.length / U  # of the stern; positive: water from port
+    drift = drift_angle(m) - q.propeller_at * m.r * q.length / U  # of the stern; positive: water from port
     C2 = q.wake_C2_port if drift > 0.0 else q.wake_C2_starboard
     return float(m.ur * (1.0 - q.wake) * (1.0 + (1.0 - exp(-q.wake_C1 * abs(drift))) * (C2 - 1.0)))
 
 
 @njit(inline="always")
 def open_water(m: Any, V: float, q: Any) -> float:
-    """K_T n^2 D^2 [m^2/s^2] of K_T = k0 + k1 J + k2 J^2, written without J = V / (n D): the shaft may stand still."""
+    """K_T n^2 D^2 [m^2/s^2] of K_T = k0 + k1 J + k2 J |J|, written without J = V / (n D): the shaft may stand still.
+
+    Ahead that is the published polynomial; astern a shaft that stands still drags against the way as well.
+    """
     nD = m.n_rps * q.diameter
-    return float(q.k0 * nD * nD + q.k1 * nD * V + q.k2 * V * V)
+    return float(q.k0 * nD * nD + q.k1 * nD * V + q.k2 * V * abs(V))
 
 
 @njit(inline="always")

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Force, Wrench, param
-from boatsim.physics.effects.mmg_propeller import inflow, open_water
+from boatsim.physics.effects.mmg_propeller import drift_angle, inflow, open_water
 
 
 @njit(inline="always")
@@ -22,7 +22,7 @@ def race(m: Any, q: Any) -> float:
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
     """Force normal to the blade; hull and propeller straighten the flow that meets it."""
-    across = sqrt(m.ur * m.ur + m.vr * m.vr) * atan2(-m.vr, m.ur) - q.flow_at * m.r * q.length  # U beta_R
+    across = sqrt(m.ur * m.ur + m.vr * m.vr) * drift_angle(m) - q.flow_at * m.r * q.length  # U beta_R
     along, across = race(m, q), across * (q.straightening_port if across > 0.0 else q.straightening_starboard)
     attack = m.delta_rad - atan2(across, along)
     F = 0.5 * q.density * q.area * q.slope * (along * along + across * across) * sin(attack)
