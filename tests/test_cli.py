@@ -120,6 +120,32 @@ def test_the_same_seed_gives_the_same_bytes_and_another_one_others(tmp_path: Pat
     assert a == b != c
 
 
+WAVES = """
+about = "Adrift in waves."
+vessel = "trial_boat"
+duration = 120.0
+[controller]
+use = "open_loop"
+[[effect]]
+use = "wave_forcing"
+surge = 0.2
+sway = 0.2
+yaw = 0.05
+damping = 0.3
+"""
+
+
+def test_another_seed_is_another_course_of_the_waves(tmp_path: Path) -> None:
+    file = write(tmp_path / "waves.toml", WAVES)
+    for out, seed in (("a", 1), ("b", 1), ("c", 2)):
+        assert boatsim("run", file, "--seed", seed, "--out", tmp_path / out).exit_code == 0
+    a, b, c = (recording.read(tmp_path / out / "recording.csv") for out in "abc")
+    for name in ("u_mps", "v_mps", "r_radps"):
+        assert (a[name] == b[name]).all()
+        assert abs(np.corrcoef(a[name], c[name])[0, 1]) < 0.5  # of 120 s the error is 0.1
+        assert np.std(c[name]) == pytest.approx(np.std(a[name]), rel=0.3)
+
+
 def test_several_scenarios_get_a_folder_each_and_one_exit_code(tmp_path: Path) -> None:
     good, missed = write(tmp_path / "good.toml"), write(tmp_path / "missed.toml", PLAIN + IMPOSSIBLE)
     assert boatsim("run", good, missed, "--out", tmp_path / "out").exit_code == 1

@@ -4,23 +4,14 @@ from dataclasses import dataclass, replace
 from math import cos, exp, pi, sin, sqrt
 from typing import Any, ClassVar, Self
 
-import numpy as np
 from numba import njit
 
 from boatsim.physics import particulars
 from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.chance import course, drawn
 
 LOWEST = 0.45  # of the modal frequency: below it lies less than 1e-13 of the energy
 GRAVITY = particulars.GRAVITY
-
-
-@njit(inline="always")
-def drawn(realisation: float, k: int) -> float:
-    """A number in [0, 1) that depends on realisation and k alone (G. Steele et al., SplitMix, OOPSLA 2014)."""
-    z = np.uint64(realisation) * np.uint64(0xD1342543DE82EF95) + np.uint64(k + 1) * np.uint64(0x9E3779B97F4A7C15)
-    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    return float((z ^ (z >> np.uint64(31))) >> np.uint64(11)) / 9007199254740992.0  # 2^53
 
 
 @njit(inline="always")
@@ -130,4 +121,4 @@ class IrregularSea(Force):
 
     def seeded(self, seed: int) -> Self:
         """Another course for each seed."""
-        return replace(self, realisation=self.realisation + seed)
+        return replace(self, realisation=course(self.realisation, seed))
