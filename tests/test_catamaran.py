@@ -20,12 +20,11 @@ from boatsim.measures.turning_radius import TurningRadius
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, motion
 from boatsim.physics.content import load_class, names
-from boatsim.physics.effects.added_mass_error import AddedMassError
+from boatsim.physics.effects.added_mass import AddedMassError
 from boatsim.physics.effects.azimuth_thruster import AzimuthThruster
-from boatsim.physics.effects.damping_exponent import DampingExponent
-from boatsim.physics.effects.gust import Gust
-from boatsim.physics.effects.gust_off_centre import GustOffCentre
-from boatsim.physics.effects.payload import Payload
+from boatsim.physics.effects.damping import DampingExponent
+from boatsim.physics.effects.extra_mass import Payload
+from boatsim.physics.effects.push import Gust, GustOffCentre
 from boatsim.physics.effects.speed_hold import SpeedHold
 from boatsim.recordings import table as recordings
 from boatsim.recordings.table import Recording

@@ -29,23 +29,17 @@ from boatsim.physics.base import (
     Wrench,
     motion,
 )
-from boatsim.physics.effects.added_mass import AddedMass
+from boatsim.physics.effects.added_mass import AddedMass, ShallowWater
 from boatsim.physics.effects.cross_flow_drag import CrossFlowDrag
-from boatsim.physics.effects.cubic_damping import CubicDamping
 from boatsim.physics.effects.current import Current
-from boatsim.physics.effects.damping_error import DampingError
+from boatsim.physics.effects.damping import CubicDamping, DampingError, LinearDamping, QuadraticDamping
 from boatsim.physics.effects.fan_wind import AIR_DENSITY, FanWind
-from boatsim.physics.effects.linear_damping import LinearDamping
-from boatsim.physics.effects.outboards import Outboards
+from boatsim.physics.effects.outboards import Outboards, ThrustGainError
 from boatsim.physics.effects.pwm_thrust import PwmThrust
-from boatsim.physics.effects.quadratic_damping import QuadraticDamping
-from boatsim.physics.effects.righting_arm import RightingArm
-from boatsim.physics.effects.righting_arm_stiffening import RightingArmStiffening
+from boatsim.physics.effects.righting_arm import RightingArm, RightingArmStiffening
 from boatsim.physics.effects.servo import Servo
-from boatsim.physics.effects.shallow_water import ShallowWater
 from boatsim.physics.effects.steering_offset import SteeringOffset
 from boatsim.physics.effects.surge_drag import SurgeDrag
-from boatsim.physics.effects.thrust_gain_error import ThrustGainError
 from boatsim.physics.effects.thrust_imbalance import ThrustImbalance
 from boatsim.physics.effects.thrust_lag import ThrustLag
 from boatsim.physics.effects.weak_reverse import WeakReverse

@@ -11,12 +11,10 @@ from real_boat import Real, recorded
 from boatsim.diagnose import analysis
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, motion
-from boatsim.physics.effects.added_mass import AddedMass
-from boatsim.physics.effects.added_mass_coriolis import AddedMassCoriolis
+from boatsim.physics.effects.added_mass import AddedMass, AddedMassCoriolis
 from boatsim.physics.effects.command_delay import HISTORY, CommandDelay
+from boatsim.physics.effects.damping import LateralCentreShift, LinearDamping
 from boatsim.physics.effects.extra_mass import ExtraMass
-from boatsim.physics.effects.lateral_centre_shift import LateralCentreShift
-from boatsim.physics.effects.linear_damping import LinearDamping
 from boatsim.physics.effects.mass_centre_shift import MassCentreShift
 from boatsim.physics.effects.prop_walk import PropWalk
 from boatsim.physics.effects.steering_backlash import SteeringBacklash

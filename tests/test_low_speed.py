@@ -18,8 +18,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array, motion
 from boatsim.physics.content import load_class, names
 from boatsim.physics.effects.astern_time_constant import AsternTimeConstant
-from boatsim.physics.effects.jet_leak import JetLeak
-from boatsim.physics.effects.reversing_jet import ReversingJet
+from boatsim.physics.effects.reversing_jet import JetLeak, ReversingJet
 from boatsim.physics.effects.yaw_rate_waves import PAIRS, YawRateWaves, phase, spread
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario

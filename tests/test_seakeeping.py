@@ -19,8 +19,7 @@ from boatsim.physics.effects.irregular_sea import IrregularSea, sections
 from boatsim.physics.effects.linear_hull import LinearHull
 from boatsim.physics.effects.push import Push
 from boatsim.physics.effects.roll_damping import RollDamping
-from boatsim.physics.effects.rudder import Rudder
-from boatsim.physics.effects.rudder_stall import RudderStall
+from boatsim.physics.effects.rudder import Rudder, RudderStall
 from boatsim.physics.effects.speed_hold import SpeedHold
 from boatsim.physics.particulars import spheroid
 from boatsim.recordings.table import Recording

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 
 @njit(inline="always")
@@ -50,6 +50,6 @@ class WallEffect(Force):
     x_high: float = param(4.0, low=-1e5, high=1e5, unit="m", words="at its high end")
     y_low: float = param(-3.0, low=-1e5, high=1e5, unit="m", words="wall across the y axis, at its low end")
     y_high: float = param(3.0, low=-1e5, high=1e5, unit="m", words="at its high end")
-    surge: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.surge")
-    sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.sway")
-    yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
+    surge: float = param(UNSET, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.surge")
+    sway: float = param(UNSET, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.sway")
+    yaw: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
