@@ -224,10 +224,11 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     own = stated_noise(vessel, recording)
     scale = {f: own[f] / (stated or own)[f] for f in own}
     commands = commands_of(recording, vessel.commands) if vessel.commands else np.zeros((len(recording), 1))
+    facts = facts_of(vessel, recording)
     laid = Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
         tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes, np.ascontiguousarray(commands),
-        stated_values(program, recording.notes.facts), scale, recording.notes.facts,
+        stated_values(program, facts), scale, facts,
     )  # fmt: skip
     nq = len(axes)
     if nq > 1 and (speed := float(np.sqrt(laid.spread[nq, nq]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
@@ -288,6 +289,11 @@ def stated_noise(vessel: Vessel, recording: Recording) -> dict[str, float]:
             f"{_called(recording)}: noise {wrong[0]} = {noise[wrong[0]]:g}; allowed is more than 0, at most {HUGE:g}"
         )
     return noise
+
+
+def facts_of(vessel: Vessel, recording: Recording) -> dict[str, Any]:
+    """What is known of a run besides its columns: the vessel's word, unless the recording's notes say otherwise."""
+    return {**vessel.diagnosis.facts, **recording.notes.facts}
 
 
 def _called(recording: Recording) -> str:

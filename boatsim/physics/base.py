@@ -285,6 +285,10 @@ class Effect(Checked):
                 own = replace(own, **{name: self._followed(about.follows, vessel)})
         ruled = {n: x for n, x in own.rules(vessel).items() if not own.stated(n)} if own._left() else {}
         own = replace(own, **ruled)
+        for fact, names in type(self).facts.items():
+            for missing in (n for n in names if not own.stated(n)):
+                where = f"state it in its table, or {fact} among the facts of a recording or of the vessel's diagnosis"
+                raise BadInput(f"{vessel.name}: {self.name()} needs {missing}: {where}")
         return replace(own, **dict.fromkeys(own._left(), 0.0), filled=frozenset(self._left()) | self.filled)
 
     def rules(self, vessel: Any) -> dict[str, float]:

@@ -53,6 +53,7 @@ class DiagnosisTable(Table):
         Literal["damping", "thrust", "restoring"], PositiveFloat
     ] = {}  # relative sd: damping, thrust, restoring
     noise: dict[Noise, PositiveFloat] = {}  # sensor noise where a recording states none
+    facts: dict[str, float | str | bool | list[float]] = {}  # what holds where a recording states nothing else: walls_m
 
 
 class ManoeuvringTable(Table):

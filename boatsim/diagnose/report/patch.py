@@ -40,7 +40,9 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
         if effect.name() in settings and isinstance(effect, Release):
             _release(document, vessel, effect, settings[effect.name()])
         elif effect.name() in settings:
-            document["effect"].append(_effect_table(_address(type(effect), vessel), settings[effect.name()]))
+            told = {n: getattr(effect, n) for names in type(effect).facts.values() for n in names}
+            table = _effect_table(_address(type(effect), vessel), told | settings[effect.name()])
+            document["effect"].append(table)
     _hold(document, problem, vessel, found)
     return str(tomlkit.dumps(document))
 
