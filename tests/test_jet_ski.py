@@ -16,9 +16,9 @@ from boatsim.physics.content import load_class, names
 from boatsim.physics.effects.jet_steering import JetSteering
 from boatsim.physics.effects.nomoto_yaw import NomotoYaw
 from boatsim.physics.effects.push import Push
+from boatsim.physics.effects.rate_limit import ThrottleRateLimit
 from boatsim.physics.effects.roll_coupling import RollCoupling
-from boatsim.physics.effects.steering_asymmetry import SteeringAsymmetry
-from boatsim.physics.effects.throttle_rate_limit import ThrottleRateLimit
+from boatsim.physics.effects.steering_offset import SteeringAsymmetry
 from boatsim.physics.effects.water_jet import WaterJet
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State

@@ -4,6 +4,7 @@ import time
 from dataclasses import replace
 from functools import cache
 from math import atan, cos, degrees, exp, log, pi, radians, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,8 +20,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array, motion
 from boatsim.physics.content import load_class, names
 from boatsim.physics.effects.astern_time_constant import AsternTimeConstant
-from boatsim.physics.effects.jet_leak import JetLeak
-from boatsim.physics.effects.reversing_jet import ReversingJet
+from boatsim.physics.effects.reversing_jet import JetLeak, ReversingJet
 from boatsim.physics.effects.yaw_rate_waves import WAVES, YawRateWaves, component
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario
@@ -98,9 +98,11 @@ def test_nozzle_and_bucket_turn_with_30_deg_per_second() -> None:
 def test_leak_and_time_constant_astern_are_the_nomoto_model_with_another_gain_or_time(beta: float) -> None:
     own = ReversingJet(thrust=185.0, yaw=275.0)
     m = motion(u=-0.5, r=0.1, jet_rad=0.2, elevator_rad=beta)
-    leak = JetLeak(fraction=0.25, thrust=185.0, yaw=275.0).wrench(m)
-    whole = np.add(own.wrench(m), leak)
-    assert whole == pytest.approx([185.0 * (cos(2 * beta) + 0.25), 0.0, 0.0, 275.0 * (cos(2 * beta) + 0.25) * 0.2])
+    boat = vessel.load("jet_ski", ["low_speed"])
+    leaking: Any = vessel.added(replace(boat, effects=(own,)), JetLeak(fraction=0.25)).effects[0]
+    assert leaking.wrench(m) == pytest.approx(
+        [185.0 * (cos(2 * beta) + 0.25), 0.0, 0.0, 275.0 * (cos(2 * beta) + 0.25) * 0.2]
+    )
     moment = own.wrench(m).N - 270.0 * 0.1
     quicker = AsternTimeConstant(factor=0.7, jet=275.0, yaw=270.0)
     assert moment + quicker.wrench(m).N == pytest.approx(moment / 0.7)

@@ -13,8 +13,7 @@ from scipy import signal
 from boatsim.diagnose import analysis
 from boatsim.physics.base import Shown, motion
 from boatsim.physics.effects.camera_scale import CameraScale
-from boatsim.physics.effects.heading_deviation import HeadingDeviation
-from boatsim.physics.effects.heading_offset import HeadingOffset
+from boatsim.physics.effects.heading_deviation import HeadingDeviation, HeadingOffset
 from boatsim.physics.effects.position_frame_error import PositionFrameError
 from boatsim.physics.effects.wave_forcing import WaveForcing, law
 from boatsim.recordings import table as recording

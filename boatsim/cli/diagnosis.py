@@ -61,8 +61,8 @@ def write(found: Diagnosis, out: Path) -> None:
         ) from None
     with filling(out) as new:
         report.write(found.findings, new)
-        kinds = {e.name(): type(e) for e in found.problem.program.suspects}
-        patch.write(found.vessel, found.ranking.best, kinds, new / "patched.toml")
+        patched = patch.patched(found.problem, found.vessel, found.ranking.best, out / "patched.toml")
+        (new / "patched.toml").write_text(patched, encoding="utf-8")
         if found.plan is not None:
             (new / NEXT).write_text(scenario_text(found.plan, found.vessel), encoding="utf-8")
         overlay(found, new / "diagnosis.rrd")

@@ -70,10 +70,10 @@ def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple
     return in_one_frame(steered(read(path, found.limits(), found.columns).used(), found)), found
 
 
-def suspects_of(vessel: Vessel, library: Sequence[str]) -> tuple[Effect, ...]:
+def suspects_of(vessel: Vessel, library: Sequence[str], facts: Mapping[str, Any] | None = None) -> tuple[Effect, ...]:
     """Entries there are: the vessel's list and --library, less what the vessel already has.
 
-    The vessel's own list may name files beside it, --library files from the working directory. Raises BadInput.
+    One that needs a fact nobody states (where walls are) is left out; `facts` are a recording's. The vessel's own list may name files beside it, --library files from the working directory. Raises BadInput.
     """
     kinds: dict[str, type[Effect]] = {}
     for name, folder in [*((n, vessel.path) for n in vessel.diagnosis.suspects), *((n, Path()) for n in library)]:
@@ -81,7 +81,9 @@ def suspects_of(vessel: Vessel, library: Sequence[str]) -> tuple[Effect, ...]:
         if not any(p.fit for p in kind.params().values()):
             raise BadInput(f"{name}: this effect has no parameter that a diagnosis may fit (fit=True)")
         kinds[kind.name()] = kind
-    return tuple(absent(kind).completed(vessel) for n, kind in kinds.items() if vessel.effect(n) is None)
+    known = {**vessel.diagnosis.facts, **(facts or {})}
+    able = (k for n, k in kinds.items() if vessel.effect(n) is None and all(f in known for f in k.facts))
+    return tuple(absent(kind, known).completed(vessel) for kind in able)
 
 
 def tried(suspects: Sequence[Effect], without: Sequence[str]) -> tuple[str, ...]:
@@ -102,9 +104,11 @@ def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     return Program(nominal, suspects), tuple(e.name() for e in suspects if e.name() in there)
 
 
-def absent(kind: type[Effect]) -> Effect:
-    """An entry at the values at which it does nothing."""
-    return kind.from_settings({n: p.absent for n, p in kind.params().items() if p.fit})
+def absent(kind: type[Effect], facts: Mapping[str, Any] | None = None) -> Effect:
+    """An entry at the values at which it does nothing, with what stated facts say of it."""
+    named = ((names, (facts or {})[fact]) for fact, names in kind.facts.items() if fact in (facts or {}))
+    told = {n: float(x) for names, values in named for n, x in zip(names, values, strict=True)}
+    return kind.from_settings(told | {n: p.absent for n, p in kind.params().items() if p.fit})
 
 
 def diagnose(
@@ -142,8 +146,8 @@ def diagnose_recordings(
 
     `note` says in words what was kept unseen. Raises BadInput.
     """
-    programs = {path: Program(b, suspects_of(b, library)) for path, b in boats.items()}
-    boat = boats[fitted[0].path]
+    boat, facts = boats[fitted[0].path], fitted[0].notes.facts
+    programs = {path: Program(b, suspects_of(b, library, facts)) for path, b in boats.items()}
     stated = stated_noise(boat, fitted[0])
     laid = [track(r, programs[r.path], stated) for r in (*fitted, *unseen)]
     uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}

@@ -23,6 +23,7 @@ FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sampl
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
+BODY = ("mass", "roll_inertia", "yaw_inertia")  # [kg], [kg m^2] numbers of the body at the end of a track's values
 NOTHING = np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))  # where no pass is kept
 CHANNELS = {  # measured signal -> (noise family, freedom, rate or position)
     "x_m": ("position_sd_m", "surge", 0),
@@ -65,8 +66,7 @@ class Track:
     signals: tuple[str, ...]
     codes: Array  # (C,) integers
     commands: Array  # (N, K)
-    values: Array  # nominal parameters of this run
-    body: Array
+    values: Array  # nominal parameters of this run, then the body's `BODY`
     noise_scale: Mapping[str, float]  # this recording's sensor noise per common one, by family
     facts: Mapping[str, Any] = field(default_factory=dict)  # what the recording's notes state besides
     start: Array = field(init=False)  # (n,) first state
@@ -143,7 +143,16 @@ class Track:
         out = np.full((len(starts), len(self.times), 2 * nq), np.nan)
         states = np.ascontiguousarray(means[starts, : 2 * nq])
         self.program.module.free_runs(
-            self.times, self.commands, MAX_STEP, self.body, values, on, np.array(starts), np.array(ends), states, out
+            self.times,
+            self.commands,
+            MAX_STEP,
+            body_of(values),
+            values,
+            on,
+            np.array(starts),
+            np.array(ends),
+            states,
+            out,
         )
         return [(a, out[i, a : b + 1].copy()) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
 
@@ -160,11 +169,16 @@ class Track:
                 covariance[nq + i, nq + i] = 1.0
         means, covariances, transitions, predicted = keep or NOTHING
         found = self.program.module.kalman(
-            self.times, self.measured, self.codes, self.commands, self.step, self.body, values, on, levels.force**2,
-            levels.time_constant, noise, self.start, covariance, full, fresh, self._linear, self._gains, self._scale,
-            self._white, keep is not None, means, covariances, transitions, predicted,
+            self.times, self.measured, self.codes, self.commands, self.step, body_of(values), values, on,
+            levels.force**2, levels.time_constant, noise, self.start, covariance, full, fresh, self._linear,
+            self._gains, self._scale, self._white, keep is not None, means, covariances, transitions, predicted,
         )  # fmt: skip
         return float(found)
+
+
+def body_of(values: Array) -> Array:
+    """Mass and inertias of a boat, the last of a track's values."""
+    return values[-len(BODY) :]
 
 
 def segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
@@ -210,10 +224,11 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     own = stated_noise(vessel, recording)
     scale = {f: own[f] / (stated or own)[f] for f in own}
     commands = commands_of(recording, vessel.commands) if vessel.commands else np.zeros((len(recording), 1))
+    facts = facts_of(vessel, recording)
     laid = Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
         tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes, np.ascontiguousarray(commands),
-        stated_values(program, recording.notes.facts), program.body, scale, recording.notes.facts,
+        stated_values(program, facts), scale, facts,
     )  # fmt: skip
     nq = len(axes)
     if nq > 1 and (speed := float(np.sqrt(laid.spread[nq, nq]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
@@ -228,7 +243,7 @@ def quickest(program: Program, values: Array, command: Array) -> float:
     code, on = program.module, program.switches()
     nq = code.NQ
     k, act, memory = np.zeros(code.K), np.zeros(code.HELD), np.zeros(program.memory_size)
-    code.constants(program.body, values, on, k)
+    code.constants(body_of(values), values, on, k)
     code.settle(command, memory, values, on, act)
     slopes = np.zeros((nq, 2 * nq))
     code.slopes(0.0, np.zeros(2 * nq), act, values, on, k, np.zeros(nq), slopes)
@@ -237,11 +252,11 @@ def quickest(program: Program, values: Array, command: Array) -> float:
 
 
 def stated_values(program: Program, facts: Mapping[str, Any]) -> Array:
-    """Parameters of a program, those that a recording's facts state (`Effect.facts`) put in.
+    """Parameters of a program, those that a recording's facts state (`Effect.facts`) put in, then its body's numbers.
 
     Every random force is silenced: the filter finds its course, a free run knows none.
     """
-    values = program.values()
+    values = np.append(program.values(), program.body)
     for effect in program.effects:
         if isinstance(effect, Unsteady):
             values[program.index(effect.name(), "realisation")] = 0.0
@@ -274,6 +289,11 @@ def stated_noise(vessel: Vessel, recording: Recording) -> dict[str, float]:
             f"{_called(recording)}: noise {wrong[0]} = {noise[wrong[0]]:g}; allowed is more than 0, at most {HUGE:g}"
         )
     return noise
+
+
+def facts_of(vessel: Vessel, recording: Recording) -> dict[str, Any]:
+    """What is known of a run besides its columns: the vessel's word, unless the recording's notes say otherwise."""
+    return {**vessel.diagnosis.facts, **recording.notes.facts}
 
 
 def _called(recording: Recording) -> str:

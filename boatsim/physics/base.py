@@ -6,19 +6,21 @@ Axes are SNAME: x forward, y starboard, z down, heading and yaw rate clockwise s
 """
 
 import math
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from operator import attrgetter
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.errors import BadInput, unknown_name
+from boatsim.physics.content import snake_case
 
 Array = NDArray[np.float64]
+E = TypeVar("E", bound="Effect")
+UNSET = math.nan  # a parameter that nobody stated: filled in on a vessel by `follows` or `Effect.rules`, else 0
 AXES = ("surge", "sway", "roll", "yaw")  # order of every vector over the freedoms: (u, v, p, r), (X, Y, K, N)
 
 
@@ -138,8 +140,7 @@ def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Any:
     return motion_type(actuators)(**(full | given))
 
 
-@dataclass(frozen=True)
-class Param:
+class Param(NamedTuple):
     """What is known of a parameter before any data: bounds, unit, words, and whether a diagnosis may fit it."""
 
     low: float
@@ -151,8 +152,9 @@ class Param:
     axis: str = ""  # freedom it belongs to ("roll", ...); fitted only on vessels that have it
     absent: float = 0.0  # value at which the effect is not there
     calibrates: str = ""  # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
-    follows: str = ""  # "linear_damping.surge" of the vessel, or "vessel.body.mass" where none is given
-    scales: str = ""  # "linear_damping.surge": the vessel's coefficient that this factor multiplies
+    follows: str = ""  # left unset: the vessel's "linear_damping.surge" or "vessel.body.mass"; "?" ends an optional one
+    releases: tuple[str, ...] = ()  # "linear_damping.surge", "body.mass": numbers of the vessel that may be off,
+    how: str = "sets"  # or "scales" or "shifts": what a released number undergoes
 
 
 def param(
@@ -168,11 +170,41 @@ def param(
     absent: float = 0.0,
     calibrates: str = "",
     follows: str = "",
-    scales: str = "",
+    releases: tuple[str, ...] = (),
+    how: str = "sets",
 ) -> Any:
-    """Dataclass field of a checked number. `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter."""
-    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows, scales)
+    """Dataclass field of a checked number; `nominal` may be UNSET.
+
+    `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter.
+    """
+    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows, releases, how)
     return field(default=nominal, metadata={"param": about})
+
+
+def factor(*releases: str, words: str, spread: float = 0.4, axis: str = "", low: float = 0.1, high: float = 5.0) -> Any:
+    """Field of a `Release`: numbers of the vessel that may be off by one factor."""
+    return param(
+        1.0, low=low, high=high, unit="", words=words, fit=True, spread=spread, axis=axis, absent=1.0,
+        releases=releases, how="scales",
+    )  # fmt: skip
+
+
+def shift(*releases: str, words: str, unit: str, spread: float, low: float, high: float, axis: str = "") -> Any:
+    """Field of a `Release`: numbers of the vessel that may be off by one addend."""
+    return param(
+        0.0, low=low, high=high, unit=unit, words=words, fit=True, spread=spread, axis=axis, releases=releases,
+        how="shifts",
+    )  # fmt: skip
+
+
+def number(
+    *releases: str, words: str, unit: str, spread: float, low: float, high: float, absent: float, axis: str = ""
+) -> Any:
+    """Field of a `Release`: a number of the vessel that is not what is stated, but this; `absent` is the stated one."""
+    return param(
+        absent, low=low, high=high, unit=unit, words=words, fit=True, spread=spread, axis=axis, absent=absent,
+        releases=releases,
+    )  # fmt: skip
 
 
 class Checked:
@@ -186,7 +218,7 @@ class Checked:
     @classmethod
     def from_settings(cls, settings: Mapping[str, Any]) -> Self:
         """Build from a file's table; raises BadInput with the nearest valid name for a setting that does not exist."""
-        names = [f.name for f in fields(cls) if f.init]  # type: ignore[arg-type]
+        names = [f.name for f in fields(cls) if f.init and not f.kw_only]  # type: ignore[arg-type]
         for key in settings:
             if key not in names:
                 raise BadInput(unknown_name(f"{cls.__name__}: setting", key, names))
@@ -195,6 +227,8 @@ class Checked:
     def __post_init__(self) -> None:
         for name, about in type(self).params().items():
             value = getattr(self, name)
+            if value is UNSET:
+                continue
             if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
                 raise BadInput(f"{type(self).__name__}.{name} = {value!r}; allowed is a number ({about.words})")
             if not about.low <= value <= about.high:
@@ -202,11 +236,6 @@ class Checked:
                     f"{type(self).__name__}.{name} = {value:g} {about.unit}; allowed {about.low:g} to "
                     f"{about.high:g} {about.unit} ({about.words})"
                 )
-
-
-def snake_case(name: str) -> str:
-    """FanWind -> fan_wind: the name of an effect or controller is its file's name."""
-    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
 @dataclass(frozen=True)
@@ -221,6 +250,8 @@ class Effect(Checked):
     facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # fact in a recording's notes -> the parameters it states
     starts: ClassVar[tuple[Mapping[str, float], ...]] = ()  # where a fit starts; empty: a tenth of each spread
     anchored: ClassVar[str] = ""  # what its force holds on to beside the water: "the air", "walls"; empty: nothing
+
+    filled: frozenset[str] = field(default=frozenset(), kw_only=True, repr=False, compare=False)  # by `completed`
 
     @classmethod
     def name(cls) -> str:
@@ -237,18 +268,46 @@ class Effect(Checked):
 
     def values(self) -> Any:
         """The parameters as the law's second argument."""
-        return type(self).values_type()(*(float(getattr(self, n)) for n in type(self).params()))
+        given = ((self.stated(n), getattr(self, n)) for n in type(self).params())
+        return type(self).values_type()(*(float(x) if there else 0.0 for there, x in given))
+
+    def stated(self, name: str) -> bool:
+        """Whether a parameter has a value, be it zero."""
+        return getattr(self, name) is not UNSET
 
     def completed(self, vessel: Any) -> Self:
-        """The effect with what it must know of the vessel it is put on (`follows`) filled in. Raises BadInput."""
-        taken = {}
+        """The effect with what nobody stated filled in: what `follows` the vessel, then what `rules` give, else 0.
+
+        What a file states wins. Raises BadInput where the vessel lacks what the effect builds on.
+        """
+        own = self
         for name, about in type(self).params().items():
-            owner, _, key = about.follows.partition(".")
-            if owner == "vessel":
-                taken[name] = getattr(self, name) or attrgetter(key)(vessel)
-            elif owner:
-                taken[name] = getattr(self.needed(vessel, owner), key)
-        return replace(self, **taken)
+            if about.follows and not self.stated(name):
+                own = replace(own, **{name: self._followed(about.follows, vessel)})
+        ruled = {n: x for n, x in own.rules(vessel).items() if not own.stated(n)} if own._left() else {}
+        own = replace(own, **ruled)
+        for fact, names in type(self).facts.items():
+            for missing in (n for n in names if not own.stated(n)):
+                where = f"state it in its table, or {fact} among the facts of a recording or of the vessel's diagnosis"
+                raise BadInput(f"{vessel.name}: {self.name()} needs {missing}: {where}")
+        return replace(own, **dict.fromkeys(own._left(), 0.0), filled=frozenset(self._left()) | self.filled)
+
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """Parameters by a rule of the effect's own, for those that nobody states; what follows is filled in before."""
+        return {}
+
+    def _left(self) -> list[str]:
+        """Parameters without a value."""
+        return [n for n in type(self).params() if not self.stated(n)]
+
+    def _followed(self, source: str, vessel: Any) -> float:
+        """The value of the vessel, or of one of its effects, that a parameter follows. Raises BadInput."""
+        owner, _, key = source.removesuffix("?").partition(".")
+        if owner == "vessel":
+            return float(attrgetter(key)(vessel))
+        if source.endswith("?") and vessel.effect(owner) is None:
+            return 0.0
+        return float(getattr(self.needed(vessel, owner), key))
 
     def needed(self, vessel: Any, owner: str) -> Any:
         """The vessel's effect that this one builds on. Raises BadInput where it has none."""
@@ -260,6 +319,83 @@ class Effect(Checked):
     def seeded(self, seed: int) -> Self:
         """The effect with its random course, if it has one, drawn from a scenario's seed."""
         return self
+
+
+def preset(
+    law: type[E],
+    name: str,
+    *,
+    frees: Mapping[str, Mapping[str, Any]] | None = None,
+    fixed: Mapping[str, float] | None = None,
+    **about: Any,
+) -> type[E]:
+    """Another entry over the same law, under a name of its own; `about` is its words, shown_by, source, starts ...
+
+    `frees` are the parameters that a diagnosis may fit, with what is otherwise known of them (`Param`); `fixed` are
+    those that make the entry what it is. The rest stays open to a file.
+    """
+    types: dict[str, type] = {}
+    namespace: dict[str, Any] = {**about, "__doc__": about["words"], "__module__": law.__module__}
+    namespace["__annotations__"] = types
+    for key, known in law.params().items():
+        nominal = next(f.default for f in fields(law) if f.name == key)
+        if key in (frees or {}):
+            known = known._replace(**{"fit": True, "calibrates": "", **(frees or {})[key]})
+            nominal = known.absent
+        elif key in (fixed or {}):
+            nominal = (fixed or {})[key]
+            known = known._replace(low=nominal, high=nominal, fit=False, calibrates="", follows="")
+        else:
+            known = known._replace(fit=False)
+        namespace[key] = field(default=nominal, metadata={"param": known})
+        types[key] = float
+    return dataclass(frozen=True)(type(law)(name, (law,), namespace))
+
+
+class Change(NamedTuple):
+    """What a parameter of a release does to one number of a vessel."""
+
+    parameter: str  # of the release
+    owner: str  # the vessel's effect, or "body"
+    key: str
+    how: str  # "sets", "scales" or "shifts"
+    weight: float  # of a shift
+
+    def of(self, stated: float, value: float) -> float:
+        """The number in place of the stated one where the parameter has this value."""
+        if self.how == "scales":
+            return stated * value
+        return stated + self.weight * value if self.how == "shifts" else value
+
+
+@dataclass(frozen=True)
+class Release(Effect):
+    """A suspicion that stated numbers of the vessel are off: no law of its own, the vessel's own effects feel it.
+
+    Each parameter names the numbers it `releases`; those the vessel does not have are left out. In a vessel or scenario
+    file it changes them at once, in a diagnosis they are fitted, in a patched file they are written.
+    """
+
+    def changes(self, vessel: Any) -> list[Change]:
+        """What it does to the numbers that the vessel has."""
+        found, weights = [], self.weights(vessel)
+        for name, about in type(self).params().items():
+            for place in about.releases:
+                owner, _, key = place.partition(".")
+                if owner == "body" or vessel.effect(owner) is not None:
+                    found.append(Change(name, owner, key, about.how, weights.get(place, 1.0)))
+        return found
+
+    def weights(self, vessel: Any) -> dict[str, float]:
+        """What a number is shifted by per shift of the parameter; 1 where it is not said."""
+        return {}
+
+    def completed(self, vessel: Any) -> Self:
+        """Raises BadInput where the vessel has none of the numbers."""
+        if not self.changes(vessel):
+            places = (p for about in type(self).params().values() for p in about.releases)
+            self.needed(vessel, next(places).partition(".")[0])
+        return super().completed(vessel)
 
 
 @dataclass(frozen=True)

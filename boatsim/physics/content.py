@@ -3,6 +3,7 @@
 import hashlib
 import importlib
 import importlib.util
+import re
 import sys
 import traceback
 from functools import cache
@@ -17,6 +18,7 @@ PACKAGES = {  # kinds that are modules of ours, one a file
     "measure": "measures",
     "reader": "recordings.readers",
 }
+ENTRY = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE)  # of the shelf of effects
 KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
 
 
@@ -30,15 +32,31 @@ def root() -> Path:
 
 def names(kind: str) -> list[str]:
     """Every vessel, controller, effect, measure or scenario there is; scenarios are named folder/file."""
+    if kind == "effect":
+        return sorted(_shelf())
     if kind in PACKAGES:
-        folder = Path(__file__).parents[1].joinpath(*PACKAGES[kind].split("."))
-        return sorted(p.stem for p in folder.glob("[!_]*.py"))
+        return sorted(p.stem for p in _package(kind).glob("[!_]*.py"))
     folder = root() / KINDS[kind]
     if kind == "vessel":
         return sorted(p.parent.name for p in folder.glob("*/vessel.toml"))
     if kind == "controller":
         return sorted(p.stem for p in folder.glob("[!_]*.py"))
     return sorted(str(p.relative_to(folder).with_suffix("")) for p in folder.glob("*/*.toml"))
+
+
+def _package(kind: str) -> Path:
+    """Folder of the modules of a kind."""
+    return Path(__file__).parents[1].joinpath(*PACKAGES[kind].split("."))
+
+
+@cache
+def _shelf() -> dict[str, str]:
+    """Every entry of the shelf of effects -> its file: a file may hold several over one law.
+
+    Read from the text, so that looking for one imports no other.
+    """
+    files = sorted(_package("effect").glob("[!_]*.py"))
+    return {snake_case(name): file.stem for file in files for name in ENTRY.findall(file.read_text(encoding="utf-8"))}
 
 
 def find(kind: str, name: str, beside: Path | None = None) -> Path:
@@ -93,8 +111,14 @@ def camel_case(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
 
 
+def snake_case(name: str) -> str:
+    """FanWind -> fan_wind: the name of an entry in files."""
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+
+
 def module_of(kind: str, name: str) -> ModuleType:
     """The module of ours that holds an effect, a measure or a reader."""
+    name = _shelf()[name] if kind == "effect" else name
     return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{name}")
 
 

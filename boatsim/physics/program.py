@@ -33,6 +33,7 @@ from boatsim.physics.base import (
     Inertia,
     Measurement,
     Reaction,
+    Release,
     Unsteady,
     alias_fields,
     angle_fields,
@@ -59,12 +60,13 @@ class Program:
     """
 
     vessel: Vessel
-    suspects: tuple[Effect, ...] = ()  # act only where `on` says so
+    suspects: tuple[Effect, ...] = ()  # those with a law act only where `on` says so
     effects: tuple[Effect, ...] = field(init=False)
     offsets: tuple[int, ...] = field(init=False)  # where each effect's parameters start
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "effects", (*self.vessel.effects, *self.suspects))
+        laws = (e for e in self.suspects if not isinstance(e, Release))  # a release has nothing to compile
+        object.__setattr__(self, "effects", (*self.vessel.effects, *laws))
         sizes = [len(type(e).params()) for e in self.effects]
         object.__setattr__(self, "offsets", tuple(int(n) for n in np.cumsum([0, *sizes])[:-1]))
 

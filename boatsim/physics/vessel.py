@@ -1,7 +1,7 @@
 """A vessel is data: hull, freedoms, effects with values, command channels, loads, and what a diagnosis may assume."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -9,7 +9,7 @@ from pydantic import Field, PositiveFloat
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, checked, read_toml
-from boatsim.physics.base import Effect
+from boatsim.physics.base import Change, Effect, Release
 from boatsim.physics.content import find, load_class
 
 Freedom = Literal["surge", "sway", "roll", "yaw"]
@@ -53,6 +53,7 @@ class DiagnosisTable(Table):
         Literal["damping", "thrust", "restoring"], PositiveFloat
     ] = {}  # relative sd: damping, thrust, restoring
     noise: dict[Noise, PositiveFloat] = {}  # sensor noise where a recording states none
+    facts: dict[str, float | str | bool | list[float]] = {}  # what holds where a recording states nothing else: walls_m
 
 
 class ManoeuvringTable(Table):
@@ -157,8 +158,8 @@ def load(
             raise BadInput(unknown_name(f"{label}: load", one, known))
     _check_apart(loads, known, label)
     for one in dict.fromkeys(loads):
-        raw = _overlaid(raw, known[one], label)
-    raw = _overlaid(raw, dict(settings or {}), label)
+        raw = overlaid(raw, known[one], label)
+    raw = overlaid(raw, dict(settings or {}), label)
     file = checked(VesselFile, raw, label)
     own = [table["use"] for table in file.effect if "use" in table]
     for table in extra:
@@ -191,10 +192,33 @@ def with_effects(vessel: Vessel, tables: Sequence[Mapping[str, Any]], folder: Pa
 
 
 def added(vessel: Vessel, effect: Effect) -> Vessel:
-    """The vessel with one more effect."""
-    from dataclasses import replace
+    """The vessel with one more effect; a release changes the numbers it names, now."""
+    effect = effect.completed(vessel)
+    if not isinstance(effect, Release):
+        return replace(vessel, effects=(*vessel.effects, effect))
+    for change in effect.changes(vessel):
+        vessel = _changed(vessel, change, getattr(effect, change.parameter))
+    return vessel
 
-    return replace(vessel, effects=(*vessel.effects, effect.completed(vessel)))
+
+def _changed(vessel: Vessel, change: Change, value: float) -> Vessel:
+    """The vessel with one number changed, and with it what nobody stated and follows it."""
+    if change.owner == "body":
+        new = change.of(getattr(vessel.body, change.key), value)
+        if new <= 0.0:
+            raise BadInput(f"{vessel.name}: body.{change.key} = {new:g}; allowed is more than 0")
+        vessel = replace(vessel, body=vessel.body.model_copy(update={change.key: new}))
+        source = f"vessel.body.{change.key}"
+    else:
+        new = change.of(getattr(vessel.effect(change.owner), change.key), value)
+        source = f"{change.owner}.{change.key}"
+    effects = []
+    for e in vessel.effects:
+        follows = {n: type(e).params()[n].follows.removesuffix("?") for n in e.filled}
+        keys = [n for n, place in follows.items() if place == source]
+        own = [change.key] if e.name() == change.owner else []
+        effects.append(replace(e, **dict.fromkeys([*keys, *own], new)))
+    return replace(vessel, effects=tuple(effects))
 
 
 def effect_from(table: Mapping[str, Any], file: str, folder: Path) -> Effect:
@@ -227,7 +251,7 @@ def _flat(table: Mapping[str, Any]) -> dict[str, Any]:
     return flat | {f"{k}.{name}": v for k, values in inner.items() for name, v in values.items()}
 
 
-def _overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) -> dict[str, Any]:
+def overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) -> dict[str, Any]:
     """A vessel file with a load's tables laid over it: top-level numbers, body, geometry, and effects by name."""
     out = dict(raw)
     effects = [dict(t) for t in raw.get("effect", [])]

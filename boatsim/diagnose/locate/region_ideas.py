@@ -9,11 +9,11 @@ import numpy as np
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.locate.hull_forces import actuators, along
 from boatsim.physics.base import Array, angle_fields
+from boatsim.physics.effects.wall_effect import REACH
 from boatsim.simulate.twin import body_rates
 
 FAMILY = "thrust"  # of actuators whose value is a force
 PLAY = 0.1  # [rad] between a steering command and the angle it stands for; the force hardly depends on it beyond scale
-REACH = 0.5  # [boat lengths] over which what a wall does falls to 37 % (`wall_effect` has the same for the trial boat)
 NEAR = 2.0  # [reaches] beyond which a wall is taken to do nothing
 SPEED = "forward_speed_mps"  # fact of a recording in which the hull only rolls
 
@@ -109,13 +109,8 @@ def _walls(track: Track, states: Array, damping: Array) -> Iterator[Idea]:
 
 
 def walls_of(track: Track) -> tuple[float, ...] | None:
-    """x_low, x_high, y_low, y_high [m] of the tank: what the recording states, else the vessel's wall effect."""
-    if "walls_m" in track.facts:
-        return tuple(track.facts["walls_m"])
-    for effect in track.program.effects:
-        if names := type(effect).facts.get("walls_m"):
-            return tuple(float(getattr(effect, n)) for n in names)
-    return None
+    """x_low, x_high, y_low, y_high [m] of the tank, as the recording or its vessel states them."""
+    return tuple(track.facts["walls_m"]) if "walls_m" in track.facts else None
 
 
 def _direction(factors: Array) -> str:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnose.filter import FIT_STEP, Track
+from boatsim.diagnose.filter import FIT_STEP, Track, body_of
 from boatsim.diagnose.next.manoeuvres import Manoeuvre
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -70,10 +70,10 @@ def _track(problem: Problem, name: str, times: Array, commands: Array, shown: Ar
 
 def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: Array) -> Array:
     """Channels (N, 2 NQ) of a free run as a recording would show them, ambient force left out."""
-    first = problem.tracks[0]
+    values = problem.values(problem.tracks[0], found.free, found.theta)
     out = np.full((1, len(times), len(start)), np.nan)
     problem.program.module.free_runs(
-        times, commands, FIT_STEP, first.body, problem.values(first, found.free, found.theta),
+        times, commands, FIT_STEP, body_of(values), values,
         problem.program.switches(found.suspects), np.array([0]), np.array([len(times) - 1]), start[None], out,
     )  # fmt: skip
     return np.asarray(out[0])

@@ -134,4 +134,4 @@ def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
 
 
 def _kind(problem: Problem, name: str) -> type[Effect]:
-    return next(type(e) for e in problem.program.effects if e.name() == name)
+    return next(type(e) for e in problem.program.suspects if e.name() == name)

@@ -37,7 +37,7 @@ def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, 
     off = known.T @ white + (base.theta - space.mean) / space.sd
     score = log_prior(base.free, base.theta) - 0.5 * float(white @ white)
     begin = Begin(known, off, score)
-    effects = {e.name(): e for e in problem.program.effects}
+    effects = {e.name(): e for e in problem.program.suspects}
     tried = {n: _look(problem, base, effects[n], begin) for n in candidates if not _random(effects[n])}
     return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if _random(effects[n])}
 
@@ -71,16 +71,15 @@ def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -
 
 
 def handed_over(start: Fit, effect: Effect) -> Fit:
-    """What recalibration made of a coefficient put into the factor of the suspect that multiplies it.
+    """What recalibration made of a coefficient put into the factor of the suspect that releases it.
 
     The product is all that the data know: along the curve on which it stays the same straight steps get nowhere.
     """
     theta = start.theta.copy()
-    place = {(f.effect, f.name): i for i, f in enumerate(start.free)}
-    for name, about in type(effect).params().items():
-        owner, _, key = about.scales.partition(".")
-        own, coefficient = place.get((effect.name(), name)), place.get((owner, key))
-        if own is not None and coefficient is not None:
+    coefficients = {f.at: i for i, f in enumerate(start.free) if f.relative}
+    for own, f in enumerate(start.free):
+        if f.effect == effect.name() and f.how == "scales" and not f.relative and f.at in coefficients:
+            coefficient = coefficients[f.at]
             theta[own], theta[coefficient] = theta[coefficient], start.free[coefficient].mean
     return replace(start, theta=theta)
 

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 SLOWEST = 0.3  # of the approach speed; what tests about it say of slower ships is not defined there
 
@@ -64,11 +64,11 @@ class AbkowitzHull(Force):
     source: ClassVar[str] = "M. A. Abkowitz, Lectures on Ship Hydrodynamics, Hy-5, Lyngby 1964"
     law: ClassVar = law
 
-    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
+    length: float = param(UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
     speed: float = param(1.0, low=0.01, high=50.0, unit="m/s", words="approach speed of the derivatives")
-    mass: float = param(0.0, low=0.0, high=1e12, unit="kg", words="the body's", follows="vessel.body.mass")
+    mass: float = param(UNSET, low=0.0, high=1e12, unit="kg", words="the body's", follows="vessel.body.mass")
     yaw_inertia: float = param(
-        0.0, low=0.0, high=1e16, unit="kg m^2", words="the body's", follows="vessel.body.yaw_inertia"
+        UNSET, low=0.0, high=1e16, unit="kg m^2", words="the body's", follows="vessel.body.yaw_inertia"
     )
     m11: float = inertia("m' - X_udot'")
     m22: float = inertia("m' - Y_vdot'")

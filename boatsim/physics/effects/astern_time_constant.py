@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 from boatsim.physics.effects.reversing_jet import ahead
 
 
@@ -30,5 +30,5 @@ class AsternTimeConstant(Force):
     starts: ClassVar = ({"factor": 0.7}, {"factor": 1.4})
 
     factor: float = param(1.0, low=0.1, high=10.0, unit="", words="astern per ahead", fit=True, spread=0.4, absent=1.0)
-    jet: float = param(0.0, low=-1e9, high=1e9, unit="N m/rad", words="the vessel's", follows="reversing_jet.yaw")
-    yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
+    jet: float = param(UNSET, low=-1e9, high=1e9, unit="N m/rad", words="the vessel's", follows="reversing_jet.yaw")
+    yaw: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")

@@ -11,7 +11,7 @@ from boatsim.physics.base import Force, Wrench, param
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
     """T (cos b, sin b) at (x, 0)."""
-    X, Y = m.thrust_N * m.cos_azimuth_rad, m.thrust_N * m.sin_azimuth_rad
+    X, Y = q.gain * m.thrust_N * m.cos_azimuth_rad, q.gain * m.thrust_N * m.sin_azimuth_rad
     return Wrench(X, Y, 0.0, q.x * Y)
 
 
@@ -25,3 +25,4 @@ class AzimuthThruster(Force):
     law: ClassVar = law
 
     x: float = param(0.4, low=-500.0, high=500.0, unit="m", words="ahead of the origin; negative: at the stern")
+    gain: float = param(1.0, low=0.1, high=5.0, unit="", words="thrust per commanded thrust", calibrates="thrust")

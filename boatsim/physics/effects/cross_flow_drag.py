@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 WATER_DENSITY = 1000.0  # [kg/m^3] fresh water
 GAUSS = 0.5 / sqrt(3.0)  # two-point Gauss abscissa on an interval of length 1
@@ -64,10 +64,15 @@ class CrossFlowDrag(Force):
         0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="-X_u|u| that goes with it", fit=True, spread=4.0
     )
     length: float = param(
-        0.0, low=0.0, high=500.0, unit="m", words="waterline length; 0: the vessel's own", follows="vessel.length"
+        UNSET,
+        low=0.0,
+        high=500.0,
+        unit="m",
+        words="waterline length; if not given, the vessel's own",
+        follows="vessel.length",
     )
     draught: float = param(
-        0.0, low=0.0, high=50.0, unit="m", words="draught; 0: the vessel's own", follows="vessel.draught"
+        UNSET, low=0.0, high=50.0, unit="m", words="draught; if not given, the vessel's own", follows="vessel.draught"
     )
     centre: float = param(0.0, low=-250.0, high=250.0, unit="m", words="mid-length ahead of the origin of motion")
     linear: float = param(0.0, low=0.0, high=1e9, unit="N s/m^2", words="linear sectional damping, for very slow flow")

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 
 @njit(inline="always")
@@ -43,8 +43,8 @@ class DraggedPropeller(Force):
     law: ClassVar = law
 
     drag: float = param(0.0, low=0.0, high=1e6, unit="N s^2/m^2", words="of one idle propeller", fit=True, spread=1.0)
-    x: float = param(0.0, low=-500.0, high=500.0, unit="m", words="mounts", follows="outboards.x")
+    x: float = param(UNSET, low=-500.0, high=500.0, unit="m", words="mounts", follows="outboards.x")
     half_spacing: float = param(
-        0.0, low=0.0, high=100.0, unit="m", words="mount to centreline", follows="outboards.half_spacing"
+        UNSET, low=0.0, high=100.0, unit="m", words="mount to centreline", follows="outboards.half_spacing"
     )
-    gain: float = param(0.0, low=0.0, high=5.0, unit="", words="the vessel's", follows="outboards.gain")
+    gain: float = param(UNSET, low=0.0, high=5.0, unit="", words="the vessel's", follows="outboards.gain")

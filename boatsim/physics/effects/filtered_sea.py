@@ -5,7 +5,7 @@ from typing import Any, ClassVar, Self
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 from boatsim.physics.chance import course, noise
 
 
@@ -40,12 +40,13 @@ class FilteredSea(Force):
     components: float = param(160.0, low=1.0, high=2000.0, unit="", words="number of cosines on each axis")
     realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course")
     arm: float = param(
-        0.0, low=-100.0, high=100.0, unit="m", words="the vessel's roll by sway; filled in if it has one"
+        UNSET,
+        low=-100.0,
+        high=100.0,
+        unit="m",
+        words="the vessel's roll by sway; if not given, its own if it has one",
+        follows="linear_hull.arm?",
     )
-
-    def completed(self, vessel: Any) -> Self:
-        """With the vessel's roll moment by sway force, where it has one."""
-        return replace(super().completed(vessel), arm=getattr(vessel.effect("linear_hull"), "arm", self.arm))
 
     def seeded(self, seed: int) -> Self:
         """Another course for each seed."""

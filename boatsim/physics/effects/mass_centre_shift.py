@@ -1,11 +1,11 @@
 """Mass centre shift: the hull's own mass lies ahead of or behind where the model has it."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Inertia, Mass, Wrench, param
+from boatsim.physics.base import UNSET, Force, Inertia, Mass, Wrench, param
 
 
 @njit(inline="always")
@@ -34,8 +34,11 @@ class MassCentreShift(Inertia, Force):
     law: ClassVar = law
 
     shift: float = param(0.0, low=-200.0, high=200.0, unit="m", words="positive forward", fit=True, spread=0.1)
-    hull_mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the hull's; 0: the vessel's own")
-
-    def completed(self, vessel: Any) -> Self:
-        """The effect with the vessel's mass filled in."""
-        return replace(super().completed(vessel), hull_mass=self.hull_mass or vessel.body.mass)
+    hull_mass: float = param(
+        UNSET,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="the hull's; if not given, the vessel's own",
+        follows="vessel.body.mass",
+    )

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 from boatsim.physics.effects.abkowitz_hull import derivative
 
 BOW_ON = 2.0  # R_0 is taken whole where u / U is above its inverse, up to 60 deg of drift; the model is for much less
@@ -39,11 +39,11 @@ class MmgHull(Force):
     source: ClassVar[str] = "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015 (MMG standard method)"
     law: ClassVar = law
 
-    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
-    draught: float = param(0.0, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught")
+    length: float = param(UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
+    draught: float = param(UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught")
     density: float = param(1000.0, low=0.0, high=1100.0, unit="kg/m^3", words="of the water")
-    m_x: float = param(0.0, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge")
-    m_y: float = param(0.0, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway")
+    m_x: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge")
+    m_y: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway")
     R_0: float = derivative("R_0")
     X_vv: float = derivative("X_vv")
     X_vr: float = derivative("X_vr")

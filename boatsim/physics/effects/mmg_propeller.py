@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 
 @njit(inline="always")
@@ -50,8 +50,8 @@ class MmgPropeller(Force):
     source: ClassVar[str] = "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015 (MMG standard method)"
     law: ClassVar = law
 
-    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
-    density: float = param(0.0, low=0.0, high=1100.0, unit="kg/m^3", words="of the water", follows="mmg_hull.density")
+    length: float = param(UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
+    density: float = param(UNSET, low=0.0, high=1100.0, unit="kg/m^3", words="of the water", follows="mmg_hull.density")
     diameter: float = param(1.0, low=0.001, high=20.0, unit="m", words="D_P")
     thrust_deduction: float = param(0.0, low=0.0, high=1.0, unit="", words="t_P")
     wake: float = param(0.0, low=0.0, high=1.0, unit="", words="w_P0, on a straight course")

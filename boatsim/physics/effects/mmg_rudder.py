@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 from boatsim.physics.effects.mmg_propeller import drift_angle, inflow, open_water
 
 
@@ -44,21 +44,21 @@ class MmgRudder(Force):
     source: ClassVar[str] = "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015 (MMG standard method)"
     law: ClassVar = law
 
-    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
-    density: float = param(0.0, low=0.0, high=1100.0, unit="kg/m^3", words="of the water", follows="mmg_hull.density")
-    diameter: float = param(1.0, low=0.0, high=20.0, unit="m", words="D_P", follows="mmg_propeller.diameter")
-    wake: float = param(0.0, low=0.0, high=1.0, unit="", words="w_P0", follows="mmg_propeller.wake")
-    wake_C1: float = param(0.0, low=0.0, high=20.0, unit="", words="C_1", follows="mmg_propeller.wake_C1")
+    length: float = param(UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
+    density: float = param(UNSET, low=0.0, high=1100.0, unit="kg/m^3", words="of the water", follows="mmg_hull.density")
+    diameter: float = param(UNSET, low=0.0, high=20.0, unit="m", words="D_P", follows="mmg_propeller.diameter")
+    wake: float = param(UNSET, low=0.0, high=1.0, unit="", words="w_P0", follows="mmg_propeller.wake")
+    wake_C1: float = param(UNSET, low=0.0, high=20.0, unit="", words="C_1", follows="mmg_propeller.wake_C1")
     wake_C2_port: float = param(
-        1.0, low=0.0, high=3.0, unit="", words="C_2, beta_P > 0", follows="mmg_propeller.wake_C2_port"
+        UNSET, low=0.0, high=3.0, unit="", words="C_2, beta_P > 0", follows="mmg_propeller.wake_C2_port"
     )
     wake_C2_starboard: float = param(
-        1.0, low=0.0, high=3.0, unit="", words="C_2, beta_P < 0", follows="mmg_propeller.wake_C2_starboard"
+        UNSET, low=0.0, high=3.0, unit="", words="C_2, beta_P < 0", follows="mmg_propeller.wake_C2_starboard"
     )
-    propeller_at: float = param(-0.5, low=-1.0, high=1.0, unit="", words="x_P'", follows="mmg_propeller.propeller_at")
-    k0: float = param(0.0, low=-2.0, high=2.0, unit="", words="K_T at J = 0", follows="mmg_propeller.k0")
-    k1: float = param(0.0, low=-2.0, high=2.0, unit="", words="of J in K_T", follows="mmg_propeller.k1")
-    k2: float = param(0.0, low=-2.0, high=2.0, unit="", words="of J^2 in K_T", follows="mmg_propeller.k2")
+    propeller_at: float = param(UNSET, low=-1.0, high=1.0, unit="", words="x_P'", follows="mmg_propeller.propeller_at")
+    k0: float = param(UNSET, low=-2.0, high=2.0, unit="", words="K_T at J = 0", follows="mmg_propeller.k0")
+    k1: float = param(UNSET, low=-2.0, high=2.0, unit="", words="of J in K_T", follows="mmg_propeller.k1")
+    k2: float = param(UNSET, low=-2.0, high=2.0, unit="", words="of J^2 in K_T", follows="mmg_propeller.k2")
     area: float = param(0.0, low=0.0, high=500.0, unit="m^2", words="A_R, without the horn")
     span: float = param(1.0, low=0.001, high=50.0, unit="m", words="H_R")
     slope: float = param(0.0, low=0.0, high=10.0, unit="", words="f_alpha, of the normal force coefficient")

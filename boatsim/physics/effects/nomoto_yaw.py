@@ -1,11 +1,11 @@
 """First-order yaw: the reduced model on which steering loops are designed, its numbers fixed or changing in time."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 
 @njit(inline="always")
@@ -33,8 +33,11 @@ class NomotoYaw(Force):
     time_constant: float = param(0.0, low=0.0, high=1e4, unit="s", words="T at the start; 0: the law is not there")
     time_constant_later: float = param(1.0, low=1e-3, high=1e4, unit="s", words="T from `duration` on")
     duration: float = param(1.0, low=1e-3, high=1e6, unit="s", words="time in which they change")
-    inertia: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="0: the rigid hull's own")
-
-    def completed(self, vessel: Any) -> Self:
-        """The effect with the vessel's yaw inertia filled in."""
-        return replace(super().completed(vessel), inertia=self.inertia or vessel.body.yaw_inertia)
+    inertia: float = param(
+        UNSET,
+        low=0.0,
+        high=1e13,
+        unit="kg m^2",
+        words="if not given, the rigid hull's own",
+        follows="vessel.body.yaw_inertia",
+    )

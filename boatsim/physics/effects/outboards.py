@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Release, Wrench, factor, param
 
 
 @njit(inline="always")
@@ -31,3 +31,15 @@ class Outboards(Force):
     x: float = param(-0.6, low=-500.0, high=500.0, unit="m", words="mounts ahead of the origin of motion")
     half_spacing: float = param(0.19, low=0.0, high=100.0, unit="m", words="mount to centreline, B")
     gain: float = param(1.0, low=0.1, high=5.0, unit="", words="thrust per commanded thrust", calibrates="thrust")
+
+
+@dataclass(frozen=True)
+class ThrustGainError(Release):
+    """All thrust is off by one factor, by more than the stated uncertainty of the thrust coefficient."""
+
+    words: ClassVar[str] = "all thrust is stronger or weaker than stated by one factor"
+    shown_by: ClassVar[str] = "runs at several thrust levels"
+
+    factor: float = factor(
+        "outboards.gain", "azimuth_thruster.gain", words="thrust per stated thrust", spread=0.3, low=0.2, high=3.0
+    )

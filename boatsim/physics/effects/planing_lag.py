@@ -1,11 +1,11 @@
 """Planing lag: a planing craft gains and loses speed slowly until it planes."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Reaction, Wrench, param
+from boatsim.physics.base import UNSET, Reaction, Wrench, param
 
 
 @njit(inline="always")
@@ -32,8 +32,11 @@ class PlaningLag(Reaction):
         0.0, low=0.0, high=100.0, unit="m/s", words="speed from which nothing lags", fit=True, spread=8.0
     )
     least: float = param(0.2, low=0.02, high=1.0, unit="", words="smallest factor", fit=True, spread=0.3, absent=0.2)
-    hull_mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the hull's; 0: the vessel's own")
-
-    def completed(self, vessel: Any) -> Self:
-        """The effect with the vessel's mass filled in."""
-        return replace(super().completed(vessel), hull_mass=self.hull_mass or vessel.body.mass)
+    hull_mass: float = param(
+        UNSET,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="the hull's; if not given, the vessel's own",
+        follows="vessel.body.mass",
+    )

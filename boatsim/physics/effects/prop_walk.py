@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 
 @njit(inline="always")
@@ -34,4 +34,4 @@ class PropWalk(Force):
         0.0, low=-0.6, high=0.6, unit="", words="starboard force per thrust, astern", fit=True, spread=0.1
     )
     ahead_share: float = param(1.0 / 3.0, low=0.0, high=1.0, unit="", words="of it ahead")
-    x: float = param(0.0, low=-500.0, high=500.0, unit="m", words="the vessel's thrusters", follows="outboards.x")
+    x: float = param(UNSET, low=-500.0, high=500.0, unit="m", words="the vessel's thrusters", follows="outboards.x")

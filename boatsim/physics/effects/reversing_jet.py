@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Release, Wrench, param, shift
 
 
 @njit(inline="always")
@@ -16,8 +16,8 @@ def ahead(m: Any) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Thrust and turning moment both go with the part of the jet that points astern."""
-    share = ahead(m)
+    """Thrust and turning moment both go with the part of the jet that points astern, and with what leaks past."""
+    share = ahead(m) + q.leak
     return Wrench(q.thrust * share, 0.0, 0.0, q.yaw * share * m.jet_rad)
 
 
@@ -36,3 +36,16 @@ class ReversingJet(Force):
     yaw: float = param(
         0.0, low=-1e9, high=1e9, unit="N m/rad", words="N_delta, bucket up", calibrates="thrust", axis="yaw"
     )
+    leak: float = param(0.0, low=-1.0, high=1.0, unit="", words="share of the jet that the bucket does not turn")
+
+
+@dataclass(frozen=True)
+class JetLeak(Release):
+    """A bucket that does not close: thrust and turning moment do not vanish where the bucket should cancel them."""
+
+    words: ClassVar[str] = "part of the jet leaks past the bucket and pushes ahead whatever the bucket's angle"
+    shown_by: ClassVar[str] = "nozzle steps with the bucket near 45 deg, where the jet should neither push nor turn"
+    source: ClassVar[str] = "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, figures 3 and 4"
+    starts: ClassVar = ({"fraction": 0.1},)
+
+    fraction: float = shift("reversing_jet.leak", words="of the jet", unit="", spread=0.3, low=-1.0, high=1.0)

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, param
+from boatsim.physics.base import Array, Channel, param, preset
 
 
 @njit(inline="always")
@@ -37,3 +37,13 @@ class Servo(Channel):
     range: float = param(pi / 4, low=0.0, high=pi, unit="rad", words="largest angle either way")
     rate: float = param(400.0 * pi / 180.0, low=0.001, high=1e3, unit="rad/s", words="fastest turning")
     lag: float = param(0.06, low=0.0, high=60.0, unit="s", words="time constant")
+
+
+ElevatorServo = preset(
+    Servo,
+    "ElevatorServo",
+    words="the bucket follows with a limited rate and range",
+    shown_by="switching between ahead and astern",
+    source="L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013: 0 to 55 deg; the rate is assumed",
+    acts_on="elevator",
+)

@@ -1,11 +1,11 @@
 """Speed hold: the surge speed is kept, as linear manoeuvring models take it for granted."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 
 @njit(inline="always")
@@ -25,8 +25,11 @@ class SpeedHold(Force):
 
     speed: float = param(0.0, low=-50.0, high=50.0, unit="m/s", words="that is held")
     gain: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="force per deviation")
-    mass: float = param(0.0, low=0.0, high=1e12, unit="kg", words="rigid mass; 0: the vessel's own")
-
-    def completed(self, vessel: Any) -> Self:
-        """The vessel's own mass filled in."""
-        return replace(self, mass=self.mass or vessel.body.mass)
+    mass: float = param(
+        UNSET,
+        low=0.0,
+        high=1e12,
+        unit="kg",
+        words="rigid mass; if not given, the vessel's own",
+        follows="vessel.body.mass",
+    )

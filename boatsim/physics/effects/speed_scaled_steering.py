@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 
 @njit(inline="always")
@@ -44,14 +44,14 @@ class SpeedScaledSteering(Force):
     rudder_yaw: float = param(
         0.0, low=-5.0, high=5.0, unit="", words="share of its yaw moment with u^2", fit=True, spread=1.0
     )
-    speed: float = param(1.0, low=0.01, high=50.0, unit="m/s", words="U0", follows="approach_balance.speed")
-    sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-Y_v", follows="linear_damping.sway")
-    yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-N_r", follows="linear_damping.yaw")
+    speed: float = param(UNSET, low=0.01, high=50.0, unit="m/s", words="U0", follows="approach_balance.speed")
+    sway: float = param(UNSET, low=0.0, high=1e9, unit="N s/m", words="-Y_v", follows="linear_damping.sway")
+    yaw: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="-N_r", follows="linear_damping.yaw")
     sway_by_yaw: float = param(
-        0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r", follows="linear_damping.sway_by_yaw"
+        UNSET, low=-1e11, high=1e11, unit="N s", words="-Y_r", follows="linear_damping.sway_by_yaw"
     )
     yaw_by_sway: float = param(
-        0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", follows="linear_damping.yaw_by_sway"
+        UNSET, low=-1e11, high=1e11, unit="N s", words="-N_v", follows="linear_damping.yaw_by_sway"
     )
-    steer_sway: float = param(0.0, low=-1e11, high=1e11, unit="N/rad", words="Y_delta", follows="rudder.sway")
-    steer_yaw: float = param(0.0, low=-1e13, high=1e13, unit="N m/rad", words="N_delta", follows="rudder.yaw")
+    steer_sway: float = param(UNSET, low=-1e11, high=1e11, unit="N/rad", words="Y_delta", follows="rudder.sway")
+    steer_yaw: float = param(UNSET, low=-1e13, high=1e13, unit="N m/rad", words="N_delta", follows="rudder.yaw")

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 SOFT = 0.02  # [m] over which the line goes from slack to taut; a wider one can not follow a short stiff line
 NEAR = 0.05  # [m] keeps the direction of the pull defined at the anchor
@@ -60,5 +60,5 @@ class Tether(Force):
     north: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=4.0)
     east: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=3.0)
     at: float = param(
-        0.0, low=-500.0, high=500.0, unit="m", words="made fast at the vessel's thrusters", follows="outboards.x"
+        UNSET, low=-500.0, high=500.0, unit="m", words="made fast at the vessel's thrusters", follows="outboards.x"
     )

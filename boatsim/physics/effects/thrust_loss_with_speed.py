@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 
 @njit(inline="always")
@@ -28,8 +28,8 @@ class ThrustLossWithSpeed(Force):
     law: ClassVar = law
 
     loss: float = param(0.0, low=0.0, high=50.0, unit="s/m", words="share lost per speed ahead", fit=True, spread=0.5)
-    x: float = param(0.0, low=-500.0, high=500.0, unit="m", words="mounts", follows="outboards.x")
+    x: float = param(UNSET, low=-500.0, high=500.0, unit="m", words="mounts", follows="outboards.x")
     half_spacing: float = param(
-        0.0, low=0.0, high=100.0, unit="m", words="mount to centreline", follows="outboards.half_spacing"
+        UNSET, low=0.0, high=100.0, unit="m", words="mount to centreline", follows="outboards.half_spacing"
     )
-    gain: float = param(0.0, low=0.0, high=5.0, unit="", words="the vessel's", follows="outboards.gain")
+    gain: float = param(UNSET, low=0.0, high=5.0, unit="", words="the vessel's", follows="outboards.gain")

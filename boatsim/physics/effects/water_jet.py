@@ -1,11 +1,11 @@
 """Water jet: a shaft power that the throttle sets, so the thrust falls with the speed it drives."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param
 
 IDLE = 1.0  # throttle of a handle nobody touches
 PLANES = 2.0  # throttle at which the first branch of the power curve ends
@@ -46,8 +46,11 @@ class WaterJet(Force):
     q2: float = param(154.9, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle from 4: at 0; printed 164.5")
     slowest: float = param(0.5, low=0.01, high=100.0, unit="m/s", words="below this speed the thrust rises no more")
     gain: float = param(1.0, low=0.0, high=20.0, unit="", words="power per stated power", calibrates="thrust")
-    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the curve is per unit mass; 0: the vessel's own")
-
-    def completed(self, vessel: Any) -> Self:
-        """The effect with the vessel's mass filled in."""
-        return replace(super().completed(vessel), mass=self.mass or vessel.body.mass)
+    mass: float = param(
+        UNSET,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="the curve is per unit mass; if not given, the vessel's own",
+        follows="vessel.body.mass",
+    )

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 
 from numba import njit
 
-from boatsim.physics.base import Swell, Unsteady, Wrench, param
+from boatsim.physics.base import UNSET, Swell, Unsteady, Wrench, param
 from boatsim.physics.chance import course, drawn, line
 
 WAVES = 64  # components of the realisation
@@ -57,16 +57,15 @@ class YawRateWaves(Unsteady):
     frequency: float = param(3.0, low=0.05, high=20.0, unit="rad/s", words="of the filter, omega_w")
     damping: float = param(0.1, low=0.005, high=0.9, unit="", words="of the filter, lambda_w")
     inertia: float = param(
-        0.0, low=0.0, high=1e13, unit="kg m^2", words="in yaw, of hull and water; 0: the vessel's own"
+        UNSET, low=0.0, high=1e13, unit="kg m^2", words="in yaw, of hull and water; if not given, the vessel's own"
     )
-    drag: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
+    drag: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
     realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still")
 
-    def completed(self, vessel: Any) -> Self:
-        """The effect with the vessel's inertia and damping filled in."""
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """The vessel's inertia in yaw, its water's included."""
         water = vessel.effect("added_mass")
-        whole = vessel.body.yaw_inertia + (water.yaw + water.sway * water.sway_at**2 if water else 0.0)
-        return replace(super().completed(vessel), inertia=self.inertia or whole)
+        return {"inertia": vessel.body.yaw_inertia + (water.yaw + water.sway * water.sway_at**2 if water else 0.0)}
 
     def seeded(self, seed: int) -> Self:
         """Another course for each seed, unless the water is still."""

@@ -1,23 +1,21 @@
-"""Steering rate limit: the steering machine turns at one speed at most."""
+"""Rate limit: an actuator moves at one speed at most."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, param
+from boatsim.physics.base import Array, Channel, param, preset
 
-INSTANT = 2.0  # [rad/s] 115 deg/s; whatever turns faster follows its command at once
+INSTANT = 2.0  # [rad/s] 115 deg/s; a steering that turns faster follows its command at once
+AT_ONCE = 1e3  # [1/s] the same of a handle
 
 
 @njit(inline="always")
 def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
     """A ramp to the command, then the command; the mean over the step is exact."""
     gap = x - memory[at]
-    if q.rate >= INSTANT:
-        memory[at] = x
-        return x
-    needed = abs(gap) / q.rate  # [s]
+    needed = 0.0 if q.rate >= q.instant else abs(gap) / q.rate  # [s]
     if needed <= dt:
         memory[at] = x
         return x - 0.5 * gap * needed / dt
@@ -41,3 +39,22 @@ class SteeringRateLimit(Channel):
     rate: float = param(
         INSTANT, low=0.0005, high=50.0, unit="rad/s", words="fastest turning", fit=True, spread=2.0, absent=INSTANT
     )
+    instant: float = param(INSTANT, low=0.0, high=1e6, unit="rad/s", words="from this rate on nothing is limited")
+
+
+ThrottleRateLimit = preset(
+    SteeringRateLimit,
+    "ThrottleRateLimit",
+    words="the throttle moves at one rate at most",
+    shown_by="throttle steps from idle to full",
+    source="C. Svendsen et al., IFAC MCMC 2012, section III-A: a rate limit is named, its value is not",
+    acts_on="throttle",
+    starts=({"rate": 0.5}, {"rate": 3.0}),
+    frees={
+        "rate": {
+            "low": 0.01, "high": 1e6, "unit": "1/s", "words": "fastest change of the handle", "spread": 3.0,
+            "absent": AT_ONCE,
+        }
+    },
+    fixed={"instant": AT_ONCE},
+)  # fmt: skip
