@@ -310,7 +310,7 @@ def test_both_cameras_show_the_boat_move_to_starboard(tmp_path: Path) -> None:
     file = tmp_path / "pictures.npz"
     done = subprocess.run(
         [sys.executable, "-c", DRAW, str(file)],
-        env={**os.environ, "MUJOCO_GL": "egl", "PYTHONPATH": str(Path(world.__file__).parents[1])},
+        env={**os.environ, "MUJOCO_GL": "egl", "PYTHONPATH": str(Path(world.__file__).parents[2])},
         capture_output=True,
         text=True,
     )
