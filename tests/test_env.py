@@ -166,6 +166,37 @@ def test_an_episode_lasts_as_long_as_the_scenario_and_ends_undiscounted() -> Non
     assert boat.physics.time() == pytest.approx(0.8)
 
 
+def test_a_boat_that_rolls_shows_its_roll() -> None:
+    """jet_ski heels when its jet is turned; its heel is observed with its rate."""
+    boat = env.load(scenario.load("jet_ski/zigzag"))
+    plain = env.load("joystick_boat/sway_1").reset().observation
+    assert not {"phi_rad", "p_radps"} & set(plain)
+    step, spec = boat.reset(), boat.action_spec()
+    for _ in range(20):
+        step = boat.step(spec.maximum)
+    state = boat.physics.engine.state
+    assert abs(state.phi) > 1e-3
+    assert (step.observation["phi_rad"], step.observation["p_radps"]) == (state.phi, state.p)
+
+
+def test_an_action_beyond_the_limits_acts_as_the_limit() -> None:
+    ends = []
+    for factor in (1.0, 50.0):
+        boat = env.load("joystick_boat/sway_1")
+        boat.reset()
+        for _ in range(20):
+            boat.step(factor * boat.action_spec().maximum)
+        ends.append(boat.physics.engine.state)
+        assert np.array_equal(boat.physics.control(), boat.action_spec().maximum)
+    assert ends[0] == ends[1]
+
+
+def test_an_episode_begins_with_the_actuators_where_the_scenario_has_them() -> None:
+    one = short("joystick_boat/sway_1", 4.0, start={"commands": {"steer_port_rad": 0.3}})
+    boat = env.load(one)
+    assert boat.reset().observation["actual_steer_port_rad"] == run(one).recording["actual_steer_port_rad"][0] != 0.0
+
+
 def test_observations_are_sname() -> None:
     boat = env.load(short())
     boat.reset()

@@ -104,15 +104,13 @@ def plan(names: Sequence[str], out: Path | None, seed: int | None, live: bool) -
 
 
 def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
-    """DIR for one scenario, DIR/sway_1 for each of several; out/sway_1 if DIR is not given."""
+    """DIR for one scenario, DIR/joystick_boat/sway_1 for each of several; out/joystick_boat/sway_1 without a DIR."""
     if out and len(names) == 1:
         return [out]
-    short = [name.rpartition("/")[2] for name in names]
-    used = short if len(set(short)) == len(short) else list(names)
-    if len(set(used)) < len(used):
-        twice = next(name for name in used if used.count(name) > 1)
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
         raise BadInput(f"scenario {twice!r} is named twice; both would write to the same folder")
-    return [(out or Path("out")) / name for name in used]
+    return [(out or Path("out")) / name for name in names]
 
 
 def carry_out(task: Task, progress: Callable[[float], None]) -> Outcome:

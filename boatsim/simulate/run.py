@@ -134,6 +134,10 @@ class Runner:
         self._write_row()
 
     def _columns(self) -> list[str]:
+        """Beside motion and the commands that act: `sent_` what the controller sent before a range limited it.
+
+        `actual_` is an actuator, `sensed_` and `camera_` were measured, `force_` is all laws, `wind_` those of the air.
+        """
         limits = [f"{name}{end}" for name in self._adaptive() for end in ("", "_low", "_high")]
         references = [n for n in self._estimates if n.startswith("reference_")]
         force, wind = ([f"{what}_{c}" for c in self._components()] for what in ("force", "wind"))
