@@ -14,7 +14,7 @@ from boatsim.diagnose.filter import track
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.commands import taken_row, taken_rows
-from boatsim.physics.content import names
+from boatsim.physics.content import load_class, names
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings import table
@@ -233,3 +233,39 @@ def test_a_motion_gone_wild_leaves_no_file_in_the_working_folder(
     with pytest.raises(Exception, match="no longer finite"):
         engine.advance(3)
     assert not list(here.iterdir())
+
+
+# ---- forces of the air
+
+
+BREATH = """
+from dataclasses import dataclass
+from typing import ClassVar
+from numba import njit
+from boatsim.physics.base import Force, Wrench, param
+
+@njit(inline="always")
+def law(m, q):
+    return Wrench(0.0, q.push * m.t, 0.0, 0.0)
+
+@dataclass(frozen=True)
+class Breath(Force):
+    words: ClassVar[str] = "an air that grows"
+    law: ClassVar = law
+    of_air: ClassVar = True
+    push: float = param(0.1, low=0.0, high=1.0, unit="N", words="a second")
+"""
+
+
+def test_a_run_logs_any_force_of_the_air_apart_by_what_it_says_of_itself(tmp_path: Path, boat: Vessel) -> None:
+    file = stubborn(tmp_path, boat)
+    assert "wind_Y_N" not in ran(file).recording.signals
+    (tmp_path / "breath.py").write_text(BREATH)
+    file.write_text(file.read_text() + '[[effect]]\nuse = "breath.py"\n')
+    log = ran(file).recording
+    assert log["wind_Y_N"] == pytest.approx(0.1 * log.t) and not log["wind_X_N"].any()
+
+
+@pytest.mark.parametrize("name", ["wind", "fan_wind"])
+def test_the_winds_of_the_shelf_are_forces_of_the_air(name: str) -> None:
+    assert load_class("effect", name).of_air and not load_class("effect", "push").of_air
