@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 
 from boatsim import __version__
 from boatsim.cli import app
+from boatsim.cli.batch import plan
 from boatsim.physics import content
 from boatsim.recordings import table as recording
 
@@ -81,6 +82,7 @@ def test_norms_json_has_what_the_table_prints(sway: tuple[Path, Any]) -> None:
     out, result = sway
     found = norms_of(out)
     head = {"scenario": "joystick_boat/sway_1", "controller": "l1_joystick", "seed": 0, "complete": True}
+    head |= {"steps": len(recording.read(out / "recording.csv")) - 1, "saturated_steps": {}}
     assert {k: v for k, v in found.items() if k != "norms"} == head
     for name, norm in found["norms"].items():
         assert set(norm) == {"value", "unit", "published", "bar", "ok", "at_6hz", "noise_floor"}
@@ -96,6 +98,15 @@ def test_norms_json_agrees_with_recording_csv(sway: tuple[Path, Any]) -> None:
     starboard = np.interp([t - 1.0 / 3.0, t], log.t, log["y_m"])  # at the frame before, and at the frame it was seen
     assert starboard[0] < 0.9 <= starboard[1]
     assert found["surge_offset"]["value"] == pytest.approx(np.interp(t, log.t, log["x_m"]), abs=1e-9)
+
+
+def test_scenarios_of_one_name_do_not_share_a_folder() -> None:
+    """Neither in one command nor in two."""
+    both = ["kynoc/half_speed", "eastward_ho/half_speed"]
+    alone = [plan([name], None, None, False)[0].folder for name in both]
+    assert alone == [task.folder for task in plan(both, None, None, False)] == [Path("out") / name for name in both]
+    assert [t.folder for t in plan(both, Path("dir"), None, False)] == [Path("dir") / name for name in both]
+    assert plan(both[:1], Path("dir"), None, False)[0].folder == Path("dir")
 
 
 def test_camera_csv_is_a_recording_that_knows_its_boat(tmp_path: Path) -> None:
@@ -270,7 +281,7 @@ def test_a_shipped_scenario_is_a_script(tmp_path: Path) -> None:
     script = content.root() / "scenarios" / "joystick_boat" / "sway_1.toml"
     done = subprocess.run([script], cwd=tmp_path, env=os.environ | {"PATH": path}, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert {f.name for f in (tmp_path / "out" / "sway_1").iterdir()} == FILES
+    assert {f.name for f in (tmp_path / "out" / "joystick_boat" / "sway_1").iterdir()} == FILES
 
 
 @pytest.mark.parametrize("name", content.names("scenario"))

@@ -150,6 +150,28 @@ def test_boat_thrown_at_a_wall_stays_inside(boat: vessel.Vessel, velocity: tuple
     assert touched > 0
 
 
+def restitution(boat: vessel.Vessel, speed: float, step: float) -> float:
+    """Share of its speed [m/s] with which a boat that coasts ahead comes back from the wall."""
+    model = world.build(boat, Tank(2.5 * boat.length, 2.5 * boat.length, boat.length), step)
+    data = mujoco.MjData(model)
+    data.qvel[0] = speed
+    for _ in range(round(2.0 * boat.length / speed / step)):
+        mujoco.mj_step(model, data)
+    assert data.ncon == 0
+    return float(-data.qvel[0] / speed)
+
+
+def test_a_wall_sends_a_hull_back_with_the_share_of_a_critically_damped_spring(boat: vessel.Vessel) -> None:
+    """Spring and damper that can not pull: v e^-wt (1 - wt) until the force is zero at wt = 2, so e^-2."""
+    assert restitution(boat, 0.5, 0.001) == pytest.approx(math.exp(-2.0), abs=0.02)
+
+
+@pytest.mark.parametrize(("name", "speed"), [("joystick_boat", 0.1), ("joystick_boat", 0.5), ("mariner", 0.5)])
+def test_a_wall_gives_little_back_at_the_usual_step(name: str, speed: float) -> None:
+    step = 0.02  # [s]
+    assert 0.09 < restitution(vessel.load(name), speed * max(1.0, vessel.load(name).length / 50), step) < 0.19
+
+
 def test_elastic_wall_without_friction_turns_a_head_on_velocity_round(boat: vessel.Vessel) -> None:
     model = world.build(boat, step=0.001, wall_solref=(-2000.0, 0.0))
     data = mujoco.MjData(model)
@@ -183,6 +205,21 @@ def test_port_is_up_in_mujoco_and_the_tank_lies_where_start_axes_put_it(boat: ve
     assert ends["wall_ahead"][0] == pytest.approx(1.3) and ends["wall_astern"][0] == pytest.approx(-0.7)
     assert ends["wall_port"][1] == pytest.approx(1.1) and ends["wall_starboard"][1] == pytest.approx(-2.9)
     assert model.body("fan").pos[1] > 1.1  # the fan stands behind the port wall and blows to starboard
+
+
+@pytest.mark.parametrize("name", ["joystick_boat", "mariner", "kvlcc2_full_scale"])
+@pytest.mark.parametrize("centre", [(0.0, 0.0), (-2.0, 3.0)])
+def test_all_of_the_water_lies_before_the_sun(name: str, centre: tuple[float, float]) -> None:
+    """What lies behind the plane of the sun is drawn in shadow, whose edge would cross the water."""
+    boat = vessel.load(name)
+    side = 10.0 * boat.length
+    where = (centre[0] * boat.length, centre[1] * boat.length)
+    model = world.build(boat, Tank(side, side, boat.length, walls=False, centre=where))
+    sun, way = model.light("sun").pos, model.light("sun").dir
+    for x in (-side / 2, side / 2):
+        for y in (-side / 2, side / 2):
+            corner = np.array([where[0] + x, -where[1] + y, boat.length])  # as high as any mast
+            assert (corner - sun) @ way > boat.length
 
 
 def test_tank_without_size_and_hull_without_body_are_refused(boat: vessel.Vessel, tmp_path: Path) -> None:
@@ -310,7 +347,7 @@ def test_both_cameras_show_the_boat_move_to_starboard(tmp_path: Path) -> None:
     file = tmp_path / "pictures.npz"
     done = subprocess.run(
         [sys.executable, "-c", DRAW, str(file)],
-        env={**os.environ, "MUJOCO_GL": "egl", "PYTHONPATH": str(Path(world.__file__).parents[1])},
+        env={**os.environ, "MUJOCO_GL": "egl", "PYTHONPATH": str(Path(world.__file__).parents[2])},
         capture_output=True,
         text=True,
     )

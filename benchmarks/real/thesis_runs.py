@@ -132,7 +132,7 @@ class Bench:
         """Times (N,) and states (N, 6) in earth axes of a run with given commands."""
         code, on, y, step = self.program.module, self.program.switches(), np.zeros(6), self.scenario.file.step
         memory, act, out = np.zeros(self.program.memory_size), np.zeros(code.HELD), np.zeros((len(commands) + 1, 6))
-        start = _row(self.scenario.controller.initial_commands(), list(self.scenario.vessel.commands))
+        start = self.program.command_array(self.scenario.controller.initial_commands())
         code.settle(start, memory, p, on, act)
         code.rollout(0.0, y, commands, memory, step, 1, body, p, on, np.zeros(3), out)
         return np.asarray(step * np.arange(len(out)), float), np.asarray(out, float)
@@ -144,19 +144,19 @@ class Bench:
         told, code = self.scenario, self.program.module
         controller, file, sensors = told.controller, told.file, told.sensors
         controller.reset()
-        names = list(told.vessel.commands)
         period = round(controller.period / file.step)
         memory, act, on, none = (
             np.zeros(self.program.memory_size), np.zeros(code.HELD), self.program.switches(), np.zeros(3)
         )  # fmt: skip
-        code.settle(_row(controller.initial_commands(), names), memory, p, on, act)
+        code.settle(self.program.command_array(controller.initial_commands()), memory, p, on, act)
         y, out, pull = np.zeros(6), np.zeros((period + 1, 6)), (0.0, 0.0)
         parts, t = [np.zeros((1, 6))], 0.0
         while t < file.duration - 1e-9 and not _over(file.until, y):
             x, east, psi, *_ = y.tolist()
             u, v, r = body_rates(y)[3:].tolist()
             sense: Sense = sensors.feel(t, (x, east, psi), (u, v, r), pull, rng)
-            commands = np.tile(_row(controller.step(sense, told.goal_at(t)), names), (period, 1))
+            row = self.program.command_array(controller.step(sense, told.goal_at(t)))
+            commands = np.tile(row, (period, 1))
             code.rollout(t, y, commands, memory, file.step, 1, body, p, on, none, out)
             if given is not None:
                 given.append(commands)
@@ -167,10 +167,6 @@ class Bench:
             t += period * file.step
         states = np.concatenate(parts)
         return np.asarray(file.step * np.arange(len(states)), float), states
-
-
-def _row(commands: Mapping[str, float], names: Sequence[str]) -> Array:
-    return np.array([commands.get(n, 0.0) for n in names])
 
 
 def _over(until: Any, y: Array) -> bool:

@@ -12,10 +12,10 @@ import numpy as np
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Unsteady
+from boatsim.physics.commands import taken_rows
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
-from boatsim.simulate.run import commands_of
 
 FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into thirds
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
@@ -223,7 +223,9 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     measured = np.column_stack([recording.signals[n] for n, *_ in found])
     own = stated_noise(vessel, recording)
     scale = {f: own[f] / (stated or own)[f] for f in own}
-    commands = commands_of(recording, vessel.commands) if vessel.commands else np.zeros((len(recording), 1))
+    commands = (
+        taken_rows(vessel, recording.signals, len(recording)) if vessel.commands else np.zeros((len(recording), 1))
+    )
     facts = facts_of(vessel, recording)
     laid = Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),

@@ -403,6 +403,7 @@ class Force(Effect):
     """Memoryless force: compiled `law(motion, values) -> Wrench`."""
 
     law: ClassVar[Callable[[Any, Any], Wrench]]
+    of_air: ClassVar[bool] = False  # a force of the air, which a run logs apart
 
     def wrench(self, m: Any) -> Wrench:
         """The force at one motion."""

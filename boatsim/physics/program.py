@@ -39,6 +39,7 @@ from boatsim.physics.base import (
     angle_fields,
     fixed_fields,
 )
+from boatsim.physics.commands import taken_row
 from boatsim.physics.content import address, module_at
 from boatsim.physics.vessel import Vessel
 
@@ -100,12 +101,8 @@ class Program:
         return [a for a in self.vessel.actuators if type(effect).acts_on in ("", self.vessel.commands[a].family)]
 
     def command_array(self, commands: Mapping[str, float]) -> Array:
-        """(C,) in the vessel's order; commands not given are zero. Raises BadInput for a name it does not take."""
-        known = self.vessel.commands
-        for name in commands:
-            if name not in known:
-                raise BadInput(self.vessel.no_command(name))
-        return np.array([commands.get(n, 0.0) for n in known], dtype=float)
+        """(C,) in force when these are sent, in the vessel's order; those not given are neutral. Raises BadInput."""
+        return taken_row(self.vessel, commands)
 
     @cached_property
     def module(self) -> ModuleType:

@@ -31,6 +31,7 @@ class CommandChannel(Table):
 
     low: float
     high: float
+    neutral: float = 0.0  # in force where nothing is sent; a channel that can not be 0 must say its own
     family: str
     side: Literal[-1, 0, 1] = 0  # port, middle, starboard
     actuator: bool = True  # False: only feeds an actuator of the same side (PWM feeds thrust)
@@ -161,6 +162,7 @@ def load(
         raw = overlaid(raw, known[one], label)
     raw = overlaid(raw, dict(settings or {}), label)
     file = checked(VesselFile, raw, label)
+    _check_channels(file.channels, label)
     own = [table["use"] for table in file.effect if "use" in table]
     for table in extra:
         if table.get("use") in own:
@@ -174,6 +176,17 @@ def load(
         file.scale, file.scales, file.columns, file.manoeuvring,
     )  # fmt: skip
     return with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
+
+
+def _check_channels(channels: Mapping[str, CommandChannel], label: str) -> None:
+    """Every channel has a range, and its neutral lies within."""
+    for name, c in channels.items():
+        if not c.low < c.high:
+            raise BadInput(f"{label}: channels.{name}: low = {c.low:g}, high = {c.high:g}; low must be below high")
+        if not c.low <= c.neutral <= c.high:
+            given = "neutral" in c.model_fields_set
+            what = f"neutral = {c.neutral:g}" if given else "neutral is missing and can not be 0"
+            raise BadInput(f"{label}: channels.{name}: {what}; allowed {c.low:g} to {c.high:g}")
 
 
 def _base(name: str, path: Path, label: str) -> Path:

@@ -43,6 +43,7 @@ from dm_control.rl import control  # noqa: E402
 from dm_env import specs  # noqa: E402
 
 OBSERVED = {"x_m": "x", "y_m": "y", "psi_rad": "psi", "u_mps": "u", "v_mps": "v", "r_radps": "r"}
+ROLL = {"phi_rad": "phi", "p_radps": "p"}  # of a boat that rolls
 OUTBOARDS = {-1: "outboard_port", 0: "outboard", 1: "outboard_starboard"}  # side of a steering channel -> body drawn
 
 
@@ -85,7 +86,7 @@ class BoatPhysics(Physics):
         self.forward()
 
     def set_control(self, control: Any) -> None:
-        """Send commands (C,), in the vessel's order. Raises BadInput for another shape or a value not finite."""
+        """Send commands (C,), in the vessel's order; they act within their ranges. Raises BadInput for others."""
         values, names = np.asarray(control, dtype=float), self.engine.vessel.commands
         if values.shape != (len(names),) or not np.isfinite(values).all():
             raise BadInput(f"action {values.tolist()}; allowed are {len(names)} finite numbers: {', '.join(names)}")
@@ -148,13 +149,13 @@ class BoatTask(control.Task):
         self._random = np.random.default_rng(seed)
 
     def initialize_episode(self, physics: BoatPhysics) -> None:
-        """The scenario's start, actuators settled at the commands its controller begins with."""
+        """The scenario's start, actuators settled at its commands, others at those its controller begins with."""
         start, length = self.scenario.file.start, self.scenario.vessel.length
         x, y, psi = self._random.uniform(-self.scatter, self.scatter, 3) * (length, length, 1.0)
         state = State(
             0.0, start.x + x, start.y + y, start.psi + psi, start.phi, start.u, start.v, start.p, start.r
         )  # fmt: skip
-        physics.engine.reset(state, self.scenario.controller.initial_commands())
+        physics.engine.reset(state, {**self.scenario.controller.initial_commands(), **start.commands})
 
     def before_step(self, action: Any, physics: BoatPhysics) -> None:
         """Send the action to the actuators, which follow with their lags and limits."""
@@ -168,7 +169,8 @@ class BoatTask(control.Task):
     def get_observation(self, physics: BoatPhysics) -> OrderedDict[str, np.float64]:
         """True pose in start axes and velocities in body axes, actual actuators, goal; units are in the names."""
         state, actual, goal = physics.engine.state, physics.engine.actuators, self._goal(physics)
-        values = {name: getattr(state, field) for name, field in OBSERVED.items()}
+        seen = OBSERVED | (ROLL if "roll" in self.scenario.vessel.freedoms else {})
+        values = {name: getattr(state, field) for name, field in seen.items()}
         values |= {f"actual_{name}": value for name, value in actual.items()}
         values |= {f"goal_{name}": value for name, value in zip(STICK, goal, strict=True)}
         return OrderedDict((name, np.float64(value)) for name, value in values.items())

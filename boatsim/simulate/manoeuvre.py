@@ -35,15 +35,18 @@ ROLLS = 12  # periods of a roll decay, of a hull as wide as this one
 
 
 def scenario_of(
-    manoeuvre: str, name: str, loads: Sequence[str] = (), angle: float | None = None, speed: float | None = None
-) -> Scenario:
+    manoeuvre: str, name: str, loads: Sequence[str] = (), angle: float | None = None, speed: float | None = None,
+    heading: float | None = None,
+) -> Scenario:  # fmt: skip
     """The scenario of a manoeuvre; `angle` [deg], positive to starboard, `speed` [m/s] of the approach.
 
-    Without an angle it is the usual one, or as much helm as the vessel has. Raises BadInput for a manoeuvre or vessel
-    that does not exist, or a vessel that can not do it so.
+    Without an angle it is the usual one, or as much helm as the vessel has. `heading` [deg] is the change at which a
+    zig-zag reverses its helm, without it the angle. Raises BadInput for a manoeuvre or vessel that does not exist, or a
+    vessel that can not do it so.
     """
     if manoeuvre not in ANGLES:
         raise BadInput(unknown_name("manoeuvre", manoeuvre, ANGLES))
+    _check_heading(manoeuvre, heading)
     vessel = vessels.load(name, loads)
     usual = ANGLES[manoeuvre] if angle is None else angle
     if usual == 0.0 and manoeuvre != "crash_stop":
@@ -66,7 +69,18 @@ def scenario_of(
             f"{vessel.name}: nothing to go astern with; [manoeuvring] astern = {{ CHANNEL = value }} says what"
         )
     at = approach(vessel, speed)
-    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at), Path(f"{manoeuvre}.toml"))
+    reverses = abs(angle) if heading is None else heading
+    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at, reverses), Path(f"{manoeuvre}.toml"))
+
+
+def _check_heading(manoeuvre: str, heading: float | None) -> None:
+    """Only a zig-zag has one, and it lies ahead of the bow."""
+    if heading is None:
+        return
+    if manoeuvre != "zigzag":
+        raise BadInput(f"heading = {heading:g} deg; only a zigzag reverses its helm at a heading, not a {manoeuvre}")
+    if not 0.1 <= heading <= 170.0:
+        raise BadInput(f"heading = {heading:g} deg; allowed 0.1 to 170 deg")
 
 
 def handled(vessel: Vessel) -> ManoeuvringTable:
@@ -169,11 +183,11 @@ def _rounded(seconds: float) -> float:
     return float(max(m for m in (1.0, 2.0, 5.0) if m * power <= seconds * (1 + 1e-9)) * power)
 
 
-def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float) -> dict[str, Any]:
-    """Tables of a manoeuvre that begins with an approach at a speed."""
+def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float, reverses: float) -> dict[str, Any]:
+    """Tables of a manoeuvre that begins with an approach at a speed; a zig-zag reverses at a heading [deg]."""
     table, unit, step = vessel.manoeuvring, vessel.length / speed, _step(vessel, speed)
     execute, hold = (step * round(lengths * unit / step) for lengths in (BEFORE, HOLD))
-    helm, heading = {"angle": radians(angle)}, {"heading": radians(abs(angle))}
+    helm, heading = {"angle": radians(angle)}, {"heading": radians(reverses)}
     place = {"execute": execute, "length": vessel.length}
     own: dict[str, tuple[dict[str, Any], dict[str, Any], float]] = {  # controller, measure, longest time
         "turning_circle": (helm, place, LONGEST * unit),
@@ -184,7 +198,8 @@ def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float) -> di
     }
     controller, measure, duration = own[manoeuvre]
     handling = {"period": step, "execute": execute, "ahead": table.ahead, "steer": table.steer}
-    bars = imo.limits(manoeuvre, angle, vessel.length, speed)
+    as_usual = manoeuvre != "zigzag" or reverses == abs(angle)  # the limits are those of 10/10 and 20/20
+    bars = imo.limits(manoeuvre, angle, vessel.length, speed) if as_usual else {}
     until = {"until": {"turned": ROUND}} if manoeuvre == "turning_circle" else {}
     return until | {
         "duration": min(duration, 86400.0),
@@ -220,7 +235,7 @@ def _roll_period(vessel: Vessel) -> float:
     start = [0.0] * (2 * _half(vessel))
     roll = 0 if _half(vessel) == 1 else 3
     start[roll] = radians(1.0)
-    rows = np.zeros((8000, len(vessel.commands)))
+    rows = np.tile(twin.program.command_array({}), (8000, 1))
     phi = twin.rollout(start, rows, guess / 400)[:, roll]
     crossings = np.flatnonzero((phi[:-1] > 0.0) & (phi[1:] <= 0.0))
     if len(crossings) < 2:

@@ -84,6 +84,8 @@ def to_json(run: Run, norms: Mapping[str, Norm]) -> dict[str, Any]:
         "controller": run.scenario.file.controller["use"],
         "seed": run.seed,
         "complete": run.complete,
+        "steps": run.steps,
+        "saturated_steps": run.saturated,  # by channel: more was sent than it takes
         "norms": {name: asdict(norm) for name, norm in norms.items()},
     }
 

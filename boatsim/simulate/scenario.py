@@ -47,7 +47,7 @@ class StartTable(Table):
     v: float = 0.0  # [m/s]
     p: float = 0.0  # [rad/s]
     r: float = 0.0  # [rad/s]
-    commands: dict[str, float] = {}  # to which the actuators have settled; others to the controller's first, or zero
+    commands: dict[str, float] = {}  # to which the actuators have settled; others to the controller's first, or neutral
 
 
 class UntilTable(Table):

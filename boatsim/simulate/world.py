@@ -15,7 +15,10 @@ from boatsim.physics.vessel import Vessel
 
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
-SOFT_WALL = (0.04, 1.0)  # solref: time constant [s] (two steps of 20 ms), critically damped: the hull does not bounce
+DRAWN = math.hypot(0.75, 1.5)  # [m] from the middle to a corner of the tank in tank.xml
+# solref: time constant [s] (two steps of 20 ms), critically damped. A wall only pushes, so the hull leaves it with e^-2
+# of the speed it came with, 0.14; steps as coarse as the time constant make it 0.10 to 0.18
+SOFT_WALL = (0.04, 1.0)
 JOINTS = {  # freedom -> joint name, kind, axis; roll comes last so that its axis turns with the heading
     "surge": ("x", mujoco.mjtJoint.mjJNT_SLIDE, (1, 0, 0)),
     "sway": ("y", mujoco.mjtJoint.mjJNT_SLIDE, (0, 1, 0)),
@@ -106,6 +109,8 @@ def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
             spec.delete(geom)
     x, y, _ = middle_of_tank
     spec.body("fan").pos = (x, y + b + 2 * WALL + 0.1, 0.2)
+    # all of the water lies before the sun: what is behind it MuJoCo draws as if in shadow
+    spec.light("sun").pos = middle_of_tank + spec.light("sun").pos * max(1.0, math.hypot(a, b) / DRAWN)
     aim_cameras(spec, tank, vessel)
 
 

@@ -17,10 +17,9 @@ if TYPE_CHECKING:
     from boatsim.physics.vessel import Vessel
 
 Triangles = NDArray[np.uint32]
-SEEN = 2  # MuJoCo geom group of what is drawn; touching shapes are in group 3
+SEEN = (0, 1, 2)  # MuJoCo geom groups that its viewers draw; touching shapes are in group 3
 OUTBOARD = "outboard_"  # bodies of this name turn with the steering of their side
-BALL, BARREL, BRICK, MESH = 4, 5, 6, 7  # mjtGeom: ellipsoid, cylinder, box, mesh
-ROUND = 2  # mjtGeom: sphere
+ROUND, PILL, BALL, BARREL, BRICK, MESH = 2, 3, 4, 5, 6, 7  # mjtGeom: sphere, capsule, ellipsoid, cylinder, box, mesh
 REACH = 0.6  # a full-thrust arrow is this part of the boat's length
 PUSH = 0.05  # share of the weight that a force as long as REACH has on a boat whose thrust is not a command
 GRAVITY = 9.81  # [m/s^2]
@@ -72,7 +71,7 @@ def scene_from(model: Any, vessel: "Vessel", tank: Any) -> Scene:
         vessel.name,
         vessel.length,
         (tank.length, tank.width, *tank.centre),
-        tuple(_solids(model)),
+        _with_hull(tuple(_solids(model)), vessel),
         tuple(_thrusters(model)),
         REACH * vessel.length / max(thrust, default=PUSH * GRAVITY * vessel.body.mass),
         open=not tank.walls,
@@ -94,6 +93,14 @@ def plain_scene(length: float, beam: float, tank: tuple[float, float, float, flo
     return Scene(name, length, tank, (solid,), tuple(thrusters), REACH * length)
 
 
+def _with_hull(solids: tuple[Solid, ...], vessel: "Vessel") -> tuple[Solid, ...]:
+    """The shapes of a model, with a box of the vessel's size where its hull has none that can be drawn."""
+    if any(s.part == "hull" for s in solids):
+        return solids
+    size = plain_scene(vessel.length, vessel.beam, (1.0, 1.0, 0.0, 0.0))
+    return *solids, *size.solids
+
+
 def _thrusters(model: Any) -> Iterator[Thruster]:
     """One for each outboard's body in the hull."""
     for body in range(model.nbody):
@@ -107,7 +114,7 @@ def _thrusters(model: Any) -> Iterator[Thruster]:
 def _solids(model: Any) -> Iterator[Solid]:
     """Every drawn shape, in the axes of its part."""
     for geom in range(model.ngeom):
-        if model.geom_group[geom] != SEEN:
+        if model.geom_group[geom] not in SEEN:
             continue
         body = int(model.geom_bodyid[geom])
         shape = _shape(model, geom)
@@ -151,6 +158,9 @@ def _shape(model: Any, geom: int) -> tuple[Array, Triangles] | None:
     if kind in (ROUND, BALL):
         vertices, triangles = _lathe([(np.cos(a), np.sin(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 17)])
         return vertices * (size if kind == BALL else size[0]), triangles
+    if kind == PILL:
+        ends = [(np.cos(a), np.sin(a), np.sign(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 18)]
+        return _lathe([(size[0] * r, size[0] * z + size[1] * end) for r, z, end in ends])
     if kind == BARREL:
         vertices, triangles = _lathe([(0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)])
         return vertices * (size[0], size[0], size[1]), triangles

@@ -31,6 +31,7 @@ class FanWind(Force):
     source: ClassVar[str] = "checked thesis specification, section 7 (wind model [A])"
     anchored: ClassVar[str] = "the air"
     law: ClassVar = law
+    of_air: ClassVar = True
 
     speed: float = param(1.5, low=0.0, high=40.0, unit="m/s", words="air speed")
     toward: float = param(0.0, low=-pi, high=pi, unit="rad", words="where the air goes")

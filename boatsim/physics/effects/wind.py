@@ -27,6 +27,7 @@ class Wind(Force):
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"
     law: ClassVar = law
+    of_air: ClassVar = True
     strength: ClassVar = ("force",)
     starts: ClassVar = tuple({"force": 0.08, "toward": quarter * pi / 2} for quarter in (-1, 0, 1, 2))
 
