@@ -8,7 +8,7 @@ from typing import Any
 from boatsim.files import read_toml
 from boatsim.physics.content import find, names
 from boatsim.simulate import scenario
-from boatsim.simulate.metrics import Norm, norms
+from boatsim.simulate.norms import Norm, norms
 from boatsim.simulate.run import run
 
 SHIPPED = tuple(name for name in names("scenario") if name.startswith("joystick_boat/"))

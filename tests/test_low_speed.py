@@ -24,7 +24,7 @@ from boatsim.physics.effects.yaw_rate_waves import PAIRS, YawRateWaves, phase, s
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.metrics import Norm, norms
+from boatsim.simulate.norms import Norm, norms
 from boatsim.simulate.run import Run, run
 
 Heading = load_class("controller", "l1_heading_discrete")

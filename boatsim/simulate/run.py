@@ -10,14 +10,14 @@ import numpy as np
 from boatsim.control.base import Sense
 from boatsim.physics.base import Array, motion
 from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.sensors import Frame
 from boatsim.simulate.world import Tank
 
 SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
 FIELDS = ("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
-CAMERA = ("led_x_m", "led_y_m", "button_x_m", "button_y_m", "x_m", "y_m", "psi_rad")
+SEEN = ("x_m", "y_m", "psi_rad")  # the pose that a camera frame gives
 POSE = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw", "phi_rad": "roll"}
 RATES = {"u_mps": "surge", "v_mps": "sway", "r_radps": "yaw", "p_radps": "roll"}
 COMPONENTS = {"surge": "X_N", "sway": "Y_N", "roll": "K_Nm", "yaw": "N_Nm"}
@@ -66,7 +66,8 @@ class Runner:
         tank = Tank(**file.tank.model_dump()) if file.tank else None
         vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
         self.engine = Engine(vessel, tank, file.step)
-        self._imu, self._marks = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
+        self._marks = [f"camera_{mark}_{axis}_m" for mark in scenario.camera.marks for axis in "xy"]
+        self._imu, self._shaking = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
         self._pose = [n for n, axis in POSE.items() if axis in vessel.freedoms]
         self._rates = [n for n, axis in RATES.items() if axis in vessel.freedoms]
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
@@ -113,7 +114,7 @@ class Runner:
         duration = self.scenario.file.duration
         between = max(self.scenario.file.log, self.scenario.file.step)
         self.log = Log(self._columns(), round(duration / between) + 3)
-        seen = ["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self._sent_channels]
+        seen = ["t_s", *SEEN, *self._marks, *self._sent_channels]
         self._film = Log(seen, round(duration * self.scenario.camera.rate) + 2)
         self._average: list[list[float]] = []
         self._frames = self._shoot(state, state)
@@ -125,8 +126,8 @@ class Runner:
         force, wind = ([f"{what}_{c}" for c in self._components()] for what in ("force", "wind"))
         return [
             "t_s", *self._pose, *self._rates, *self._sent_channels, *(f"actual_{n}" for n in self._actuators),
-            *(f"sensed_{n}" for n in SENSED), *(f"camera_{n}" for n in CAMERA), *force, *(wind if self._winds else ()),
-            "contacts", *(f"estimate_{n}" for n in limits), *references,
+            *(f"sensed_{n}" for n in SENSED), *self._marks, *(f"camera_{n}" for n in SEEN), *force,
+            *(wind if self._winds else ()), "contacts", *(f"estimate_{n}" for n in limits), *references,
         ]  # fmt: skip
 
     def _components(self) -> list[str]:
@@ -171,19 +172,21 @@ class Runner:
                 after.t,
                 (after.x, after.y, after.psi),
                 self._frame,
-                self._marks,
+                self._shaking,
             )  # fmt: skip
         )
         for f in frames:
             self._close_frame()
-            self._film.add([f.t, f.x, f.y, f.psi, *f[1:5], *self._sent_now()])
+            self._film.add([f.t, f.x, f.y, f.psi, *f.marks, *self._sent_now()])
         self._frame += len(frames)
         return frames
 
     def _close_frame(self) -> None:
         """Give the last camera row the mean of the commands sent since."""
         if self._film.count and self._average:
-            self._film.columns[1 + len(CAMERA) :, self._film.count - 1] = np.mean(self._average, axis=0)
+            self._film.columns[1 + len(SEEN) + len(self._marks) :, self._film.count - 1] = np.mean(
+                self._average, axis=0
+            )
         self._average.clear()
 
     def _write_row(self) -> None:
@@ -200,7 +203,7 @@ class Runner:
                 *self._sent_now(),
                 *engine.actuators.values(),
                 *(getattr(sense, f) for f in FIELDS),
-                *((*frames[-1][1:5], *frames[-1][5:]) if frames else [nan] * len(CAMERA)),
+                *((*frames[-1].marks, *frames[-1][1:4]) if frames else [nan] * (len(self._marks) + len(SEEN))),
                 *(f for f, there in zip(engine.wrench(), axes, strict=True) if there),
                 *(f for f, there in zip(self._wind(s), axes, strict=True) if there and self._winds),
                 engine.contacts,
@@ -243,12 +246,7 @@ class Runner:
 
     def _notes(self) -> Notes:
         """What a diagnosis of this run may know: vessel, load, values set, noise of the camera."""
-        file, camera = self.scenario.file, self.scenario.camera
-        per_axis = camera.mark_sd * np.hypot(camera.led_ahead, camera.button_ahead) / camera.baseline
-        noise = {
-            "position_sd_m": float(per_axis),
-            "heading_sd_rad": float(camera.mark_sd * np.sqrt(2) / camera.baseline),
-        }
+        file, noise = self.scenario.file, self.scenario.camera.noise()
         return Notes(vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise)
 
 

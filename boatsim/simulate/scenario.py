@@ -1,12 +1,12 @@
 """A scenario is a file: which vessel, where, steered by what, towards what, for how long, and how it is judged."""
 
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sin
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from pydantic import Field
 
@@ -16,23 +16,20 @@ from boatsim.files import Table, checked, read_toml
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import find, load_class, names, root
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate.camera import Camera, camera_over
+from boatsim.simulate.film import FilmMeasure
 from boatsim.simulate.measure import Measure
-from boatsim.simulate.sensors import Camera, Sensors
+from boatsim.simulate.sensors import Sensors
 
-NORMS = {  # measured on camera frames -> norms that [norms] may name; `boatsim.simulate.metrics` defines them
-    "sway": (
-        "yaw_rate_inf", "yaw_rate_l2", "yaw_rate_rms", "yaw_rate_l1", "heading_at_0.9m", "surge_offset", "time_to_0.9m",
-    ),
-    "yaw": ("position_inf", "position_rms", "position_l1", "moved", "turn_time", "excursion"),
-}  # fmt: skip
+T = TypeVar("T")
 
 
 class TankTable(Table):
     """Water with walls; without this table the water is open."""
 
-    length: float = Field(default=1.5, gt=0)  # [m] along the start heading; the thesis' tank
-    width: float = Field(default=3.0, gt=0)  # [m]
-    depth: float = Field(default=0.1, gt=0)  # [m]
+    length: float = Field(gt=0)  # [m] along the start heading
+    width: float = Field(gt=0)  # [m]
+    depth: float = Field(default=1.0, gt=0)  # [m]
     centre: tuple[float, float] = (0.0, 0.0)  # [m] from the start, ahead and to starboard
 
 
@@ -122,7 +119,7 @@ class Scenario:
     controller: Controller
     sensors: Sensors
     camera: Camera
-    measure: Measure | None = None  # on the log; those on camera frames are in `boatsim.simulate.metrics`
+    measure: Measure | None = None
 
     @cached_property
     def _begins(self) -> list[float]:
@@ -162,7 +159,8 @@ def from_table(raw: dict[str, Any], path: Path) -> Scenario:
     try:
         vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent)
         controller = _made("controller", file.controller, path.parent)
-        sensors, camera = _settings(Sensors, file.sensors, "sensors"), _settings(Camera, file.camera, "camera")
+        sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
+        camera = _settings("camera", lambda: camera_over(vessel, file.camera))
         measure = _measure(file.measure, path.parent)
         _check_goals(file, vessel, controller)
         _check_shape(file, controller)
@@ -188,11 +186,11 @@ def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
 
 def _measure(given: str | Mapping[str, Any] | None, folder: Path) -> Measure | None:
     """The measure on the log that a scenario asks for."""
-    if given is None or (isinstance(given, str) and given in NORMS):
+    if given is None:
         return None
     table = {"use": given} if isinstance(given, str) else given
     if isinstance(use := table.get("use"), str) and use not in names("measure") and not use.endswith(".py"):
-        raise BadInput(unknown_name("measure", use, [*NORMS, *names("measure")]))
+        raise BadInput(unknown_name("measure", use, names("measure")))
     made: Measure = _made("measure", table, folder)
     return made
 
@@ -205,10 +203,10 @@ def _begin(goal: Mapping[str, float | CourseTable]) -> float:
     return begin
 
 
-def _settings(kind: Any, table: Mapping[str, Any], key: str) -> Any:
+def _settings(key: str, made: Callable[[], T]) -> T:
     """Sensors or camera of its table."""
     try:
-        return kind.from_settings(table)
+        return made()
     except BadInput as error:
         raise BadInput(f"[{key}] {error}") from None
 
@@ -242,13 +240,12 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
 
 def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) -> None:
     """Only norms of what is measured are judged, and the frames they need are taken."""
-    on_film = NORMS[str(file.measure)] if file.measure in ("sway", "yaw") else ()
-    allowed = tuple(type(measure).units) if measure else on_film
+    allowed = tuple(type(measure).units) if measure else ()
     for name in file.norms:
         if name not in allowed:
             raise BadInput(unknown_name("[norms] key", name, allowed))
-    if file.measure in ("sway", "yaw") and camera.rate % 6.0:
-        raise BadInput(f"[camera] rate = {camera.rate:g} Hz; allowed with this measure is a multiple of 6 Hz")
+    if isinstance(measure, FilmMeasure):
+        measure.check(camera)
 
 
-__all__ = ["NORMS", "CheckTable", "NormTable", "Scenario", "ScenarioFile", "from_table", "load"]
+__all__ = ["CheckTable", "NormTable", "Scenario", "ScenarioFile", "from_table", "load"]
