@@ -52,15 +52,28 @@ def values(found: Mapping[str, Norm]) -> Values:
 
 
 def path_of(name: str, home: Path = HOME) -> Path:
-    """File of a scenario's values."""
-    return home / "tests" / "golden" / f"{name}.json"
+    """File of a scenario's values: that of its folder, which holds one vessel's."""
+    return home / "tests" / "golden" / f"{name.partition('/')[0]}.json"
+
+
+def table(path: Path) -> dict[str, Values]:
+    """The values kept in a file, by scenario; none if there is no such file."""
+    found: dict[str, Values] = json.loads(path.read_text(encoding="utf-8"))["scenarios"] if path.is_file() else {}
+    return found
 
 
 def kept(name: str, home: Path = HOME) -> Values:
     """The values kept of a scenario; none if it is new."""
-    path = path_of(name, home)
-    found: Values = json.loads(path.read_text(encoding="utf-8"))["norms"] if path.is_file() else {}
-    return found
+    return table(path_of(name, home)).get(name, {})
+
+
+def text_of(scenarios: Mapping[str, Values]) -> str:
+    """Content of a vessel's file: a line for each norm, so that a change of one is a change of one line."""
+    parts = []
+    for name, values in sorted(scenarios.items()):
+        rows = ",\n".join(f"   {json.dumps(norm)}: {json.dumps(value)}" for norm, value in values.items())
+        parts.append(f"  {json.dumps(name)}: {{\n{rows}\n  }}")
+    return '{\n "seed": 0,\n "scenarios": {\n' + ",\n".join(parts) + "\n }\n}\n"
 
 
 def drifts(name: str, old: Values, new: Values) -> list[str]:
@@ -70,10 +83,10 @@ def drifts(name: str, old: Values, new: Values) -> list[str]:
 
 def update(changed: Mapping[str, tuple[Values, list[str]]], reason: str, home: Path = HOME) -> None:
     """Write the new values of the scenarios that drifted, and the reason with every drift into the changelog."""
-    for name, (new, _) in changed.items():
-        content = {"scenario": name, "seed": 0, "norms": new}
-        path_of(name, home).parent.mkdir(parents=True, exist_ok=True)
-        _write(path_of(name, home), json.dumps(content, indent=1) + "\n")
+    for path in {path_of(name, home) for name in changed}:
+        new = {name: values for name, (values, _) in changed.items() if path_of(name, home) == path}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _write(path, text_of(table(path) | new))
     changelog = home / "CHANGELOG.md"
     text = changelog.read_text(encoding="utf-8") if changelog.is_file() else "# Changelog\n"
     _write(changelog, with_reason(text, reason, [line for _, lines in changed.values() for line in lines]))

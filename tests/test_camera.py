@@ -48,7 +48,7 @@ def test_a_hull_without_marks_is_followed_by_its_ends() -> None:
 
 
 def test_a_measure_of_a_mark_that_is_not_there_is_one_line() -> None:
-    told = scenario.load("joystick_boat/yaw_1", {"duration": 0.5})
+    told = scenario.load("joystick_boat/yaw_1")
     with pytest.raises(BadInput, match="yaw: mark 'lead' does not exist; did you mean 'led'"):
         scenario.load("joystick_boat/yaw_1", {"measure": {**told.file.measure, "mark": "lead"}})  # type: ignore[dict-item]
 
@@ -65,7 +65,7 @@ def test_a_measure_of_a_mark_that_is_not_there_is_one_line() -> None:
 def test_marks_that_can_not_be_are_one_line(marks: object, line: str) -> None:
     with pytest.raises(BadInput, match=line) as caught:
         scenario.load("joystick_boat/sway_1", {"camera": {"marks": marks}})
-    assert str(caught.value).startswith("sway_1.toml: [camera] ")
+    assert str(caught.value).startswith("sway.toml: sway_1: [camera] ")
 
 
 def test_size_of_the_picture_does_not_turn_the_boat() -> None:

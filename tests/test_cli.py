@@ -241,10 +241,10 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.slow
 def test_a_shipped_scenario_is_a_script(tmp_path: Path) -> None:
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"  # where the installed `boatsim` lies
-    script = content.root() / "scenarios" / "joystick_boat" / "sway_1.toml"
+    script = content.root() / "scenarios" / "joystick_boat" / "berth.toml"
     done = subprocess.run([script], cwd=tmp_path, env=os.environ | {"PATH": path}, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert {f.name for f in (tmp_path / "out" / "sway_1").iterdir()} == FILES
+    assert {f.name for f in (tmp_path / "out" / "berth").iterdir()} == FILES
 
 
 @pytest.mark.parametrize("name", content.names("scenario"))

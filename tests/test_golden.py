@@ -31,9 +31,10 @@ def test_norms_are_what_they_were(name: str) -> None:
 
 
 def test_nothing_is_kept_of_scenarios_that_are_gone() -> None:
-    folder = path_of("joystick_boat/sway_1").parents[1]
-    stored = {str(path.relative_to(folder).with_suffix("")) for path in folder.rglob("*.json")}
+    files = sorted(path_of("joystick_boat/sway_1").parent.iterdir())
+    stored = {name for file in files for name in golden.table(file)}
     assert stored == set(TRACKED) and len(stored) >= 29
+    assert [file for file in files if any(path_of(name) != file for name in golden.table(file))] == []
 
 
 def test_a_drift_is_a_line_with_scenario_norm_old_new_and_paper() -> None:
@@ -62,10 +63,13 @@ def test_an_update_writes_the_values_and_the_reason(tmp_path: Path) -> None:
     (tmp_path / "CHANGELOG.md").write_text("# Changelog\n\n## Norms\n\n- older reason\n\n## Other\n")
     new = with_today(0.7)
     update({"boat/one": (new, drifts("boat/one", OLD, new))}, "servo lag corrected", tmp_path)
+    other = {"moved": OLD["yaw_rate_inf"]}
+    update({"boat/two": (other, ["boat/two moved is new"])}, "another", tmp_path)
     assert json.loads(path_of("boat/one", tmp_path).read_text())["seed"] == 0
+    assert kept("boat/two", tmp_path) == other
     assert drifts("boat/one", kept("boat/one", tmp_path), new) == []
     assert (tmp_path / "CHANGELOG.md").read_text() == (
-        "# Changelog\n\n## Norms\n\n- servo lag corrected\n"
+        "# Changelog\n\n## Norms\n\n- another\n  - 1 new norms\n- servo lag corrected\n"
         "  - boat/one yaw_rate_inf: 0.5 -> 0.7 deg/s (paper: 2.8)\n- older reason\n\n## Other\n"
     )
 

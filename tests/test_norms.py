@@ -2,7 +2,6 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from math import cos, exp, pi, radians, sin, sqrt
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,19 +9,17 @@ import pytest
 
 from benchmarks.real.thesis_score import J
 from boatsim.errors import BadInput
-from boatsim.files import read_toml
 from boatsim.measures.sway import Sway
 from boatsim.measures.yaw import Yaw
 from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
 from boatsim.simulate.norms import Norm, norms, signal_norm, to_json
 from boatsim.simulate.run import Run
-from boatsim.simulate.scenario import Scenario, from_table
+from boatsim.simulate.scenario import Scenario, load
 
 CAMERA = Camera(marks={"led": (0.183, 0.0), "button": (-0.117, 0.0)})
 CIRCLE = 0.183  # [m] on which the light is to stay (appendix F)
 Pose = tuple[float, float, float]
-SHIPPED = Path(__file__).parents[1] / "scenarios" / "joystick_boat"
 # section 7 and 11 of the thesis review; T22, T23: inf, two, one, heading and inf, rms, one, moved
 T22 = [(2.8, 8.1, 42.8, 12.2), (2.5, 6.2, 32.7, 10.7), (2.9, 7.1, 38.9, 8.7), (3.6, 10.0, 54.1, 16.0)]
 T23 = [(0.07, 0.05, 3.39, 0.06), (0.13, 0.09, 5.91, 0.09), (0.07, 0.03, 4.49, 0.02), (0.20, None, 7.68, 0.14)]
@@ -39,8 +36,7 @@ IDEAL_REVERSE = (
 
 
 def scenario(measure: str, **changes: Any) -> Scenario:
-    name = f"{measure}_1.toml"
-    return from_table({**read_toml(SHIPPED / name), **changes}, SHIPPED / name)
+    return load(f"joystick_boat/{measure}_1", changes)
 
 
 def filmed(measure: str, pose: Callable[[float], Pose], until: float, marks: float = 0.0, **changes: Any) -> Run:
@@ -225,7 +221,7 @@ def test_bars_of_a_mean_are_widened_by_the_noise_floor_for_one_run() -> None:
 
 
 def test_a_norm_that_is_not_measured_can_not_be_judged() -> None:
-    with pytest.raises(BadInput, match=r"sway_1\.toml: \[norms\] key 'yaw_rate_ifn' .* did you mean 'yaw_rate_inf'"):
+    with pytest.raises(BadInput, match=r"sway_1: \[norms\] key 'yaw_rate_ifn' .* did you mean 'yaw_rate_inf'"):
         scenario("sway", norms={"yaw_rate_ifn": {"high": 1.0}})
 
 
@@ -238,7 +234,7 @@ def test_a_camera_that_misses_the_frames_of_a_norm_is_refused() -> None:
 
 
 def berthed(x: float, y: float, psi: float, contacts: list[float]) -> Run:
-    told = from_table({**read_toml(SHIPPED / "berth.toml")}, SHIPPED / "berth.toml")
+    told = load("joystick_boat/berth")
     n = len(contacts)
     signals = {"x_m": np.linspace(0.0, x, n), "y_m": np.linspace(0.0, y, n), "psi_rad": np.linspace(0.0, psi, n)}
     log = Recording("told", np.arange(n) / 50, {**signals, "contacts": np.array(contacts)})

@@ -9,7 +9,7 @@ from runs import SHIPPED, TESTS, found, mean, mean_of, raw
 
 from benchmarks.real.thesis_score import J
 from boatsim.errors import BadInput
-from boatsim.physics.content import root
+from boatsim.physics.content import find
 from boatsim.simulate import scenario
 from boatsim.simulate.norms import norms
 from boatsim.simulate.run import run
@@ -172,7 +172,7 @@ def test_one_run_of_a_shipped_scenario_meets_its_bars_and_touches_no_wall(name: 
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_shipped_scenario_is_a_script(name: str) -> None:
-    path = root() / "scenarios" / f"{name}.toml"
+    path = find("scenario", name)
     assert path.read_text(encoding="utf-8").startswith("#!/usr/bin/env -S boatsim run\n")
     assert os.access(path, os.X_OK)
 
@@ -229,7 +229,7 @@ def test_a_mistake_in_a_file_is_one_clear_line(change: dict[str, Any], line: str
     with pytest.raises(BadInput, match=line) as caught:
         scenario.load(shipped("sway_1"), change)
     message = str(caught.value)
-    assert message.startswith("sway_1.toml: ") and "\n" not in message
+    assert message.startswith("sway.toml: sway_1: ") and "\n" not in message
 
 
 def test_scenarios_and_files_that_do_not_exist_are_named(tmp_path: Path) -> None:

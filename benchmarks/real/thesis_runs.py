@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 
 from boatsim.control.base import Sense
-from boatsim.files import read_toml
 from boatsim.physics.base import Array
-from boatsim.physics.content import find
 from boatsim.physics.program import Program
 from boatsim.simulate import scenario
+from boatsim.simulate.cases import content
 from boatsim.simulate.film import Film, FilmMeasure
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.twin import body_rates
@@ -64,7 +63,7 @@ class Bench:
 
         `played`: every boat gets the commands that the scenario's own boat gets.
         """
-        raw = read_toml(find("scenario", f"joystick_boat/{name}"))
+        raw = content(f"joystick_boat/{name}")[0]
         own = [t for t in raw.get("effect", []) if t["use"] not in {e["use"] for e in extra}]
         wind: dict[str, Any] = next((t for t in raw.get("effect", []) if t["use"] == "fan_wind"), {})
         told = [{**wind, **e} if e["use"] == "fan_wind" else dict(e) for e in extra]

@@ -8,6 +8,7 @@ from typing import Any
 
 from boatsim.files import read_toml
 from boatsim.physics import content
+from boatsim.simulate import cases
 
 
 @contextmanager
@@ -77,6 +78,8 @@ def listing(only: str | None) -> list[str]:
 
 
 def _about(kind: str, name: str) -> str:
-    if kind in ("vessel", "scenario"):
+    if kind == "scenario":
+        return str(cases.content(name)[0].get("about", ""))
+    if kind == "vessel":
         return str(read_toml(content.find(kind, name)).get("about", ""))
     return str(content.load_class(kind, name).words)

@@ -17,6 +17,7 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate import imo, scenario
+from boatsim.simulate.cases import Place
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.twin import Twin
 
@@ -55,7 +56,7 @@ def scenario_of(
         "sensors": {"ideal": True},
     }
     if manoeuvre == "roll_decay":
-        return scenario.from_table(raw | _released(vessel, usual), Path(f"{manoeuvre}.toml"))
+        return scenario.from_table(raw | _released(vessel, usual), Place(Path(f"{manoeuvre}.toml")))
     if "yaw" not in vessel.freedoms:
         raise BadInput(f"{vessel.name} is not free to turn; of the manoeuvres it can only do roll_decay")
     vessel = replace(vessel, manoeuvring=handled(vessel))
@@ -66,7 +67,7 @@ def scenario_of(
             f"{vessel.name}: nothing to go astern with; [manoeuvring] astern = {{ CHANNEL = value }} says what"
         )
     at = approach(vessel, speed)
-    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at), Path(f"{manoeuvre}.toml"))
+    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at), Place(Path(f"{manoeuvre}.toml")))
 
 
 def handled(vessel: Vessel) -> ManoeuvringTable:

@@ -12,11 +12,12 @@ from pydantic import Field
 
 from boatsim.control.base import Controller
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import Table, checked, read_toml
+from boatsim.files import Table, checked
 from boatsim.physics import vessel as vessels
-from boatsim.physics.content import find, load_class, names, root
+from boatsim.physics.content import load_class, names
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.camera import Camera, camera_over
+from boatsim.simulate.cases import Place, content
 from boatsim.simulate.film import FilmMeasure
 from boatsim.simulate.measure import Measure
 from boatsim.simulate.sensors import Sensors
@@ -144,17 +145,18 @@ class Scenario:
 
 
 def load(name: str, overrides: Mapping[str, Any] | None = None) -> Scenario:
-    """A scenario by name ("joystick_boat/sway_1") or path; `overrides` replace top-level keys, for tests and studies.
+    """A scenario by name ("joystick_boat/sway_1") or path ("my.toml", "my.toml:case").
 
+    `overrides` replace top-level keys, for tests and studies.
     Raises BadInput, one line naming file, key, value found, what is allowed and the nearest valid name.
     """
-    path = find("scenario", name)
-    return from_table({**read_toml(path), **(overrides or {})}, path)
+    said, place = content(name)
+    return from_table({**said, **(overrides or {})}, place)
 
 
-def from_table(raw: dict[str, Any], path: Path) -> Scenario:
-    """A scenario from the content of a file; `path` names it and is where relative paths start."""
-    label = path.name
+def from_table(raw: dict[str, Any], place: Place) -> Scenario:
+    """A scenario from what it says; `place` names it and is where relative paths start."""
+    label, path = place.label, place.path
     file = checked(ScenarioFile, raw, label)
     try:
         vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent)
@@ -167,13 +169,7 @@ def from_table(raw: dict[str, Any], path: Path) -> Scenario:
         _check_norms(file, camera, measure)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
-    return Scenario(_name(path), file, vessel, controller, sensors, camera, measure)
-
-
-def _name(path: Path) -> str:
-    """joystick_boat/sway_1 for shipped scenarios, the file's stem for a user's own."""
-    folder = root() / "scenarios"
-    return str(path.relative_to(folder).with_suffix("")) if path.is_relative_to(folder) else path.stem
+    return Scenario(place.name, file, vessel, controller, sensors, camera, measure)
 
 
 def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
