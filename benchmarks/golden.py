@@ -24,8 +24,8 @@ NEW = "is new"
 # more than 2e-8 of itself, the relays of the thesis' program included; so 1e-6 is a change of the code.
 TOLERANCE = 1e-6
 NOTHING = 1e-9  # absolute, for norms that are zero
-FIELDS = ("today", "at_reported", "published")
-Values = dict[str, dict[str, Any]]  # norm -> today, at_reported, published, unit
+FIELDS = {"today": "", "at_reported": " at the rate reported", "published": " as published", "verdict": " verdict"}
+Values = dict[str, dict[str, Any]]  # norm -> today, at_reported, published, verdict, unit
 
 
 def tracked() -> list[str]:
@@ -45,6 +45,7 @@ def values(found: Mapping[str, Norm]) -> Values:
             "today": _digits(n.value),
             "at_reported": _digits(n.at_reported),
             "published": n.published,
+            "verdict": n.verdict,
             "unit": n.unit,
         }
         for name, n in found.items()
@@ -109,13 +110,13 @@ def _drift(name: str, norm: str, old: Mapping[str, Any] | None, new: Mapping[str
         return
     for field in FIELDS:
         if not _same(old[field], new[field]):
-            words = {"today": "", "at_reported": " at the rate reported", "published": " as published"}[field]
-            yield f"{name} {norm}{words}: {old[field]} -> {new[field]} {new['unit']} (paper: {new['published']})"
+            change = f"{old[field]} -> {new[field]} {new['unit']}"
+            yield f"{name} {norm}{FIELDS[field]}: {change} (paper: {new['published']})"
 
 
-def _same(old: float | None, new: float | None) -> bool:
-    if old is None or new is None:
-        return old is new
+def _same(old: float | str | None, new: float | str | None) -> bool:
+    if not isinstance(old, float | int) or not isinstance(new, float | int):
+        return old == new
     return abs(new - old) <= max(TOLERANCE * abs(old), NOTHING)
 
 

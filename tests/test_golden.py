@@ -12,7 +12,15 @@ from benchmarks.golden import TOLERANCE, drifts, kept, main, path_of, tracked, u
 from boatsim.simulate.norms import Norm
 
 TRACKED = tracked()
-OLD = {"yaw_rate_inf": {"today": 0.5, "at_reported": 1.1, "published": 2.8, "unit": "deg/s"}}
+OLD = {
+    "yaw_rate_inf": {
+        "today": 0.5,
+        "at_reported": 1.1,
+        "published": 2.8,
+        "verdict": "no tolerance stated",
+        "unit": "deg/s",
+    }
+}
 
 
 def with_today(value: float | None) -> golden.Values:
@@ -81,6 +89,14 @@ def test_a_changelog_without_a_section_on_norms_gets_one() -> None:
 
 
 def test_what_is_kept_of_a_norm_survives_the_file() -> None:
-    norm = Norm(1 / 3, "m", 0.07, {"low": None, "high": 1.0}, True, 2 / 3, 0.01)
+    norm = Norm(1 / 3, "m", 0.07, 0.05, (0.0, 1.0), True, 2 / 3, 0.01)
     stored = json.loads(json.dumps(values({"moved": norm})))
-    assert stored == {"moved": {"today": 0.333333333, "at_reported": 0.666666667, "published": 0.07, "unit": "m"}}
+    assert stored == {
+        "moved": {
+            "today": 0.333333333,
+            "at_reported": 0.666666667,
+            "published": 0.07,
+            "verdict": "not reproduced",
+            "unit": "m",
+        }
+    }

@@ -234,7 +234,7 @@ def test_engine_and_a_loop_written_out_here_agree(name: str, adaptive: bool) -> 
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_scenarios_meet_their_bars(name: str) -> None:
-    missed = {n: (v.value, v.bar) for n, v in judged(name).items() if v.ok is False}
+    missed = {n: (v.value, v.guard) for n, v in judged(name).items() if v.ok is False}
     assert not missed
 
 

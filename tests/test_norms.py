@@ -1,7 +1,7 @@
 import json
 from collections.abc import Callable
 from dataclasses import replace
-from math import cos, exp, pi, radians, sin, sqrt
+from math import cos, exp, inf, pi, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -204,25 +204,48 @@ def test_what_is_taken_from_the_truth_has_no_noise_floor() -> None:
 # Bars -------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("rate", "ok"), [(0.1, False), (0.5, True), (-0.5, True), (0.9, False)])
-def test_bars_hold_the_absolute_value(rate: float, ok: bool) -> None:
-    bar = {"heading_at_end": {"published": 12.2, "low": 5.0, "high": 8.0}}
-    judged = norms(filmed("sway", swaying(rate), 16.0, norms=bar))["heading_at_end"]
-    assert (judged.ok, judged.published, judged.bar) == (ok, 12.2, {"low": 5.0, "high": 8.0})
+@pytest.mark.parametrize(("rate", "ok"), [(0.1, False), (0.5, True), (-0.5, False), (0.9, False)])
+def test_guards_hold_the_value_with_its_sign(rate: float, ok: bool) -> None:
+    guard = {"heading_at_end": {"published": 12.2, "guard": [5.0, 8.0]}}
+    judged = norms(filmed("sway", swaying(rate), 16.0, norms=guard))["heading_at_end"]
+    assert (judged.ok, judged.published, judged.guard) == (ok, 12.2, (5.0, 8.0))
 
 
-def test_bars_of_a_mean_are_widened_by_the_noise_floor_for_one_run() -> None:
-    bar = {"heading_at_end": {"low": 5.0, "high": 8.0}, "time_to_end": {"high": 12.5}}
-    found = norms(filmed("sway", swaying(0.35), 16.0, norms=bar, noise_widens_bars=True))
+@pytest.mark.parametrize(
+    ("value", "published", "tolerance", "verdict"),
+    [
+        (0.31, 0.3, 0.02, "reproduced"),
+        (-0.3, 0.3, 0.02, "not reproduced"),
+        (0.3, -0.3, 0.02, "not reproduced"),
+        (-0.31, -0.3, 0.02, "reproduced"),
+        (0.33, 0.3, 0.02, "not reproduced"),
+        (0.3, 0.3, None, "no tolerance stated"),
+        (None, 0.3, 0.02, "not reproduced"),
+        (0.3, None, None, None),
+    ],
+)
+def test_what_is_published_is_judged_by_its_own_tolerance_and_sign(
+    value: float | None, published: float | None, tolerance: float | None, verdict: str | None
+) -> None:
+    assert Norm(value, "m", published, tolerance, (-9.0, 9.0), True).verdict == verdict
+
+
+def test_a_guard_that_is_open_is_null_in_the_file() -> None:
+    assert Norm(2.0, "m", guard=(1.0, inf), ok=True).to_json()["guard"] == [1.0, None]
+
+
+def test_guards_of_a_mean_are_widened_by_the_noise_floor_for_one_run() -> None:
+    guards = {"heading_at_end": {"guard": [5.0, 8.0]}, "time_to_end": {"guard": [0.0, 12.5]}}
+    found = norms(filmed("sway", swaying(0.35), 16.0, norms=guards, noise_widens_guards=True))
     heading, time = found["heading_at_end"], found["time_to_end"]
     assert heading.value == pytest.approx(4.55) and heading.noise_floor is not None and heading.noise_floor > 0.4
-    assert heading.bar == {"low": 5.0 - heading.noise_floor, "high": 8.0 + heading.noise_floor} and heading.ok
-    assert time.bar == {"low": None, "high": 12.5} and time.ok is False
+    assert heading.guard == (5.0 - heading.noise_floor, 8.0 + heading.noise_floor) and heading.ok
+    assert time.guard == (0.0, 12.5) and time.ok is False
 
 
 def test_a_norm_that_is_not_measured_can_not_be_judged() -> None:
     with pytest.raises(BadInput, match=r"sway_1: \[norms\] key 'yaw_rate_ifn' .* did you mean 'yaw_rate_inf'"):
-        scenario("sway", norms={"yaw_rate_ifn": {"high": 1.0}})
+        scenario("sway", norms={"yaw_rate_ifn": {"guard": [0.0, 1.0]}})
 
 
 def test_a_camera_that_misses_the_frames_of_a_norm_is_refused() -> None:
@@ -269,7 +292,7 @@ def test_check_norms_do_not_depend_on_the_step() -> None:
 def test_checks_stand_among_the_norms() -> None:
     check = [{"signal": "psi_rad", "norm": "inf", "below": 0.2}, {"signal": "psi_rad", "norm": "l1", "below": 1.0}]
     found = norms(filmed("sway", swaying(1.0), 16.0, check=check))
-    assert found["psi_rad_inf"] == Norm(pytest.approx(radians(16.0)), "rad", None, {"low": None, "high": 0.2}, False)
+    assert found["psi_rad_inf"] == Norm(pytest.approx(radians(16.0)), "rad", guard=(0.0, 0.2), ok=False)
     assert found["psi_rad_l1"].unit == "rad s" and found["psi_rad_l1"].value == pytest.approx(radians(128.0))
     with pytest.raises(BadInput, match="'psi_red' does not exist; did you mean 'psi_rad'"):
         norms(filmed("sway", swaying(1.0), 16.0, check=[{"signal": "psi_red", "norm": "inf", "below": 0.2}]))
@@ -290,8 +313,10 @@ def test_json_has_the_fields_and_names_that_were_agreed(measure: str, pose: Call
     }
     assert tuple(content["norms"]) == tuple(type(run.scenario.measure).units)
     for norm in content["norms"].values():
-        assert set(norm) == {"value", "unit", "published", "bar", "ok", "at_reported", "noise_floor"}
-        assert norm["bar"] is None or set(norm["bar"]) == {"low", "high"}
+        assert set(norm) == {
+            "value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor"
+        }  # fmt: skip
+        assert norm["guard"] is None or len(norm["guard"]) == 2
 
 
 # J ----------------------------------------------------------------------------------------------------------------

@@ -87,9 +87,9 @@ def test_the_thesis_program_gives_the_norms_of_set_b(test: str) -> None:
 def test_bars_in_the_files_are_thirty_percent_about_set_b(test: str) -> None:
     manoeuvre, number = test.split("_")
     content = raw(shipped(test, "as_published"))
-    bars = {name: (table["low"], table["high"]) for name, table in content["norms"].items() if "low" in table}
+    bars = {name: tuple(table["guard"]) for name, table in content["norms"].items() if "guard" in table}
     wanted = {name: column[int(number) - 1] for name, column in AS_PUBLISHED[manoeuvre].items()}
-    assert bars.keys() == wanted.keys() and content["noise_widens_bars"]
+    assert bars.keys() == wanted.keys() and content["noise_widens_guards"]
     for name, value in wanted.items():
         assert bars[name] == pytest.approx((0.7 * value, 1.3 * value), rel=1e-3)
 
@@ -150,7 +150,7 @@ def test_bars_of_the_corrected_controller_in_the_files_are_those_agreed(test: st
     tables = raw(shipped(test, mode))["norms"]
     bars = CORRECTED["_".join([manoeuvre, mode] if mode else [manoeuvre])]
     for name, bar in bars.items():
-        assert tables[name]["high"] == bar and "low" not in tables[name]
+        assert tables[name]["guard"] in ([0.0, bar], [-bar, bar])
 
 
 @pytest.mark.parametrize("seed", range(FEW))
@@ -218,7 +218,9 @@ MISTAKES = [
     ({"goal": [{"from": 3.0}, {"from": 1.0}]}, r"times in ascending order"),
     ({"effect": [{"use": "weak_revers"}]}, r"effect 'weak_revers' .*did you mean 'weak_reverse'"),
     ({"set": {"pwm_thrust": {"at_15": 0.3}}}, r"setting 'at_15' .*did you mean 'at_150'"),
-    ({"norms": {"moved": {"high": 1.0}}}, r"\[norms\] key 'moved' does not exist"),
+    ({"norms": {"yaw_rate_l1": {"guard": [2.0, 1.0]}}}, r"guard = \[2\.0, 1\.0\]; allowed are its lower end"),
+    ({"norms": {"yaw_rate_l1": {"tolerance": 1.0}}}, r"tolerance needs published"),
+    ({"norms": {"moved": {"guard": [0.0, 1.0]}}}, r"\[norms\] key 'moved' does not exist"),
 ]
 
 

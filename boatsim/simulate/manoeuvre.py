@@ -195,7 +195,7 @@ def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float) -> di
         "controller": {"use": manoeuvre} | handling | controller,
         "camera": {"rate": min(max(1.0 / _rounded(unit / ROWS), 0.1), 6.0)},
         "measure": {"use": manoeuvre} | measure,
-        "norms": {name: {"high": high} for name, high in bars.items()},
+        "norms": {name: {"guard": [0.0, high]} for name, high in bars.items()},
     }
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from math import inf, sqrt
+from math import isfinite, sqrt
 from typing import Any
 
 import numpy as np
@@ -12,20 +12,43 @@ from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 from boatsim.simulate.film import FilmMeasure, film
 from boatsim.simulate.run import Run
-from boatsim.simulate.scenario import CheckTable
+from boatsim.simulate.scenario import CheckTable, NormTable
+
+REPRODUCED, MISSED, UNSTATED = "reproduced", "not reproduced", "no tolerance stated"
 
 
 @dataclass(frozen=True)
 class Norm:
-    """One norm of a run beside the paper's value and the band it must lie in."""
+    """One norm of a run beside the paper's value, and apart from it the band about our own value."""
 
     value: float | None  # None: the run never got as far as the norm asks
     unit: str
     published: float | None = None
-    bar: dict[str, float | None] | None = None  # low, high; held against the absolute value
-    ok: bool | None = None  # None: nothing was asked
+    tolerance: float | None = None  # of what is published, where its document states one
+    guard: tuple[float, float] | None = None  # low, high: no promise, only that a change does not go unseen
+    ok: bool | None = None  # whether the value lies within the guard; None: there is none
     at_reported: float | None = None  # of measures on camera frames: at the rate reported beside the one scored
     noise_floor: float | None = None  # what the camera's noise alone would give, error-free motion, as many frames
+
+    @property
+    def verdict(self) -> str | None:
+        """Whether what is published is reproduced, signs included; None where nothing is."""
+        if self.published is None:
+            return None
+        if self.tolerance is None:
+            return UNSTATED
+        close = self.value is not None and within(self.value, self.published, self.tolerance)
+        return REPRODUCED if close else MISSED
+
+    def to_json(self) -> dict[str, Any]:
+        """Its entry in norms.json; an open end of a guard is null."""
+        guard = None if self.guard is None else [end if isfinite(end) else None for end in self.guard]
+        return asdict(self) | {"verdict": self.verdict, "guard": guard}
+
+
+def within(value: float, published: float, tolerance: float) -> bool:
+    """Whether a value lies so near to a published one, on the edge too."""
+    return abs(value - published) <= tolerance * (1 + 1e-9)
 
 
 def norms(run: Run) -> dict[str, Norm]:
@@ -50,7 +73,7 @@ def to_json(run: Run, norms: Mapping[str, Norm]) -> dict[str, Any]:
         "controller": run.scenario.file.controller["use"],
         "seed": run.seed,
         "complete": run.complete,
-        "norms": {name: asdict(norm) for name, norm in norms.items()},
+        "norms": {name: norm.to_json() for name, norm in norms.items()},
     }
 
 
@@ -82,7 +105,7 @@ def _checked(log: Recording, check: CheckTable) -> Norm:
         raise BadInput(unknown_name("[[check]] signal", check.signal, log.signals))
     value = signal_norm(log.t, log[check.signal], check.norm)
     unit = log.unit(check.signal) + {"l2": " s^0.5", "l1": " s"}.get(check.norm, "")
-    return Norm(value, unit.strip(), None, {"low": None, "high": check.below}, value < check.below)
+    return Norm(value, unit.strip(), guard=(0.0, check.below), ok=value < check.below)
 
 
 def _judged(
@@ -93,14 +116,11 @@ def _judged(
     at_reported: float | None = None,
     floor: float | None = None,
 ) -> Norm:
-    """The norm beside what the scenario says of it; its bar may be widened by the noise floor."""
-    table = run.scenario.file.norms.get(name)
-    if table is None:
-        return Norm(value, unit, at_reported=at_reported, noise_floor=floor)
-    low, high = table.low, table.high
-    if run.scenario.file.noise_widens_bars and floor is not None:
-        low, high = (None if low is None else low - floor), (None if high is None else high + floor)
-    if low is None and high is None:
-        return Norm(value, unit, table.published, at_reported=at_reported, noise_floor=floor)
-    ok = value is not None and (-inf if low is None else low) <= abs(value) <= (inf if high is None else high)
-    return Norm(value, unit, table.published, {"low": low, "high": high}, ok, at_reported, floor)
+    """The norm beside what the scenario says of it; its guard may be widened by the noise floor."""
+    table = run.scenario.file.norms.get(name, NormTable())
+    guard, ok = table.guard, None
+    if guard is not None:
+        more = floor if run.scenario.file.noise_widens_guards and floor is not None else 0.0
+        guard = (guard[0] - more, guard[1] + more)
+        ok = value is not None and guard[0] <= value <= guard[1]
+    return Norm(value, unit, table.published, table.tolerance, guard, ok, at_reported, floor)

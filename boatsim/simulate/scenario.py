@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sin
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, Self, TypeVar
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from boatsim.control.base import Controller
 from boatsim.errors import BadInput, unknown_name
@@ -23,6 +23,7 @@ from boatsim.simulate.measure import Measure
 from boatsim.simulate.sensors import Sensors
 
 T = TypeVar("T")
+End = Annotated[float, Field(allow_inf_nan=True)]  # of a band; it may be open
 
 
 class TankTable(Table):
@@ -56,11 +57,19 @@ class UntilTable(Table):
 
 
 class NormTable(Table):
-    """What a norm is held against: the paper's value, and the band it must lie in."""
+    """What a norm is held against: the paper's value, and the band about our own that a change must not leave."""
 
     published: float | None = None
-    low: float | None = None
-    high: float | None = None
+    tolerance: float | None = Field(default=None, gt=0)  # either way of what is published, as its document states it
+    guard: tuple[End, End] | None = None  # low, high
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if self.guard is not None and not self.guard[0] <= self.guard[1]:
+            raise ValueError(f"guard = {list(self.guard)}; allowed are its lower end and its upper one")
+        if self.tolerance is not None and self.published is None:
+            raise ValueError("tolerance needs published")
+        return self
 
 
 class CheckTable(Table):
@@ -106,7 +115,7 @@ class ScenarioFile(Table):
     measure: str | dict[str, Any] | None = None
     log: float = Field(default=0.0, ge=0)  # [s] between rows of the log; 0: every step
     norms: dict[str, NormTable] = {}
-    noise_widens_bars: bool = False
+    noise_widens_guards: bool = False
     check: list[CheckTable] = []
 
 

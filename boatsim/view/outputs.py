@@ -7,7 +7,6 @@ import signal
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +38,7 @@ def run_into(
         run = runner.run(progress)
         ignore()  # a second Ctrl-C must not cost the files of a run that the first one ended
         found = judged.norms(run)
-        log.finish({name: asdict(norm) for name, norm in found.items()})
+        log.finish({name: norm.to_json() for name, norm in found.items()})
         content = judged.to_json(run, found)
         write(run, content, new)
     return content
