@@ -31,7 +31,7 @@ from boatsim.recordings import table as recordings
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.run import Run, run
 from boatsim.simulate.twin import Twin
 from boatsim.view.outputs import run_into

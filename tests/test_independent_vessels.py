@@ -19,7 +19,7 @@ from boatsim.physics.base import Array, motion
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.free_body import FreeBody, Solid, angles, rotation
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.pontoon_boat import PontoonBoat, otter, strips
 from boatsim.simulate.run import run
 from boatsim.simulate.twin import Twin

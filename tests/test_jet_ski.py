@@ -22,7 +22,7 @@ from boatsim.physics.effects.steering_offset import SteeringAsymmetry
 from boatsim.physics.effects.water_jet import WaterJet
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.run import run
 from boatsim.simulate.twin import Twin
 

@@ -25,7 +25,7 @@ from boatsim.physics.effects.yaw_rate_waves import WAVES, YawRateWaves, componen
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.metrics import Norm, norms
+from boatsim.simulate.norms import Norm, norms
 from boatsim.simulate.run import Run, run
 
 Heading = load_class("controller", "l1_heading_discrete")
@@ -233,7 +233,7 @@ def test_engine_and_a_loop_written_out_here_agree(name: str, adaptive: bool) -> 
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_scenarios_meet_their_bars(name: str) -> None:
-    missed = {n: (v.value, v.bar) for n, v in judged(name).items() if v.ok is False}
+    missed = {n: (v.value, v.guard) for n, v in judged(name).items() if v.ok is False}
     assert not missed
 
 

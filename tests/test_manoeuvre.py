@@ -24,7 +24,7 @@ from boatsim.physics.content import load_class
 from boatsim.recordings.table import Recording
 from boatsim.simulate import imo
 from boatsim.simulate.manoeuvre import handled, scenario_of
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.run import run
 
 LENGTH = 2.0  # [m] of the ships here

@@ -23,6 +23,7 @@ VESSELS = ("joystick_boat", "trial_boat", "kvlcc2_roll")
 JOINTS = {"joystick_boat": ["x", "y", "psi"], "trial_boat": ["x", "y", "psi"], "kvlcc2_roll": ["phi"]}
 WALLS = {"wall_ahead", "wall_astern", "wall_port", "wall_starboard"}
 RHO = 1000.0  # [kg/m^3] fresh water
+WALLED = Tank(length=1.5, width=3.0, depth=0.1)
 
 
 @pytest.fixture(autouse=True)
@@ -65,7 +66,7 @@ def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("name", VESSELS)
 def test_joints_follow_the_freedoms_in_order(name: str) -> None:
-    model = world.build(vessel.load(name))
+    model = world.build(vessel.load(name), WALLED)
     assert [model.joint(i).name for i in range(model.njnt)] == JOINTS[name]
     assert model.nu == 0 and not model.opt.gravity.any()
     assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
@@ -77,7 +78,7 @@ def test_mass_matrix_stores_its_whole_lower_triangle(
     boat: vessel.Vessel, freedoms: tuple[str, ...], show: bool
 ) -> None:
     level = boat.geometry | {"cg_above_keel": boat.draught}  # mass centre in the waterline: nothing offset
-    model = world.build(replace(boat, freedoms=freedoms, geometry=level), show=show)
+    model = world.build(replace(boat, freedoms=freedoms, geometry=level), WALLED, show=show)
     n = len(freedoms)
     assert model.M_rownnz.tolist() == list(range(1, n + 1))
     assert mujoco.MjData(model).M.shape == (n * (n + 1) // 2,)
@@ -97,7 +98,7 @@ def test_mass_and_inertia_are_those_of_the_vessel_about_its_mass_centre(loads: t
     boat = replace(vessel.load("joystick_boat", loads), freedoms=("surge", "sway", "roll", "yaw"))
     body = boat.body
     expected = np.diag([body.mass, body.mass, body.yaw_inertia, body.roll_inertia])
-    assert mass_matrix(world.build(boat)) == pytest.approx(expected, abs=1e-12)
+    assert mass_matrix(world.build(boat, WALLED)) == pytest.approx(expected, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", VESSELS)
@@ -113,7 +114,7 @@ def test_hull_opens_alone_and_agrees_with_the_vessel_file(name: str) -> None:
 
 @pytest.mark.parametrize("name", VESSELS)
 def test_what_is_drawn_weighs_and_touches_nothing(name: str) -> None:
-    model = world.build(vessel.load(name))
+    model = world.build(vessel.load(name), WALLED)
     assert not model.geom_contype.any() and not model.geom_conaffinity.any()  # contacts only by explicit pair
     pairs = {(model.geom(a).name, model.geom(b).name) for a, b in zip(model.pair_geom1, model.pair_geom2, strict=True)}
     assert {n for pair in pairs for n in pair} == {"collision"} | WALLS and len(pairs) == 4
@@ -123,7 +124,7 @@ def test_what_is_drawn_weighs_and_touches_nothing(name: str) -> None:
 def test_leaving_out_what_is_only_seen_changes_no_motion(boat: vessel.Vessel) -> None:
     ends = []
     for show in (True, False):
-        model = world.build(boat, show=show)
+        model = world.build(boat, WALLED, show=show)
         data = mujoco.MjData(model)
         data.qvel[:] = (0.2, -0.3, 0.4)
         mujoco.mj_step(model, data, nstep=500)
@@ -173,7 +174,7 @@ def test_a_wall_gives_little_back_at_the_usual_step(name: str, speed: float) -> 
 
 
 def test_elastic_wall_without_friction_turns_a_head_on_velocity_round(boat: vessel.Vessel) -> None:
-    model = world.build(boat, step=0.001, wall_solref=(-2000.0, 0.0))
+    model = world.build(boat, WALLED, step=0.001, wall_solref=(-2000.0, 0.0))
     data = mujoco.MjData(model)
     data.qvel[:] = (0.1, 0.02, 0.0)
     mujoco.mj_step(model, data, nstep=3000)
@@ -192,7 +193,7 @@ def test_friction_slows_the_slide_along_a_wall(boat: vessel.Vessel) -> None:
 
 
 def test_open_water_never_stops_the_boat(boat: vessel.Vessel) -> None:
-    model = world.build(boat, Tank(walls=False))
+    model = world.build(boat, Tank(1.5, 3.0, walls=False))
     data = mujoco.MjData(model)
     data.qvel[:2] = (0.3, -0.4)
     mujoco.mj_step(model, data, nstep=1000)
@@ -224,7 +225,7 @@ def test_all_of_the_water_lies_before_the_sun(name: str, centre: tuple[float, fl
 
 def test_tank_without_size_and_hull_without_body_are_refused(boat: vessel.Vessel, tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="tank.width = 0 m"):
-        Tank(width=0.0)
+        Tank(length=1.5, width=0.0)
     (tmp_path / "hull.xml").write_text('<mujoco><worldbody><body name="hul"/></worldbody></mujoco>')
     with pytest.raises(BadInput, match="did you mean 'hul'"):
         world.build(replace(boat, path=tmp_path))
@@ -239,7 +240,7 @@ def test_tank_without_size_and_hull_without_body_are_refused(boat: vessel.Vessel
 @pytest.mark.parametrize(("loads", "half"), [((), 0.19), (("wide",), 0.28), (("heavy", "wide"), 0.28)])
 def test_outboards_stand_where_the_load_has_them(loads: tuple[str, ...], half: float) -> None:
     boat = vessel.load("joystick_boat", loads)
-    model = world.build(boat)
+    model = world.build(boat, WALLED)
     aft = -boat.geometry["cg_from_transom"]
     assert model.body("outboard_port").pos == pytest.approx((aft, half, 0), abs=0.006)
     assert model.body("outboard_starboard").pos == pytest.approx((aft, -half, 0), abs=0.006)
@@ -256,7 +257,7 @@ def test_ballast_is_there_only_when_it_weighs_something() -> None:
 @pytest.mark.parametrize(("loads", "length"), [((), 1.2), (("heavy",), 1.25)])
 def test_hull_reaches_from_transom_to_bow_about_its_mass_centre(loads: tuple[str, ...], length: float) -> None:
     boat = vessel.load("joystick_boat", loads)
-    model = world.build(boat)
+    model = world.build(boat, WALLED)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     x = corners(model, data)[:, 0]
@@ -329,7 +330,7 @@ except Exception as error:
 import mujoco
 from boatsim.physics import vessel
 from boatsim.simulate import world
-model = world.build(vessel.load("joystick_boat"), world.Tank(centre=(0.1, 0.0)))
+model = world.build(vessel.load("joystick_boat"), world.Tank(1.5, 3.0, 0.1, centre=(0.1, 0.0)))
 data = mujoco.MjData(model)
 pictures = {}
 with mujoco.Renderer(model, 240, 320) as renderer:

@@ -14,6 +14,7 @@ from boatsim.cli import show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput
 from boatsim.simulate import scenario as scenarios
+from boatsim.simulate.cases import meant
 from boatsim.simulate.scenario import Scenario
 
 POLL = 0.1  # [s] between two looks at the processes
@@ -95,6 +96,7 @@ def warn_of_limits(content: Mapping[str, Any]) -> None:
 
 def plan(names: Sequence[str], out: Path | None, seed: int | None, live: bool) -> list[Task]:
     """What to run and where its files go, from names that may be wrong."""
+    names = [one for given in names for one in meant(given)]
     loaded = [scenarios.load(name) for name in names]
     folders = _folders([s.name for s in loaded], out)
     return [

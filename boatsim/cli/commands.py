@@ -101,7 +101,7 @@ def options(
 @app.command()
 @guarded
 def run(
-    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names or .toml files.")],
+    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")],
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder [default: out/SCENARIO].")] = None,
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
     seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,

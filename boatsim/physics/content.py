@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from boatsim.errors import BadInput, unknown_name
+from boatsim.files import read_toml
 
 PACKAGES = {  # kinds that are modules of ours, one a file
     "effect": "physics.effects",
@@ -31,7 +32,7 @@ def root() -> Path:
 
 
 def names(kind: str) -> list[str]:
-    """Every vessel, controller, effect, measure or scenario there is; scenarios are named folder/file."""
+    """Every vessel, controller, effect, measure or scenario (folder/file, folder/case) there is."""
     if kind == "effect":
         return sorted(_shelf())
     if kind in PACKAGES:
@@ -41,7 +42,7 @@ def names(kind: str) -> list[str]:
         return sorted(p.parent.name for p in folder.glob("*/vessel.toml"))
     if kind == "controller":
         return sorted(p.stem for p in folder.glob("[!_]*.py"))
-    return sorted(str(p.relative_to(folder).with_suffix("")) for p in folder.glob("*/*.toml"))
+    return sorted(_scenarios())
 
 
 def _package(kind: str) -> Path:
@@ -75,10 +76,30 @@ def find(kind: str, name: str, beside: Path | None = None) -> Path:
             return (own / "vessel.toml").resolve()
     if name in names(kind):
         folder = root() / KINDS[kind]
+        if kind == "scenario":
+            return _scenarios()[name]
         return folder / name / "vessel.toml" if kind == "vessel" else folder / f"{name}{suffix}"
     if name.endswith(suffix):
         raise BadInput(f"{name}: no such file")
     raise BadInput(unknown_name(kind, name, names(kind)))
+
+
+def _scenarios() -> dict[str, Path]:
+    """File of every shipped scenario, by name: folder/file, or folder/case for each case of a file. Raises BadInput."""
+    found: dict[str, Path] = {}
+    for path in sorted((root() / KINDS["scenario"]).glob("*/[!_]*.toml")):
+        for name in _cases(path, path.stat().st_mtime_ns) or (path.stem,):
+            full = f"{path.parent.name}/{name}"
+            if full in found:
+                raise BadInput(f"scenario {full} stands in {found[full].name} and in {path.name}")
+            found[full] = path
+    return found
+
+
+@cache
+def _cases(path: Path, _stamp: int) -> tuple[str, ...]:
+    """Names of the cases in a scenario file, as long as it is the same file."""
+    return tuple(str(case.get("name")) for case in read_toml(path).get("case", []))
 
 
 def module_at(path: Path, name: str) -> ModuleType:

@@ -81,6 +81,7 @@ class VesselFile(Table):
     scales: dict[str, float] = {}  # vessels that are the same hull at another scale
     body: Body
     geometry: dict[str, float] = {}
+    marks: dict[str, tuple[float, float]] = {}  # [m] ahead and to starboard of the CG: what a camera above follows
     channels: dict[str, CommandChannel] = {}
     columns: dict[str, str] = {}  # our name -> the column of this vessel's recordings, "-" in front flips the sign
     effect: list[dict[str, Any]] = []
@@ -114,6 +115,7 @@ class Vessel:
     scales: Mapping[str, float] = field(default_factory=dict)  # vessels that are the same hull at another scale
     columns: Mapping[str, str] = field(default_factory=dict)  # our name -> column of its recordings, "-" flips the sign
     manoeuvring: ManoeuvringTable = ManoeuvringTable()
+    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # [m] ahead and to starboard of the CG
 
     @property
     def actuators(self) -> tuple[str, ...]:
@@ -173,7 +175,7 @@ def load(
     vessel = Vessel(
         called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
-        file.scale, file.scales, file.columns, file.manoeuvring,
+        file.scale, file.scales, file.columns, file.manoeuvring, file.marks,
     )  # fmt: skip
     return with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
 

@@ -17,6 +17,7 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate import imo, scenario
+from boatsim.simulate.cases import Place
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.twin import Twin
 
@@ -58,7 +59,7 @@ def scenario_of(
         "sensors": {"ideal": True},
     }
     if manoeuvre == "roll_decay":
-        return scenario.from_table(raw | _released(vessel, usual), Path(f"{manoeuvre}.toml"))
+        return scenario.from_table(raw | _released(vessel, usual), Place(Path(f"{manoeuvre}.toml")))
     if "yaw" not in vessel.freedoms:
         raise BadInput(f"{vessel.name} is not free to turn; of the manoeuvres it can only do roll_decay")
     vessel = replace(vessel, manoeuvring=handled(vessel))
@@ -70,7 +71,8 @@ def scenario_of(
         )
     at = approach(vessel, speed)
     reverses = abs(angle) if heading is None else heading
-    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at, reverses), Path(f"{manoeuvre}.toml"))
+    place = Place(Path(f"{manoeuvre}.toml"))
+    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at, reverses), place)
 
 
 def _check_heading(manoeuvre: str, heading: float | None) -> None:
@@ -209,7 +211,7 @@ def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float, rever
         "controller": {"use": manoeuvre} | handling | controller,
         "camera": {"rate": min(max(1.0 / _rounded(unit / ROWS), 0.1), 6.0)},
         "measure": {"use": manoeuvre} | measure,
-        "norms": {name: {"high": high} for name, high in bars.items()},
+        "norms": {name: {"guard": [0.0, high]} for name, high in bars.items()},
     }
 
 

@@ -16,14 +16,14 @@ from boatsim.errors import BadInput, BoatsimError
 from boatsim.physics.base import Force, motion
 from boatsim.physics.commands import beyond, sent_row
 from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.sensors import Frame
 from boatsim.simulate.world import Tank
 
 SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
 FIELDS = ("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
-CAMERA = ("led_x_m", "led_y_m", "button_x_m", "button_y_m", "x_m", "y_m", "psi_rad")
+SEEN = ("x_m", "y_m", "psi_rad")  # the pose that a camera frame gives
 POSE = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw", "phi_rad": "roll"}
 RATES = {"u_mps": "surge", "v_mps": "sway", "r_radps": "yaw", "p_radps": "roll"}
 COMPONENTS = {"surge": "X_N", "sway": "Y_N", "roll": "K_Nm", "yaw": "N_Nm"}
@@ -77,7 +77,8 @@ class Runner:
         tank = Tank(**file.tank.model_dump()) if file.tank else None
         vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
         self.engine = Engine(vessel, tank, file.step)
-        self._imu, self._marks = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
+        self._marks = [f"camera_{mark}_{axis}_m" for mark in scenario.camera.marks for axis in "xy"]
+        self._imu, self._shaking = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
         self._pose = [n for n, axis in POSE.items() if axis in vessel.freedoms]
         self._rates = [n for n, axis in RATES.items() if axis in vessel.freedoms]
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
@@ -127,7 +128,7 @@ class Runner:
         duration = self.scenario.file.duration
         between = max(self.scenario.file.log, self.scenario.file.step)
         self.log = Log(self._columns(), round(duration / between) + 3)
-        seen = ["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self._sent_channels]
+        seen = ["t_s", *SEEN, *self._marks, *self._sent_channels]
         self._film = Log(seen, round(duration * self.scenario.camera.rate) + 2)
         self._average: list[tuple[list[float], float]] = []  # commands in force, and for how long [s]
         self._frames = self._shoot(state, state)
@@ -144,8 +145,8 @@ class Runner:
         return [
             "t_s", *self._pose, *self._rates, *self._sent_channels, *(f"sent_{n}" for n in self._sent_channels),
             *(f"actual_{n}" for n in self._actuators),
-            *(f"sensed_{n}" for n in SENSED), *(f"camera_{n}" for n in CAMERA), *force, *(wind if self._winds else ()),
-            "contacts", *(f"estimate_{n}" for n in limits), *references,
+            *(f"sensed_{n}" for n in SENSED), *self._marks, *(f"camera_{n}" for n in SEEN), *force,
+            *(wind if self._winds else ()), "contacts", *(f"estimate_{n}" for n in limits), *references,
         ]  # fmt: skip
 
     def _components(self) -> list[str]:
@@ -225,12 +226,12 @@ class Runner:
                 after.t,
                 (after.x, after.y, after.psi),
                 self._frame,
-                self._marks,
+                self._shaking,
             )  # fmt: skip
         )
         for f in frames:
             self._close_frame()
-            self._film.add([f.t, f.x, f.y, f.psi, *f[1:5], *self._in_force()])
+            self._film.add([f.t, f.x, f.y, f.psi, *f.marks, *self._in_force()])
         self._frame += len(frames)
         return frames
 
@@ -238,7 +239,8 @@ class Runner:
         """Give the last camera row the mean of the commands in force since."""
         if self._film.count and self._average:
             commands, seconds = zip(*self._average, strict=True)
-            self._film.columns[1 + len(CAMERA) :, self._film.count - 1] = np.average(commands, 0, seconds)
+            first = 1 + len(SEEN) + len(self._marks)
+            self._film.columns[first:, self._film.count - 1] = np.average(commands, 0, seconds)
         self._average.clear()
 
     def _write_row(self) -> None:
@@ -259,7 +261,7 @@ class Runner:
                 *(self._sent[n] for n in self._sent_channels),
                 *engine.actuators.values(),
                 *(getattr(sense, f) for f in FIELDS),
-                *((*frames[-1][1:5], *frames[-1][5:]) if frames else [nan] * len(CAMERA)),
+                *((*frames[-1].marks, *frames[-1][1:4]) if frames else [nan] * (len(self._marks) + len(SEEN))),
                 *(f for f, there in zip(engine.wrench(), axes, strict=True) if there),
                 *(f for f, there in zip(self._wind(s), axes, strict=True) if there and self._winds),
                 engine.contacts,
@@ -303,12 +305,7 @@ class Runner:
 
     def _notes(self) -> Notes:
         """What a diagnosis of this run may know: vessel, load, values set, noise of the camera."""
-        file, camera = self.scenario.file, self.scenario.camera
-        per_axis = camera.mark_sd * np.hypot(camera.led_ahead, camera.button_ahead) / camera.baseline
-        noise = {
-            "position_sd_m": float(per_axis),
-            "heading_sd_rad": float(camera.mark_sd * np.sqrt(2) / camera.baseline),
-        }
+        file, noise = self.scenario.file, self.scenario.camera.noise()
         return Notes(vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise)
 
 

@@ -1,6 +1,7 @@
 """Tank, hull, motors, ballast and freedoms put together into one MuJoCo model. MuJoCo axes here: z up, y to port."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,9 +33,9 @@ HALF_TURN = (0.0, 1.0, 0.0, 0.0)  # about x, exact in floating point
 class Tank:
     """Rectangular water in start axes (SNAME): `length` along x, `width` along y, `centre` (x, y) of its middle."""
 
-    length: float = 1.5  # [m] Bayless 2020: tank 1.5 x 3.0 x 0.1 m, the boat heads across it
-    width: float = 3.0  # [m]
-    depth: float = 0.1  # [m]
+    length: float  # [m]
+    width: float  # [m]
+    depth: float = 1.0  # [m]
     walls: bool = True
     centre: tuple[float, float] = (0.0, 0.0)  # [m]
 
@@ -61,7 +62,7 @@ def build(
     `show=False` leaves out everything that is only looked at, for speed. `wall_solref` is MuJoCo's contact solref,
     (-stiffness, -damping) or (time constant [s], damping ratio). Raises BadPhysics if the mass matrix is not full.
     """
-    tank = tank or Tank()
+    tank = tank or Tank(10.0 * vessel.length, 10.0 * vessel.length, vessel.length, walls=False)  # open water
     spec = mujoco.MjSpec.from_file(str(root() / "models" / "tank.xml"))
     spec.option.timestep = step
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
@@ -147,7 +148,7 @@ def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> Any:
     hull = drawing.body("hull")
     for part in (*hull.geoms, *hull.sites, *hull.bodies):
         part.pos = part.pos * (stretch, 1, 1) + shift
-    place_fittings(drawing, vessel.geometry, shift)
+    place_fittings(drawing, vessel.geometry, vessel.marks, shift)
     spec.attach(drawing, prefix="boat/", frame=spec.worldbody.add_frame())
     for part in (*spec.bodies, *spec.geoms, *spec.sites):
         part.name = part.name.removeprefix("boat/")
@@ -170,18 +171,20 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
     return drawing, (length, draught)
 
 
-def place_fittings(drawing: mujoco.MjSpec, at: dict[str, float], shift: Array) -> None:
-    """Move outboards, their mount, ballast, light and push-button to where this load has them; drop what it has not."""
+def place_fittings(
+    drawing: mujoco.MjSpec, at: dict[str, float], marks: Mapping[str, tuple[float, float]], shift: Array
+) -> None:
+    """Move outboards, their mount, ballast and drawn marks to where this load has them; drop what it has not."""
     for side, name in ((1, "outboard_port"), (-1, "outboard_starboard")):
         body = drawing.body(name)
         if body is not None and "motor_half_spacing" in at:
             body.pos = (at["motor_ahead_of_cg"], side * at["motor_half_spacing"], body.pos[2])
-    for name, key in (("led", "led_ahead_of_cg"), ("button", "button_ahead_of_cg"), ("mount", "motor_ahead_of_cg")):
-        geom = drawing.geom(name)
-        if geom is not None and key in at:
-            geom.pos = (at[key], 0, geom.pos[2])
-    if (mount := drawing.geom("mount")) is not None and "motor_half_spacing" in at:
-        mount.size = (mount.size[0], at["motor_half_spacing"], mount.size[2])
+    for name, (ahead, starboard) in marks.items():
+        if (geom := drawing.geom(name)) is not None:
+            geom.pos = (ahead, -starboard, geom.pos[2])
+    if (mount := drawing.geom("mount")) is not None:
+        mount.pos = (at.get("motor_ahead_of_cg", mount.pos[0]), 0, mount.pos[2])
+        mount.size = (mount.size[0], at.get("motor_half_spacing", mount.size[1]), mount.size[2])
     if (ballast := drawing.geom("ballast")) is not None:
         if at.get("ballast_mass", 0.0) > 0:
             ballast.pos = (at["ballast_from_transom"] + shift[0], 0, ballast.pos[2])
