@@ -74,8 +74,8 @@ def drawn(truth: str, rng: np.random.Generator) -> Boat:
     for effect in boat.effects:
         for name, about in type(effect).params().items():
             if about.calibrates:
-                values[program().index(effect.name(), name)] *= 1.0 + ERROR * rng.standard_normal()
-    kind = next(type(e) for e in program().suspects if e.name() == truth)
+                values[program().index(effect.name, name)] *= 1.0 + ERROR * rng.standard_normal()
+    kind = next(type(e) for e in program().suspects if e.name == truth)
     for name, about in kind.params().items():
         if about.fit:
             spread = about.spread * scale_of(about.unit, boat)
@@ -135,7 +135,7 @@ def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
     boat = program().vessel
     uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}
     problem = Problem([track(r, program()) for r in recordings], nominal_levels(boat, recordings[0]), uncertainty)
-    return problem, rank(problem, tuple(e.name() for e in program().suspects))
+    return problem, rank(problem, tuple(e.name for e in program().suspects))
 
 
 def probability(ranking: Ranking, name: str) -> float:
@@ -191,7 +191,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--quick", action="store_true", help="one seed, every third entry")
     args = parser.parse_args()
-    names = [e.name() for e in program().suspects if type(e).kind == "physics"]
+    names = [e.name for e in program().suspects if type(e).kind == "physics"]
     chosen = [(n, 0) for n in names[::3]] if args.quick else [(n, seed) for n in names for seed in (0, 1)]
     program().module  # noqa: B018  # compiled before the processes start, so that each need not
     begin = time.time()

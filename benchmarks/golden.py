@@ -14,7 +14,7 @@ from typing import Any
 from boatsim.files import replacing
 from boatsim.physics.content import names
 from boatsim.simulate import scenario
-from boatsim.simulate.metrics import Norm, norms
+from boatsim.simulate.norms import Norm, norms
 from boatsim.simulate.run import run
 
 HOME = Path(__file__).parents[1]
@@ -24,8 +24,8 @@ NEW = "is new"
 # more than 2e-8 of itself, the relays of the thesis' program included; so 1e-6 is a change of the code.
 TOLERANCE = 1e-6
 NOTHING = 1e-9  # absolute, for norms that are zero
-FIELDS = ("today", "at_6hz", "published")
-Values = dict[str, dict[str, Any]]  # norm -> today, at_6hz, published, unit
+FIELDS = {"today": "", "at_reported": " at the rate reported", "published": " as published", "verdict": " verdict"}
+Values = dict[str, dict[str, Any]]  # norm -> today, at_reported, published, verdict, unit
 
 
 def tracked() -> list[str]:
@@ -41,21 +41,40 @@ def measured(name: str) -> dict[str, Norm]:
 def values(found: Mapping[str, Norm]) -> Values:
     """What is kept of each norm."""
     return {
-        name: {"today": _digits(n.value), "at_6hz": _digits(n.at_6hz), "published": n.published, "unit": n.unit}
+        name: {
+            "today": _digits(n.value),
+            "at_reported": _digits(n.at_reported),
+            "published": n.published,
+            "verdict": n.verdict,
+            "unit": n.unit,
+        }
         for name, n in found.items()
     }
 
 
 def path_of(name: str, home: Path = HOME) -> Path:
-    """File of a scenario's values."""
-    return home / "tests" / "golden" / f"{name}.json"
+    """File of a scenario's values: that of its folder, which holds one vessel's."""
+    return home / "tests" / "golden" / f"{name.partition('/')[0]}.json"
+
+
+def table(path: Path) -> dict[str, Values]:
+    """The values kept in a file, by scenario; none if there is no such file."""
+    found: dict[str, Values] = json.loads(path.read_text(encoding="utf-8"))["scenarios"] if path.is_file() else {}
+    return found
 
 
 def kept(name: str, home: Path = HOME) -> Values:
     """The values kept of a scenario; none if it is new."""
-    path = path_of(name, home)
-    found: Values = json.loads(path.read_text(encoding="utf-8"))["norms"] if path.is_file() else {}
-    return found
+    return table(path_of(name, home)).get(name, {})
+
+
+def text_of(scenarios: Mapping[str, Values]) -> str:
+    """Content of a vessel's file: a line for each norm, so that a change of one is a change of one line."""
+    parts = []
+    for name, values in sorted(scenarios.items()):
+        rows = ",\n".join(f"   {json.dumps(norm)}: {json.dumps(value)}" for norm, value in values.items())
+        parts.append(f"  {json.dumps(name)}: {{\n{rows}\n  }}")
+    return '{\n "seed": 0,\n "scenarios": {\n' + ",\n".join(parts) + "\n }\n}\n"
 
 
 def drifts(name: str, old: Values, new: Values) -> list[str]:
@@ -65,10 +84,10 @@ def drifts(name: str, old: Values, new: Values) -> list[str]:
 
 def update(changed: Mapping[str, tuple[Values, list[str]]], reason: str, home: Path = HOME) -> None:
     """Write the new values of the scenarios that drifted, and the reason with every drift into the changelog."""
-    for name, (new, _) in changed.items():
-        content = {"scenario": name, "seed": 0, "norms": new}
-        path_of(name, home).parent.mkdir(parents=True, exist_ok=True)
-        _write(path_of(name, home), json.dumps(content, indent=1) + "\n")
+    for path in {path_of(name, home) for name in changed}:
+        new = {name: values for name, (values, _) in changed.items() if path_of(name, home) == path}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _write(path, text_of(table(path) | new))
     changelog = home / "CHANGELOG.md"
     text = changelog.read_text(encoding="utf-8") if changelog.is_file() else "# Changelog\n"
     _write(changelog, with_reason(text, reason, [line for _, lines in changed.values() for line in lines]))
@@ -91,13 +110,13 @@ def _drift(name: str, norm: str, old: Mapping[str, Any] | None, new: Mapping[str
         return
     for field in FIELDS:
         if not _same(old[field], new[field]):
-            words = {"today": "", "at_6hz": " at 6 Hz", "published": " as published"}[field]
-            yield f"{name} {norm}{words}: {old[field]} -> {new[field]} {new['unit']} (paper: {new['published']})"
+            change = f"{old[field]} -> {new[field]} {new['unit']}"
+            yield f"{name} {norm}{FIELDS[field]}: {change} (paper: {new['published']})"
 
 
-def _same(old: float | None, new: float | None) -> bool:
-    if old is None or new is None:
-        return old is new
+def _same(old: float | str | None, new: float | str | None) -> bool:
+    if not isinstance(old, float | int) or not isinstance(new, float | int):
+        return old == new
     return abs(new - old) <= max(TOLERANCE * abs(old), NOTHING)
 
 

@@ -81,7 +81,7 @@ MODULES: dict[tuple[str, ...], Any] = {}
 
 def compiled(program: Program) -> Any:
     """The program's compiled functions, one set for all runs with the same effects, whatever their values."""
-    key = (*program.vessel.actuators, *(e.name() for e in program.effects))
+    key = (*program.vessel.actuators, *(e.name for e in program.effects))
     if key not in MODULES:
         MODULES[key] = program.module
     return MODULES[key]

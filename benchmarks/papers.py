@@ -11,7 +11,6 @@ off, `reason` says why.
 
 import argparse
 import importlib
-import json
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -20,6 +19,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from benchmarks import golden
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 
@@ -106,10 +106,8 @@ def _verdict(published: Any, ours: Any, within: float) -> str:
 
 @cache
 def _golden(scenario: str) -> dict[str, Any]:
-    path = HOME / "tests" / "golden" / f"{scenario}.json"
-    if not path.is_file():
+    if not (found := golden.kept(scenario)):
         raise BadInput(f"{scenario}: no norms pinned; python -m benchmarks.golden --update pins them")
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))["norms"]
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from boatsim.physics.content import load_class
 from boatsim.simulate import scenario
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.run import run
 
 BANDWIDTHS = (5.0, 10.0, 11.0, 12.0, 12.2, 13.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0)  # [1/s] k_u

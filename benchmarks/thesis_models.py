@@ -6,12 +6,12 @@ python -m benchmarks.thesis_models
 from math import degrees, pi, sqrt
 
 import numpy as np
+from boatsim.physics.effects.outboards import Outboards
 from scipy.optimize import brentq
 
 from boatsim.control.adaptive import LinearSystem, step_response
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, motion
-from boatsim.physics.effects.outboards import Outboards
 
 STEP = 1e-3  # [s]
 SURGE = np.array([[-1.4]])

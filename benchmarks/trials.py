@@ -47,8 +47,7 @@ def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[st
         [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"], VESSEL, without=without
     )
     out.mkdir(parents=True, exist_ok=True)
-    kinds = {e.name(): type(e) for e in found.problem.program.suspects}
-    patch.write(found.vessel, found.ranking.best, kinds, out / "patched.toml")
+    patch.write(found.problem, found.vessel, found.ranking.best, out / "patched.toml")
     with contextlib.redirect_stdout(io.StringIO()):
         commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], HORIZON, out)
     (out / "diagnosis.json").write_text(json.dumps(found.findings.answer, indent=1))

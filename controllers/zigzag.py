@@ -1,11 +1,13 @@
 """Zig-zag: the helm is reversed each time the heading has changed by a given angle."""
 
 from dataclasses import dataclass, field
-from math import copysign
+from math import copysign, inf
 from typing import ClassVar
 
 from boatsim.control.base import Sense, Steered
 from boatsim.physics.base import param
+
+REACHED = 1e-7  # [rad] a heading this close is reached
 
 
 @dataclass
@@ -26,9 +28,18 @@ class Zigzag(Steered):
 
     def helm(self, sense: Sense) -> float:
         """The angle, on the side that turns the ship back."""
-        if self._side * (sense.psi - self._course) >= self.heading:
+        if self._left(sense) <= REACHED:
             self._side, self._reversed = -self._side, self._reversed + 1
         return self._side * abs(self.angle)
+
+    def early(self, sense: Sense) -> float:
+        """When the heading will be reached if the ship goes on turning as now; asked again then, it comes closer."""
+        left, rate = self._left(sense), self._side * sense.r
+        return left / rate if self._helm and rate > 0.0 and left > REACHED else inf
+
+    def _left(self, sense: Sense) -> float:
+        """Angle [rad] still to be turned before the helm is reversed."""
+        return self.heading - self._side * (sense.psi - self._course)
 
     @property
     def done(self) -> bool:

@@ -5,10 +5,10 @@ from functools import cache
 from math import nan
 from typing import Any
 
-from boatsim.files import read_toml
-from boatsim.physics.content import find, names
+from boatsim.physics.content import names
 from boatsim.simulate import scenario
-from boatsim.simulate.metrics import Norm, norms
+from boatsim.simulate.cases import content
+from boatsim.simulate.norms import Norm, norms
 from boatsim.simulate.run import run
 
 SHIPPED = tuple(name for name in names("scenario") if name.startswith("joystick_boat/"))
@@ -16,8 +16,8 @@ TESTS = ("sway_1", "sway_2", "sway_3", "sway_4", "yaw_1", "yaw_2", "yaw_3", "yaw
 
 
 def raw(name: str) -> dict[str, Any]:
-    """Content of a shipped scenario's file."""
-    return read_toml(find("scenario", name))
+    """Content of a shipped scenario."""
+    return content(name)[0]
 
 
 @cache

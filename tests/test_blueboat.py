@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from boatsim.physics.effects.outboards import Outboards
 from scipy.integrate import solve_ivp
 
 from boatsim.cli import diagnosis as commands
@@ -14,7 +15,6 @@ from boatsim.physics import vessel
 from boatsim.physics.base import motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.dragged_propeller import DraggedPropeller
-from boatsim.physics.effects.outboards import Outboards
 from boatsim.physics.effects.sway_yaw_coupling import SwayYawCoupling
 from boatsim.recordings import table as recording
 

@@ -8,30 +8,30 @@ from typing import Any
 
 import numpy as np
 import pytest
+from boatsim.physics.effects.azimuth_thruster import AzimuthThruster
 from real_catamaran import Real, navigation, recording
 
 from boatsim.cli import diagnosis as commands
 from boatsim.control.base import Sense
 from boatsim.diagnose import analysis
 from boatsim.diagnose.log.position_frame import in_one_frame, turned_share
+from boatsim.errors import BadInput
 from boatsim.measures.arrival import Arrival
 from boatsim.measures.speed_reached import SpeedReached
 from boatsim.measures.turning_radius import TurningRadius
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, motion
 from boatsim.physics.content import load_class, names
-from boatsim.physics.effects.added_mass_error import AddedMassError
-from boatsim.physics.effects.azimuth_thruster import AzimuthThruster
-from boatsim.physics.effects.damping_exponent import DampingExponent
-from boatsim.physics.effects.gust import Gust
-from boatsim.physics.effects.gust_off_centre import GustOffCentre
-from boatsim.physics.effects.payload import Payload
+from boatsim.physics.effects.added_mass import AddedMassError
+from boatsim.physics.effects.damping import DampingExponent
+from boatsim.physics.effects.extra_mass import Payload
+from boatsim.physics.effects.push import Gust, GustOffCentre
 from boatsim.physics.effects.speed_hold import SpeedHold
 from boatsim.recordings import table as recordings
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.run import Run, run
 from boatsim.simulate.twin import Twin
 from boatsim.view.outputs import run_into
@@ -273,8 +273,9 @@ def test_gust_off_centre_is_what_a_lever_adds_to_the_vessels_own_gust() -> None:
     told = {"mean": 10.0, "amplitude": 5.0, "toward": 2.0}
     boat, m = vessel.load("catamaran", settings={"gust": told}), motion(t=1.0, psi=0.7)
     own: Any = boat.effect("gust")
-    extra = GustOffCentre(arm=0.1).completed(boat).wrench(m)
-    assert np.add(own.wrench(m), extra) == pytest.approx(replace(own, arm=0.1).wrench(m))
+    off: Any = vessel.added(boat, GustOffCentre(arm=0.1)).effect("gust")
+    Y = own.wrench(m).Y
+    assert off.wrench(m) == pytest.approx((own.wrench(m).X, Y, 0.0, own.wrench(m).N + 0.1 * Y))
 
 
 def test_speed_hold_keeps_the_speed_whatever_the_turn() -> None:
@@ -285,23 +286,23 @@ def test_speed_hold_keeps_the_speed_whatever_the_turn() -> None:
 
 
 def test_payload_and_deeper_draught_make_the_heavier_boat() -> None:
-    boat, m = vessel.load("catamaran"), motion(u=0.5, v=-0.2, r=0.4)
-    more = Payload(mass=2.0).completed(boat)
-    assert more.matrix()[3, 3] == pytest.approx(2.0 * (0.55**2 + 1.0) / 12, rel=1e-4)
-    assert more.wrench(m) == pytest.approx((2 * -0.2 * 0.4, -2 * 0.5 * 0.4, 0.0, 0.0))
+    boat = vessel.load("catamaran")
+    more = vessel.added(boat, Payload(mass=2.0))
+    assert more.body.mass == 9.0
+    assert more.body.yaw_inertia - boat.body.yaw_inertia == pytest.approx(2.0 * (0.55**2 + 1.0) / 12, rel=1e-4)
     own: Any = boat.effect("added_mass")
-    error = AddedMassError(surge_factor=1.3, sway_factor=1.5, yaw_factor=0.8).completed(boat)
-    wanted = replace(own, surge=1.3 * own.surge, sway=1.5 * own.sway, yaw=0.8 * own.yaw)
-    assert np.add(own.wrench(m), error.wrench(m)) == pytest.approx(wanted.wrench(m))
-    assert own.matrix() + error.matrix() == pytest.approx(wanted.matrix())
+    error = AddedMassError(surge_factor=1.3, sway_factor=1.5, yaw_factor=0.8)
+    off: Any = vessel.added(boat, error).effect("added_mass")
+    assert (off.surge, off.sway, off.yaw) == pytest.approx((1.3 * own.surge, 1.5 * own.sway, 0.8 * own.yaw))
+    with pytest.raises(BadInput, match="body.mass = -1"):
+        vessel.added(boat, Payload(mass=-8.0))
 
 
 def test_damping_exponent_makes_a_power_law_of_the_vessels_linear_damping() -> None:
     boat, m = vessel.load("catamaran"), motion(u=0.5, v=-0.2, r=0.4)
-    own: Any = boat.effect("linear_damping")
-    power = DampingExponent(surge_exponent=1.5, sway_exponent=2.0, sway_equal=0.5, yaw_exponent=3.0).completed(boat)
-    together = np.add(own.wrench(m), power.wrench(m))
-    assert together == pytest.approx((-14 * 0.5**1.5, 80 * 0.2**2 / 0.5, 0.0, -5 * 0.4**3))
+    release = DampingExponent(surge_exponent=1.5, sway_exponent=2.0, sway_equal=0.5, yaw_exponent=3.0)
+    power: Any = vessel.added(boat, release).effect("linear_damping")
+    assert power.wrench(m) == pytest.approx((-14 * 0.5**1.5, 80 * 0.2**2 / 0.5, 0.0, -5 * 0.4**3))
     assert power.wrench(motion()) == (0.0, 0.0, 0.0, 0.0)
 
 

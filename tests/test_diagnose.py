@@ -198,7 +198,7 @@ def test_patched_file_gives_the_fitted_motion_back(folder):
     found = analysis.diagnose(runs[:1], runs[1:], "trial_boat")
     commands.write(found, folder)
     again = vessel.load(str(folder / "patched.toml"))
-    assert {e.name() for e in again.effects} >= {"weak_reverse", "wind"}
+    assert {e.name for e in again.effects} >= {"weak_reverse", "wind"}
     assert "# [kg]" in (folder / "patched.toml").read_text()  # comments are kept
     rec = recording.read(runs[1], again.limits())
     fitted, own = track(rec, found.problem.program), track(rec, Program(again))

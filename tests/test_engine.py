@@ -18,7 +18,9 @@ from boatsim.physics import content, vessel
 from boatsim.physics.base import Array
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State, installed
+from boatsim.simulate.run import run
 from boatsim.simulate.twin import Twin
 from boatsim.simulate.world import Tank
 
@@ -330,6 +332,18 @@ def test_two_engines_do_not_disturb_each_other(tmp_path: Path) -> None:
             engine.advance(3)
     assert [engine.state for engine in pair] == alone
     assert alone[0].x != alone[1].x
+
+
+def test_a_run_works_out_its_state_once_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, plain = [], Engine.state.fget
+
+    def counted(engine: Engine) -> State:
+        asked.append(engine.data.time)
+        return plain(engine)
+
+    monkeypatch.setattr(Engine, "state", property(counted))
+    done = run(scenario.load("joystick_boat/sway_1", {"duration": 2.0, "until": {}}))
+    assert len(asked) == done.steps == 100
 
 
 def test_a_motion_that_is_no_longer_finite_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

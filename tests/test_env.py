@@ -16,12 +16,13 @@ import numpy as np
 import pytest
 from dm_env import test_utils
 
-from boatsim import scenario  # before dm_control, whose renderer it chooses
 from boatsim.errors import BadInput, BadPhysics
+from boatsim.physics.commands import taken_rows
 from boatsim.recordings.notes import unit_of
-from boatsim.simulate import env
+from boatsim.simulate import env, scenario  # before dm_control, whose renderer it chooses
+from boatsim.simulate.cases import Place
 from boatsim.simulate.engine import Engine
-from boatsim.simulate.run import commands_of, run
+from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario
 
 # isort: split
@@ -85,7 +86,7 @@ class TestFlatConformance(test_utils.EnvironmentTestMixin, unittest.TestCase):  
 def test_commands_of_a_scenario_give_its_trajectory(name: str, more: dict[str, Any]) -> None:
     one = short(name, 12.0, **more)
     rows = run(one).recording
-    actions = commands_of(rows, one.vessel.commands)[:600:4]  # steps of 20 ms, a new command every 80 ms
+    actions = taken_rows(one.vessel, rows.signals, len(rows))[:600:4]  # steps of 20 ms, a new command every 80 ms
     expected = np.column_stack([rows[n] for n in POSE])[:601:4]
     found = played(env.load(one), actions)
     assert np.ptp(expected, axis=0).max() > 0.1
@@ -98,7 +99,7 @@ def test_actuators_follow_as_in_the_scenario() -> None:
     one = short("joystick_boat/sway_1", 4.0)
     rows, boat = run(one).recording, env.load(one)
     boat.reset()
-    for k, action in enumerate(commands_of(rows, one.vessel.commands)[:200:4]):
+    for k, action in enumerate(taken_rows(one.vessel, rows.signals, len(rows))[:200:4]):
         step = boat.step(action)
         for name in one.vessel.actuators:
             assert step.observation[f"actual_{name}"] == pytest.approx(rows[f"actual_{name}"][4 * (k + 1)], abs=1e-12)
@@ -164,6 +165,37 @@ def test_an_episode_lasts_as_long_as_the_scenario_and_ends_undiscounted() -> Non
     assert [s.last() for s in steps] == [False] * 9 + [True]
     assert steps[-1].discount == 1.0
     assert boat.physics.time() == pytest.approx(0.8)
+
+
+def test_a_boat_that_rolls_shows_its_roll() -> None:
+    """jet_ski heels when its jet is turned; its heel is observed with its rate."""
+    boat = env.load(scenario.load("jet_ski/zigzag"))
+    plain = env.load("joystick_boat/sway_1").reset().observation
+    assert not {"phi_rad", "p_radps"} & set(plain)
+    step, spec = boat.reset(), boat.action_spec()
+    for _ in range(20):
+        step = boat.step(spec.maximum)
+    state = boat.physics.engine.state
+    assert abs(state.phi) > 1e-3
+    assert (step.observation["phi_rad"], step.observation["p_radps"]) == (state.phi, state.p)
+
+
+def test_an_action_beyond_the_limits_acts_as_the_limit() -> None:
+    ends = []
+    for factor in (1.0, 50.0):
+        boat = env.load("joystick_boat/sway_1")
+        boat.reset()
+        for _ in range(20):
+            boat.step(factor * boat.action_spec().maximum)
+        ends.append(boat.physics.engine.state)
+        assert np.array_equal(boat.physics.control(), boat.action_spec().maximum)
+    assert ends[0] == ends[1]
+
+
+def test_an_episode_begins_with_the_actuators_where_the_scenario_has_them() -> None:
+    one = short("joystick_boat/sway_1", 4.0, start={"commands": {"steer_port_rad": 0.3}})
+    boat = env.load(one)
+    assert boat.reset().observation["actual_steer_port_rad"] == run(one).recording["actual_steer_port_rad"][0] != 0.0
 
 
 def test_observations_are_sname() -> None:
@@ -299,7 +331,7 @@ def test_an_action_that_is_none_is_refused_in_a_line(action: Any) -> None:
 def test_what_can_be_no_environment_is_refused_in_a_line() -> None:
     rolling = {"about": "", "vessel": "kvlcc2_roll", "duration": 1.0, "controller": {"use": "open_loop"}}
     with pytest.raises(BadInput, match="kvlcc2_roll is not free in surge, sway and yaw"):
-        env.load(scenario.from_table(rolling, Path("rolling.toml")))
+        env.load(scenario.from_table(rolling, Place(Path("rolling.toml"))))
     with pytest.raises(BadInput, match=r"period 0.08 s is not a whole number of steps of 0.03 s"):
         env.load(short(step=0.03))
     with pytest.raises(BadInput, match="allowed 0 to 1"):

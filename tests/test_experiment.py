@@ -215,7 +215,7 @@ def test_diagnose_leaves_the_scenario_beside_its_answer_and_takes_an_old_one_awa
     commands.write(found, tmp_path / "out")
     wanted = found.findings.answer["next_experiment"]
     assert wanted["scenario"] == "next.toml" and wanted["expected_gain_nats"] > 0.0
-    assert set(wanted["separates"]) <= {"nothing", *(e.name() for e in program().suspects)}
+    assert set(wanted["separates"]) <= {"nothing", *(e.name for e in program().suspects)}
     assert scenario.load(str(tmp_path / "out" / "next.toml")).vessel.name == "trial_boat"
     assert "What to record next" in (tmp_path / "out" / "report.html").read_text()
     commands.write(replace(found, plan=None), tmp_path / "out")
@@ -250,7 +250,7 @@ def test_hull_without_commands_is_released_at_another_angle(tmp_path):
     levels = Levels(np.array([1e-3]), 1.0, {"roll_sd_rad": 1e-3})
     problem = Problem([track(first, Program(boat, suspects))], levels, {})
     nominal = problem.nominal()
-    winner, rival = (fit(problem, f) for f in screen(problem, nominal, [e.name() for e in suspects]).values())
+    winner, rival = (fit(problem, f) for f in screen(problem, nominal, [e.name for e in suspects]).values())
     plan = experiment.next_experiment(problem, winner, {"cubic_damping": rival})
     assert plan is not None and plan.start == {"phi": pytest.approx(0.15)}  # the larger angle tells more
     file = tmp_path / "next.toml"

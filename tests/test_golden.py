@@ -9,10 +9,18 @@ from runs import found
 
 from benchmarks import golden
 from benchmarks.golden import TOLERANCE, drifts, kept, main, path_of, tracked, update, values, with_reason
-from boatsim.simulate.metrics import Norm
+from boatsim.simulate.norms import Norm
 
 TRACKED = tracked()
-OLD = {"yaw_rate_inf": {"today": 0.5, "at_6hz": 1.1, "published": 2.8, "unit": "deg/s"}}
+OLD = {
+    "yaw_rate_inf": {
+        "today": 0.5,
+        "at_reported": 1.1,
+        "published": 2.8,
+        "verdict": "no tolerance stated",
+        "unit": "deg/s",
+    }
+}
 
 
 def with_today(value: float | None) -> golden.Values:
@@ -31,9 +39,10 @@ def test_norms_are_what_they_were(name: str) -> None:
 
 
 def test_nothing_is_kept_of_scenarios_that_are_gone() -> None:
-    folder = path_of("joystick_boat/sway_1").parents[1]
-    stored = {str(path.relative_to(folder).with_suffix("")) for path in folder.rglob("*.json")}
+    files = sorted(path_of("joystick_boat/sway_1").parent.iterdir())
+    stored = {name for file in files for name in golden.table(file)}
     assert stored == set(TRACKED) and len(stored) >= 29
+    assert [file for file in files if any(path_of(name) != file for name in golden.table(file))] == []
 
 
 def test_a_drift_is_a_line_with_scenario_norm_old_new_and_paper() -> None:
@@ -62,10 +71,13 @@ def test_an_update_writes_the_values_and_the_reason(tmp_path: Path) -> None:
     (tmp_path / "CHANGELOG.md").write_text("# Changelog\n\n## Norms\n\n- older reason\n\n## Other\n")
     new = with_today(0.7)
     update({"boat/one": (new, drifts("boat/one", OLD, new))}, "servo lag corrected", tmp_path)
+    other = {"moved": OLD["yaw_rate_inf"]}
+    update({"boat/two": (other, ["boat/two moved is new"])}, "another", tmp_path)
     assert json.loads(path_of("boat/one", tmp_path).read_text())["seed"] == 0
+    assert kept("boat/two", tmp_path) == other
     assert drifts("boat/one", kept("boat/one", tmp_path), new) == []
     assert (tmp_path / "CHANGELOG.md").read_text() == (
-        "# Changelog\n\n## Norms\n\n- servo lag corrected\n"
+        "# Changelog\n\n## Norms\n\n- another\n  - 1 new norms\n- servo lag corrected\n"
         "  - boat/one yaw_rate_inf: 0.5 -> 0.7 deg/s (paper: 2.8)\n- older reason\n\n## Other\n"
     )
 
@@ -77,6 +89,14 @@ def test_a_changelog_without_a_section_on_norms_gets_one() -> None:
 
 
 def test_what_is_kept_of_a_norm_survives_the_file() -> None:
-    norm = Norm(1 / 3, "m", 0.07, {"low": None, "high": 1.0}, True, 2 / 3, 0.01)
+    norm = Norm(1 / 3, "m", 0.07, 0.05, (0.0, 1.0), True, 2 / 3, 0.01)
     stored = json.loads(json.dumps(values({"moved": norm})))
-    assert stored == {"moved": {"today": 0.333333333, "at_6hz": 0.666666667, "published": 0.07, "unit": "m"}}
+    assert stored == {
+        "moved": {
+            "today": 0.333333333,
+            "at_reported": 0.666666667,
+            "published": 0.07,
+            "verdict": "not reproduced",
+            "unit": "m",
+        }
+    }

@@ -4,6 +4,7 @@ The equations here are written from the sources and share nothing with the compi
 """
 
 from collections.abc import Callable
+from itertools import product
 from math import atan2, cos, degrees, exp, hypot, pi, radians, sin, sqrt
 from typing import Any
 
@@ -18,9 +19,10 @@ from boatsim.physics.base import Array, motion
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.free_body import FreeBody, Solid, angles, rotation
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.pontoon_boat import PontoonBoat, otter, strips
 from boatsim.simulate.run import run
+from boatsim.simulate.twin import Twin
 
 Rates = Callable[[Array, float], Array]  # (x, y, psi, u, v, r), rudder [rad] -> their derivatives
 
@@ -123,6 +125,37 @@ def test_mmg_propeller_that_stands_still_drags_and_a_ship_at_rest_feels_its_race
     assert rudder.wrench(motion(delta_rad=0.3, n_rps=10.0)).N > 0.0  # type: ignore[attr-defined]
     spun = hull.wrench(motion(r=0.2)), hull.wrench(motion(r=0.4))  # type: ignore[attr-defined]
     assert spun[0].N < 0.0 and spun[1].N == pytest.approx(4.0 * spun[0].N)
+
+
+def test_mmg_resistance_is_against_the_way_through_the_water() -> None:
+    hull = vessel.load("kvlcc2_mmg").effect("mmg_hull")
+    ahead, astern = (hull.wrench(motion(u=u)).X for u in (0.8, -0.8))  # type: ignore[union-attr]
+    assert ahead == pytest.approx(-0.5 * RHO * L * D * 0.022 * 0.8**2) and astern == pytest.approx(-ahead)
+    drifting = [hull.wrench(motion(u=u, v=0.5)).X for u in (-1e-9, 1e-9)]  # type: ignore[union-attr]
+    assert drifting[0] == pytest.approx(drifting[1], rel=1e-6)  # it turns round without a jump
+    still, flowing = motion(u=-0.5), motion(current=(0.5, 0.0))  # at rest over ground, the water comes from astern
+    assert hull.wrench(flowing).X == hull.wrench(still).X > 0.0  # type: ignore[union-attr]
+
+
+def test_mmg_propeller_and_rudder_amidships_do_not_drive_a_ship_that_goes_straight_astern() -> None:
+    boat, astern = vessel.load("kvlcc2_mmg"), motion(u=-0.8, delta_rad=0.0, n_rps=0.0)
+    stopped = boat.effect("mmg_propeller").wrench(astern).X  # type: ignore[union-attr]
+    assert stopped == pytest.approx(0.78 * RHO * D_P**2 * 0.1385 * (0.6 * 0.8) ** 2)  # astern the wake is that of ahead
+    assert boat.effect("mmg_rudder").wrench(astern) == (0.0, 0.0, 0.0, 0.0)  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize("delta", [0.0, 0.6])
+def test_mmg_ship_without_power_comes_to_rest_in_the_water_from_any_start(delta: float) -> None:
+    """Its energy falls all the time, and with resistance in square of the speed as 1 / t^2 at last."""
+    boat = vessel.load("kvlcc2_mmg")
+    inertia = MASS * (0.25 * L) ** 2 + X_G**2 * MASS + J_Z
+    whole = np.array([[MASS + M_X, 0, 0], [0, MASS + M_Y, X_G * MASS], [0, X_G * MASS, inertia]])
+    rows = np.tile([delta, 0.0], (300, 1))
+    for beta, r in product(np.radians([0, 30, 90, 150, 175, 180, -120]), (-0.15, 0.0, 0.15)):
+        start = [0.0, 0.0, 0.0, U0 * cos(beta), -U0 * sin(beta), r]
+        nu = Twin(boat, 0.05).rollout(start, rows, 5.0)[:, 3:]
+        energy = 0.5 * np.einsum("ti,ij,tj->t", nu, whole, nu)
+        assert np.diff(energy).max() < 0.0 and energy[-1] < 0.005 * energy[0], (beta, r)
 
 
 def test_propeller_balances_the_resistance_at_the_published_rate() -> None:

@@ -16,13 +16,13 @@ from boatsim.physics.content import load_class, names
 from boatsim.physics.effects.jet_steering import JetSteering
 from boatsim.physics.effects.nomoto_yaw import NomotoYaw
 from boatsim.physics.effects.push import Push
+from boatsim.physics.effects.rate_limit import ThrottleRateLimit
 from boatsim.physics.effects.roll_coupling import RollCoupling
-from boatsim.physics.effects.steering_asymmetry import SteeringAsymmetry
-from boatsim.physics.effects.throttle_rate_limit import ThrottleRateLimit
+from boatsim.physics.effects.steering_offset import SteeringAsymmetry
 from boatsim.physics.effects.water_jet import WaterJet
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.run import run
 from boatsim.simulate.twin import Twin
 
@@ -130,7 +130,8 @@ def test_engine_and_twin_follow_an_integration_of_the_printed_equations(throttle
     start = (0.0, 0.0, 0.3, 0.05, 20.0, 0.2, 0.1, -0.1)  # x, y, psi, phi, u, v, p, r
     truth = solved(Craft(), throttle, jet, np.array(start), np.array([0.0, 10.0]))[-1]
     engine = Engine(CRAFT, step=0.01)
-    engine.reset(State(**dict(zip(("x", "y", "psi", "phi", "u", "v", "p", "r"), start, strict=True))), {"throttle": throttle, "jet_rad": jet})
+    moving = dict(zip(("x", "y", "psi", "phi", "u", "v", "p", "r"), start, strict=True))
+    engine.reset(State(**moving), {"throttle": throttle, "jet_rad": jet})
     engine.advance(1000)
     s = engine.state
     assert [s.x, s.y, s.psi, s.phi, s.u, s.v, s.p, s.r] == pytest.approx(truth.tolist(), abs=1e-6)

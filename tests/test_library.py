@@ -1,5 +1,6 @@
 """Entries of the diagnosis' library, each against another form of its law and some on data made by scipy."""
 
+from dataclasses import replace
 from math import asin, cos, hypot, log, pi, sin, sqrt
 from pathlib import Path
 from typing import Any
@@ -11,12 +12,10 @@ from real_boat import Real, recorded
 from boatsim.diagnose import analysis
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, motion
-from boatsim.physics.effects.added_mass import AddedMass
-from boatsim.physics.effects.added_mass_coriolis import AddedMassCoriolis
+from boatsim.physics.effects.added_mass import AddedMass, AddedMassCoriolis
 from boatsim.physics.effects.command_delay import HISTORY, CommandDelay
+from boatsim.physics.effects.damping import LateralCentreShift, LinearDamping
 from boatsim.physics.effects.extra_mass import ExtraMass
-from boatsim.physics.effects.lateral_centre_shift import LateralCentreShift
-from boatsim.physics.effects.linear_damping import LinearDamping
 from boatsim.physics.effects.mass_centre_shift import MassCentreShift
 from boatsim.physics.effects.prop_walk import PropWalk
 from boatsim.physics.effects.steering_backlash import SteeringBacklash
@@ -100,8 +99,9 @@ def test_added_mass_coriolis_is_kirchhoffs_force_of_the_water(fraction: float) -
     m = motion(current=(0.1, -0.05), psi=0.4, u=1.0, v=0.3, r=0.2)
     M, nu = water.matrix(), np.array([m.ur, m.vr, 0.0, m.r])
     Tu, Tv = (((e @ M @ nu) + (nu @ M @ e)) / 2 for e in np.eye(4)[:2])  # derivatives of the energy nu' M nu / 2
-    effect = AddedMassCoriolis(fraction=fraction, surge=0.6, sway=3.0, sway_at=0.2)
-    assert effect.wrench(m) == pytest.approx(fraction * np.array([m.r * Tv, -m.r * Tu, 0.0, m.vr * Tu - m.ur * Tv]))
+    boat = vessel.added(replace(BOAT, effects=(replace(water, coriolis=0.0),)), AddedMassCoriolis(fraction=fraction))
+    own: Any = boat.effects[0]
+    assert own.wrench(m) == pytest.approx(fraction * np.array([m.r * Tv, -m.r * Tu, 0.0, m.vr * Tu - m.ur * Tv]))
 
 
 def test_prop_walk_pushes_the_stern_to_port_astern_and_a_third_as_much_to_starboard_ahead() -> None:
@@ -112,9 +112,10 @@ def test_prop_walk_pushes_the_stern_to_port_astern_and_a_third_as_much_to_starbo
 
 @pytest.mark.parametrize("shift", [-0.1, 0.25])
 def test_shifted_lateral_centre_takes_only_the_power_of_the_cross_flow_there(shift: float) -> None:
-    own = LinearDamping(sway=10.0)
+    boat = vessel.added(replace(BOAT, effects=(LinearDamping(sway=10.0),)), LateralCentreShift(shift=shift))
     m = motion(v=0.3, r=-0.5)
-    both = np.add(own.wrench(m), LateralCentreShift(shift=shift).completed(BOAT).wrench(m))
+    own: Any = boat.effects[0]
+    both = own.wrench(m)
     assert both[3] == pytest.approx(shift * both[1])  # one force at one place
     assert both[1] * m.v + both[3] * m.r == pytest.approx(-10.0 * (m.v + shift * m.r) ** 2)
 

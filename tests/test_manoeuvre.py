@@ -1,7 +1,7 @@
 """Standard manoeuvres: each measure against a closed form, the IMO's limits, every vessel that can turn, mistakes."""
 
 from dataclasses import replace
-from math import cos, degrees, exp, log, pi, sin, sqrt
+from math import cos, degrees, exp, log, pi, radians, sin, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,7 @@ from boatsim.physics.content import load_class
 from boatsim.recordings.table import Recording
 from boatsim.simulate import imo
 from boatsim.simulate.manoeuvre import handled, scenario_of
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.run import run
 
 LENGTH = 2.0  # [m] of the ships here
@@ -301,6 +301,32 @@ def test_a_symmetric_boat_does_the_same_to_both_sides(manoeuvre: str) -> None:
     assert None not in one.values()
 
 
+def test_helm_is_reversed_at_the_heading_and_not_at_the_end_of_a_step() -> None:
+    """Within 0.2 % of what steps a twentieth as long give; the row of a reversal is the instant of it."""
+    found = []
+    for share in (1.0, 0.05):
+        made = scenario_of("zigzag", "kvlcc2_mmg", angle=15.0)
+        made = replace(made, file=made.file.model_copy(update={"step": share * made.file.step}))
+        made.controller.period, made.controller.reversals = made.file.step, 2  # type: ignore[attr-defined]
+        done = run(made)
+        found.append({k: n.value for k, n in norms(done).items()}["first_overshoot"])
+        helm, psi = done.recording["reference_helm_rad"], done.recording["psi_rad"]
+        turned = np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0) + 1
+        assert np.abs(psi[turned]) == pytest.approx(radians(15.0), abs=1e-6)
+    assert found[0] == pytest.approx(found[1], rel=2e-4)
+
+
+@pytest.mark.parametrize("angle", [20.0, -20.0])
+def test_a_20_10_zigzag_puts_20_degrees_of_helm_on_and_reverses_at_10(angle: float) -> None:
+    made = scenario_of("zigzag", "mariner", angle=angle, heading=10.0)
+    assert not made.file.norms  # the limits are those of 10/10 and 20/20
+    done = run(made)
+    helm, psi = done.recording["reference_helm_rad"], done.recording["psi_rad"]
+    turned = np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0) + 1
+    assert np.abs(helm).max() == pytest.approx(radians(20.0))
+    assert np.degrees(psi[turned]) == pytest.approx(np.sign(angle) * np.resize([10.0, -10.0], len(turned)), abs=1e-4)
+
+
 def test_roll_decay_of_a_vessel_shows_its_damping() -> None:
     """kvlcc2_roll is linear: inertia 135.4 kg m^2, damping 6.7 N m s, stiffness 822.3 N m."""
     found = {k: n.value for k, n in norms(run(scenario_of("roll_decay", "kvlcc2_roll"))).items()}
@@ -330,6 +356,9 @@ def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
         (("zigzag", "--vessel", "mariner", "--angle", "50"), "means delta_rad = 0.872665; allowed -0.6981 to 0.6981"),
         (("zigzag", "--vessel", "mariner", "--angle", "0"), "angle = 0 deg; a zigzag needs another"),
         (("zigzag", "--vessel", "mariner", "--angle", "nan"), "mariner: nan deg of helm means"),
+        (("turning_circle", "--vessel", "mariner", "--heading", "10"), "heading = 10 deg; only a zigzag reverses"),
+        (("zigzag", "--vessel", "mariner", "--heading", "-10"), "heading = -10 deg; allowed 0.1 to 170 deg"),
+        (("zigzag", "--vessel", "mariner", "--heading", "nan"), "heading = nan deg; allowed 0.1 to 170 deg"),
         (("zigzag", "--vessel", "mariner", "--speed", "inf"), "speed = inf m/s; allowed is more than 0 m/s"),
         (("zigzag", "--vessel", "mariner", "--load", "light"), "load 'light' does not exist"),
     ],

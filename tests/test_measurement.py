@@ -1,5 +1,6 @@
 """What a recording shows and the boat did not do: clocks, cameras, compasses, antennas; and forces without a cause."""
 
+from itertools import combinations
 from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
@@ -7,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 from real_boat import FURTHER, Real, recorded, waves
+from scipy import signal
 
 from boatsim.diagnose import analysis
 from boatsim.physics.base import Shown, motion
 from boatsim.physics.effects.camera_scale import CameraScale
-from boatsim.physics.effects.heading_deviation import HeadingDeviation
-from boatsim.physics.effects.heading_offset import HeadingOffset
+from boatsim.physics.effects.heading_deviation import HeadingDeviation, HeadingOffset
 from boatsim.physics.effects.position_frame_error import PositionFrameError
 from boatsim.physics.effects.wave_forcing import WaveForcing, law
 from boatsim.recordings import table as recording
@@ -57,9 +58,9 @@ def test_camera_scale_stretches_about_the_origin_of_the_tank() -> None:
     assert (seen.x, seen.y) == pytest.approx((1.32, -0.665)) and seen[2:] == TRUE[2:]
 
 
-def test_a_realisation_of_waves_has_the_rms_and_the_frequency_it_states() -> None:
+def test_a_realisation_of_waves_has_the_rms_and_the_frequency_it_states_and_independent_axes() -> None:
     sea = WaveForcing(surge=0.2, sway=0.1, yaw=0.03, frequency=2.0, damping=0.05)
-    t = np.arange(0.0, 2000.0, 0.2)
+    t = np.arange(0.0, 4000.0, 0.2)
     force = np.array([law(motion(t=float(x)), sea.values()) for x in t])[:, [0, 1, 3]]
     assert force.std(axis=0) == pytest.approx([0.2, 0.1, 0.03], rel=0.05)
     for axis in force.T:
@@ -67,6 +68,10 @@ def test_a_realisation_of_waves_has_the_rms_and_the_frequency_it_states() -> Non
         omega = 2 * pi * np.fft.rfftfreq(len(t), 0.2)
         median = omega[np.searchsorted(np.cumsum(power), 0.5 * power.sum())]
         assert median == pytest.approx(2.0, rel=0.05)
+    for one, other in combinations(force.T, 2):
+        assert abs(np.corrcoef(one, other)[0, 1]) < 0.15  # 0.05 is the error over 4000 s
+        frequency, coherence = signal.coherence(one, other, fs=5.0, nperseg=512)
+        assert coherence[abs(2 * pi * frequency - 2.0) < 0.3].mean() < 0.1  # of 77 half-overlapping parts: 0.02
     assert not np.any(law(motion(t=3.0), sea.values()._replace(realisation=0.0)))
 
 

@@ -30,7 +30,15 @@ HELD: list[dict[str, Any]] = [
     {"use": "thrust_imbalance", "fraction": 0.1},
     {"use": "thrust_gain_error", "factor": 0.9},
     {"use": "steering_offset", "port": 0.05, "starboard": -0.03},
-    {"use": "wall_effect", "damping_rise": 1.0, "pull": 0.05},
+    {
+        "use": "wall_effect",
+        "damping_rise": 1.0,
+        "pull": 0.05,
+        "x_low": -4.0,
+        "x_high": 4.0,
+        "y_low": -3.0,
+        "y_high": 3.0,
+    },
 ]
 DEAD: list[dict[str, Any]] = [
     {"use": "command_delay", "delay": 0.37},

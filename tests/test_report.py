@@ -376,16 +376,35 @@ MISSING = "Something is missing that no entry of the library explains (0.21 N rm
 )  # fmt: skip
 def test_every_verdict_is_one_sentence(verdict, effects, text):
     where = {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}}
-    assert report.sentence({"verdict": verdict, "effects": effects, "where": where}, MEANT) == text
+    answer = {"verdict": verdict, "effects": effects, "where": where, "candidates": [{"name": "wind"}]}
+    assert report.sentence(answer, MEANT) == text
+
+
+@pytest.mark.parametrize(
+    ("verdict", "begins"),
+    [
+        ("unknown", "Something is missing (0.21 N rms in surge), and nothing was tried to explain it "),
+        (
+            "nothing_missing",
+            "No more force is missing than the vessel file tolerates, but nothing was tried to explain it ",
+        ),
+    ],
+)
+def test_a_diagnosis_with_nothing_to_try_says_so(verdict: str, begins: str) -> None:
+    where = {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}}
+    said = report.sentence({"verdict": verdict, "effects": [], "where": where, "candidates": []})
+    assert said == f"{begins}(the vessel's list of suspects and --library NAME say what is tried)."
 
 
 def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_numbers():
     values = {"surge_N": 0.2, "sway_N": 0.001, "yaw_Nm": 0.1, "north_mps": 0.3, "east_mps": 0.3, "astern_factor": 0.005}
     effect = DAMPED | {"parameters": {k: {"value": v, "sd": 0.01, "unit": parameter(k)[1]} for k, v in values.items()}}
-    said = report.sentence({"verdict": "named", "effects": [effect], "where": {"axes": {}}})
+    said = report.sentence({"verdict": "named", "effects": [effect], "candidates": [effect], "where": {"axes": {}}})
     assert "surge 0.200 ± 0.010 N, yaw" in said and "north" in said and "sway" not in said and "east" not in said
     effect["parameters"] = {"astern_factor": effect["parameters"]["astern_factor"]}  # a factor is something at zero too
-    assert "astern factor 0.005 ± 0.010" in report.sentence({"verdict": "named", "effects": [effect]})
+    assert "astern factor 0.005 ± 0.010" in report.sentence(
+        {"verdict": "named", "effects": [effect], "candidates": [effect]}
+    )
 
 
 def test_an_error_of_measurement_is_told_from_physics(tmp_path):

@@ -52,9 +52,7 @@ def logged(tmp_path):
     with RunLog(tmp_path / "run.rrd", False, SCENE) as log:
         for piece in pieces(circle()):
             log.chunk(piece)
-        log.finish(
-            {"moved": {"value": 0.5, "unit": "m", "published": 0.4, "bar": {"low": 0.3, "high": None}, "ok": True}}
-        )
+        log.finish({"moved": {"value": 0.5, "unit": "m", "published": 0.4, "guard": [0.3, None], "ok": True}})
     return tmp_path / "run.rrd"
 
 
@@ -211,13 +209,14 @@ def test_every_closed_shape_has_its_outside_outside():
 
 def test_norms_are_told_with_what_was_published_and_whether_the_bar_is_met():
     table = norms_table({
-        "moved": {"value": 0.51234, "unit": "m", "published": 0.4, "bar": {"low": 0.3, "high": None}, "ok": True},
-        "rate": {"value": 2.0, "unit": "rad/s", "published": None, "bar": {"low": None, "high": 1.0}, "ok": False},
-        "free": {"value": None, "unit": None, "published": None, "bar": None, "ok": None},
+        "moved": {"value": 0.51234, "unit": "m", "published": 0.4, "verdict": "not reproduced", "guard": [0.3, None],
+                  "ok": True},
+        "rate": {"value": -2.0, "unit": "rad/s", "published": None, "verdict": None, "guard": [-1.0, 1.0], "ok": False},
+        "free": {"value": None, "unit": None, "published": None, "guard": None, "ok": None},
     })  # fmt: skip
-    assert "| moved | 0.5123 m | 0.4 | at least 0.3 | yes |" in table
-    assert "| rate | 2 rad/s |  | at most 1 | **no** |" in table
-    assert "| free |  |  |  |  |" in table
+    assert "| moved | 0.5123 m | 0.4 | not reproduced | at least 0.3 | yes |" in table
+    assert "| rate | -2 rad/s |  |  | -1 to 1 | **no** |" in table
+    assert "| free |  |  |  |  |  |" in table
 
 
 def test_a_legend_says_the_unit():

@@ -12,16 +12,17 @@ from scipy.special import exp1
 from boatsim.errors import BadInput
 from boatsim.measures.sea_keeping import SeaKeeping
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, motion
+from boatsim.physics.base import AXES, Array, motion
 from boatsim.physics.effects.bilge_keels import BilgeKeels
 from boatsim.physics.effects.filtered_sea import FilteredSea
 from boatsim.physics.effects.irregular_sea import IrregularSea, sections
 from boatsim.physics.effects.linear_hull import LinearHull
 from boatsim.physics.effects.push import Push
 from boatsim.physics.effects.roll_damping import RollDamping
-from boatsim.physics.effects.rudder import Rudder
-from boatsim.physics.effects.rudder_stall import RudderStall
+from boatsim.physics.effects.rudder import Rudder, RudderStall
 from boatsim.physics.effects.speed_hold import SpeedHold
+from boatsim.physics.effects.wave_forcing import WaveForcing
+from boatsim.physics.effects.yaw_rate_waves import YawRateWaves
 from boatsim.physics.particulars import spheroid
 from boatsim.recordings.table import Recording
 
@@ -146,19 +147,45 @@ def test_sea_needs_no_particular_vessel() -> None:
     assert small.wrench(motion(t=1.0)).K == 0.0 and small.wrench(motion(t=1.0)).Y != 0.0
 
 
-def test_filtered_sea_has_the_filters_autocorrelation_and_independent_axes() -> None:
-    """E[f(0) f(tau)] of white noise through s / (s^2 + 2 z w0 s + w0^2)."""
-    noise = FilteredSea(sway=2.0, roll=3.0, yaw=5.0, frequency=1.25, damping=0.1)
-    start = ensemble(noise)[:, 1:]
-    assert start.std(axis=0) == pytest.approx([2.0, 3.0, 5.0], rel=0.04)
-    assert np.corrcoef(start.T) == pytest.approx(np.eye(3), abs=0.06)
+NOISES = [
+    FilteredSea(sway=2.0, roll=3.0, yaw=5.0, frequency=1.25, damping=0.1),
+    WaveForcing(surge=1.0, sway=2.0, roll=3.0, yaw=5.0, frequency=1.25, damping=0.1),
+    YawRateWaves(rms=2.0, drag=1.0, frequency=1.25, damping=0.1),
+]
+
+
+@pytest.mark.parametrize("noise", NOISES, ids=lambda noise: noise.name)
+def test_noise_has_the_filters_autocorrelation_and_independent_axes(noise: Any) -> None:
+    """E[f(0) f(tau)] of white noise through s / (s^2 + 2 z w0 s + w0^2), the process the diagnosis follows."""
+    start = ensemble(noise)
+    level = np.array([getattr(noise, axis, 0.0) for axis in AXES])
+    if isinstance(noise, YawRateWaves):
+        level[3] = noise.drag * noise.rms  # of the moment, for a hull without inertia
+    acts = level > 0.0
+    assert start.std(axis=0) == pytest.approx(level, rel=0.04)
+    assert np.corrcoef(start[:, acts].T) == pytest.approx(np.eye(acts.sum()), abs=0.06)
     damped = 1.25 * sqrt(1 - 0.01)
     for tau in (0.7, 2.5, 6.0):
-        later = ensemble(noise, tau)[:, 1:]
+        later = ensemble(noise, tau)
         wanted = exp(-0.125 * tau) * (cos(damped * tau) - 0.125 / damped * sin(damped * tau))
-        found = [np.mean(a * b) for a, b in zip(start.T, later.T, strict=True)]
-        assert np.array(found) / [4.0, 9.0, 25.0] == pytest.approx(wanted, abs=0.06)
-    assert FilteredSea().wrench(motion(t=2.0)) == (0, 0, 0, 0)
+        assert (start * later).mean(axis=0)[acts] / level[acts] ** 2 == pytest.approx(wanted, abs=0.06)
+    assert type(noise)().wrench(motion(t=2.0)) == (0, 0, 0, 0)
+
+
+@pytest.mark.parametrize("noise", NOISES[1:], ids=lambda noise: noise.name)
+def test_other_seeds_are_other_courses_of_the_noise_and_still_water_stays_still(noise: Any) -> None:
+    t = np.arange(0.0, 4000.0, 0.5)
+
+    def course(seed: int) -> Array:
+        """Yaw moment in time."""
+        law, values = type(noise).law, noise.seeded(seed).values()
+        return np.array([law(motion(t=float(x)), values).N for x in t])
+
+    first, second = course(1), course(2)
+    assert (first == course(1)).all()
+    assert abs(np.corrcoef(first, second)[0, 1]) < 0.1  # the error over 4000 s is 0.04
+    assert noise.seeded(10**12).realisation <= 1e9  # any seed will do
+    assert replace(noise, realisation=0.0).seeded(3).wrench(motion(t=3.0)) == (0, 0, 0, 0)
 
 
 # ---- roll damping
@@ -218,7 +245,7 @@ def test_a_blade_pushes_at_its_place_and_a_little_more_than_alone() -> None:
     [(Rudder(area=1.0), "linear_hull"), (LinearHull(), "speed_hold"), (RollDamping(), "righting")],
 )
 def test_what_a_vessel_lacks_for_an_effect_is_said(effect: Any, missing: str) -> None:
-    with pytest.raises(BadInput, match=f"kvlcc2: {effect.name()} needs a vessel with {missing}"):
+    with pytest.raises(BadInput, match=f"kvlcc2: {effect.name} needs a vessel with {missing}"):
         effect.completed(vessel.load("kvlcc2"))
 
 
@@ -234,9 +261,10 @@ def test_a_vessel_may_call_its_rudder_by_the_recordings_name() -> None:
 @pytest.mark.parametrize("delta", [-0.6, -0.2, 0.3, 0.6])
 def test_a_stalled_rudder_gives_what_it_gave_at_the_angle_of_stall(delta: float) -> None:
     boat = vessel.load("eastward_ho")
-    own, stall = boat.effect("rudder"), RudderStall(angle=0.35).completed(boat)
+    own, stalling = (b.effect("rudder") for b in (boat, vessel.added(boat, RudderStall(angle=0.35))))
+    assert isinstance(own, Rudder) and isinstance(stalling, Rudder)
     m, held = motion(rudder_rad=delta), motion(rudder_rad=min(max(delta, -0.35), 0.35))
-    assert np.add(own.wrench(m), stall.wrench(m)) == pytest.approx(own.wrench(held))  # type: ignore[union-attr]
+    assert stalling.wrench(m) == pytest.approx(own.wrench(held))
 
 
 def test_speed_hold_leaves_no_surge_but_towards_the_speed() -> None:
@@ -246,7 +274,7 @@ def test_speed_hold_leaves_no_surge_but_towards_the_speed() -> None:
 
 
 def test_a_push_is_the_same_on_every_heading() -> None:
-    push = Push(surge=1.0, sway=2.0, roll=3.0, yaw=4.0, arm=0.5)
+    push = Push(surge=1.0, sway=2.0, roll=3.0, yaw=4.0, heel_arm=0.5)
     assert push.wrench(motion(psi=2.0, u=3.0)) == (1.0, 2.0, 4.0, 4.0)
 
 

@@ -9,6 +9,8 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
+from boatsim.physics.effects.outboards import Outboards
+from boatsim.physics.effects.shaft_rpm import ShaftRpm
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnose import analysis
@@ -17,18 +19,15 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.approach_balance import ApproachBalance
+from boatsim.physics.effects.damping import LinearDamping
 from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
-from boatsim.physics.effects.linear_damping import LinearDamping
-from boatsim.physics.effects.metacentric_height_error import MetacentricHeightError
-from boatsim.physics.effects.outboards import Outboards
 from boatsim.physics.effects.planing_lag import PlaningLag
-from boatsim.physics.effects.righting_arm import RightingArm
+from boatsim.physics.effects.rate_limit import SteeringRateLimit
+from boatsim.physics.effects.righting_arm import MetacentricHeightError, RightingArm
 from boatsim.physics.effects.rudder import Rudder
-from boatsim.physics.effects.shaft_rpm import ShaftRpm
-from boatsim.physics.effects.speed_loss_in_turn import SpeedLossInTurn
 from boatsim.physics.effects.speed_scaled_steering import SpeedScaledSteering
 from boatsim.physics.effects.steering_drag import SteeringDrag
-from boatsim.physics.effects.steering_rate_limit import SteeringRateLimit
+from boatsim.physics.effects.sway_yaw_coupling import SpeedLossInTurn
 from boatsim.physics.effects.thrust_loss_with_speed import ThrustLossWithSpeed
 from boatsim.recordings import table as recording
 from boatsim.recordings.table import Notes, Recording
@@ -98,9 +97,9 @@ def test_rate_limit_takes_the_time_of_a_ramp_and_its_mean_is_exact() -> None:
 
 def test_metacentric_height_changes_the_period_by_the_inverse_root() -> None:
     own = RightingArm(stiffness=822.3, list=0.01)
-    error = replace(MetacentricHeightError(factor=0.64, stiffness=822.3, list=0.01))
+    boat = vessel.added(replace(SHIP, effects=(own,)), MetacentricHeightError(factor=0.64))
     inertia, m = 135.4, motion(phi=0.11)
-    period = [2 * pi * sqrt(inertia * 0.1 / -K) for K in (own.wrench(m).K, own.wrench(m).K + error.wrench(m).K)]
+    period = [2 * pi * sqrt(inertia * 0.1 / -arm.wrench(m).K) for arm in (own, boat.effects[0])]
     assert period[1] / period[0] == pytest.approx(1.25)
 
 
@@ -172,11 +171,11 @@ def test_full_scale_kvlcc2_is_the_model_by_froudes_law() -> None:
         return float(ratio**total)
 
     for own in SHIP.effects:
-        scaled = full.effect(own.name())
+        scaled = full.effect(own.name)
         for name, about in type(own).params().items():
             wanted = getattr(own, name) * grows(about.unit)
             loose = 1e-2 if name == "shaft_rate" else 1e-3  # the tanks' propellers turned at slightly different rates
-            assert getattr(scaled, name) == pytest.approx(wanted, rel=loose), f"{own.name()}.{name}"
+            assert getattr(scaled, name) == pytest.approx(wanted, rel=loose), f"{own.name}.{name}"
     assert full.body.mass == pytest.approx(SHIP.body.mass * ratio**3, rel=1e-3)
     assert full.body.yaw_inertia == pytest.approx(SHIP.body.yaw_inertia * ratio**5, rel=1e-3)
 

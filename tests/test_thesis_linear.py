@@ -17,7 +17,7 @@ from boatsim.physics.content import names
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.metrics import norms
+from boatsim.simulate.norms import norms
 from boatsim.simulate.run import Run, run
 from boatsim.view.outputs import run_into
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import boats
 import pytest
+from boatsim.physics.effects.outboards import Outboards
 
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.effects.added_mass import AddedMass
-from boatsim.physics.effects.outboards import Outboards
 
 
 def of(text: str, tmp_path: Path, **more: Any) -> vessel.Vessel:
@@ -29,7 +29,7 @@ def test_every_vessel_loads_in_every_load(name: str) -> None:
 @pytest.mark.parametrize("name", content.names("vessel"))
 def test_suspects_of_a_vessel_can_be_put_on_it(name: str) -> None:
     boat = vessel.load(name)
-    own = {e.name() for e in boat.effects}
+    own = {e.name for e in boat.effects}
     for suspect in boat.diagnosis.suspects:
         assert suspect not in own
         vessel.load(name, extra=[{"use": suspect}])
@@ -58,7 +58,7 @@ def test_settings_can_change_the_body(tmp_path: Path) -> None:
 
 def test_extra_effects_come_after_the_vessels_own() -> None:
     boat = vessel.load("trial_boat", extra=[{"use": "current", "north": 0.1}, {"use": "weak_reverse"}])
-    assert [e.name() for e in boat.effects][-3:] == ["outboards", "current", "weak_reverse"]
+    assert [e.name for e in boat.effects][-3:] == ["outboards", "current", "weak_reverse"]
 
 
 def test_what_the_vessel_is_asked_for() -> None:

@@ -23,6 +23,7 @@ VESSELS = ("joystick_boat", "trial_boat", "kvlcc2_roll")
 JOINTS = {"joystick_boat": ["x", "y", "psi"], "trial_boat": ["x", "y", "psi"], "kvlcc2_roll": ["phi"]}
 WALLS = {"wall_ahead", "wall_astern", "wall_port", "wall_starboard"}
 RHO = 1000.0  # [kg/m^3] fresh water
+WALLED = Tank(length=1.5, width=3.0, depth=0.1)
 
 
 @pytest.fixture(autouse=True)
@@ -65,7 +66,7 @@ def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("name", VESSELS)
 def test_joints_follow_the_freedoms_in_order(name: str) -> None:
-    model = world.build(vessel.load(name))
+    model = world.build(vessel.load(name), WALLED)
     assert [model.joint(i).name for i in range(model.njnt)] == JOINTS[name]
     assert model.nu == 0 and not model.opt.gravity.any()
     assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
@@ -77,7 +78,7 @@ def test_mass_matrix_stores_its_whole_lower_triangle(
     boat: vessel.Vessel, freedoms: tuple[str, ...], show: bool
 ) -> None:
     level = boat.geometry | {"cg_above_keel": boat.draught}  # mass centre in the waterline: nothing offset
-    model = world.build(replace(boat, freedoms=freedoms, geometry=level), show=show)
+    model = world.build(replace(boat, freedoms=freedoms, geometry=level), WALLED, show=show)
     n = len(freedoms)
     assert model.M_rownnz.tolist() == list(range(1, n + 1))
     assert mujoco.MjData(model).M.shape == (n * (n + 1) // 2,)
@@ -97,7 +98,7 @@ def test_mass_and_inertia_are_those_of_the_vessel_about_its_mass_centre(loads: t
     boat = replace(vessel.load("joystick_boat", loads), freedoms=("surge", "sway", "roll", "yaw"))
     body = boat.body
     expected = np.diag([body.mass, body.mass, body.yaw_inertia, body.roll_inertia])
-    assert mass_matrix(world.build(boat)) == pytest.approx(expected, abs=1e-12)
+    assert mass_matrix(world.build(boat, WALLED)) == pytest.approx(expected, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", VESSELS)
@@ -113,7 +114,7 @@ def test_hull_opens_alone_and_agrees_with_the_vessel_file(name: str) -> None:
 
 @pytest.mark.parametrize("name", VESSELS)
 def test_what_is_drawn_weighs_and_touches_nothing(name: str) -> None:
-    model = world.build(vessel.load(name))
+    model = world.build(vessel.load(name), WALLED)
     assert not model.geom_contype.any() and not model.geom_conaffinity.any()  # contacts only by explicit pair
     pairs = {(model.geom(a).name, model.geom(b).name) for a, b in zip(model.pair_geom1, model.pair_geom2, strict=True)}
     assert {n for pair in pairs for n in pair} == {"collision"} | WALLS and len(pairs) == 4
@@ -123,7 +124,7 @@ def test_what_is_drawn_weighs_and_touches_nothing(name: str) -> None:
 def test_leaving_out_what_is_only_seen_changes_no_motion(boat: vessel.Vessel) -> None:
     ends = []
     for show in (True, False):
-        model = world.build(boat, show=show)
+        model = world.build(boat, WALLED, show=show)
         data = mujoco.MjData(model)
         data.qvel[:] = (0.2, -0.3, 0.4)
         mujoco.mj_step(model, data, nstep=500)
@@ -150,8 +151,30 @@ def test_boat_thrown_at_a_wall_stays_inside(boat: vessel.Vessel, velocity: tuple
     assert touched > 0
 
 
+def restitution(boat: vessel.Vessel, speed: float, step: float) -> float:
+    """Share of its speed [m/s] with which a boat that coasts ahead comes back from the wall."""
+    model = world.build(boat, Tank(2.5 * boat.length, 2.5 * boat.length, boat.length), step)
+    data = mujoco.MjData(model)
+    data.qvel[0] = speed
+    for _ in range(round(2.0 * boat.length / speed / step)):
+        mujoco.mj_step(model, data)
+    assert data.ncon == 0
+    return float(-data.qvel[0] / speed)
+
+
+def test_a_wall_sends_a_hull_back_with_the_share_of_a_critically_damped_spring(boat: vessel.Vessel) -> None:
+    """Spring and damper that can not pull: v e^-wt (1 - wt) until the force is zero at wt = 2, so e^-2."""
+    assert restitution(boat, 0.5, 0.001) == pytest.approx(math.exp(-2.0), abs=0.02)
+
+
+@pytest.mark.parametrize(("name", "speed"), [("joystick_boat", 0.1), ("joystick_boat", 0.5), ("mariner", 0.5)])
+def test_a_wall_gives_little_back_at_the_usual_step(name: str, speed: float) -> None:
+    step = 0.02  # [s]
+    assert 0.09 < restitution(vessel.load(name), speed * max(1.0, vessel.load(name).length / 50), step) < 0.19
+
+
 def test_elastic_wall_without_friction_turns_a_head_on_velocity_round(boat: vessel.Vessel) -> None:
-    model = world.build(boat, step=0.001, wall_solref=(-2000.0, 0.0))
+    model = world.build(boat, WALLED, step=0.001, wall_solref=(-2000.0, 0.0))
     data = mujoco.MjData(model)
     data.qvel[:] = (0.1, 0.02, 0.0)
     mujoco.mj_step(model, data, nstep=3000)
@@ -170,7 +193,7 @@ def test_friction_slows_the_slide_along_a_wall(boat: vessel.Vessel) -> None:
 
 
 def test_open_water_never_stops_the_boat(boat: vessel.Vessel) -> None:
-    model = world.build(boat, Tank(walls=False))
+    model = world.build(boat, Tank(1.5, 3.0, walls=False))
     data = mujoco.MjData(model)
     data.qvel[:2] = (0.3, -0.4)
     mujoco.mj_step(model, data, nstep=1000)
@@ -185,9 +208,24 @@ def test_port_is_up_in_mujoco_and_the_tank_lies_where_start_axes_put_it(boat: ve
     assert model.body("fan").pos[1] > 1.1  # the fan stands behind the port wall and blows to starboard
 
 
+@pytest.mark.parametrize("name", ["joystick_boat", "mariner", "kvlcc2_full_scale"])
+@pytest.mark.parametrize("centre", [(0.0, 0.0), (-2.0, 3.0)])
+def test_all_of_the_water_lies_before_the_sun(name: str, centre: tuple[float, float]) -> None:
+    """What lies behind the plane of the sun is drawn in shadow, whose edge would cross the water."""
+    boat = vessel.load(name)
+    side = 10.0 * boat.length
+    where = (centre[0] * boat.length, centre[1] * boat.length)
+    model = world.build(boat, Tank(side, side, boat.length, walls=False, centre=where))
+    sun, way = model.light("sun").pos, model.light("sun").dir
+    for x in (-side / 2, side / 2):
+        for y in (-side / 2, side / 2):
+            corner = np.array([where[0] + x, -where[1] + y, boat.length])  # as high as any mast
+            assert (corner - sun) @ way > boat.length
+
+
 def test_tank_without_size_and_hull_without_body_are_refused(boat: vessel.Vessel, tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="tank.width = 0 m"):
-        Tank(width=0.0)
+        Tank(length=1.5, width=0.0)
     (tmp_path / "hull.xml").write_text('<mujoco><worldbody><body name="hul"/></worldbody></mujoco>')
     with pytest.raises(BadInput, match="did you mean 'hul'"):
         world.build(replace(boat, path=tmp_path))
@@ -202,7 +240,7 @@ def test_tank_without_size_and_hull_without_body_are_refused(boat: vessel.Vessel
 @pytest.mark.parametrize(("loads", "half"), [((), 0.19), (("wide",), 0.28), (("heavy", "wide"), 0.28)])
 def test_outboards_stand_where_the_load_has_them(loads: tuple[str, ...], half: float) -> None:
     boat = vessel.load("joystick_boat", loads)
-    model = world.build(boat)
+    model = world.build(boat, WALLED)
     aft = -boat.geometry["cg_from_transom"]
     assert model.body("outboard_port").pos == pytest.approx((aft, half, 0), abs=0.006)
     assert model.body("outboard_starboard").pos == pytest.approx((aft, -half, 0), abs=0.006)
@@ -219,7 +257,7 @@ def test_ballast_is_there_only_when_it_weighs_something() -> None:
 @pytest.mark.parametrize(("loads", "length"), [((), 1.2), (("heavy",), 1.25)])
 def test_hull_reaches_from_transom_to_bow_about_its_mass_centre(loads: tuple[str, ...], length: float) -> None:
     boat = vessel.load("joystick_boat", loads)
-    model = world.build(boat)
+    model = world.build(boat, WALLED)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     x = corners(model, data)[:, 0]
@@ -292,7 +330,7 @@ except Exception as error:
 import mujoco
 from boatsim.physics import vessel
 from boatsim.simulate import world
-model = world.build(vessel.load("joystick_boat"), world.Tank(centre=(0.1, 0.0)))
+model = world.build(vessel.load("joystick_boat"), world.Tank(1.5, 3.0, 0.1, centre=(0.1, 0.0)))
 data = mujoco.MjData(model)
 pictures = {}
 with mujoco.Renderer(model, 240, 320) as renderer:
@@ -310,7 +348,7 @@ def test_both_cameras_show_the_boat_move_to_starboard(tmp_path: Path) -> None:
     file = tmp_path / "pictures.npz"
     done = subprocess.run(
         [sys.executable, "-c", DRAW, str(file)],
-        env={**os.environ, "MUJOCO_GL": "egl", "PYTHONPATH": str(Path(world.__file__).parents[1])},
+        env={**os.environ, "MUJOCO_GL": "egl", "PYTHONPATH": str(Path(world.__file__).parents[2])},
         capture_output=True,
         text=True,
     )

@@ -35,7 +35,7 @@ WINDOW, SHORTEST = 20.0, 5.0  # [s] of dead reckoning; [m] of path below which a
 
 def instruments(problem: Problem, found: Fit) -> list[Measurement]:
     """The measurement effects of a fit, with their fitted values."""
-    kinds = {e.name(): type(e) for e in problem.program.suspects if isinstance(e, Measurement)}
+    kinds = {e.name: type(e) for e in problem.program.suspects if isinstance(e, Measurement)}
     values = {
         n: {f.name: float(x) for f, x in zip(found.free, found.theta, strict=True) if f.effect == n} for n in kinds
     }
@@ -92,7 +92,7 @@ def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
     out = []
     for group in (tracks[i::GROUPS] for i in range(GROUPS)):
         rest = without(found.problem, tracks, group)
-        chosen = selection(rest, tuple(e.name() for e in rest.program.suspects))
+        chosen = selection(rest, tuple(e.name for e in rest.program.suspects))
         out += [_judged(without(found.problem, tracks, [t]), chosen, t, recorded[t.name]) for t in group]
     return sorted(out, key=lambda one: one.run)
 

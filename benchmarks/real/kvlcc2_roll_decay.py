@@ -199,7 +199,7 @@ def coefficients(problem: Problem, fitted: Fit) -> dict[str, tuple[float, float]
     }
     for f in fitted.free:
         if not f.relative:
-            unit = next(type(e).params()[f.name].unit for e in problem.program.suspects if e.name() == f.effect)
+            unit = next(type(e).params()[f.name].unit for e in problem.program.suspects if e.name == f.effect)
             found[f"{f.effect}, {f.name} [{unit}]"] = of(f.effect, f.name)
     return found
 
@@ -240,7 +240,7 @@ def last_third(found: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
     """The tail of the decay with what was fitted elsewhere and by itself; and its own ranking."""
     (tail,) = laid_on(found, thirds(whole)[2:])
     alone = Problem([tail], found.problem.ambient, found.problem.uncertainty)
-    ranking = rank(alone, tuple(e.name() for e in found.problem.program.suspects))
+    ranking = rank(alone, tuple(e.name for e in found.problem.program.suspects))
     fits = show.fits_of(found.problem, found.ranking) | {"linear, fitted here": ranking.recalibrated}
     fits |= {f"{n}, fitted here": with_effects(alone, ranking.recalibrated, [n]) for n in ranking.first}
     rms = show.errors(show.free_runs(alone, fits, [tail], float(np.ptp(tail.times))))["roll_rms_rad"]

@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 
 from boatsim.control.base import Sense
-from boatsim.files import read_toml
 from boatsim.physics.base import Array
-from boatsim.physics.content import find
 from boatsim.physics.program import Program
 from boatsim.simulate import scenario
-from boatsim.simulate.metrics import SCORED, Film, sway_values, yaw_values
+from boatsim.simulate.cases import content
+from boatsim.simulate.film import Film, FilmMeasure
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.twin import body_rates
 
@@ -64,14 +63,15 @@ class Bench:
 
         `played`: every boat gets the commands that the scenario's own boat gets.
         """
-        raw = read_toml(find("scenario", f"joystick_boat/{name}"))
+        raw = content(f"joystick_boat/{name}")[0]
         own = [t for t in raw.get("effect", []) if t["use"] not in {e["use"] for e in extra}]
         wind: dict[str, Any] = next((t for t in raw.get("effect", []) if t["use"] == "fan_wind"), {})
         told = [{**wind, **e} if e["use"] == "fan_wind" else dict(e) for e in extra]
         settings = {k: {**raw.get("set", {}).get(k, {}), **v} for k, v in (nominal or {}).items()}
         over = {"tank": None, "effect": [*own, *told], "set": {**raw.get("set", {}), **settings}}
         self.scenario: Scenario = scenario.load(f"joystick_boat/{name}", over)
-        self.name, self.measure = name, self.scenario.file.measure
+        assert isinstance(self.scenario.measure, FilmMeasure)
+        self.name, self.measure = name, self.scenario.measure
         self.program = Program(self.scenario.vessel)
         self.published = {n: t.published for n, t in self.scenario.file.norms.items() if t.published is not None}
         self._links = _links(self.program)
@@ -80,11 +80,8 @@ class Bench:
 
     def norms(self, knobs: Sequence[Knob], values: Sequence[float], seeds: Sequence[int]) -> dict[str, float]:
         """Mean norms over seeds; empty where a run never got as far as they ask."""
-        found = [self._norms(self._film(knobs, values, seed)) for seed in seeds]
+        found = [self.measure.of_film(self._film(knobs, values, seed)) for seed in seeds]
         return {n: float(np.mean([f[n] for f in found])) for n in found[0]} if all(found) else {}
-
-    def _norms(self, film: Film) -> dict[str, float]:
-        return sway_values(film) if self.measure == "sway" else yaw_values(film)
 
     def _film(self, knobs: Sequence[Knob], values: Sequence[float], seed: int) -> Film:
         """What the camera sees of one run."""
@@ -95,7 +92,8 @@ class Bench:
             if knob.effect == "controller":
                 setattr(controller, knob.name, knob.applied(getattr(controller, knob.name), x))
             elif knob.effect == "camera":
-                camera = replace(camera, **{knob.name: knob.applied(getattr(camera, knob.name), x)})
+                place = (knob.applied(camera.marks[knob.name][0], x), camera.marks[knob.name][1])
+                camera = replace(camera, marks={**camera.marks, knob.name: place})
             elif knob.effect == "body":
                 body[2] = knob.applied(body[2], x)
             else:
@@ -112,14 +110,14 @@ class Bench:
             t, y = self._play(p, body, self._played[seed])
         for name, value in own.items():
             setattr(controller, name, value)
-        every = round(camera.rate / SCORED)
+        every = round(camera.rate / self.measure.scored)
         frames = np.arange(0.0, t[-1] + 1e-9, 1.0 / camera.rate)
-        noise = camera.mark_sd * marks.standard_normal((len(frames), 4))[::every]
+        noise = marks.standard_normal((len(frames), 2 * len(camera.marks)))[::every]
         frames = frames[::every]
-        place, psi = np.stack([np.interp(frames, t, y[:, i]) for i in (0, 1)], axis=-1), np.interp(frames, t, y[:, 2])
-        ahead = np.stack([np.cos(psi), np.sin(psi)], axis=-1)
-        light = place + camera.led_ahead * ahead + noise[:, :2]
-        return Film(frames, light, place + camera.button_ahead * ahead + noise[:, 2:], place, psi)
+        x, east, psi = (np.interp(frames, t, y[:, i]) for i in (0, 1, 2))
+        seen = camera.seen(x + 1j * east, psi, noise)
+        points = {name: np.stack([z.real, z.imag], axis=-1) for name, z in zip(camera.marks, seen.T, strict=True)}
+        return Film(frames, camera.pose(seen)[1], points, np.stack([x, east], axis=-1), psi)
 
     def commands(self, rng: np.random.Generator) -> Array:
         """Commands of every step of the boat without knobs, the last ones held until the duration is over."""
@@ -132,7 +130,7 @@ class Bench:
         """Times (N,) and states (N, 6) in earth axes of a run with given commands."""
         code, on, y, step = self.program.module, self.program.switches(), np.zeros(6), self.scenario.file.step
         memory, act, out = np.zeros(self.program.memory_size), np.zeros(code.HELD), np.zeros((len(commands) + 1, 6))
-        start = _row(self.scenario.controller.initial_commands(), list(self.scenario.vessel.commands))
+        start = self.program.command_array(self.scenario.controller.initial_commands())
         code.settle(start, memory, p, on, act)
         code.rollout(0.0, y, commands, memory, step, 1, body, p, on, np.zeros(3), out)
         return np.asarray(step * np.arange(len(out)), float), np.asarray(out, float)
@@ -144,19 +142,19 @@ class Bench:
         told, code = self.scenario, self.program.module
         controller, file, sensors = told.controller, told.file, told.sensors
         controller.reset()
-        names = list(told.vessel.commands)
         period = round(controller.period / file.step)
         memory, act, on, none = (
             np.zeros(self.program.memory_size), np.zeros(code.HELD), self.program.switches(), np.zeros(3)
         )  # fmt: skip
-        code.settle(_row(controller.initial_commands(), names), memory, p, on, act)
+        code.settle(self.program.command_array(controller.initial_commands()), memory, p, on, act)
         y, out, pull = np.zeros(6), np.zeros((period + 1, 6)), (0.0, 0.0)
         parts, t = [np.zeros((1, 6))], 0.0
         while t < file.duration - 1e-9 and not _over(file.until, y):
             x, east, psi, *_ = y.tolist()
             u, v, r = body_rates(y)[3:].tolist()
             sense: Sense = sensors.feel(t, (x, east, psi), (u, v, r), pull, rng)
-            commands = np.tile(_row(controller.step(sense, told.goal_at(t)), names), (period, 1))
+            row = self.program.command_array(controller.step(sense, told.goal_at(t)))
+            commands = np.tile(row, (period, 1))
             code.rollout(t, y, commands, memory, file.step, 1, body, p, on, none, out)
             if given is not None:
                 given.append(commands)
@@ -169,10 +167,6 @@ class Bench:
         return np.asarray(file.step * np.arange(len(states)), float), states
 
 
-def _row(commands: Mapping[str, float], names: Sequence[str]) -> Array:
-    return np.array([commands.get(n, 0.0) for n in names])
-
-
 def _over(until: Any, y: Array) -> bool:
     """Whether the run is at its end."""
     return bool(
@@ -183,10 +177,10 @@ def _over(until: Any, y: Array) -> bool:
 
 def _links(program: Program) -> list[tuple[int, int]]:
     """Positions of parameters that are those of another effect: (copy, source)."""
-    found, there = [], {e.name() for e in program.effects}
+    found, there = [], {e.name for e in program.effects}
     for effect in program.effects:
         for name, about in type(effect).params().items():
             owner, _, key = about.follows.partition(".")
             if owner in there:
-                found.append((program.index(effect.name(), name), program.index(owner, key)))
+                found.append((program.index(effect.name, name), program.index(owner, key)))
     return found

@@ -33,10 +33,10 @@ import numpy as np
 
 from benchmarks.real.common import table
 from benchmarks.real.thesis_runs import TESTS, WINDY, Bench, Knob
+from benchmarks.real.thesis_score import CLIP, SCALE, J
 from boatsim.diagnose.fit import Space, log_prior
 from boatsim.diagnose.search.rank import ALIKE, ENOUGH
 from boatsim.physics.base import Array
-from boatsim.simulate.metrics import CLIP, SCALE, J
 
 SPREAD = 0.3  # of a residual: camera marks, rounding of the tables, and how far runs of one test differ
 INDEPENDENT = 2.0  # numbers that the norms of one test are worth
@@ -85,7 +85,7 @@ CANDIDATES: dict[str, tuple[Knob, ...]] = {
     "thrust_lag": (Knob("thrust_lag", "time_constant", "s", 0.0, 0.6, 0.0, 3.0),),
     "steering_lag": (Knob("servo", "lag", "s", 0.0, 0.3, 0.0, 2.0),),
     "start_up_kick": (Knob("controller", "h0", "rad", 0.0, 0.2, 0.0, 1.0, tests=SWAY),),
-    "light_offset": (Knob("camera", "led_ahead", "m", 0.183, 0.05, 0.0, 0.5, tests=YAW),),
+    "light_offset": (Knob("camera", "led", "m", 0.183, 0.05, 0.0, 0.5, tests=YAW),),
 }
 KINDS = {"start_up_kick": "controller", "light_offset": "measurement"}  # all others are physics
 Data = Mapping[str, Mapping[str, float]]  # test -> norm -> published value
@@ -156,7 +156,7 @@ def published(bench: Bench) -> dict[str, float]:
 
 
 def residual(name: str, found: Mapping[str, float], wanted: float) -> float:
-    """As `metrics.J` has it, not clipped; a run that never got there is as far away as counts."""
+    """As `thesis_score.J` has it, not clipped; a run that never got there is as far away as counts."""
     if name not in found:
         return 2.0 * CLIP
     return (found[name] - wanted) / SCALE[name] if name in SCALE else log(found[name] / wanted)
@@ -166,7 +166,7 @@ def beyond(found: Mapping[str, float]) -> tuple[float, float]:
     """How far surge offset and time of a sway test lie outside what the text allows."""
     if not found:
         return 2.0 * CLIP, 2.0 * CLIP
-    ahead, time = found["surge_offset"], found["time_to_0.9m"]
+    ahead, time = found["surge_offset"], found["time_to_end"]
     return (
         (ahead - min(max(ahead, 0.0), ROOM)) / ROOM,
         log(time / min(max(time, TIMES[0]), TIMES[1])),
@@ -408,7 +408,7 @@ def print_norms(found: Ranking) -> None:
         ours = Bench(test, ADDED, NOMINAL)
         columns = [run(bench, f) for f in (found.nominal, found.recalibrated, found.best)] + [run(ours, found.best)]
         pairs.append((columns[2], published(bench)))
-        names = [*bench.published, *(["surge_offset", "time_to_0.9m"] if test in SWAY else [])]
+        names = [*bench.published, *(["surge_offset", "time_to_end"] if test in SWAY else [])]
         for name in names:
             wanted = f"{bench.published[name]:g}" if name in bench.published else SAID[name]
             rows.append([f"{test} {name}", wanted, *(f"{c[name]:.3g}" if c else "-" for c in columns)])
@@ -418,7 +418,7 @@ def print_norms(found: Ranking) -> None:
     print("- : the test does not end as it should (too short for the norms, or no full turn)")
 
 
-SAID = {"surge_offset": "0 to 0.15", "time_to_0.9m": "13 to 18"}  # what the text says
+SAID = {"surge_offset": "0 to 0.15", "time_to_end": "13 to 18"}  # what the text says
 
 
 def run(bench: Bench, fitted: Fit) -> dict[str, float]:

@@ -76,7 +76,7 @@ def main() -> None:
     for name in sys.argv[1:] or UNSEEN:
         paths = [path for run, path in runs_of(name).items() if run not in UNSEEN[name]]
         problem = problem_of(paths, VESSELS.get(name))
-        _, chosen = selection(problem, tuple(e.name() for e in problem.program.suspects))
+        _, chosen = selection(problem, tuple(e.name for e in problem.program.suspects))
         best, found = time_constant(problem, chosen)
         rows = [[f"{seconds:.2g}", f"{error:.4g}", "*" if seconds == best else ""] for seconds, error in found.items()]
         title = f"{name}: {problem.program.vessel.name} has {problem.ambient.time_constant:g} s, with which it lacks "

@@ -1,7 +1,7 @@
 """Runs scenarios one after another or in processes of their own, with a progress bar and one exit code for all."""
 
 import signal
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -14,6 +14,7 @@ from boatsim.cli import show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput
 from boatsim.simulate import scenario as scenarios
+from boatsim.simulate.cases import meant
 from boatsim.simulate.scenario import Scenario
 
 POLL = 0.1  # [s] between two looks at the processes
@@ -65,6 +66,7 @@ def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None,
             complain(outcome.error)
         elif outcome.content:
             show.norms(outcome.content, outcome.task.folder)
+            warn_of_limits(outcome.content)
     if any(outcome.code == Exit.INTERRUPTED for outcome in outcomes):
         kept = any(outcome.content for outcome in outcomes)
         complain("interrupted; what was logged is kept" if kept else "interrupted before anything was logged")
@@ -78,11 +80,23 @@ def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
     with show.progress([(scenario.name, scenario.file.duration)]) as report:
         content = run_into(folder, scenario, progress=lambda t: report(0, t))
     show.norms(content, folder)
+    warn_of_limits(content)
     return Exit.MET if content["complete"] else Exit.INTERRUPTED
+
+
+def warn_of_limits(content: Mapping[str, Any]) -> None:
+    """One line if a channel was sent more than it takes."""
+    if found := content["saturated_steps"]:
+        where = ", ".join(f"{name} in {count}" for name, count in found.items())
+        complain(
+            f"{content['scenario']}: more was sent than the vessel takes, and limited: {where} of "
+            f"{content['steps']} steps (sent_... in recording.csv)"
+        )
 
 
 def plan(names: Sequence[str], out: Path | None, seed: int | None, live: bool) -> list[Task]:
     """What to run and where its files go, from names that may be wrong."""
+    names = [one for given in names for one in meant(given)]
     loaded = [scenarios.load(name) for name in names]
     folders = _folders([s.name for s in loaded], out)
     return [
@@ -92,15 +106,13 @@ def plan(names: Sequence[str], out: Path | None, seed: int | None, live: bool) -
 
 
 def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
-    """DIR for one scenario, DIR/sway_1 for each of several; out/sway_1 if DIR is not given."""
+    """DIR for one scenario, DIR/joystick_boat/sway_1 for each of several; out/joystick_boat/sway_1 without a DIR."""
     if out and len(names) == 1:
         return [out]
-    short = [name.rpartition("/")[2] for name in names]
-    used = short if len(set(short)) == len(short) else list(names)
-    if len(set(used)) < len(used):
-        twice = next(name for name in used if used.count(name) > 1)
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
         raise BadInput(f"scenario {twice!r} is named twice; both would write to the same folder")
-    return [(out or Path("out")) / name for name in used]
+    return [(out or Path("out")) / name for name in names]
 
 
 def carry_out(task: Task, progress: Callable[[float], None]) -> Outcome:

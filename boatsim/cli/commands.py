@@ -101,8 +101,8 @@ def options(
 @app.command()
 @guarded
 def run(
-    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names or .toml files.")],
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder for the files [default: out/NAME].")] = None,
+    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")],
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder [default: out/SCENARIO].")] = None,
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
     seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,
     live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer while it runs.")] = False,
@@ -125,6 +125,10 @@ def manoeuvre(
     angle: Annotated[
         float | None, typer.Option(metavar="DEG", help="Helm angle, heel of a roll decay; negative to port.")
     ] = None,
+    heading: Annotated[
+        float | None,
+        typer.Option(metavar="DEG", help="Zig-zag: heading that reverses the helm [default: angle]."),
+    ] = None,
     speed: Annotated[float | None, typer.Option(min=1e-3, metavar="M/S", help="Where the approach begins.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder for the files.")] = None,
 ) -> int:
@@ -132,7 +136,7 @@ def manoeuvre(
     from boatsim.cli.batch import run_manoeuvre
     from boatsim.simulate.manoeuvre import scenario_of
 
-    made = scenario_of(name, vessel, _loads(load), angle, speed)
+    made = scenario_of(name, vessel, _loads(load), angle, speed, heading)
     return run_manoeuvre(made, out or Path("out") / f"{made.vessel.name}_{name}")
 
 

@@ -20,13 +20,13 @@ from boatsim.diagnose.report import patch, show
 from boatsim.diagnose.report.findings import FreeRun
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.files import replacing
-from boatsim.physics.base import Array
+from boatsim.physics.signals import COMPONENTS, STATE, Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Notes, Recording, write_csv
 from boatsim.simulate import scenario as scenarios
 from boatsim.view.outputs import filling
 
-FORCE_NAMES = {"surge": "force_X_N", "sway": "force_Y_N", "roll": "force_K_Nm", "yaw": "force_N_Nm"}
+FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
 
 
 def diagnose(
@@ -61,8 +61,8 @@ def write(found: Diagnosis, out: Path) -> None:
         ) from None
     with filling(out) as new:
         report.write(found.findings, new)
-        kinds = {e.name(): type(e) for e in found.problem.program.suspects}
-        patch.write(found.vessel, found.ranking.best, kinds, new / "patched.toml")
+        patched = patch.patched(found.problem, found.vessel, found.ranking.best, out / "patched.toml")
+        (new / "patched.toml").write_text(patched, encoding="utf-8")
         if found.plan is not None:
             (new / NEXT).write_text(scenario_text(found.plan, found.vessel), encoding="utf-8")
         overlay(found, new / "diagnosis.rrd")
@@ -219,7 +219,7 @@ def _of_scenario(recording: Recording, name: str) -> dict[str, Array]:
     log = run(scenarios.load(name)).recording
     if recording.t[0] > log.t[-1]:
         raise BadInput(f"{name} ends at {log.t[-1]:g} s, before {recording.name} begins ({recording.t[0]:g} s)")
-    shared = [n for n in ("x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "r_radps") if n in recording.signals]
+    shared = [s.column for s in STATE if s.column in recording.signals and s.column in log.signals]
     return {n: np.interp(recording.t, log.t, log.signals[n], right=np.nan) for n in shared}
 
 

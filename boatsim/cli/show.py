@@ -8,6 +8,7 @@ from typing import Any
 
 from boatsim.files import read_toml
 from boatsim.physics import content
+from boatsim.simulate import cases
 
 
 @contextmanager
@@ -25,7 +26,7 @@ def progress(tasks: Sequence[tuple[str, float]]) -> Iterator[Callable[[int, floa
 
 
 def norms(found: dict[str, Any], folder: Path) -> None:
-    """Table norm, value, published, bar, ok of a run, from the content of its norms.json."""
+    """Table norm, value, published, verdict on it, guard, met of a run, from the content of its norms.json."""
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
@@ -35,11 +36,12 @@ def norms(found: dict[str, Any], folder: Path) -> None:
     table.add_column("norm")
     for heading in ("value", "published"):
         table.add_column(heading, justify="right")
-    table.add_column("bar")
-    table.add_column("ok")
+    for heading in ("verdict", "guard", "met"):
+        table.add_column(heading)
     for name, norm in found["norms"].items():
         published = "" if norm["published"] is None else f"{norm['published']:.4g}"
-        table.add_row(name, _value(norm), published, _bar(norm["bar"]), _verdict(norm["ok"]))
+        verdict = norm["verdict"] or ""
+        table.add_row(name, _value(norm), published, verdict, _guard(norm["guard"]), _met(norm["ok"]))
     console = Console()
     if found["norms"]:
         console.print(table)
@@ -53,14 +55,14 @@ def _value(norm: dict[str, Any]) -> str:
     return "not reached" if value is None or not isfinite(value) else f"{value:.4g} {norm['unit']}".rstrip()
 
 
-def _bar(bar: dict[str, float | None] | None) -> str:
-    low, high = (bar["low"], bar["high"]) if bar else (None, None)
+def _guard(guard: Sequence[float | None] | None) -> str:
+    low, high = guard or (None, None)
     if low is not None and high is not None:
         return f"{low:.4g} to {high:.4g}"
     return f"at least {low:.4g}" if low is not None else f"at most {high:.4g}" if high is not None else ""
 
 
-def _verdict(ok: bool | None) -> str:
+def _met(ok: bool | None) -> str:
     return "" if ok is None else "[green]yes[/]" if ok else "[bold red]no[/]"
 
 
@@ -77,6 +79,8 @@ def listing(only: str | None) -> list[str]:
 
 
 def _about(kind: str, name: str) -> str:
-    if kind in ("vessel", "scenario"):
+    if kind == "scenario":
+        return str(cases.content(name)[0].get("about", ""))
+    if kind == "vessel":
         return str(read_toml(content.find(kind, name)).get("about", ""))
     return str(content.load_class(kind, name).words)

@@ -5,7 +5,7 @@ A controller works in plain floats and knows nothing of the simulator, so it cou
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import exp, isnan, nan, pi
+from math import exp, inf, isnan, nan, pi
 from typing import ClassVar, NamedTuple
 
 from boatsim.physics.base import Checked, param
@@ -50,12 +50,16 @@ class Controller(Checked):
         """Forget everything; called before each run."""
 
     def initial_commands(self) -> dict[str, float]:
-        """Commands in force before the first step (servos may be parked at an angle); missing ones are zero."""
+        """Commands in force before the first step (servos may be parked at an angle); missing ones are neutral."""
         return {}
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Commands for the next period, name of channel -> value."""
         raise NotImplementedError
+
+    def early(self, sense: Sense) -> float:
+        """Time [s] after which it wants its next step, where it must act at an instant at which no period ends."""
+        return inf
 
     def estimates(self) -> dict[str, Estimate]:
         """Adaptive estimates with their bounds, and the reference model's states where there is one, for the log."""

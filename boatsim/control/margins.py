@@ -6,8 +6,7 @@ from typing import Any
 
 from boatsim.control.adaptive import LoopChannel, SampledChannel, l1_condition, loop_margins
 from boatsim.errors import BadInput
-from boatsim.physics.base import snake_case
-from boatsim.physics.content import load_class, names
+from boatsim.physics.content import load_class, names, snake_case
 
 HEADINGS = ("channel", "input gain", "L1 norm s", "slope 1/s", "crossover rad/s", "phase deg", "extra delay s")
 

@@ -4,6 +4,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array, Effect
 from boatsim.physics.content import load_class, names
 from boatsim.physics.program import Program
-from boatsim.physics.vessel import Vessel
+from boatsim.physics.vessel import Vessel, check_bindings
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording, read
 
@@ -70,23 +71,30 @@ def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple
     return in_one_frame(steered(read(path, found.limits(), found.columns).used(), found)), found
 
 
-def suspects_of(vessel: Vessel, library: Sequence[str]) -> tuple[Effect, ...]:
+def suspects_of(vessel: Vessel, library: Sequence[str], facts: Mapping[str, Any] | None = None) -> tuple[Effect, ...]:
     """Entries there are: the vessel's list and --library, less what the vessel already has.
 
-    The vessel's own list may name files beside it, --library files from the working directory. Raises BadInput.
+    One that needs a fact nobody states (where walls are) is left out; `facts` are a recording's. The vessel's own list
+    may name files beside it, --library files from the working directory. Raises BadInput.
     """
-    kinds: dict[str, type[Effect]] = {}
-    for name, folder in [*((n, vessel.path) for n in vessel.diagnosis.suspects), *((n, Path()) for n in library)]:
-        kind: type[Effect] = load_class("effect", name, folder)
+    known = {**vessel.diagnosis.facts, **(facts or {})}
+    found: dict[str, Effect] = {}
+    for entry, folder in [*((s, vessel.path) for s in vessel.diagnosis.suspects), *((n, Path()) for n in library)]:
+        table = {"use": entry} if isinstance(entry, str) else entry
+        kind: type[Effect] = load_class("effect", str(table.get("use")), folder)
         if not any(p.fit for p in kind.params().values()):
-            raise BadInput(f"{name}: this effect has no parameter that a diagnosis may fit (fit=True)")
-        kinds[kind.name()] = kind
-    return tuple(absent(kind).completed(vessel) for n, kind in kinds.items() if vessel.effect(n) is None)
+            raise BadInput(f"{table['use']}: this effect has no parameter that a diagnosis may fit (fit=True)")
+        called = str(table.get("name", kind.idea()))
+        if not vessel.known_as(called) and all(f in known for f in kind.facts):
+            bound = {k: v for k, v in table.items() if k != "use"}
+            found[called] = absent(kind, known, bound).completed(vessel)
+    check_bindings(replace(vessel, effects=(*vessel.effects, *found.values())), f"{vessel.name}: suspects")
+    return tuple(found.values())
 
 
 def tried(suspects: Sequence[Effect], without: Sequence[str]) -> tuple[str, ...]:
     """Names of the suspects less those taken out; they stay composed, so nothing is compiled anew. Raises BadInput."""
-    there = [e.name() for e in suspects]
+    there = [e.name for e in suspects]
     for name in without:
         if name not in there and name not in names("effect"):
             raise BadInput(unknown_name("--without", name, there))
@@ -95,16 +103,21 @@ def tried(suspects: Sequence[Effect], without: Sequence[str]) -> tuple[str, ...]
 
 def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     """A vessel's program as a diagnosis composes it, and which of its suspects act: a patched boat compiles nothing."""
-    own = tuple(e for e in vessel.effects if e.name() not in vessel.diagnosis.suspects)
-    there = {e.name(): e for e in vessel.effects if e not in own}
+    suspected = {s if isinstance(s, str) else str(s.get("name", s["use"])) for s in vessel.diagnosis.suspects}
+    own = tuple(e for e in vessel.effects if e.name not in suspected)
+    there = {e.name: e for e in vessel.effects if e not in own}
     nominal = replace(vessel, effects=own)
-    suspects = tuple(there.get(e.name(), e) for e in suspects_of(nominal, ()))
-    return Program(nominal, suspects), tuple(e.name() for e in suspects if e.name() in there)
+    suspects = tuple(there.get(e.name, e) for e in suspects_of(nominal, ()))
+    return Program(nominal, suspects), tuple(e.name for e in suspects if e.name in there)
 
 
-def absent(kind: type[Effect]) -> Effect:
-    """An entry at the values at which it does nothing."""
-    return kind.from_settings({n: p.absent for n, p in kind.params().items() if p.fit})
+def absent(
+    kind: type[Effect], facts: Mapping[str, Any] | None = None, given: Mapping[str, Any] | None = None
+) -> Effect:
+    """An entry at the values at which it does nothing, with what stated facts and its own table say of it."""
+    named = ((names, (facts or {})[fact]) for fact, names in kind.facts.items() if fact in (facts or {}))
+    told = {n: float(x) for names, values in named for n, x in zip(names, values, strict=True)}
+    return kind.from_settings(told | {n: p.absent for n, p in kind.params().items() if p.fit} | dict(given or {}))
 
 
 def diagnose(
@@ -142,8 +155,8 @@ def diagnose_recordings(
 
     `note` says in words what was kept unseen. Raises BadInput.
     """
-    programs = {path: Program(b, suspects_of(b, library)) for path, b in boats.items()}
-    boat = boats[fitted[0].path]
+    boat, facts = boats[fitted[0].path], fitted[0].notes.facts
+    programs = {path: Program(b, suspects_of(b, library, facts)) for path, b in boats.items()}
     stated = stated_noise(boat, fitted[0])
     laid = [track(r, programs[r.path], stated) for r in (*fitted, *unseen)]
     uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from boatsim.errors import BadInput
-from boatsim.physics.base import Array, Channel, Unsteady
+from boatsim.physics.base import Unsteady
+from boatsim.physics.commands import taken_rows
 from boatsim.physics.program import Program
+from boatsim.physics.signals import AXES, NOISE, Array, signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
-from boatsim.simulate.run import commands_of
 
 FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into thirds
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
@@ -23,25 +24,9 @@ FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sampl
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
+# [kg], [m], [kg m^2] numbers of the body at the end of a track's values, as in `Program.body`
+BODY = ("mass", "centre_ahead", "centre_below", "roll_inertia", "pitch_inertia", "yaw_inertia")
 NOTHING = np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))  # where no pass is kept
-CHANNELS = {  # measured signal -> (noise family, freedom, rate or position)
-    "x_m": ("position_sd_m", "surge", 0),
-    "y_m": ("position_sd_m", "sway", 0),
-    "psi_rad": ("heading_sd_rad", "yaw", 0),
-    "phi_rad": ("roll_sd_rad", "roll", 0),
-    "u_mps": ("speed_sd_mps", "surge", 1),
-    "v_mps": ("speed_sd_mps", "sway", 1),
-    "r_radps": ("yaw_rate_sd_radps", "yaw", 1),
-    "p_radps": ("roll_rate_sd_radps", "roll", 1),
-}
-NOISE = {  # [m, rad, m/s, rad/s] where neither recording nor vessel states one: fitted from here with a wide prior
-    "position_sd_m": 0.01,
-    "heading_sd_rad": 0.01,
-    "roll_sd_rad": 0.002,
-    "speed_sd_mps": 0.02,
-    "yaw_rate_sd_radps": 0.005,
-    "roll_rate_sd_radps": 0.005,
-}
 
 
 @dataclass(frozen=True)
@@ -65,8 +50,7 @@ class Track:
     signals: tuple[str, ...]
     codes: Array  # (C,) integers
     commands: Array  # (N, K)
-    values: Array  # nominal parameters of this run
-    body: Array
+    values: Array  # nominal parameters of this run, then the body's `BODY`
     noise_scale: Mapping[str, float]  # this recording's sensor noise per common one, by family
     facts: Mapping[str, Any] = field(default_factory=dict)  # what the recording's notes state besides
     start: Array = field(init=False)  # (n,) first state
@@ -89,9 +73,9 @@ class Track:
                 far = gap > np.arange(len(t))
                 speed = (y[gap] - y)[far] / (t[gap] - t)[far]
                 self.spread[nq + code, nq + code] = float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
-        if nq > 1:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
-            fastest = max(self.spread[nq, nq], self.spread[nq + 1, nq + 1])
-            self.spread[nq, nq] = self.spread[nq + 1, nq + 1] = fastest
+        level = [nq + i for i, axis in enumerate(axes_of(self.program.vessel)) if axis in ("surge", "sway")]
+        for i in level:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
+            self.spread[i, i] = max(self.spread[j, j] for j in level)
 
     @property
     def stiff(self) -> bool:
@@ -143,7 +127,16 @@ class Track:
         out = np.full((len(starts), len(self.times), 2 * nq), np.nan)
         states = np.ascontiguousarray(means[starts, : 2 * nq])
         self.program.module.free_runs(
-            self.times, self.commands, MAX_STEP, self.body, values, on, np.array(starts), np.array(ends), states, out
+            self.times,
+            self.commands,
+            MAX_STEP,
+            body_of(values),
+            values,
+            on,
+            np.array(starts),
+            np.array(ends),
+            states,
+            out,
         )
         return [(a, out[i, a : b + 1].copy()) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
 
@@ -160,11 +153,16 @@ class Track:
                 covariance[nq + i, nq + i] = 1.0
         means, covariances, transitions, predicted = keep or NOTHING
         found = self.program.module.kalman(
-            self.times, self.measured, self.codes, self.commands, self.step, self.body, values, on, levels.force**2,
-            levels.time_constant, noise, self.start, covariance, full, fresh, self._linear, self._gains, self._scale,
-            self._white, keep is not None, means, covariances, transitions, predicted,
+            self.times, self.measured, self.codes, self.commands, self.step, body_of(values), values, on,
+            levels.force**2, levels.time_constant, noise, self.start, covariance, full, fresh, self._linear,
+            self._gains, self._scale, self._white, keep is not None, means, covariances, transitions, predicted,
         )  # fmt: skip
         return float(found)
+
+
+def body_of(values: Array) -> Array:
+    """Mass and inertias of a boat, the last of a track's values."""
+    return values[-len(BODY) :]
 
 
 def segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
@@ -183,7 +181,7 @@ def segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
 
 def axes_of(vessel: Vessel) -> tuple[str, ...]:
     """Names of the freedoms in the filter's order."""
-    return tuple(a for a in ("surge", "sway", "yaw", "roll") if a in vessel.freedoms)
+    return tuple(a for a in AXES if a in vessel.freedoms)
 
 
 def track(recording: Recording, program: Program, stated: Mapping[str, float] | None = None) -> Track:
@@ -194,29 +192,32 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     vessel = program.vessel
     axes = axes_of(vessel)
     where = _called(recording)
-    found = [(n, *CHANNELS[n]) for n in CHANNELS if n in recording.signals and CHANNELS[n][1] in axes]
-    needed = ["psi_rad"] if "yaw" in axes else ["phi_rad"]
+    found = [s for s in signals_of(vessel.freedoms) if s.column in recording.signals]
+    needed = ["psi_rad"] if "yaw" in axes else []
     missing = [n for n in needed if n not in recording.signals] or _unfed(recording, vessel)
-    if missing or not any(rate == 0 for *_, rate in found):
+    if missing or all(s.rate for s in found):
         raise BadInput(
-            f"{where}: column {(missing or ['x_m'])[0]} is missing, without which {vessel.name} can not be followed"
+            f"{where}: column {(missing or [signals_of(vessel.freedoms)[0].column])[0]} is missing, without which {vessel.name} can not be followed"
         )
     if len(recording) < FEWEST_IN_PART:
         raise BadInput(
             f"{where}: {recording.name} has {len(recording)} rows to use; at least {FEWEST_IN_PART} are needed"
         )
-    codes = np.array([axes.index(axis) + rate * len(axes) for _, _, axis, rate in found])
-    measured = np.column_stack([recording.signals[n] for n, *_ in found])
+    codes = np.array([axes.index(s.axis) + s.rate * len(axes) for s in found])
+    measured = np.column_stack([recording.signals[s.column] for s in found])
     own = stated_noise(vessel, recording)
     scale = {f: own[f] / (stated or own)[f] for f in own}
-    commands = commands_of(recording, vessel.commands) if vessel.commands else np.zeros((len(recording), 1))
+    commands = (
+        taken_rows(vessel, recording.signals, len(recording)) if vessel.commands else np.zeros((len(recording), 1))
+    )
+    facts = facts_of(vessel, recording)
     laid = Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
-        tuple(f for _, f, _, _ in found), tuple(n for n, *_ in found), codes, np.ascontiguousarray(commands),
-        stated_values(program, recording.notes.facts), program.body, scale, recording.notes.facts,
+        tuple(s.noise for s in found), tuple(s.column for s in found), codes, np.ascontiguousarray(commands),
+        stated_values(program, facts), scale, facts,
     )  # fmt: skip
     nq = len(axes)
-    if nq > 1 and (speed := float(np.sqrt(laid.spread[nq, nq]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
+    if "surge" in axes and (speed := float(np.sqrt(laid.spread[nq, nq]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
         raise BadInput(
             f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of {vessel.length:g} m; are they in m?"
         )
@@ -227,8 +228,8 @@ def quickest(program: Program, values: Array, command: Array) -> float:
     """Rate [1/s] at which the quickest motion of the nominal hull dies out at rest."""
     code, on = program.module, program.switches()
     nq = code.NQ
-    k, act, memory = np.zeros(code.K), np.zeros(code.HELD), np.zeros(program.memory_size)
-    code.constants(program.body, values, on, k)
+    k, act, memory = np.zeros(code.K), np.zeros(program.held_size), np.zeros(program.memory_size)
+    code.constants(body_of(values), values, on, k)
     code.settle(command, memory, values, on, act)
     slopes = np.zeros((nq, 2 * nq))
     code.slopes(0.0, np.zeros(2 * nq), act, values, on, k, np.zeros(nq), slopes)
@@ -237,17 +238,17 @@ def quickest(program: Program, values: Array, command: Array) -> float:
 
 
 def stated_values(program: Program, facts: Mapping[str, Any]) -> Array:
-    """Parameters of a program, those that a recording's facts state (`Effect.facts`) put in.
+    """Parameters of a program, those that a recording's facts state (`Effect.facts`) put in, then its body's numbers.
 
     Every random force is silenced: the filter finds its course, a free run knows none.
     """
-    values = program.values()
+    values = np.append(program.values(), program.body)
     for effect in program.effects:
         if isinstance(effect, Unsteady):
-            values[program.index(effect.name(), "realisation")] = 0.0
+            values[program.index(effect.name, "realisation")] = 0.0
         for fact, names in type(effect).facts.items():
             for name, x in zip(names, facts.get(fact, ()), strict=False):
-                values[program.index(effect.name(), name)] = x
+                values[program.index(effect.name, name)] = x
     return values
 
 
@@ -259,10 +260,7 @@ def _unfed(recording: Recording, vessel: Vessel) -> list[str]:
 
 def _feeds(vessel: Vessel, actuator: str, command: str) -> bool:
     """Whether a channel effect of the vessel turns this command into that actuator."""
-    if command not in vessel.commands or vessel.commands[command].side != vessel.commands[actuator].side:
-        return False
-    families = {(type(e).acts_on, type(e).source_family) for e in vessel.effects if isinstance(e, Channel)}
-    return (vessel.commands[actuator].family, vessel.commands[command].family) in families
+    return any(vessel.feeder(e, actuator) == command for e in vessel.effects)
 
 
 def stated_noise(vessel: Vessel, recording: Recording) -> dict[str, float]:
@@ -274,6 +272,11 @@ def stated_noise(vessel: Vessel, recording: Recording) -> dict[str, float]:
             f"{_called(recording)}: noise {wrong[0]} = {noise[wrong[0]]:g}; allowed is more than 0, at most {HUGE:g}"
         )
     return noise
+
+
+def facts_of(vessel: Vessel, recording: Recording) -> dict[str, Any]:
+    """What is known of a run besides its columns: the vessel's word, unless the recording's notes say otherwise."""
+    return {**vessel.diagnosis.facts, **recording.notes.facts}
 
 
 def _called(recording: Recording) -> str:

@@ -2,27 +2,39 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from boatsim.diagnose.filter import Levels, Track
-from boatsim.physics.base import Array, Channel, Effect, Unsteady
+from boatsim.diagnose.filter import BODY, Levels, Track
+from boatsim.physics.base import Array, Channel, Effect, Release, Unsteady
 from boatsim.physics.vessel import Vessel
 
 
 @dataclass(frozen=True)
 class Free:
-    """A parameter to fit. A nuisance scales the run's own value: `relative` is true and its mean is 1."""
+    """A parameter to fit, and what it does to which numbers of a boat.
+
+    A nuisance scales the run's own value: `relative` is true and its mean is 1. A release scales, shifts or sets
+    several.
+    """
 
     effect: str
     name: str
-    at: int  # position in the flat parameter array
+    at: tuple[int, ...]  # positions in a track's values
     mean: float
     sd: float
     low: float
     high: float
     relative: bool = False
     searched: bool = False  # moves the spectrum of a random force, not the expected motion: no gradient there
+    how: str = "sets"  # or "scales" or "shifts"
+    weights: tuple[float, ...] = (1.0,)  # of a shift, one for each position
+
+    def act(self, p: Array, x: float) -> None:
+        """Put its value into a boat's numbers."""
+        for at, weight in zip(self.at, self.weights, strict=True):
+            p[at] = p[at] * x if self.how == "scales" else p[at] + weight * x if self.how == "shifts" else x
 
 
 @dataclass(frozen=True)
@@ -67,6 +79,11 @@ def scale_of(unit: str, vessel: Vessel) -> float:
     return float((vessel.body.mass / MASS) ** powers[0] * length ** (powers[1] + 0.5 * powers[2]))
 
 
+class _Acts(NamedTuple):
+    at: tuple[int, ...]
+    weights: tuple[float, ...]
+
+
 class Problem:
     """Recordings, a program with all suspects compiled in, and what may be fitted."""
 
@@ -80,25 +97,43 @@ class Problem:
     def parameters(self, suspects: Sequence[str]) -> tuple[Free, ...]:
         """Coefficients of the nominal, then everything that the suspects let be fitted, in their order."""
         free = list(self.nuisances)
-        effects = {e.name(): e for e in self.program.suspects}
+        effects = {e.name: e for e in self.program.suspects}
         for effect in (effects[n] for n in suspects):
             for name, about in type(effect).params().items():
                 axis_is_free = not about.axis or about.axis in self.program.vessel.freedoms
-                if about.fit and axis_is_free and self._on_board(effect, name):
-                    at = self.program.index(effect.name(), name)
+                if about.fit and axis_is_free and self._on_board(effect, name) and (acts := self._acts(effect, name)):
                     sd = about.spread * scale_of(about.unit, self.program.vessel)
                     searched = isinstance(effect, Unsteady)
-                    free.append(Free(effect.name(), name, at, about.absent, sd, about.low, about.high, False, searched))
+                    free.append(
+                        Free(
+                            effect.name, name, acts.at, about.absent, sd, about.low, about.high, False, searched,
+                            about.how, acts.weights,
+                        )
+                    )  # fmt: skip
         return tuple(free)
 
     def values(self, track: Track, free: Sequence[Free], theta: Array) -> Array:
-        """A run's flat parameters with the free ones put in."""
+        """A run's numbers with the free ones put in."""
         p = track.values.copy()
         for f, x in zip(free, theta, strict=True):
-            p[f.at] = track.values[f.at] * x if f.relative else x
+            f.act(p, float(x))
         for to, source in self.links:
             p[to] = p[source]
         return p
+
+    def _acts(self, effect: Effect, name: str) -> _Acts | None:
+        """Where a parameter of a suspect acts: its own place, or the numbers of the vessel that it releases."""
+        if not isinstance(effect, Release):
+            return _Acts((self.program.index(effect.name, name),), (1.0,))
+        changes = [c for c in effect.changes(self.program.vessel) if c.parameter == name]
+        at = tuple(self.place(c.owner, c.key) for c in changes)
+        return _Acts(at, tuple(c.weight for c in changes)) if at else None
+
+    def place(self, owner: str, key: str) -> int:
+        """Position in a track's values of an effect's parameter, or of a number of the "body"."""
+        if owner == "body":
+            return len(self.program.values()) + BODY.index(key)
+        return self.program.index(owner, key)
 
     def likelihood(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels, fresh: bool = True) -> float:
         """Log likelihood of all runs; not `fresh`: linearised where the last fresh one was, for other levels."""
@@ -112,8 +147,8 @@ class Problem:
         """Whether there is an actuator on the side to which a channel effect's parameter belongs, if it is of one."""
         if not isinstance(effect, Channel) or parameter not in SIDES:
             return True
-        commands = self.program.vessel.commands
-        return SIDES[parameter] in {commands[name].side for name in self.program.targets(effect)}
+        vessel = self.program.vessel
+        return SIDES[parameter] in {vessel.side(name) for name in vessel.targets(effect)}
 
     @property
     def stiff(self) -> bool:
@@ -135,17 +170,19 @@ class Problem:
         for effect in self.program.vessel.effects:
             for name, about in type(effect).params().items():
                 sd = self.uncertainty.get(about.calibrates, 0.0)
-                at = self.program.index(effect.name(), name)
+                at = self.program.index(effect.name, name)
                 used = self.tracks[0].values[at] != 0.0 and (not about.axis or about.axis in freedoms)
                 if about.calibrates and sd > 0 and used:
-                    found.append(Free(effect.name(), name, at, 1.0, sd, 0.05, 20.0, True))
+                    found.append(Free(effect.name, name, (at,), 1.0, sd, 0.05, 20.0, True, how="scales"))
         return tuple(found)
 
     def _links(self) -> list[tuple[int, int]]:
-        links = []
+        """(to, from) in a track's values: what nobody stated follows the vessel's number, recalibrated or not."""
+        links, on_board = [], {e.name for e in self.program.effects}
         for effect in self.program.effects:
-            for name, about in type(effect).params().items():
-                owner, _, key = about.follows.partition(".")
-                if owner and owner != "vessel":
-                    links.append((self.program.index(effect.name(), name), self.program.index(owner, key)))
+            for name in sorted(effect.filled):
+                source = type(effect).params()[name].follows.removesuffix("?").removeprefix("vessel.")
+                owner, _, key = source.partition(".")
+                if owner in on_board or owner == "body":
+                    links.append((self.program.index(effect.name, name), self.place(owner, key)))
         return links

@@ -16,7 +16,7 @@ from boatsim.simulate.measure import Measure
 class Settling(Measure):
     """An angle after an offset or a kick, in the columns of Martin's calm-water tables (1993, appendix VI).
 
-    The end is the mean over the time after `late`: what the thesis prints as final angle lies near zero for limit
+    The end is the mean over the time after `late`: what the source prints as final angle lies near zero for limit
     cycles of 20 deg and more too, which no single last value would.
     """
 

@@ -7,6 +7,7 @@ Axes are SNAME: x forward, y starboard, z down, heading and yaw rate clockwise s
 
 from math import cos, sin
 
+from boatsim.physics.content import snake_case
 from boatsim.physics.kinds.channel import Channel
 from boatsim.physics.kinds.effect import Effect, Role
 from boatsim.physics.kinds.flow import Flow
@@ -14,8 +15,10 @@ from boatsim.physics.kinds.force import Force
 from boatsim.physics.kinds.inertia import Inertia
 from boatsim.physics.kinds.measurement import Measurement
 from boatsim.physics.kinds.reaction import Reaction
+from boatsim.physics.kinds.release import Change, Release
 from boatsim.physics.kinds.unsteady import Unsteady
-from boatsim.physics.param import Checked, Param, param, snake_case
+from boatsim.physics.param import UNSET, Checked, Param, factor, number, param, shift
+from boatsim.physics.presets import preset
 from boatsim.physics.signals import (
     AXES,
     Array,
@@ -32,9 +35,9 @@ from boatsim.physics.signals import (
 )
 
 __all__ = [
-    "AXES", "Array", "Channel", "Checked", "Course", "Effect", "Flow", "Force", "Inertia", "Mass", "Measurement",
-    "Motion", "Param", "Reaction", "Role", "Shown", "Swell", "Unsteady", "Wrench", "course", "mass", "mean_of",
-    "motion", "param", "snake_case", "wrench",
+    "AXES", "UNSET", "Array", "Change", "Channel", "Checked", "Course", "Effect", "Flow", "Force", "Inertia", "Mass",
+    "Measurement", "Motion", "Param", "Reaction", "Release", "Role", "Shown", "Swell", "Unsteady", "Wrench", "course",
+    "factor", "mass", "mean_of", "motion", "number", "param", "preset", "shift", "snake_case", "wrench",
 ]  # fmt: skip
 
 

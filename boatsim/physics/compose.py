@@ -31,10 +31,10 @@ def kinds() -> list[type[Kind]]:
 class Composition:
     """Effects in their places: what each is called with, which signals pass through it."""
 
-    def __init__(self, vessel: Vessel, suspects: Sequence[Effect], offsets: Sequence[int]) -> None:
-        """The suspects stand behind switches; `offsets` says where each effect's parameters begin."""
+    def __init__(self, vessel: Vessel, effects: Sequence[Effect], offsets: Sequence[int]) -> None:
+        """Effects beyond the vessel's own stand behind switches; `offsets` says where each one's parameters begin."""
         self.vessel, self.offsets = vessel, tuple(offsets)
-        self.effects = (*vessel.effects, *suspects)
+        self.effects = tuple(effects)
         self.actuators, self.commands = vessel.actuators, tuple(vessel.commands)
         self.held = [*self.actuators, *(f"{part}_{a}" for a in vessel.angles for part in ("cos", "sin"))]
 

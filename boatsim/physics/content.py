@@ -3,6 +3,7 @@
 import hashlib
 import importlib
 import importlib.util
+import re
 import sys
 import traceback
 from functools import cache
@@ -11,6 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from boatsim.errors import BadInput, unknown_name
+from boatsim.files import read_toml
 
 PACKAGES = {  # kinds that are modules of ours, one a file
     "kind": "physics.kinds",
@@ -18,6 +20,7 @@ PACKAGES = {  # kinds that are modules of ours, one a file
     "measure": "measures",
     "reader": "recordings.readers",
 }
+ENTRY = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE)  # of the shelf of effects
 KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
 
 
@@ -30,16 +33,32 @@ def root() -> Path:
 
 
 def names(kind: str) -> list[str]:
-    """Every vessel, controller, effect, measure or scenario there is; scenarios are named folder/file."""
+    """Every vessel, controller, effect, measure or scenario (folder/file, folder/case) there is."""
+    if kind == "effect":
+        return sorted(_shelf())
     if kind in PACKAGES:
-        folder = Path(__file__).parents[1].joinpath(*PACKAGES[kind].split("."))
-        return sorted(p.stem for p in folder.glob("[!_]*.py"))
+        return sorted(p.stem for p in _package(kind).glob("[!_]*.py"))
     folder = root() / KINDS[kind]
     if kind == "vessel":
         return sorted(p.parent.name for p in folder.glob("*/vessel.toml"))
     if kind == "controller":
         return sorted(p.stem for p in folder.glob("[!_]*.py"))
-    return sorted(str(p.relative_to(folder).with_suffix("")) for p in folder.glob("*/*.toml"))
+    return sorted(_scenarios())
+
+
+def _package(kind: str) -> Path:
+    """Folder of the modules of a kind."""
+    return Path(__file__).parents[1].joinpath(*PACKAGES[kind].split("."))
+
+
+@cache
+def _shelf() -> dict[str, str]:
+    """Every entry of the shelf of effects -> its file: a file may hold several over one law.
+
+    Read from the text, so that looking for one imports no other.
+    """
+    files = sorted(_package("effect").glob("[!_]*.py"))
+    return {snake_case(name): file.stem for file in files for name in ENTRY.findall(file.read_text(encoding="utf-8"))}
 
 
 def find(kind: str, name: str, beside: Path | None = None) -> Path:
@@ -58,10 +77,30 @@ def find(kind: str, name: str, beside: Path | None = None) -> Path:
             return (own / "vessel.toml").resolve()
     if name in names(kind):
         folder = root() / KINDS[kind]
+        if kind == "scenario":
+            return _scenarios()[name]
         return folder / name / "vessel.toml" if kind == "vessel" else folder / f"{name}{suffix}"
     if name.endswith(suffix):
         raise BadInput(f"{name}: no such file")
     raise BadInput(unknown_name(kind, name, names(kind)))
+
+
+def _scenarios() -> dict[str, Path]:
+    """File of every shipped scenario, by name: folder/file, or folder/case for each case of a file. Raises BadInput."""
+    found: dict[str, Path] = {}
+    for path in sorted((root() / KINDS["scenario"]).glob("*/[!_]*.toml")):
+        for name in _cases(path, path.stat().st_mtime_ns) or (path.stem,):
+            full = f"{path.parent.name}/{name}"
+            if full in found:
+                raise BadInput(f"scenario {full} stands in {found[full].name} and in {path.name}")
+            found[full] = path
+    return found
+
+
+@cache
+def _cases(path: Path, _stamp: int) -> tuple[str, ...]:
+    """Names of the cases in a scenario file, as long as it is the same file."""
+    return tuple(str(case.get("name")) for case in read_toml(path).get("case", []))
 
 
 def module_at(path: Path, name: str) -> ModuleType:
@@ -94,8 +133,14 @@ def camel_case(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
 
 
+def snake_case(name: str) -> str:
+    """FanWind -> fan_wind: the name of an entry in files."""
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+
+
 def module_of(kind: str, name: str) -> ModuleType:
     """The module of ours that holds an effect, a measure or a reader."""
+    name = _shelf()[name] if kind == "effect" else name
     return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{name}")
 
 

@@ -1,16 +1,16 @@
 """Numbers that files may set: bounds, unit, words, checked on construction."""
 
 import math
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from typing import Any, Self
+from dataclasses import field, fields
+from typing import Any, NamedTuple, Self
 
 from boatsim.errors import BadInput, unknown_name
 
+UNSET = math.nan  # a parameter that nobody stated: filled in on a vessel by `follows` or `Effect.rules`, else 0
 
-@dataclass(frozen=True)
-class Param:
+
+class Param(NamedTuple):
     """What is known of a parameter before any data: bounds, unit, words, and whether a diagnosis may fit it."""
 
     low: float
@@ -22,8 +22,9 @@ class Param:
     axis: str = ""  # freedom it belongs to ("roll", ...); fitted only on vessels that have it
     absent: float = 0.0  # value at which the effect is not there
     calibrates: str = ""  # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
-    follows: str = ""  # "linear_damping.surge" of the vessel, or "vessel.body.mass" where none is given
-    scales: str = ""  # "linear_damping.surge": the vessel's coefficient that this factor multiplies
+    follows: str = ""  # left unset: the vessel's "linear_damping.surge" or "vessel.body.mass"; "?" ends an optional one
+    releases: tuple[str, ...] = ()  # "linear_damping.surge", "body.mass": numbers of the vessel that may be off,
+    how: str = "sets"  # or "scales" or "shifts": what a released number undergoes
 
 
 def param(
@@ -39,11 +40,41 @@ def param(
     absent: float = 0.0,
     calibrates: str = "",
     follows: str = "",
-    scales: str = "",
+    releases: tuple[str, ...] = (),
+    how: str = "sets",
 ) -> Any:
-    """Dataclass field of a checked number. `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter."""
-    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows, scales)
+    """Dataclass field of a checked number; `nominal` may be UNSET.
+
+    `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter.
+    """
+    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows, releases, how)
     return field(default=nominal, metadata={"param": about})
+
+
+def factor(*releases: str, words: str, spread: float = 0.4, axis: str = "", low: float = 0.1, high: float = 5.0) -> Any:
+    """Field of a `Release`: numbers of the vessel that may be off by one factor."""
+    return param(
+        1.0, low=low, high=high, unit="", words=words, fit=True, spread=spread, axis=axis, absent=1.0,
+        releases=releases, how="scales",
+    )  # fmt: skip
+
+
+def shift(*releases: str, words: str, unit: str, spread: float, low: float, high: float, axis: str = "") -> Any:
+    """Field of a `Release`: numbers of the vessel that may be off by one addend."""
+    return param(
+        0.0, low=low, high=high, unit=unit, words=words, fit=True, spread=spread, axis=axis, releases=releases,
+        how="shifts",
+    )  # fmt: skip
+
+
+def number(
+    *releases: str, words: str, unit: str, spread: float, low: float, high: float, absent: float, axis: str = ""
+) -> Any:
+    """Field of a `Release`: a number of the vessel that is not what is stated, but this; `absent` is the stated one."""
+    return param(
+        absent, low=low, high=high, unit=unit, words=words, fit=True, spread=spread, axis=axis, absent=absent,
+        releases=releases,
+    )  # fmt: skip
 
 
 class Checked:
@@ -57,7 +88,7 @@ class Checked:
     @classmethod
     def from_settings(cls, settings: Mapping[str, Any]) -> Self:
         """Build from a file's table; raises BadInput with the nearest valid name for a setting that does not exist."""
-        names = [f.name for f in fields(cls) if f.init]  # type: ignore[arg-type]
+        names = [f.name for f in fields(cls) if f.init and "ours" not in f.metadata]  # type: ignore[arg-type]
         for key in settings:
             if key not in names:
                 raise BadInput(unknown_name(f"{cls.__name__}: setting", key, names))
@@ -66,6 +97,8 @@ class Checked:
     def __post_init__(self) -> None:
         for name, about in type(self).params().items():
             value = getattr(self, name)
+            if value is UNSET:
+                continue
             if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
                 raise BadInput(f"{type(self).__name__}.{name} = {value!r}; allowed is a number ({about.words})")
             if not about.low <= value <= about.high:
@@ -73,8 +106,3 @@ class Checked:
                     f"{type(self).__name__}.{name} = {value:g} {about.unit}; allowed {about.low:g} to "
                     f"{about.high:g} {about.unit} ({about.words})"
                 )
-
-
-def snake_case(name: str) -> str:
-    """FanWind -> fan_wind: the name of an effect or controller is its file's name."""
-    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()

@@ -7,11 +7,12 @@ from types import FunctionType, ModuleType
 
 import numpy as np
 
-from boatsim.errors import BadInput
 from boatsim.physics import cache
+from boatsim.physics.commands import taken_row
 from boatsim.physics.compose import Composition
 from boatsim.physics.kernel.equations import written
 from boatsim.physics.kinds.effect import Effect
+from boatsim.physics.kinds.release import Release
 from boatsim.physics.signals import AXES, Array
 from boatsim.physics.vessel import Vessel
 
@@ -25,12 +26,13 @@ class Program:
     """
 
     vessel: Vessel
-    suspects: tuple[Effect, ...] = ()  # act only where `on` says so
+    suspects: tuple[Effect, ...] = ()  # those with a law act only where `on` says so
     effects: tuple[Effect, ...] = field(init=False)
     offsets: tuple[int, ...] = field(init=False)  # where each effect's parameters start
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "effects", (*self.vessel.effects, *self.suspects))
+        laws = (e for e in self.suspects if not isinstance(e, Release))  # a release has nothing to compile
+        object.__setattr__(self, "effects", (*self.vessel.effects, *laws))
         sizes = [len(type(e).params()) for e in self.effects]
         object.__setattr__(self, "offsets", tuple(int(n) for n in np.cumsum([0, *sizes])[:-1]))
 
@@ -57,7 +59,7 @@ class Program:
     @cached_property
     def composition(self) -> Composition:
         """The effects in their places."""
-        return Composition(self.vessel, self.suspects, self.offsets)
+        return Composition(self.vessel, self.effects, self.offsets)
 
     @property
     def memory_size(self) -> int:
@@ -70,12 +72,8 @@ class Program:
         return 3 * int(self.module.HELD)
 
     def command_array(self, commands: Mapping[str, float]) -> Array:
-        """(C,) in the vessel's order; commands not given are zero. Raises BadInput for a name it does not take."""
-        known = self.vessel.commands
-        for name in commands:
-            if name not in known:
-                raise BadInput(self.vessel.no_command(name))
-        return np.array([commands.get(n, 0.0) for n in known], dtype=float)
+        """(C,) in force when these are sent, in the vessel's order; those not given are neutral. Raises BadInput."""
+        return taken_row(self.vessel, commands)
 
     def body_rates(self, states: Array) -> Array:
         """States (N, 2 NQ), joint rates replaced by body rates."""

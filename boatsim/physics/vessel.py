@@ -14,6 +14,7 @@ from boatsim.physics.content import find, load_class
 from boatsim.physics.kernel.equations import tilts
 from boatsim.physics.kinds.channel import Channel
 from boatsim.physics.kinds.effect import Effect
+from boatsim.physics.kinds.release import Change, Release
 
 Freedom = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]  # AXES, as a type checker reads it
 
@@ -37,6 +38,7 @@ class CommandChannel(Table):
 
     low: float
     high: float
+    neutral: float = 0.0  # in force where nothing is sent; a channel that can not be 0 must say its own
     turns: Literal["", "starboard", "port"] = ""  # what a positive rudder does; recordings that differ are turned
     about: str = ""
 
@@ -44,7 +46,7 @@ class CommandChannel(Table):
 class DiagnosisTable(Table):
     """What a diagnosis may assume of this vessel before it has seen data."""
 
-    suspects: list[str] = []
+    suspects: list[str | dict[str, Any]] = []  # names, or tables with use, on and a name as in [[effect]]
     ambient: dict[
         Freedom, PositiveFloat
     ] = {}  # tolerated unmodelled force per axis (surge, sway, roll, yaw), rms [N, N m]
@@ -56,6 +58,7 @@ class DiagnosisTable(Table):
         Literal["damping", "thrust", "restoring"], PositiveFloat
     ] = {}  # relative sd: damping, thrust, restoring
     noise: dict[str, PositiveFloat] = {}  # by family; sensor noise where a recording states none
+    facts: dict[str, float | str | bool | list[float]] = {}  # what holds where a recording states nothing else: walls_m
 
 
 class ManoeuvringTable(Table):
@@ -82,6 +85,7 @@ class VesselFile(Table):
     scales: dict[str, float] = {}  # vessels that are the same hull at another scale
     body: Body
     geometry: dict[str, float] = {}
+    marks: dict[str, tuple[float, float]] = {}  # [m] ahead and to starboard of the CG: what a camera above follows
     channels: dict[str, CommandChannel] = {}
     columns: dict[str, str] = {}  # our name -> the column of this vessel's recordings, "-" in front flips the sign
     effect: list[dict[str, Any]] = []
@@ -115,6 +119,7 @@ class Vessel:
     scales: Mapping[str, float] = field(default_factory=dict)  # vessels that are the same hull at another scale
     columns: Mapping[str, str] = field(default_factory=dict)  # our name -> column of its recordings, "-" flips the sign
     manoeuvring: ManoeuvringTable = ManoeuvringTable()
+    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # [m] ahead and to starboard of the CG
 
     @property
     def actuators(self) -> tuple[str, ...]:
@@ -142,6 +147,10 @@ class Vessel:
         named = next((e for e in self.effects if e.name == name), None)
         alike = [e for e in self.effects if type(e).idea() == name]
         return named or (alike[0] if len(alike) == 1 else None)
+
+    def known_as(self, name: str) -> list[str]:
+        """Names of the vessel's own effects that a word means: the one called so, or all of that idea."""
+        return [e.name for e in self.effects if name in (e.name, type(e).idea())]
 
     def all_of(self, idea: str) -> list[Effect]:
         """The vessel's own effects of one idea, in the order of its file."""
@@ -219,9 +228,10 @@ def load(
             raise BadInput(unknown_name(f"{label}: load", one, known))
     _check_apart(loads, known, label)
     for one in dict.fromkeys(loads):
-        raw = _overlaid(raw, known[one], label)
-    raw = _overlaid(raw, dict(settings or {}), label)
+        raw = overlaid(raw, known[one], label)
+    raw = overlaid(raw, dict(settings or {}), label)
     file = checked(VesselFile, raw, label)
+    _check_channels(file.channels, label)
     own = [_called(table) for table in file.effect]
     for table in extra:
         if _called(table) in own:
@@ -233,7 +243,7 @@ def load(
     vessel = Vessel(
         called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
-        file.scale, file.scales, file.columns, file.manoeuvring,
+        file.scale, file.scales, file.columns, file.manoeuvring, file.marks,
     )  # fmt: skip
     whole = with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
     check_bindings(whole, label)
@@ -242,6 +252,17 @@ def load(
     if whole.body.centre[1] and "roll" in whole.freedoms and not tilts(frozenset(whole.freedoms)):
         raise BadInput(f"{label}: body.centre = {whole.body.centre}; allowed is a height of 0 where pitch is held")
     return whole
+
+
+def _check_channels(channels: Mapping[str, CommandChannel], label: str) -> None:
+    """Every channel has a range, and its neutral lies within."""
+    for name, c in channels.items():
+        if not c.low < c.high:
+            raise BadInput(f"{label}: channels.{name}: low = {c.low:g}, high = {c.high:g}; low must be below high")
+        if not c.low <= c.neutral <= c.high:
+            given = "neutral" in c.model_fields_set
+            what = f"neutral = {c.neutral:g}" if given else "neutral is missing and can not be 0"
+            raise BadInput(f"{label}: channels.{name}: {what}; allowed {c.low:g} to {c.high:g}")
 
 
 def _called(table: Mapping[str, Any]) -> str:
@@ -305,8 +326,33 @@ def with_effects(vessel: Vessel, tables: Sequence[Mapping[str, Any]], folder: Pa
 
 
 def added(vessel: Vessel, effect: Effect) -> Vessel:
-    """The vessel with one more effect."""
-    return replace(vessel, effects=(*vessel.effects, effect.completed(vessel)))
+    """The vessel with one more effect; a release changes the numbers it names, now."""
+    effect = effect.completed(vessel)
+    if not isinstance(effect, Release):
+        return replace(vessel, effects=(*vessel.effects, effect))
+    for change in effect.changes(vessel):
+        vessel = _changed(vessel, change, getattr(effect, change.parameter))
+    return vessel
+
+
+def _changed(vessel: Vessel, change: Change, value: float) -> Vessel:
+    """The vessel with one number changed, and with it what nobody stated and follows it."""
+    if change.owner == "body":
+        new = change.of(getattr(vessel.body, change.key), value)
+        if new <= 0.0:
+            raise BadInput(f"{vessel.name}: body.{change.key} = {new:g}; allowed is more than 0")
+        vessel = replace(vessel, body=vessel.body.model_copy(update={change.key: new}))
+        source = f"vessel.body.{change.key}"
+    else:
+        new = change.of(getattr(vessel.effect(change.owner), change.key), value)
+        source = f"{change.owner}.{change.key}"
+    effects = []
+    for e in vessel.effects:
+        follows = {n: type(e).params()[n].follows.removesuffix("?") for n in e.filled}
+        keys = [n for n, place in follows.items() if place == source]
+        own = [change.key] if e.name == change.owner else []
+        effects.append(replace(e, **dict.fromkeys([*keys, *own], new)))
+    return replace(vessel, effects=tuple(effects))
 
 
 def effect_from(table: Mapping[str, Any], file: str, folder: Path) -> Effect:
@@ -339,7 +385,7 @@ def _flat(table: Mapping[str, Any]) -> dict[str, Any]:
     return flat | {f"{k}.{name}": v for k, values in inner.items() for name, v in values.items()}
 
 
-def _overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) -> dict[str, Any]:
+def overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) -> dict[str, Any]:
     """A vessel file with a load's tables laid over it: top-level numbers, body, geometry, and effects by name."""
     out = dict(raw)
     effects = [dict(t) for t in raw.get("effect", [])]

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from boatsim.errors import BadInput, unknown_name
+from boatsim.physics.signals import AXES
 
 NOISE = ("position_sd_m", "heading_sd_rad", "yaw_rate_sd_radps", "roll_sd_rad", "roll_rate_sd_radps")
 AMBIENT = ("axes", "force_rms", "time_constant_s")
-FREEDOMS = ("surge", "sway", "roll", "yaw")
 TABLES = ("columns", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
 KEYS = ("vessel", "load", "scale", "use", *TABLES, "runs")
 HUGE = 1e300  # larger integers do not fit a float
@@ -139,8 +139,8 @@ class _Reader:
         inner = self.inner("ambient")
         axes = inner.texts("axes")
         for axis in axes:
-            if axis not in FREEDOMS:
-                raise BadInput(f"{self.file}: {unknown_name('ambient.axes: axis', axis, FREEDOMS)}")
+            if axis not in AXES:
+                raise BadInput(f"{self.file}: {unknown_name('ambient.axes: axis', axis, AXES)}")
         if "time_constant_s" in inner.content:
             inner.number("time_constant_s", low=0.0)
         rms = inner.content.get("force_rms", [])

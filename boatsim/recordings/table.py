@@ -9,19 +9,17 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.files import replacing
-from boatsim.physics.base import Array
 from boatsim.physics.content import module_of, names
+from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import units
 from boatsim.recordings.notes import Notes, NotesFile, notes_for, unit_of
 from boatsim.recordings.raw import Raw, refuse
 
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
 
-POSE = ("x_m", "y_m", "psi_rad", "phi_rad")
-RATES = ("u_mps", "v_mps", "r_radps", "p_radps")
 FEWEST_ROWS = 20
 # columns of our own runs beside pose, rates and commands; a sensor the boat has not got is nan
-OWN = re.compile(r"(actual|sensed|camera|estimate|reference|force|wind)_")
+OWN = re.compile(r"(sent|actual|sensed|camera|estimate|reference|force|wind)_")
 # what command channels of boats are called; others are known by the vessel
 COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))")
 HUGE = 1e12  # no time, place, speed or command here is anywhere near

@@ -92,25 +92,30 @@ class Engine:
         self._write_userdata()
 
     def command(self, commands: Mapping[str, float]) -> None:
-        """What is sent to the actuators from now on; channels not named are zero. Raises BadInput."""
+        """What is sent to the actuators from now on; limited to its range, neutral where not named. Raises BadInput."""
         self._commands[:] = self.program.command_array(commands)
 
-    def advance(self, steps: int = 1) -> None:
-        """Step forward with the commands held. Raises BadPhysics if the state is no longer finite."""
+    @property
+    def commands(self) -> dict[str, float]:
+        """Commands in force."""
+        return dict(zip(self.vessel.commands, self._commands.tolist(), strict=True))
+
+    def advance(self, steps: int = 1, length: float | None = None) -> None:
+        """Steps of `length` s (default: `step`) with the commands held. Raises BadPhysics if the motion diverges."""
         with installed(self.callback):
             for _ in range(steps):
-                self._advance()
+                self._advance(self.step if length is None else length)
+        self.model.opt.timestep = self.step  # a step may have been cut
         if not isfinite(sum(self.data.qpos.tolist())):
             raise BadPhysics(f"{self.vessel.name}: the motion is no longer finite at t = {self.data.time:g} s")
 
-    def _advance(self) -> None:
-        """One step, cut where an actuator's signal jumps."""
-        left = self.step
+    def _advance(self, left: float) -> None:
+        """One step of `left` s, cut where an actuator's signal jumps or bends."""
         while left > 1e-9:
             dt = left
             if self.code.HAS_PAUSE:
                 dt = self.code.until_bend(self._commands, self._memory, left, self._values, self._on)
-                self.model.opt.timestep = dt
+            self.model.opt.timestep = dt
             self.code.actuate_in_place(self._commands, self._memory, dt, self._values, self._on, self._act)
             self._held[:-2] = self._act
             self._held[-2:] = self.data.time, 1.0 / dt
@@ -197,17 +202,28 @@ def python_callback(code: Any, size: int) -> Callable[[Any, Any], None]:
 
 
 class installed:  # noqa: N801  # a context manager; as a class it costs a tenth of a generator's time, at every step
-    """MuJoCo's callbacks are global to the process: put ours in, and take it out again whatever happens."""
+    """MuJoCo's callbacks are global to the process: put ours in, and take it out again whatever happens.
+
+    Its warnings are heard and dropped, or it would write them to a file in the working folder: a motion gone wild is an
+    error of ours.
+    """
 
     def __init__(self, callback: Any) -> None:
         """`callback` is a Python function or a pointer to a compiled one."""
         self.callback = callback
 
     def __enter__(self) -> None:
+        self.heard = mujoco.get_mju_user_warning()
+        mujoco.set_mju_user_warning(_silent)
         mujoco.set_mjcb_passive(self.callback)
 
     def __exit__(self, *_: object) -> None:
         mujoco.set_mjcb_passive(None)
+        mujoco.set_mju_user_warning(self.heard)
+
+
+def _silent(_: str) -> None:
+    """Takes a warning of MuJoCo's and says nothing."""
 
 
 @contextmanager

@@ -17,6 +17,7 @@ import numpy as np
 from boatsim.control.allocation import STICK
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.base import Array
+from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.engine import Engine, State, installed
@@ -42,7 +43,6 @@ from dm_control.mujoco import Physics, wrapper  # noqa: E402
 from dm_control.rl import control  # noqa: E402
 from dm_env import specs  # noqa: E402
 
-OBSERVED = {"x_m": "x", "y_m": "y", "psi_rad": "psi", "u_mps": "u", "v_mps": "v", "r_radps": "r"}
 OUTBOARDS = {-1: "outboard_port", 0: "outboard", 1: "outboard_starboard"}  # side of a steering channel -> body drawn
 
 
@@ -56,7 +56,8 @@ class BoatPhysics(Physics):
     def __init__(self, engine: Engine) -> None:
         """Take over an engine; whoever made it must no longer step it."""
         self.engine = engine
-        steered = [(n, OUTBOARDS[c.side]) for n, c in engine.vessel.commands.items() if c.family == "steer"]
+        boat = engine.vessel
+        steered = [(n, OUTBOARDS[boat.side(n)]) for n in boat.actuators if boat.roles[n] == "angle"]
         bodies = {engine.model.body(i).name: i for i in range(engine.model.nbody)}
         self._outboards = [(name, bodies[body]) for name, body in steered if body in bodies]
         super().__init__(wrapper.MjData(engine.data))
@@ -85,7 +86,7 @@ class BoatPhysics(Physics):
         self.forward()
 
     def set_control(self, control: Any) -> None:
-        """Send commands (C,), in the vessel's order. Raises BadInput for another shape or a value not finite."""
+        """Send commands (C,), in the vessel's order; they act within their ranges. Raises BadInput for others."""
         values, names = np.asarray(control, dtype=float), self.engine.vessel.commands
         if values.shape != (len(names),) or not np.isfinite(values).all():
             raise BadInput(f"action {values.tolist()}; allowed are {len(names)} finite numbers: {', '.join(names)}")
@@ -148,12 +149,12 @@ class BoatTask(control.Task):
         self._random = np.random.default_rng(seed)
 
     def initialize_episode(self, physics: BoatPhysics) -> None:
-        """The scenario's start, actuators settled at the commands its controller begins with."""
+        """The scenario's start, actuators settled at its commands, others at those its controller begins with."""
         start, length = self.scenario.file.start, self.scenario.vessel.length
         x, y, psi = self._random.uniform(-self.scatter, self.scatter, 3) * (length, length, 1.0)
         scattered = {"x": start.x + x, "y": start.y + y, "psi": start.psi + psi}
         state = State(**{**start.motion(), **scattered})
-        physics.engine.reset(state, self.scenario.controller.initial_commands())
+        physics.engine.reset(state, {**self.scenario.controller.initial_commands(), **start.commands})
 
     def before_step(self, action: Any, physics: BoatPhysics) -> None:
         """Send the action to the actuators, which follow with their lags and limits."""
@@ -167,7 +168,7 @@ class BoatTask(control.Task):
     def get_observation(self, physics: BoatPhysics) -> OrderedDict[str, np.float64]:
         """True pose in start axes and velocities in body axes, actual actuators, goal; units are in the names."""
         state, actual, goal = physics.engine.state, physics.engine.actuators, self._goal(physics)
-        values = {name: getattr(state, field) for name, field in OBSERVED.items()}
+        values = {s.column: getattr(state, s.symbol) for s in signals_of(self.scenario.vessel.freedoms)}
         values |= {f"actual_{name}": value for name, value in actual.items()}
         values |= {f"goal_{name}": value for name, value in zip(STICK, goal, strict=True)}
         return OrderedDict((name, np.float64(value)) for name, value in values.items())

@@ -17,6 +17,7 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate import imo, scenario
+from boatsim.simulate.cases import Place
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.twin import Twin
 
@@ -35,15 +36,18 @@ ROLLS = 12  # periods of a roll decay, of a hull as wide as this one
 
 
 def scenario_of(
-    manoeuvre: str, name: str, loads: Sequence[str] = (), angle: float | None = None, speed: float | None = None
-) -> Scenario:
+    manoeuvre: str, name: str, loads: Sequence[str] = (), angle: float | None = None, speed: float | None = None,
+    heading: float | None = None,
+) -> Scenario:  # fmt: skip
     """The scenario of a manoeuvre; `angle` [deg], positive to starboard, `speed` [m/s] of the approach.
 
-    Without an angle it is the usual one, or as much helm as the vessel has. Raises BadInput for a manoeuvre or vessel
-    that does not exist, or a vessel that can not do it so.
+    Without an angle it is the usual one, or as much helm as the vessel has. `heading` [deg] is the change at which a
+    zig-zag reverses its helm, without it the angle. Raises BadInput for a manoeuvre or vessel that does not exist, or a
+    vessel that can not do it so.
     """
     if manoeuvre not in ANGLES:
         raise BadInput(unknown_name("manoeuvre", manoeuvre, ANGLES))
+    _check_heading(manoeuvre, heading)
     vessel = vessels.load(name, loads)
     usual = ANGLES[manoeuvre] if angle is None else angle
     if usual == 0.0 and manoeuvre != "crash_stop":
@@ -55,7 +59,7 @@ def scenario_of(
         "sensors": {"ideal": True},
     }
     if manoeuvre == "roll_decay":
-        return scenario.from_table(raw | _released(vessel, usual), Path(f"{manoeuvre}.toml"))
+        return scenario.from_table(raw | _released(vessel, usual), Place(Path(f"{manoeuvre}.toml")))
     if "yaw" not in vessel.freedoms:
         raise BadInput(f"{vessel.name} is not free to turn; of the manoeuvres it can only do roll_decay")
     vessel = replace(vessel, manoeuvring=handled(vessel))
@@ -66,7 +70,19 @@ def scenario_of(
             f"{vessel.name}: nothing to go astern with; [manoeuvring] astern = {{ CHANNEL = value }} says what"
         )
     at = approach(vessel, speed)
-    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at), Path(f"{manoeuvre}.toml"))
+    reverses = abs(angle) if heading is None else heading
+    place = Place(Path(f"{manoeuvre}.toml"))
+    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at, reverses), place)
+
+
+def _check_heading(manoeuvre: str, heading: float | None) -> None:
+    """Only a zig-zag has one, and it lies ahead of the bow."""
+    if heading is None:
+        return
+    if manoeuvre != "zigzag":
+        raise BadInput(f"heading = {heading:g} deg; only a zigzag reverses its helm at a heading, not a {manoeuvre}")
+    if not 0.1 <= heading <= 170.0:
+        raise BadInput(f"heading = {heading:g} deg; allowed 0.1 to 170 deg")
 
 
 def handled(vessel: Vessel) -> ManoeuvringTable:
@@ -74,12 +90,12 @@ def handled(vessel: Vessel) -> ManoeuvringTable:
     given, taken = vessel.manoeuvring, vessel.commands
     if wrong := [n for n in (*given.ahead, *given.astern, *given.steer) if n not in taken]:
         raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.no_command(wrong[0])}")
-    thrusters = [n for n in vessel.actuators if n.endswith("_N")]
+    thrusters = [n for n in vessel.actuators if vessel.roles[n] == "thrust"]
     ahead = given.ahead or {n: 0.5 * taken[n].high for n in thrusters}
     astern = given.astern or {n: max(taken[n].low, -value) for n, value in ahead.items() if taken[n].low < 0.0 < value}
-    steer = given.steer or {n: 1.0 for n in vessel.actuators if n.endswith("_rad") and taken[n].family != "elevator"}
+    steer = given.steer or {n: 1.0 for n in vessel.actuators if vessel.roles[n] == "angle"}
     if not steer:
-        steer = {n: -taken[n].side * ahead[n] / FULL for n in thrusters if taken[n].side and n in ahead}
+        steer = {n: -vessel.side(n) * ahead[n] / FULL for n in thrusters if vessel.side(n) and n in ahead}
     if not steer:
         raise BadInput(f"{vessel.name}: nothing to steer with; [manoeuvring] steer = {{ CHANNEL = per rad }} says what")
     table = given.model_copy(update={"ahead": ahead, "astern": astern, "steer": steer})
@@ -169,11 +185,11 @@ def _rounded(seconds: float) -> float:
     return float(max(m for m in (1.0, 2.0, 5.0) if m * power <= seconds * (1 + 1e-9)) * power)
 
 
-def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float) -> dict[str, Any]:
-    """Tables of a manoeuvre that begins with an approach at a speed."""
+def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float, reverses: float) -> dict[str, Any]:
+    """Tables of a manoeuvre that begins with an approach at a speed; a zig-zag reverses at a heading [deg]."""
     table, unit, step = vessel.manoeuvring, vessel.length / speed, _step(vessel, speed)
     execute, hold = (step * round(lengths * unit / step) for lengths in (BEFORE, HOLD))
-    helm, heading = {"angle": radians(angle)}, {"heading": radians(abs(angle))}
+    helm, heading = {"angle": radians(angle)}, {"heading": radians(reverses)}
     place = {"execute": execute, "length": vessel.length}
     own: dict[str, tuple[dict[str, Any], dict[str, Any], float]] = {  # controller, measure, longest time
         "turning_circle": (helm, place, LONGEST * unit),
@@ -184,7 +200,8 @@ def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float) -> di
     }
     controller, measure, duration = own[manoeuvre]
     handling = {"period": step, "execute": execute, "ahead": table.ahead, "steer": table.steer}
-    bars = imo.limits(manoeuvre, angle, vessel.length, speed)
+    as_usual = manoeuvre != "zigzag" or reverses == abs(angle)  # the limits are those of 10/10 and 20/20
+    bars = imo.limits(manoeuvre, angle, vessel.length, speed) if as_usual else {}
     until = {"until": {"turned": ROUND}} if manoeuvre == "turning_circle" else {}
     return until | {
         "duration": min(duration, 86400.0),
@@ -194,7 +211,7 @@ def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float) -> di
         "controller": {"use": manoeuvre} | handling | controller,
         "camera": {"rate": min(max(1.0 / _rounded(unit / ROWS), 0.1), 6.0)},
         "measure": {"use": manoeuvre} | measure,
-        "norms": {name: {"high": high} for name, high in bars.items()},
+        "norms": {name: {"guard": [0.0, high]} for name, high in bars.items()},
     }
 
 
@@ -220,7 +237,7 @@ def _roll_period(vessel: Vessel) -> float:
     start = [0.0] * (2 * _half(vessel))
     roll = 0 if _half(vessel) == 1 else 3
     start[roll] = radians(1.0)
-    rows = np.zeros((8000, len(vessel.commands)))
+    rows = np.tile(twin.program.command_array({}), (8000, 1))
     phi = twin.rollout(start, rows, guess / 400)[:, roll]
     crossings = np.flatnonzero((phi[:-1] > 0.0) & (phi[1:] <= 0.0))
     if len(crossings) < 2:

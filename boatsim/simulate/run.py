@@ -1,26 +1,31 @@
 """Runs a scenario: every period sensors, controller, commands; every step actuators and physics; all of it logged."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from math import nan
+import traceback
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from inspect import getsourcefile
+from math import inf, nan
 from typing import Any
 
 import numpy as np
 
-from boatsim.control.base import Sense
-from boatsim.physics.base import Array, motion
+from boatsim.control.base import Controller, Sense
+from boatsim.errors import BadInput, BoatsimError
+from boatsim.physics.base import Force, motion
+from boatsim.physics.commands import beyond, sent_row
+from boatsim.physics.signals import AXES, COMPONENTS, signals_of
 from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.sensors import Frame
 from boatsim.simulate.world import Tank
 
 SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
 FIELDS = ("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
-CAMERA = ("led_x_m", "led_y_m", "button_x_m", "button_y_m", "x_m", "y_m", "psi_rad")
-POSE = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw", "phi_rad": "roll"}
-RATES = {"u_mps": "surge", "v_mps": "sway", "r_radps": "yaw", "p_radps": "roll"}
-COMPONENTS = {"surge": "X_N", "sway": "Y_N", "roll": "K_Nm", "yaw": "N_Nm"}
+SEEN = ("x_m", "y_m", "psi_rad")  # the pose that a camera frame gives
+SHORTEST = 1e-6  # [s] of a part of a step
 CHUNK = 500  # [rows] handed to a listener at a time
 Listener = Callable[[Recording], None]
 
@@ -29,12 +34,14 @@ class Log:
     """A table filled row by row, one float a column; laid out by columns, so that a recording of it copies nothing."""
 
     def __init__(self, names: list[str], most: int) -> None:
-        """`most` is the largest number of rows; memory is taken only as rows come."""
+        """`most` is how many rows are expected; memory is taken only as rows come."""
         self.names, self.count = names, 0
         self.columns = np.empty((len(names), most))
 
     def add(self, row: list[float]) -> None:
         """One more row."""
+        if self.count == self.columns.shape[1]:
+            self.columns = np.concatenate([self.columns, np.empty_like(self.columns)], axis=1)
         self.columns[:, self.count] = row
         self.count += 1
 
@@ -53,6 +60,8 @@ class Run:
     recording: Recording
     camera: Recording
     complete: bool
+    steps: int = 0  # of physics
+    saturated: Mapping[str, int] = field(default_factory=dict)  # channel -> steps in which more was sent than it takes
 
 
 class Runner:
@@ -66,19 +75,23 @@ class Runner:
         tank = Tank(**file.tank.model_dump()) if file.tank else None
         vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
         self.engine = Engine(vessel, tank, file.step)
-        self._imu, self._marks = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
-        self._pose = [n for n, axis in POSE.items() if axis in vessel.freedoms]
-        self._rates = [n for n, axis in RATES.items() if axis in vessel.freedoms]
+        self._marks = [f"camera_{mark}_{axis}_m" for mark in scenario.camera.marks for axis in "xy"]
+        self._imu, self._shaking = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
+        self._signals = signals_of(vessel.freedoms)
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
         self._actuators = vessel.actuators
-        self._winds = [e for e in vessel.effects if e.name() in ("fan_wind", "wind")]
-        self._commands: dict[str, float] = {}
+        self._winds = [e for e in vessel.effects if isinstance(e, Force) and type(e).of_air]
+        self._sent: dict[str, float] = {}  # by the controller; what acts of it is the engine's
+        self._beyond: list[str] = []
+        self._saturated: Counter[str] = Counter()
+        self._steps = 0
         self._sense: Sense | None = None
         self._frame = 0
         self._frames: list[Frame] = []
         self._due = 0.0
+        self._early = inf  # [s] when the controller wants to act within its period
         self._row_due = 0.0
-        self._sent = 0
+        self._shown = 0  # rows the listener has
 
     def run(self, progress: Callable[[float], None] | None = None) -> Run:
         """Run to the end, or to an interruption, which keeps what was logged. `progress` gets the time reached [s]."""
@@ -92,73 +105,112 @@ class Runner:
             complete = True
         except KeyboardInterrupt:
             pass
-        self._send(0)
+        self._show(0)
         notes = self._notes()
         name = self.scenario.name.replace("/", "_")
-        return Run(
-            self.scenario, self.seed, self.log.recording(name, notes), self._film.recording("camera", notes), complete
-        )
+        log, film = self.log.recording(name, notes), self._film.recording("camera", notes)
+        return Run(self.scenario, self.seed, log, film, complete, self._steps, dict(self._saturated))
 
     def _start(self) -> None:
         start = self.scenario.file.start
-        state = State(x=start.x, y=start.y, psi=start.psi, phi=start.phi, u=start.u, v=start.v, p=start.p, r=start.r)
-        controller = self.scenario.controller
-        controller.reset()
-        self._commands = {**controller.initial_commands(), **start.commands}
-        self.engine.reset(state, self._commands)
+        state = State(**start.motion())
         self._state = state
+        with self._asked() as controller:
+            controller.reset()
+            self._send({**controller.initial_commands(), **start.commands}, lambda sent: self.engine.reset(state, sent))
         # the log's columns are known once the controller has stepped: which estimates it has
         self._control()
-        self._estimates = list(controller.estimates())
+        with self._asked() as controller:
+            self._estimates = list(controller.estimates())
         duration = self.scenario.file.duration
         between = max(self.scenario.file.log, self.scenario.file.step)
         self.log = Log(self._columns(), round(duration / between) + 3)
-        seen = ["t_s", *CAMERA[4:], *(f"camera_{n}" for n in CAMERA[:4]), *self._sent_channels]
+        seen = ["t_s", *SEEN, *self._marks, *self._sent_channels]
         self._film = Log(seen, round(duration * self.scenario.camera.rate) + 2)
-        self._average: list[list[float]] = []
+        self._average: list[tuple[list[float], float]] = []  # commands in force, and for how long [s]
         self._frames = self._shoot(state, state)
         self._write_row()
 
     def _columns(self) -> list[str]:
+        """Beside motion and the commands that act: `sent_` what the controller sent before a range limited it.
+
+        `actual_` is an actuator, `sensed_` and `camera_` were measured, `force_` is all laws, `wind_` those of the air.
+        """
         limits = [f"{name}{end}" for name in self._adaptive() for end in ("", "_low", "_high")]
         references = [n for n in self._estimates if n.startswith("reference_")]
         force, wind = ([f"{what}_{c}" for c in self._components()] for what in ("force", "wind"))
         return [
-            "t_s", *self._pose, *self._rates, *self._sent_channels, *(f"actual_{n}" for n in self._actuators),
-            *(f"sensed_{n}" for n in SENSED), *(f"camera_{n}" for n in CAMERA), *force, *(wind if self._winds else ()),
-            "contacts", *(f"estimate_{n}" for n in limits), *references,
+            "t_s", *(s.column for s in self._signals), *self._sent_channels,
+            *(f"sent_{n}" for n in self._sent_channels), *(f"actual_{n}" for n in self._actuators),
+            *(f"sensed_{n}" for n in SENSED), *self._marks, *(f"camera_{n}" for n in SEEN), *force,
+            *(wind if self._winds else ()), "contacts", *(f"estimate_{n}" for n in limits), *references,
         ]  # fmt: skip
 
     def _components(self) -> list[str]:
         """Force components of the vessel's freedoms."""
-        return [name for axis, name in COMPONENTS.items() if axis in self.scenario.vessel.freedoms]
+        return [COMPONENTS[axis] for axis in AXES if axis in self.scenario.vessel.freedoms]
 
     def _adaptive(self) -> list[str]:
         return [n for n in self._estimates if not n.startswith("reference_")]
 
     def _advance(self) -> None:
-        """One step of physics from the commands in force, then control at its end and a row, if they are due."""
-        before = self._state
-        self._average.append(self._sent_now())
-        self.engine.advance()
-        self._state = self.engine.state
+        """One step of physics from the commands in force, then control at its end and a row, if they are due.
+
+        It is cut where the controller wants to act within it, and what it then changes is a row too.
+        """
+        before, end = self._state, self._state.t + self.engine.step
+        self._steps += 1
+        self._saturated.update(self._beyond)
+        while self._early < end - SHORTEST:
+            self._move(max(self._early - self._state.t, SHORTEST))
+            held = self._sent
+            self._ask()
+            if self._sent != held:
+                self._write_row()
+        self._move(end - self._state.t if self._state.t > before.t else self.engine.step)
         self._frames += self._shoot(before, self._state)
         self._control()
         if self._state.t >= self._row_due - 1e-9 or self._finished():
             self._write_row()
 
+    def _move(self, seconds: float) -> None:
+        """Physics alone, for so long."""
+        self._average.append((self._in_force(), seconds))
+        self.engine.advance(length=seconds)
+        self._state = self.engine.state
+
     def _control(self) -> None:
         """Sensors and controller, once a period."""
-        state, controller = self._state, self.scenario.controller
-        if state.t < self._due - 1e-9:
-            return
-        self._due += controller.period
+        if self._state.t >= self._due - 1e-9:
+            self._due += self.scenario.controller.period
+            self._ask()
+
+    def _ask(self) -> None:
+        """Sensors and controller, now."""
+        state = self._state
         self._sense = self.scenario.sensors.feel(
             state.t, (state.x, state.y, state.psi), (state.u, state.v, state.r), self.engine.acceleration(), self._imu,
             (state.phi, state.p),
         )  # fmt: skip
-        self._commands = controller.step(self._sense, self.scenario.goal_at(state.t))
-        self.engine.command(self._commands)
+        with self._asked() as controller:
+            self._send(controller.step(self._sense, self.scenario.goal_at(state.t)), self.engine.command)
+            self._early = state.t + controller.early(self._sense)
+
+    def _send(self, commands: dict[str, float], to: Callable[[dict[str, float]], None]) -> None:
+        """Commands on their way; kept as they are sent, for the log."""
+        to(commands)
+        vessel = self.scenario.vessel
+        row = sent_row(vessel, commands)
+        self._sent, self._beyond = dict(zip(vessel.commands, row.tolist(), strict=True)), beyond(vessel, row)
+
+    @contextmanager
+    def _asked(self) -> Iterator[Controller]:
+        """The controller at work: whatever goes wrong in there is a line that names it and the time."""
+        try:
+            yield self.scenario.controller
+        except Exception as error:
+            called = f"controller {self.scenario.file.controller['use']} at t = {self._state.t:g} s"
+            raise BadInput(f"{called}: {_what_went_wrong(error, self.scenario.controller)}") from error
 
     def _shoot(self, before: State, after: State) -> list[Frame]:
         """Camera frames since the last step. A frame carries the mean command from it to the next one."""
@@ -171,36 +223,41 @@ class Runner:
                 after.t,
                 (after.x, after.y, after.psi),
                 self._frame,
-                self._marks,
+                self._shaking,
             )  # fmt: skip
         )
         for f in frames:
             self._close_frame()
-            self._film.add([f.t, f.x, f.y, f.psi, *f[1:5], *self._sent_now()])
+            self._film.add([f.t, f.x, f.y, f.psi, *f.marks, *self._in_force()])
         self._frame += len(frames)
         return frames
 
     def _close_frame(self) -> None:
-        """Give the last camera row the mean of the commands sent since."""
+        """Give the last camera row the mean of the commands in force since."""
         if self._film.count and self._average:
-            self._film.columns[1 + len(CAMERA) :, self._film.count - 1] = np.mean(self._average, axis=0)
+            commands, seconds = zip(*self._average, strict=True)
+            first = 1 + len(SEEN) + len(self._marks)
+            self._film.columns[first:, self._film.count - 1] = np.average(commands, 0, seconds)
         self._average.clear()
 
     def _write_row(self) -> None:
         s, engine, sense, frames = self._state, self.engine, self._sense, self._frames
-        self._frames, self._row_due = [], self._row_due + self.scenario.file.log
+        self._frames = []
+        if s.t >= self._row_due - 1e-9:
+            self._row_due += self.scenario.file.log
         assert sense is not None
-        estimates = self.scenario.controller.estimates()
-        axes = [axis in self.scenario.vessel.freedoms for axis in COMPONENTS]
+        with self._asked() as controller:
+            estimates = controller.estimates()
+        axes = [axis in self.scenario.vessel.freedoms for axis in AXES]
         self.log.add(
             [
                 s.t,
-                *(getattr(s, n.split("_")[0]) for n in self._pose),
-                *(getattr(s, n.split("_")[0]) for n in self._rates),
-                *self._sent_now(),
+                *(getattr(s, signal.symbol) for signal in self._signals),
+                *self._in_force(),
+                *(self._sent[n] for n in self._sent_channels),
                 *engine.actuators.values(),
                 *(getattr(sense, f) for f in FIELDS),
-                *((*frames[-1][1:5], *frames[-1][5:]) if frames else [nan] * len(CAMERA)),
+                *((*frames[-1].marks, *frames[-1][1:4]) if frames else [nan] * (len(self._marks) + len(SEEN))),
                 *(f for f, there in zip(engine.wrench(), axes, strict=True) if there),
                 *(f for f, there in zip(self._wind(s), axes, strict=True) if there and self._winds),
                 engine.contacts,
@@ -208,27 +265,28 @@ class Runner:
                 *(estimates[n].value for n in self._estimates if n.startswith("reference_")),
             ]
         )
-        if self.log.count - self._sent >= CHUNK:
-            self._send(CHUNK)
+        if self.log.count - self._shown >= CHUNK:
+            self._show(CHUNK)
 
-    def _sent_now(self) -> list[float]:
-        """Commands in force, those the controller sets."""
-        return [self._commands.get(n, 0.0) for n in self._sent_channels]
+    def _in_force(self) -> list[float]:
+        """Commands that act, of the channels the controller sets."""
+        commands = self.engine.commands
+        return [commands[n] for n in self._sent_channels]
 
     def _wind(self, s: State) -> list[float]:
-        """Force of the wind effects (X, Y, K, N) in body axes [N, N m]."""
-        total = [0.0] * 4
+        """Force of the air (X, Y, Z, K, M, N) in body axes [N, N m]."""
+        total = [0.0] * len(AXES)
         for effect in self._winds:
             law: Any = type(effect).law.py_func  # type: ignore[attr-defined]  # one call needs no compiling
-            w = law(motion(psi=s.psi, u=s.u, v=s.v, r=s.r), effect.values())
+            w = law(motion(**s._asdict()), effect.values())
             total = [a + b for a, b in zip(total, w, strict=True)]
         return total
 
-    def _send(self, least: int) -> None:
+    def _show(self, least: int) -> None:
         """New rows to the listener."""
-        if self.listen and self.log.count > self._sent and self.log.count - self._sent >= least:
-            self.listen(self.log.recording(self.scenario.name, Notes(), self._sent))
-            self._sent = self.log.count
+        if self.listen and self.log.count > self._shown and self.log.count - self._shown >= least:
+            self.listen(self.log.recording(self.scenario.name, Notes(), self._shown))
+            self._shown = self.log.count
 
     def _finished(self) -> bool:
         file, s = self.scenario.file, self._state
@@ -243,12 +301,7 @@ class Runner:
 
     def _notes(self) -> Notes:
         """What a diagnosis of this run may know: vessel, load, values set, noise of the camera."""
-        file, camera = self.scenario.file, self.scenario.camera
-        per_axis = camera.mark_sd * np.hypot(camera.led_ahead, camera.button_ahead) / camera.baseline
-        noise = {
-            "position_sd_m": float(per_axis),
-            "heading_sd_rad": float(camera.mark_sd * np.sqrt(2) / camera.baseline),
-        }
+        file, noise = self.scenario.file, self.scenario.camera.noise()
         return Notes(vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise)
 
 
@@ -262,6 +315,10 @@ def run(
     return Runner(scenario, seed, listen).run(progress)
 
 
-def commands_of(recording: Recording, names: Mapping[str, Any]) -> Array:
-    """(N, C) commands of a recording in a vessel's order; channels the recording lacks are zero."""
-    return np.column_stack([recording.signals.get(n, np.zeros(len(recording.t))) for n in names])
+def _what_went_wrong(error: Exception, controller: Controller) -> str:
+    """An error on purpose in its own words; any other with its kind, and the controller's line it came from."""
+    if isinstance(error, BoatsimError):
+        return str(error)
+    file = getsourcefile(type(controller))
+    lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == file]
+    return f"{type(error).__name__}: {error}" + (f" ({file}, line {lines[-1]})" if lines else "")

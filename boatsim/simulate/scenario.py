@@ -1,38 +1,38 @@
 """A scenario is a file: which vessel, where, steered by what, towards what, for how long, and how it is judged."""
 
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sin
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal, Self, TypeVar
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from boatsim.control.base import Controller
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import Table, checked, read_toml
+from boatsim.files import Table, checked
 from boatsim.physics import vessel as vessels
-from boatsim.physics.content import find, load_class, names, root
+from boatsim.physics.content import load_class, names
+from boatsim.physics.signals import STATE
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate.camera import Camera, camera_over
+from boatsim.simulate.cases import Place, content
+from boatsim.simulate.film import FilmMeasure
 from boatsim.simulate.measure import Measure
-from boatsim.simulate.sensors import Camera, Sensors
+from boatsim.simulate.sensors import Sensors
 
-NORMS = {  # measured on camera frames -> norms that [norms] may name; `boatsim.simulate.metrics` defines them
-    "sway": (
-        "yaw_rate_inf", "yaw_rate_l2", "yaw_rate_rms", "yaw_rate_l1", "heading_at_0.9m", "surge_offset", "time_to_0.9m",
-    ),
-    "yaw": ("position_inf", "position_rms", "position_l1", "moved", "turn_time", "excursion"),
-}  # fmt: skip
+T = TypeVar("T")
+End = Annotated[float, Field(allow_inf_nan=True)]  # of a band; it may be open
 
 
 class TankTable(Table):
     """Water with walls; without this table the water is open."""
 
-    length: float = Field(default=1.5, gt=0)  # [m] along the start heading; the thesis' tank
-    width: float = Field(default=3.0, gt=0)  # [m]
-    depth: float = Field(default=0.1, gt=0)  # [m]
+    length: float = Field(gt=0)  # [m] along the start heading
+    width: float = Field(gt=0)  # [m]
+    depth: float = Field(default=1.0, gt=0)  # [m]
     centre: tuple[float, float] = (0.0, 0.0)  # [m] from the start, ahead and to starboard
 
 
@@ -47,7 +47,15 @@ class StartTable(Table):
     v: float = 0.0  # [m/s]
     p: float = 0.0  # [rad/s]
     r: float = 0.0  # [rad/s]
-    commands: dict[str, float] = {}  # to which the actuators have settled; others to the controller's first, or zero
+    z: float = 0.0  # [m]
+    theta: float = 0.0  # [rad]
+    w: float = 0.0  # [m/s]
+    q: float = 0.0  # [rad/s]
+    commands: dict[str, float] = {}  # to which the actuators have settled; others to the controller's first, or neutral
+
+    def motion(self) -> dict[str, float]:
+        """Pose and velocities, by the symbols of the engine's state."""
+        return {s.symbol: float(getattr(self, s.symbol)) for s in STATE}
 
 
 class UntilTable(Table):
@@ -58,11 +66,19 @@ class UntilTable(Table):
 
 
 class NormTable(Table):
-    """What a norm is held against: the paper's value, and the band it must lie in."""
+    """What a norm is held against: the paper's value, and the band about our own that a change must not leave."""
 
     published: float | None = None
-    low: float | None = None
-    high: float | None = None
+    tolerance: float | None = Field(default=None, gt=0)  # either way of what is published, as its document states it
+    guard: tuple[End, End] | None = None  # low, high
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if self.guard is not None and not self.guard[0] <= self.guard[1]:
+            raise ValueError(f"guard = {list(self.guard)}; allowed are its lower end and its upper one")
+        if self.tolerance is not None and self.published is None:
+            raise ValueError("tolerance needs published")
+        return self
 
 
 class CheckTable(Table):
@@ -108,7 +124,7 @@ class ScenarioFile(Table):
     measure: str | dict[str, Any] | None = None
     log: float = Field(default=0.0, ge=0)  # [s] between rows of the log; 0: every step
     norms: dict[str, NormTable] = {}
-    noise_widens_bars: bool = False
+    noise_widens_guards: bool = False
     check: list[CheckTable] = []
 
 
@@ -122,7 +138,7 @@ class Scenario:
     controller: Controller
     sensors: Sensors
     camera: Camera
-    measure: Measure | None = None  # on the log; those on camera frames are in `boatsim.simulate.metrics`
+    measure: Measure | None = None
 
     @cached_property
     def _begins(self) -> list[float]:
@@ -147,35 +163,31 @@ class Scenario:
 
 
 def load(name: str, overrides: Mapping[str, Any] | None = None) -> Scenario:
-    """A scenario by name ("joystick_boat/sway_1") or path; `overrides` replace top-level keys, for tests and studies.
+    """A scenario by name ("joystick_boat/sway_1") or path ("my.toml", "my.toml:case").
 
+    `overrides` replace top-level keys, for tests and studies.
     Raises BadInput, one line naming file, key, value found, what is allowed and the nearest valid name.
     """
-    path = find("scenario", name)
-    return from_table({**read_toml(path), **(overrides or {})}, path)
+    said, place = content(name)
+    return from_table({**said, **(overrides or {})}, place)
 
 
-def from_table(raw: dict[str, Any], path: Path) -> Scenario:
-    """A scenario from the content of a file; `path` names it and is where relative paths start."""
-    label = path.name
+def from_table(raw: dict[str, Any], place: Place) -> Scenario:
+    """A scenario from what it says; `place` names it and is where relative paths start."""
+    label, path = place.label, place.path
     file = checked(ScenarioFile, raw, label)
     try:
         vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent)
         controller = _made("controller", file.controller, path.parent)
-        sensors, camera = _settings(Sensors, file.sensors, "sensors"), _settings(Camera, file.camera, "camera")
+        sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
+        camera = _settings("camera", lambda: camera_over(vessel, file.camera))
         measure = _measure(file.measure, path.parent)
         _check_goals(file, vessel, controller)
         _check_shape(file, controller)
         _check_norms(file, camera, measure)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
-    return Scenario(_name(path), file, vessel, controller, sensors, camera, measure)
-
-
-def _name(path: Path) -> str:
-    """joystick_boat/sway_1 for shipped scenarios, the file's stem for a user's own."""
-    folder = root() / "scenarios"
-    return str(path.relative_to(folder).with_suffix("")) if path.is_relative_to(folder) else path.stem
+    return Scenario(place.name, file, vessel, controller, sensors, camera, measure)
 
 
 def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
@@ -188,11 +200,11 @@ def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
 
 def _measure(given: str | Mapping[str, Any] | None, folder: Path) -> Measure | None:
     """The measure on the log that a scenario asks for."""
-    if given is None or (isinstance(given, str) and given in NORMS):
+    if given is None:
         return None
     table = {"use": given} if isinstance(given, str) else given
     if isinstance(use := table.get("use"), str) and use not in names("measure") and not use.endswith(".py"):
-        raise BadInput(unknown_name("measure", use, [*NORMS, *names("measure")]))
+        raise BadInput(unknown_name("measure", use, names("measure")))
     made: Measure = _made("measure", table, folder)
     return made
 
@@ -205,10 +217,10 @@ def _begin(goal: Mapping[str, float | CourseTable]) -> float:
     return begin
 
 
-def _settings(kind: Any, table: Mapping[str, Any], key: str) -> Any:
+def _settings(key: str, made: Callable[[], T]) -> T:
     """Sensors or camera of its table."""
     try:
-        return kind.from_settings(table)
+        return made()
     except BadInput as error:
         raise BadInput(f"[{key}] {error}") from None
 
@@ -242,13 +254,12 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
 
 def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) -> None:
     """Only norms of what is measured are judged, and the frames they need are taken."""
-    on_film = NORMS[str(file.measure)] if file.measure in ("sway", "yaw") else ()
-    allowed = tuple(type(measure).units) if measure else on_film
+    allowed = tuple(type(measure).units) if measure else ()
     for name in file.norms:
         if name not in allowed:
             raise BadInput(unknown_name("[norms] key", name, allowed))
-    if file.measure in ("sway", "yaw") and camera.rate % 6.0:
-        raise BadInput(f"[camera] rate = {camera.rate:g} Hz; allowed with this measure is a multiple of 6 Hz")
+    if isinstance(measure, FilmMeasure):
+        measure.check(camera)
 
 
-__all__ = ["NORMS", "CheckTable", "NormTable", "Scenario", "ScenarioFile", "from_table", "load"]
+__all__ = ["CheckTable", "NormTable", "Scenario", "ScenarioFile", "from_table", "load"]

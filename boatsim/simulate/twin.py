@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.errors import BadInput
+from boatsim.physics.commands import taken
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
@@ -33,14 +34,15 @@ class Twin:
     ) -> Array:
         """Free run: row i of commands (N, C), in the vessel's order, is held for `interval` s; states (N + 1, 2 NQ).
 
-        Actuators start settled at the first row. Raises BadInput unless the step divides the interval.
+        Commands act within their channels' ranges; actuators start settled at the first row. Raises BadInput unless
+        the step divides the interval.
         """
         substeps = round(interval / self.step)
         if substeps < 1 or abs(substeps * self.step - interval) > 1e-9 * interval:
             raise BadInput(f"step {self.step:g} s does not divide the interval {interval:g} s")
         p = self._values if values is None else values
         memory, act = np.zeros(self.program.memory_size), np.zeros(self.program.held_size)
-        commands = np.ascontiguousarray(commands, dtype=float)
+        commands = np.ascontiguousarray(taken(self.vessel, np.asarray(commands, dtype=float)))
         self.code.settle(commands[0], memory, p, self._on, act)
         y = self.program.joint_rates(np.array(start, dtype=float))
         out = np.empty((len(commands) + 1, len(y)))

@@ -1,6 +1,7 @@
 """Tank, hull, motors, ballast and freedoms put together into one MuJoCo model. MuJoCo axes here: z up, y to port."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,13 +10,16 @@ import mujoco
 import numpy as np
 
 from boatsim.errors import BadInput, BadPhysics, unknown_name
-from boatsim.physics.signals import Array
 from boatsim.physics.content import root
+from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
-SOFT_WALL = (0.04, 1.0)  # solref: time constant [s] (two steps of 20 ms), critically damped: the hull does not bounce
+DRAWN = math.hypot(0.75, 1.5)  # [m] from the middle to a corner of the tank in tank.xml
+# solref: time constant [s] (two steps of 20 ms), critically damped. A wall only pushes, so the hull leaves it with e^-2
+# of the speed it came with, 0.14; steps as coarse as the time constant make it 0.10 to 0.18
+SOFT_WALL = (0.04, 1.0)
 JOINTS = {  # freedom -> joint name, kind, axis; each axis turns with the angles before it: yaw, pitch, roll
     "surge": ("x", mujoco.mjtJoint.mjJNT_SLIDE, (1, 0, 0)),
     "sway": ("y", mujoco.mjtJoint.mjJNT_SLIDE, (0, 1, 0)),
@@ -31,9 +35,9 @@ HALF_TURN = (0.0, 1.0, 0.0, 0.0)  # about x, exact in floating point
 class Tank:
     """Rectangular water in start axes (SNAME): `length` along x, `width` along y, `centre` (x, y) of its middle."""
 
-    length: float = 1.5  # [m] Bayless 2020: tank 1.5 x 3.0 x 0.1 m, the boat heads across it
-    width: float = 3.0  # [m]
-    depth: float = 0.1  # [m]
+    length: float  # [m]
+    width: float  # [m]
+    depth: float = 1.0  # [m]
     walls: bool = True
     centre: tuple[float, float] = (0.0, 0.0)  # [m]
 
@@ -54,13 +58,13 @@ def build(
     wall_solref: tuple[float, float] | None = None,
     friction: float = 0.0,
 ) -> mujoco.MjModel:
-    """Compile the vessel in its tank, free of forces, with joints x, y, z, psi, theta, phi for its freedoms; RK4, `step` [s].
+    """Compile the vessel in its tank, free of forces, with joints x, y, z, psi, theta, phi as it is free; `step` in s.
 
     No gravity: buoyancy holds heave, pitch and (where roll is free) a restoring effect stands for the rest.
     `show=False` leaves out everything that is only looked at, for speed. `wall_solref` is MuJoCo's contact solref,
     (-stiffness, -damping) or (time constant [s], damping ratio). Raises BadPhysics if the mass matrix is not full.
     """
-    tank = tank or Tank()
+    tank = tank or Tank(10.0 * vessel.length, 10.0 * vessel.length, vessel.length, walls=False)  # open water
     spec = mujoco.MjSpec.from_file(str(root() / "models" / "tank.xml"))
     spec.option.timestep = step
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
@@ -108,6 +112,8 @@ def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
             spec.delete(geom)
     x, y, _ = middle_of_tank
     spec.body("fan").pos = (x, y + b + 2 * WALL + 0.1, 0.2)
+    # all of the water lies before the sun: what is behind it MuJoCo draws as if in shadow
+    spec.light("sun").pos = middle_of_tank + spec.light("sun").pos * max(1.0, math.hypot(a, b) / DRAWN)
     aim_cameras(spec, tank, vessel)
 
 
@@ -144,7 +150,7 @@ def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> Any:
     hull = drawing.body("hull")
     for part in (*hull.geoms, *hull.sites, *hull.bodies):
         part.pos = part.pos * (stretch, 1, 1) + shift
-    place_fittings(drawing, vessel.geometry, shift)
+    place_fittings(drawing, vessel.geometry, vessel.marks, shift)
     spec.attach(drawing, prefix="boat/", frame=spec.worldbody.add_frame())
     for part in (*spec.bodies, *spec.geoms, *spec.sites):
         part.name = part.name.removeprefix("boat/")
@@ -167,18 +173,20 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
     return drawing, (length, draught)
 
 
-def place_fittings(drawing: mujoco.MjSpec, at: dict[str, float], shift: Array) -> None:
-    """Move outboards, their mount, ballast, light and push-button to where this load has them; drop what it has not."""
+def place_fittings(
+    drawing: mujoco.MjSpec, at: dict[str, float], marks: Mapping[str, tuple[float, float]], shift: Array
+) -> None:
+    """Move outboards, their mount, ballast and drawn marks to where this load has them; drop what it has not."""
     for side, name in ((1, "outboard_port"), (-1, "outboard_starboard")):
         body = drawing.body(name)
         if body is not None and "motor_half_spacing" in at:
             body.pos = (at["motor_ahead_of_cg"], side * at["motor_half_spacing"], body.pos[2])
-    for name, key in (("led", "led_ahead_of_cg"), ("button", "button_ahead_of_cg"), ("mount", "motor_ahead_of_cg")):
-        geom = drawing.geom(name)
-        if geom is not None and key in at:
-            geom.pos = (at[key], 0, geom.pos[2])
-    if (mount := drawing.geom("mount")) is not None and "motor_half_spacing" in at:
-        mount.size = (mount.size[0], at["motor_half_spacing"], mount.size[2])
+    for name, (ahead, starboard) in marks.items():
+        if (geom := drawing.geom(name)) is not None:
+            geom.pos = (ahead, -starboard, geom.pos[2])
+    if (mount := drawing.geom("mount")) is not None:
+        mount.pos = (at.get("motor_ahead_of_cg", mount.pos[0]), 0, mount.pos[2])
+        mount.size = (mount.size[0], at.get("motor_half_spacing", mount.size[1]), mount.size[2])
     if (ballast := drawing.geom("ballast")) is not None:
         if at.get("ballast_mass", 0.0) > 0:
             ballast.pos = (at["ballast_from_transom"] + shift[0], 0, ballast.pos[2])

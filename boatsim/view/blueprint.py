@@ -5,12 +5,13 @@ from collections.abc import Iterable, Mapping, Sequence
 import rerun as rr
 import rerun.blueprint as rrb
 
+from boatsim.physics.signals import COMPONENTS
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.view.scene import Scene
 
 WORLD = "world"
-MISSING = {"force_X_N": "surge", "force_Y_N": "sway", "force_K_Nm": "roll", "force_N_Nm": "yaw"}
+MISSING = {f"force_{component}": axis for axis, component in COMPONENTS.items()}
 TITLES = {"off_m": "distance from the recording [m]"}
 Colour = tuple[int, int, int]
 PALETTE: tuple[Colour, ...] = (

@@ -7,14 +7,13 @@ import signal
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from boatsim.errors import BadInput
 from boatsim.physics.content import vessel_address
 from boatsim.recordings.table import write_csv
-from boatsim.simulate import metrics
+from boatsim.simulate import norms as judged
 from boatsim.simulate.run import Run, Runner
 from boatsim.simulate.scenario import Scenario
 
@@ -38,9 +37,9 @@ def run_into(
         runner.listen = log.chunk
         run = runner.run(progress)
         ignore()  # a second Ctrl-C must not cost the files of a run that the first one ended
-        found = metrics.norms(run)
-        log.finish({name: asdict(norm) for name, norm in found.items()})
-        content = metrics.to_json(run, found)
+        found = judged.norms(run)
+        log.finish({name: norm.to_json() for name, norm in found.items()})
+        content = judged.to_json(run, found)
         write(run, content, new)
     return content
 

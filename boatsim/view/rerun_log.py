@@ -75,7 +75,7 @@ class RunLog:
             self._write()
 
     def finish(self, norms: Mapping[str, Mapping[str, Any]]) -> None:
-        """Add the table of norms: name -> value, unit, published, bar {low, high}, ok."""
+        """Add the table of norms: name -> value, unit, published, verdict, guard [low, high], ok."""
         self._write()
         if self._heard:
             self._say(norms_table(norms))
@@ -155,15 +155,15 @@ def log_overlay(
 
 
 def norms_table(norms: Mapping[str, Mapping[str, Any]]) -> str:
-    """Markdown table norm, value, published, bar, met."""
-    lines = ["| norm | value | published | bar | met |", "|:---|---:|---:|:---:|:---:|"]
+    """Markdown table norm, value, published, verdict on it, guard, met."""
+    lines = ["| norm | value | published | verdict | guard | met |", "|:---|---:|---:|:---|:---:|:---:|"]
     for name, norm in norms.items():
-        bar, ok = norm.get("bar") or {}, norm.get("ok")
-        ends = [_short(bar.get(end)) for end in ("low", "high")]
+        ok, ends = norm.get("ok"), [_short(end) for end in norm.get("guard") or (None, None)]
         met = "" if ok is None else "yes" if ok else "**no**"
         span = " to ".join(ends) if all(ends) else f"at least {ends[0]}" if ends[0] else f"at most {ends[1]}"
         value = f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
-        lines.append(f"| {name} | {value} | {_short(norm.get('published'))} | {span if any(ends) else ''} | {met} |")
+        said = f"{_short(norm.get('published'))} | {norm.get('verdict') or ''}"
+        lines.append(f"| {name} | {value} | {said} | {span if any(ends) else ''} | {met} |")
     return "\n".join(lines) + "\n"
 
 

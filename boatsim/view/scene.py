@@ -17,10 +17,9 @@ if TYPE_CHECKING:
     from boatsim.physics.vessel import Vessel
 
 Triangles = NDArray[np.uint32]
-SEEN = 2  # MuJoCo geom group of what is drawn; touching shapes are in group 3
+SEEN = (0, 1, 2)  # MuJoCo geom groups that its viewers draw; touching shapes are in group 3
 OUTBOARD = "outboard_"  # bodies of this name turn with the steering of their side
-BALL, BARREL, BRICK, MESH = 4, 5, 6, 7  # mjtGeom: ellipsoid, cylinder, box, mesh
-ROUND = 2  # mjtGeom: sphere
+ROUND, PILL, BALL, BARREL, BRICK, MESH = 2, 3, 4, 5, 6, 7  # mjtGeom: sphere, capsule, ellipsoid, cylinder, box, mesh
 REACH = 0.6  # a full-thrust arrow is this part of the boat's length
 PUSH = 0.05  # share of the weight that a force as long as REACH has on a boat whose thrust is not a command
 GRAVITY = 9.81  # [m/s^2]
@@ -43,7 +42,7 @@ class Thruster(NamedTuple):
     x: float  # [m] forward of the CG
     y: float  # [m] to starboard
     thrust: str  # column of the recording: "actual_thrust_port_N"
-    steer: str  # "actual_steer_port_rad"; a column that does not exist means straight ahead
+    steer: str  # its angle's column; one that does not exist means straight ahead
 
 
 @dataclass(frozen=True)
@@ -67,47 +66,50 @@ class Scene:
 
 def scene_from(model: Any, vessel: "Vessel", tank: Any) -> Scene:
     """The scene of a compiled model: `model` is its MjModel, `tank` the world.Tank (length, width, centre)."""
-    thrust = [c.high for c in vessel.commands.values() if c.family == "thrust" and c.actuator]
+    thrust = [c.high for n, c in vessel.commands.items() if vessel.roles.get(n) == "thrust"]
     return Scene(
         vessel.name,
         vessel.length,
         (tank.length, tank.width, *tank.centre),
-        tuple(_solids(model)),
-        tuple(_thrusters(model)),
+        _with_hull(tuple(_solids(model)), vessel),
+        tuple(_thrusters(vessel)),
         REACH * vessel.length / max(thrust, default=PUSH * GRAVITY * vessel.body.mass),
         open=not tank.walls,
     )
 
 
 def plain_scene(length: float, beam: float, tank: tuple[float, float, float, float], name: str = "boat") -> Scene:
-    """A scene without a model: a box of the boat's size [m] with a pointed bow, thrusters at the transom."""
+    """A scene without a model: a box of the boat's size [m] with a pointed bow."""
     half, side, low, high = 0.5 * length, 0.5 * beam, -0.05 * length, 0.08 * length
     outline = [(-half, side), (-half, -side), (0.5 * half, -side), (half, 0.0), (0.5 * half, side)]
     vertices = np.array([(x, y, z) for z in (low, high) for x, y in outline])
     caps = [(0, i + 1, i) for i in (1, 2, 3)] + [(5, 5 + i, 6 + i) for i in (1, 2, 3)]
     sides = [t for i in range(5) for j in [(i + 1) % 5] for t in ((i, j, 5 + j), (i, 5 + j, 5 + i))]
     solid = Solid("hull", "hull", vertices, np.array(caps + sides, dtype=np.uint32), (0.93, 0.62, 0.13, 1.0))
-    thrusters = [
-        Thruster(n, -half, s * 0.6 * side, f"actual_thrust_{n}_N", f"actual_steer_{n}_rad")
-        for n, s in (("port", -1), ("starboard", 1))
-    ]
-    return Scene(name, length, tank, (solid,), tuple(thrusters), REACH * length)
+    return Scene(name, length, tank, (solid,), (), REACH * length)
 
 
-def _thrusters(model: Any) -> Iterator[Thruster]:
-    """One for each outboard's body in the hull."""
-    for body in range(model.nbody):
-        name = model.body(body).name
-        if name.startswith(OUTBOARD):
-            side = name.removeprefix(OUTBOARD)
-            x, y, _ = model.body_pos[body]
-            yield Thruster(side, float(x), -float(y), f"actual_thrust_{side}_N", f"actual_steer_{side}_rad")
+def _with_hull(solids: tuple[Solid, ...], vessel: "Vessel") -> tuple[Solid, ...]:
+    """The shapes of a model, with a box of the vessel's size where its hull has none that can be drawn."""
+    if any(s.part == "hull" for s in solids):
+        return solids
+    size = plain_scene(vessel.length, vessel.beam, (1.0, 1.0, 0.0, 0.0))
+    return *solids, *size.solids
+
+
+def _thrusters(vessel: "Vessel") -> Iterator[Thruster]:
+    """One for each effect that takes a thrust, where it is mounted."""
+    for effect in vessel.effects:
+        on = vessel.bound(effect) if "thrust" in type(effect).roles else {}
+        if isinstance(on.get("thrust"), str):
+            x, y = (float(getattr(effect, n, 0.0)) for n in ("x", "y"))
+            yield Thruster(effect.name, x, y, f"actual_{on['thrust']}", f"actual_{on.get('angle')}")
 
 
 def _solids(model: Any) -> Iterator[Solid]:
     """Every drawn shape, in the axes of its part."""
     for geom in range(model.ngeom):
-        if model.geom_group[geom] != SEEN:
+        if model.geom_group[geom] not in SEEN:
             continue
         body = int(model.geom_bodyid[geom])
         shape = _shape(model, geom)
@@ -151,6 +153,9 @@ def _shape(model: Any, geom: int) -> tuple[Array, Triangles] | None:
     if kind in (ROUND, BALL):
         vertices, triangles = _lathe([(np.cos(a), np.sin(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 17)])
         return vertices * (size if kind == BALL else size[0]), triangles
+    if kind == PILL:
+        ends = [(np.cos(a), np.sin(a), np.sign(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 18)]
+        return _lathe([(size[0] * r, size[0] * z + size[1] * end) for r, z, end in ends])
     if kind == BARREL:
         vertices, triangles = _lathe([(0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)])
         return vertices * (size[0], size[0], size[1]), triangles

@@ -17,13 +17,13 @@ from boatsim.diagnose.levels import fit_time_constant
 from boatsim.diagnose.locate.hull_forces import coefficient_forces
 from boatsim.diagnose.locate.smoothing import averaged_rows, running_average, variance_of_average
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.physics.base import Array
+from boatsim.physics.signals import COMPONENTS, Array
 
 BAND = 2.0  # [sd] zero outside this band counts as missing
 SHORTEST = 0.5  # [averages] a shorter excursion is not worth an interval
 BRIDGE = 1.0  # [averages] a shorter gap does not end one
 STEP = 0.1  # [sd] of a coefficient, for derivatives by it
-UNITS = {"surge": "N", "sway": "N", "roll": "N m", "yaw": "N m"}
+UNITS = {axis: "N m" if component.endswith("Nm") else "N" for axis, component in COMPONENTS.items()}
 
 
 @dataclass(frozen=True)

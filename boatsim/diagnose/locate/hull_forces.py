@@ -10,22 +10,24 @@ from boatsim.physics.base import Array
 
 
 def actuators(track: Track) -> Array:
-    """(N, HELD) actuators of the vessel as written under the recorded commands, with cosines and sines of angles."""
+    """(N, HELD) mean actuators of the vessel as written from row to row, with cosines and sines of angles."""
     program = track.program
-    on, act, memory = program.switches(), np.zeros(program.module.HELD), np.zeros(program.memory_size)
+    on, act, memory = program.switches(), np.zeros(program.held_size), np.zeros(program.memory_size)
     program.module.settle(track.commands[0], memory, track.values, on, act)
-    out = np.empty((len(track.times), len(act)))
+    out = np.empty((len(track.times), len(act) // 3))
     steps = np.append(np.diff(track.times), track.times[-1] - track.times[-2])
     for row, step in enumerate(steps.tolist()):
         program.module.actuate_in_place(track.commands[row], memory, step, track.values, on, act)
-        out[row] = act
+        begin, middle, end = act.reshape(3, -1)
+        out[row] = (begin + 4.0 * middle + end) / 6.0
     return out
 
 
 def along(track: Track, states: Iterable[Array], held: Iterable[Array], values: Array) -> Array:
     """(N, axes) body-axes wrench of the vessel's own laws at states (N, 2 NQ) with actuators (N, HELD)."""
     forces, on = track.program.module.forces, track.program.switches()
-    return np.array([forces(0.0, y, act, values, on) for y, act in zip(states, held, strict=True)])
+    first = np.int64(0)
+    return np.array([forces(0.0, y, act, first, values, on) for y, act in zip(states, held, strict=True)])
 
 
 def coefficient_forces(problem: Problem, found: Fit, track: Track, states: Array) -> Array:

@@ -6,15 +6,15 @@ from math import exp
 
 import numpy as np
 
-from boatsim.diagnose.filter import Track
+from boatsim.diagnose.filter import Track, axes_of
 from boatsim.diagnose.locate.hull_forces import actuators, along
-from boatsim.physics.base import Array, angle_fields
-from boatsim.simulate.twin import body_rates
+from boatsim.physics.base import Array
+from boatsim.physics.effects.wall_effect import REACH
 
-FAMILY = "thrust"  # of actuators whose value is a force
+THRUST = "thrust"  # role of actuators whose value is a force
 PLAY = 0.1  # [rad] between a steering command and the angle it stands for; the force hardly depends on it beyond scale
-REACH = 0.5  # [boat lengths] over which what a wall does falls to 37 % (`wall_effect` has the same for the trial boat)
 NEAR = 2.0  # [reaches] beyond which a wall is taken to do nothing
+TURNING = ("roll", "pitch", "yaw")
 SPEED = "forward_speed_mps"  # fact of a recording in which the hull only rolls
 
 
@@ -29,36 +29,45 @@ class Idea:
 
 def ideas(track: Track, states: Array, damping: Array) -> list[Idea]:
     """Everything tried on a run; `states` (N, 2 NQ) are smoothed, `damping` (N, axes) is the vessel's own."""
-    if track.program.module.NQ == 1:
-        return list(_rolling(track, states))
-    return [*_moving(states), *_astern(track), *_reversals(track), *_walls(track, states, damping)]
+    axes = axes_of(track.program.vessel)
+    found = [*_world(axes, states), *_speeds(track, axes, states), *_astern(track), *_reversals(track)]
+    if "roll" in axes:
+        found += _rolling(track, axes, states)
+    return [*found, *_walls(track, axes, states, damping)]
 
 
-def _moving(states: Array) -> Iterator[Idea]:
-    """A direction of the world, the square of each speed."""
-    axes = np.eye(states.shape[1] // 2)
-    c, s = np.cos(states[:, 2]), np.sin(states[:, 2])
-    north, east = np.outer(c, axes[0]) - np.outer(s, axes[1]), np.outer(s, axes[0]) + np.outer(c, axes[1])
-    yield Idea("heading in the world", (north, east), _direction)
-    rates = body_rates(states)[:, len(axes) :]
-    for axis, name in enumerate(("surge", "sway", "yaw", "roll")[: len(axes)]):
-        w = rates[:, axis]
-        yield Idea(f"{name} speed", (np.outer(w * np.abs(w), axes[axis]),), _square(f"{name} speed"))
+def _world(axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
+    """A direction of the world."""
+    if {"surge", "sway", "yaw"} <= set(axes):
+        shape = np.eye(len(axes))
+        psi = states[:, axes.index("yaw")]
+        ahead, aside, c, s = shape[axes.index("surge")], shape[axes.index("sway")], np.cos(psi), np.sin(psi)
+        shapes = np.outer(c, ahead) - np.outer(s, aside), np.outer(s, ahead) + np.outer(c, aside)
+        yield Idea("heading in the world", shapes, _direction)
 
 
-def _rolling(track: Track, states: Array) -> Iterator[Idea]:
-    """Amplitude of roll, the square of its rate, and the forward speed at which it rolls."""
-    angle, rate = states[:, :1], states[:, 1:2]
-    yield Idea("roll angle", (angle**3,), _cube)
-    yield Idea("roll rate", (rate * np.abs(rate),), _square("roll rate"))
-    if SPEED in track.facts:
-        yield Idea("forward speed", (rate * float(track.facts[SPEED]),), _forward)
+def _speeds(track: Track, axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
+    """The square of each speed."""
+    rates = track.program.body_rates(states)[:, len(axes) :]
+    for i, name in enumerate(axes):
+        variable = f"{name} {'rate' if name in TURNING and len(axes) == 1 else 'speed'}"
+        w = rates[:, i]
+        yield Idea(variable, (np.outer(w * np.abs(w), np.eye(len(axes))[i]),), _square(variable))
+
+
+def _rolling(track: Track, axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
+    """Amplitude of roll, and the forward speed at which a hull that only rolls does so."""
+    shape, i = np.eye(len(axes))[axes.index("roll")], axes.index("roll")
+    angle, rate = states[:, i], states[:, len(axes) + i]
+    yield Idea("roll angle", (np.outer(angle**3, shape),), _cube)
+    if SPEED in track.facts and "surge" not in axes:
+        yield Idea("forward speed", (np.outer(rate * float(track.facts[SPEED]), shape),), _forward)
 
 
 def _astern(track: Track) -> Iterator[Idea]:
     """Force of the thrusters that push astern."""
     vessel = track.program.vessel
-    thrusters = [i for i, a in enumerate(vessel.actuators) if vessel.commands[a].family == FAMILY]
+    thrusters = [i for i, a in enumerate(vessel.actuators) if vessel.roles[a] == THRUST]
     if not thrusters:
         return
     idle = actuators(track)
@@ -70,17 +79,17 @@ def _astern(track: Track) -> Iterator[Idea]:
 
 def _reversals(track: Track) -> Iterator[Idea]:
     """Force that is missing while the angles stay behind a steering that has reversed (play operator)."""
-    names = track.program.vessel.actuators
-    angles = [i for i, a in enumerate(names) if a.endswith("_rad")]
+    vessel = track.program.vessel
+    angles = [vessel.actuators.index(a) for a in vessel.angles]
     if not angles:
         return
     held = actuators(track)
     late = held.copy()
     for row in range(1, len(held)):
         late[row, angles] = np.clip(late[row - 1, angles], held[row, angles] - PLAY / 2, held[row, angles] + PLAY / 2)
-    for k, field in enumerate(angle_fields(names)):
-        part, angle = field.split("_", 1)
-        late[:, len(names) + k] = getattr(np, part)(late[:, names.index(angle)])
+    for k, name in enumerate(track.program.composition.held[len(vessel.actuators) :], len(vessel.actuators)):
+        part, angle = name.split("_", 1)
+        late[:, k] = getattr(np, part)(late[:, vessel.actuators.index(angle)])
     yield Idea("steering reversals", ((_at_rest(track, late) - _at_rest(track, held)) / PLAY,), _play)
 
 
@@ -90,32 +99,27 @@ def _at_rest(track: Track, held: Array) -> Array:
     return along(track, still, held, track.values)
 
 
-def _walls(track: Track, states: Array, damping: Array) -> Iterator[Idea]:
+def _walls(track: Track, axes: tuple[str, ...], states: Array, damping: Array) -> Iterator[Idea]:
     """Pull towards the walls and damping that rises near them."""
     walls = walls_of(track)
-    if walls is None:
+    if walls is None or not {"surge", "sway", "yaw"} <= set(axes):
         return
     reach = REACH * track.program.vessel.length
     high, low = (
         np.maximum(np.exp(-np.maximum(side * (np.array(walls)[ends] - states[:, :2]), 0.0) / reach) - exp(-NEAR), 0.0)
         for side, ends in ((1.0, [1, 3]), (-1.0, [0, 2]))
     )
-    c, s = np.cos(states[:, 2]), np.sin(states[:, 2])
+    c, s = np.cos(states[:, axes.index("yaw")]), np.sin(states[:, axes.index("yaw")])
     north, east = (high - low).T
-    pull = np.column_stack([c * north + s * east, c * east - s * north])
-    pull = np.pad(pull, ((0, 0), (0, states.shape[1] // 2 - 2)))
+    pull = np.zeros((len(states), len(axes)))
+    pull[:, 0], pull[:, 1] = c * north + s * east, c * east - s * north
     near = (high + low).sum(axis=1, keepdims=True)
     yield Idea("distance to the walls", (pull, near * damping), _near(reach))
 
 
 def walls_of(track: Track) -> tuple[float, ...] | None:
-    """x_low, x_high, y_low, y_high [m] of the tank: what the recording states, else the vessel's wall effect."""
-    if "walls_m" in track.facts:
-        return tuple(track.facts["walls_m"])
-    for effect in track.program.effects:
-        if names := type(effect).facts.get("walls_m"):
-            return tuple(float(getattr(effect, n)) for n in names)
-    return None
+    """x_low, x_high, y_low, y_high [m] of the tank, as the recording or its vessel states them."""
+    return tuple(track.facts["walls_m"]) if "walls_m" in track.facts else None
 
 
 def _direction(factors: Array) -> str:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnose.filter import FIT_STEP, Track
+from boatsim.diagnose.filter import FIT_STEP, Track, axes_of, body_of
 from boatsim.diagnose.next.manoeuvres import Manoeuvre
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -46,10 +46,9 @@ def laid(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Course | None:
 def walls(problem: Problem) -> Array | None:
     """Where walls stand, plus and minus (x, y) [m], if the library that is tried knows of any."""
     program = problem.program
-    if program.module.NQ == 1 or not any(e.name() == "wall_effect" for e in program.effects):
+    if "surge" not in program.vessel.freedoms or "walls_m" not in problem.tracks[0].facts:
         return None
-    names = ("x_low", "x_high", "y_low", "y_high")
-    x_low, x_high, y_low, y_high = problem.tracks[0].values[[program.index("wall_effect", n) for n in names]]
+    x_low, x_high, y_low, y_high = problem.tracks[0].facts["walls_m"]
     return np.array([min(-x_low, x_high), min(-y_low, y_high)])
 
 
@@ -70,10 +69,10 @@ def _track(problem: Problem, name: str, times: Array, commands: Array, shown: Ar
 
 def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: Array) -> Array:
     """Channels (N, 2 NQ) of a free run as a recording would show them, ambient force left out."""
-    first = problem.tracks[0]
+    values = problem.values(problem.tracks[0], found.free, found.theta)
     out = np.full((1, len(times), len(start)), np.nan)
     problem.program.module.free_runs(
-        times, commands, FIT_STEP, first.body, problem.values(first, found.free, found.theta),
+        times, commands, FIT_STEP, body_of(values), values,
         problem.program.switches(found.suspects), np.array([0]), np.array([len(times) - 1]), start[None], out,
     )  # fmt: skip
     return np.asarray(out[0])
@@ -98,7 +97,7 @@ def _switched(problem: Problem, found: Fit, manoeuvre: Manoeuvre, start: Array) 
         levels = tuple(sides[i % 2] for i in range(len(switches)))
         manoeuvre = replace(manoeuvre, times=tuple(switches), levels=levels)
         times, commands = _rows(problem, manoeuvre)
-        psi = _states(problem, found, times, commands, start)[:, 2]
+        psi = _states(problem, found, times, commands, start)[:, axes_of(problem.program.vessel).index("yaw")]
         turned = side * psi if side else np.abs(psi)  # which way the first angle turns the hull is seen first
         reached = (turned >= manoeuvre.heading) & (times > switches[-1])
         if not reached.any():
@@ -111,13 +110,14 @@ def _switched(problem: Problem, found: Fit, manoeuvre: Manoeuvre, start: Array) 
 
 def _start(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Array:
     """State (2 NQ,) in which it begins: where the recordings were, at rest, or at their usual speed."""
-    if problem.program.module.NQ == 1:
-        return np.array([manoeuvre.heel, 0.0])
-    first = problem.tracks[0]
-    nq = problem.program.module.NQ
+    first, axes = problem.tracks[0], axes_of(problem.program.vessel)
+    nq = len(axes)
     state = np.zeros(2 * nq)
+    if "surge" not in axes:
+        state[axes.index("roll")] = manoeuvre.heel
+        return state
     for c, code in enumerate(first.codes):
-        if code < 2:
+        if code < nq and axes[code] in ("surge", "sway"):
             state[code] = round(float(np.nanmean(first.measured[:, c])), 2)
     if manoeuvre.under_way:
         values, on = problem.values(first, found.free, found.theta), problem.program.switches(found.suspects)

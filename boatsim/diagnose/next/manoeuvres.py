@@ -99,8 +99,8 @@ def menu(vessel: Vessel, in_use: dict[str, float], heel: float, walls: bool) -> 
 
 def commanded(vessel: Vessel) -> tuple[str, ...]:
     """Commands a manoeuvre uses: a command that feeds an actuator (PWM) takes its place."""
-    fed = {c.side for c in vessel.commands.values() if not c.actuator}
-    return tuple(n for n, c in vessel.commands.items() if not (c.actuator and c.side in fed and not _turns(n)))
+    fed = {a for e in vessel.effects for a in vessel.targets(e) if vessel.feeder(e, a)}
+    return tuple(n for n in vessel.commands if n not in fed)
 
 
 def _turns(command: str) -> bool:
@@ -153,7 +153,7 @@ def _level(vessel: Vessel, name: str, step: Step, in_use: dict[str, float] | Non
     """Value of one command in a step of a script, to three digits and inside its limits."""
     channel = vessel.commands[name]
     port, starboard = step[3:] if _turns(name) else step[1:3]
-    share = {-1: port, 0: 0.5 * (port + starboard), 1: starboard}[channel.side]
+    share = {-1: port, 0: 0.5 * (port + starboard), 1: starboard}[vessel.side(name)]
     limit = channel.high if share > 0 else -channel.low
     value = share * (in_use.get(name, 0.0) if in_use is not None and not _turns(name) else limit)
     return float(np.clip(float(f"{value:.3g}"), channel.low, channel.high)) + 0.0

@@ -66,9 +66,9 @@ def compose(
 
 def meanings(suspects: Iterable[Effect]) -> dict[str, str]:
     """What each entry says, by name, and each of its fitted parameters, by "entry.parameter" as in the answer."""
-    kinds = [type(e) for e in suspects]
-    fitted = ((kind.name(), name, p) for kind in kinds for name, p in kind.params().items() if p.fit)
-    return {k.name(): k.words for k in kinds} | {f"{k}.{key_of(name, p.unit)}": p.words for k, name, p in fitted}
+    there = [(e.name, type(e)) for e in suspects]
+    fitted = ((entry, name, p) for entry, kind in there for name, p in kind.params().items() if p.fit)
+    return {n: k.words for n, k in there} | {f"{n}.{key_of(name, p.unit)}": p.words for n, name, p in fitted}
 
 
 def key_of(name: str, unit: str) -> str:
@@ -78,26 +78,29 @@ def key_of(name: str, unit: str) -> str:
 
 
 def _effect(problem: Problem, best: Fit, named: Named) -> dict[str, Any]:
-    kind = _kind(problem, named.name)
+    effect = next(e for e in problem.program.suspects if e.name == named.name)
+    kind = type(effect)
     return {
         "name": named.name,
+        **({"on": list(effect.on)} if effect.on else {}),
         "kind": kind.kind,
         "probability": round(named.probability, 4),
         "gain_nats": round(named.gain, 2),
         "words": kind.words,
         "tied_with": list(named.tied_with),
         "parameters": {
-            key_of(f.name, kind.params()[f.name].unit): _parameter(best, kind, f.name)
+            key_of(f.name, kind.params()[f.name].unit): _parameter(best, effect, f.name)
             for f in best.free
             if f.effect == named.name and not f.relative
         },
     }
 
 
-def _parameter(best: Fit, kind: type[Effect], name: str) -> dict[str, Any]:
+def _parameter(best: Fit, effect: Effect, name: str) -> dict[str, Any]:
     """Value, sd and unit of a fitted parameter; angles within half a turn."""
+    kind = type(effect)
     about = kind.params()[name]
-    value, sd = best.value(kind.name(), name)
+    value, sd = best.value(effect.name, name)
     if name in (kind.strength or kind.params()):
         strength = min(abs(value - about.absent), abs(value) or np.inf)  # some laws are absent at "very fast"
         sd = float(np.hypot(sd, SHAPE * strength))
@@ -134,4 +137,4 @@ def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
 
 
 def _kind(problem: Problem, name: str) -> type[Effect]:
-    return next(type(e) for e in problem.program.effects if e.name() == name)
+    return next(type(e) for e in problem.program.suspects if e.name == name)

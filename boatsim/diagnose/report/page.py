@@ -6,7 +6,7 @@ from pathlib import Path
 from boatsim.diagnose.report.blocks import Section, as_text, safe
 from boatsim.diagnose.report.findings import Findings
 from boatsim.diagnose.report.sections import proof, sections_of
-from boatsim.diagnose.report.words import listed, sentence
+from boatsim.diagnose.report.words import listed, sentence, tried
 from boatsim.files import replacing
 
 __all__ = ["sentence", "write"]
@@ -19,6 +19,7 @@ VERDICTS = {
 }
 
 
+UNTRIED = "Something missing, nothing tried"
 NOT_PHYSICS = "Measurement, not physics"  # if all that was named is of that kind
 
 
@@ -67,6 +68,8 @@ def _headline(f: Findings) -> str:
 def _verdict(f: Findings) -> str:
     """The verdict in a word or two."""
     effects, verdict = f.answer["effects"], f.answer["verdict"]
+    if verdict == "unknown" and not tried(f.answer):
+        return UNTRIED
     measured = verdict == "named" and all(e["kind"] == "measurement" for e in effects)
     return NOT_PHYSICS if measured else VERDICTS[verdict]
 

@@ -1,46 +1,115 @@
 """Writes a fitted boat back as a vessel file: the original with comments, recalibrated, the effects found added."""
 
+import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import tomlkit
+from tomlkit.items import InlineTable
 
-from boatsim.diagnose.problem import Fit
+from boatsim.diagnose.problem import Fit, Problem
 from boatsim.files import replacing
-from boatsim.physics.base import Effect
-from boatsim.physics.content import address, vessel_address
-from boatsim.physics.vessel import Vessel
+from boatsim.physics.base import Change, Effect, Release
+from boatsim.physics.content import address, find, vessel_address
+from boatsim.physics.vessel import Body, Vessel, added, effect_from, overlaid
 
-DIGITS = 8  # significant, so that the file gives the fitted motion back
+DIGITS = 10  # significant, so that the file gives the fitted motion back
+SAME = 1e-9  # numbers this close, relative, are one
 
 
-def patched(vessel: Vessel, found: Fit, kinds: Mapping[str, type[Effect]]) -> str:
-    """Text of the patched vessel file; `kinds` are the classes of the suspects by name."""
+def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
+    """Text of the patched vessel file that is to lie at `path`; its own paths start there, so that folders can move."""
     text = vessel.file.read_text(encoding="utf-8")
-    if "based_on" not in tomlkit.parse(text):
-        text = f'based_on = "{vessel_address(vessel.file)}"  # its folder holds the hull\n{text}'
+    base = tomlkit.parse(text).get("based_on")
+    if not base:
+        text = f'based_on = ""  # its folder holds the hull\n{text}'
     document: Any = tomlkit.parse(text)
-    tables = document.setdefault("effect", tomlkit.aot())
-    own = {e.name(): t for e, t in zip(vessel.effects, tables, strict=False)}
-    added: dict[str, dict[str, float]] = {name: {} for name in found.suspects}
-    for free, value in zip(found.free, found.theta, strict=True):
-        if not free.relative:
-            added[free.effect][free.name] = float(value)
-            continue
-        nominal = getattr(next(e for e in vessel.effects if e.name() == free.effect), free.name)
-        for table in (own[free.effect], *_loads(document, free.effect, free.name)):
-            table[free.name] = tomlkit.item(_rounded(float(table.get(free.name, nominal)) * float(value)))
-            table[free.name].comment(f"recalibrated x {value:.4f}")
-    for name in (n for n in kinds if n in added):  # channels act in the order of the diagnosis
-        tables.append(_effect_table(address(kinds[name]), added[name]))
+    document["based_on"] = tomlkit.item(_based_on(vessel, base, path))
+    document["based_on"].comment("its folder holds the hull")
+    document.setdefault("effect", tomlkit.aot())
+    settings: dict[str, dict[str, float]] = {name: {} for name in found.suspects}
+    for free, x in zip(found.free, found.theta, strict=True):
+        if free.relative:
+            change = Change(free.name, free.effect, free.name, "scales", 1.0)
+            _alter(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
+        else:
+            settings[free.effect][free.name] = float(x)
+    for effect in problem.program.suspects:  # channels act in the order of the diagnosis
+        if effect.name in settings and isinstance(effect, Release):
+            _release(document, vessel, effect, settings[effect.name])
+        elif effect.name in settings:
+            told = {n: getattr(effect, n) for names in type(effect).facts.values() for n in names}
+            table = _effect_table(_address(type(effect), vessel), told | settings[effect.name])
+            document["effect"].append(table)
+    _hold(document, problem, vessel, found)
     return str(tomlkit.dumps(document))
 
 
-def write(vessel: Vessel, found: Fit, kinds: Mapping[str, type[Effect]], path: Path) -> None:
+def write(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> None:
     """Write the patched vessel file."""
     with replacing(path) as temporary:
-        temporary.write_text(patched(vessel, found, kinds), encoding="utf-8")
+        temporary.write_text(patched(problem, vessel, found, path), encoding="utf-8")
+
+
+def _based_on(vessel: Vessel, base: str | None, path: Path) -> str:
+    """A shipped vessel by its name, one's own by its way from the patched file's folder."""
+    file = find("vessel", base, vessel.file.parent) if base else vessel.file
+    name = vessel_address(file)
+    return os.path.relpath(file.resolve(), path.resolve().parent) if name.endswith(".toml") else name
+
+
+def _address(kind: type[Effect], vessel: Vessel) -> str:
+    """An effect on the shelf by its name, one's own by its way from the vessel's folder."""
+    name = address(kind)
+    return os.path.relpath(name, vessel.path) if name.endswith(".py") else name
+
+
+def _release(document: Any, vessel: Vessel, release: Release, values: Mapping[str, float]) -> None:
+    """Write the numbers that a release found to be off."""
+    for change in release.changes(vessel):
+        if change.parameter in values:
+            x = values[change.parameter]
+            _alter(document, vessel, change, x, f"{release.name}, {change.parameter} = {x:.4g}")
+
+
+def _alter(document: Any, vessel: Vessel, change: Change, x: float, why: str) -> None:
+    """Change a number wherever the file states it: in the vessel's own table, and in those of loads."""
+    if change.owner == "body":
+        own, nominal = document["body"], getattr(vessel.body, change.key)
+    else:
+        place = [e.name for e in vessel.effects].index(change.owner)
+        own, nominal = document["effect"][place], getattr(vessel.effect(change.owner), change.key)
+    loads = {n: t[change.owner] for n, t in document.get("loads", {}).items() if change.key in t.get(change.owner, {})}
+    for table in loads.values():
+        _state(table, change.key, change.of(float(table[change.key]), x), why)
+    if change.key in own or not any(n in loads for n in vessel.load):
+        _state(own, change.key, change.of(float(own.get(change.key, nominal)), x), why)
+
+
+def _hold(document: Any, problem: Problem, vessel: Vessel, found: Fit) -> None:
+    """State what the file's own rules would now fill in otherwise than the fitted boat had it."""
+    values = problem.values(problem.tracks[0], found.free, found.theta)
+    raw = document.unwrap()
+    for name in vessel.load:
+        raw = overlaid(raw, raw["loads"][name], name)
+    boat = replace(vessel, body=Body(**raw["body"]), effects=())
+    for table, given in zip(document["effect"], raw["effect"], strict=True):
+        effect = effect_from(given, vessel.name, vessel.path).completed(boat)
+        fitted = {n: float(values[problem.place(effect.name, n)]) for n in sorted(effect.filled)}
+        off = {n: _rounded(x) for n, x in fitted.items() if abs(x - getattr(effect, n)) > SAME * abs(x)}
+        for name, x in off.items():
+            _state(table, name, x, "as fitted")
+        boat = added(boat, replace(effect, **off))
+
+
+def _state(table: Any, name: str, value: float, why: str) -> None:
+    """Put a number into a table with a comment, which an inline table has no room for; reasons add up."""
+    before = table[name].trivia.comment.removeprefix("# ") if name in table else ""
+    table[name] = tomlkit.item(_rounded(value))
+    if not isinstance(table, InlineTable):
+        table[name].comment(f"{before}; {why}" if before else why)
 
 
 def _effect_table(name: str, settings: Mapping[str, float]) -> Any:
@@ -50,11 +119,6 @@ def _effect_table(name: str, settings: Mapping[str, float]) -> Any:
     for key, value in settings.items():
         table[key] = _rounded(value)
     return table
-
-
-def _loads(document: Any, effect: str, name: str) -> list[Any]:
-    """Tables of loads that state the same coefficient."""
-    return [load[effect] for load in document.get("loads", {}).values() if name in load.get(effect, {})]
 
 
 def _rounded(value: float) -> float:

@@ -14,6 +14,7 @@ from boatsim.diagnose.report.answer import SHAPE
 from boatsim.diagnose.report.blocks import Block, Figures, Heading, Items, Section, Table, Text, without_empty
 from boatsim.diagnose.report.findings import Findings, FreeRun, Missing
 from boatsim.diagnose.report.words import (
+    UNTRIED,
     alike,
     capital,
     limit,
@@ -27,6 +28,7 @@ from boatsim.diagnose.report.words import (
     said,
     shown,
     spread,
+    tried,
 )
 from boatsim.diagnose.search.rank import ALIKE, UNKNOWN, UNKNOWN_FACTOR
 
@@ -129,7 +131,9 @@ def _what(f: Findings) -> Iterator[Block]:
             rivals = (plain(n) + (f" ({_beside(f.words[n])})" if n in f.words else "") for n in e["tied_with"])
             yield Text(f"These recordings cannot tell it from {listed(rivals, 'or')}.")
     unknown = f.answer["unknown"]
-    if unknown["flag"]:
+    if not tried(f.answer):
+        yield Text(f"{capital(UNTRIED)}.")
+    elif unknown["flag"]:
         yield Heading("Something that no entry of the library explains", f"gain {nats(unknown['gain_nats'])} nats")
         yield Text(
             f"After the best set of entries, a random force of {UNKNOWN_FACTOR:g} times the tolerated size is not "

@@ -135,10 +135,11 @@ def remarks(
                     f"the recalibrated boat {found['recalibrated'] * scale:.3g} {unit}."
                 )
     if ranking.unknown:
+        why = "none of the entries tried accounts for it" if ranking.first else "nothing was tried to account for it"
         out.append(
             "A force larger than the tolerated one stays unexplained after all this "
             f"({ranking.left_over:.0f} nats beyond {UNKNOWN_FACTOR:g} times the ambient force): "
-            "none of the entries tried accounts for it."
+            f"{why}."
         )
     for track in fitted:
         own = [(family, found) for part, family, found in parts if part is track]

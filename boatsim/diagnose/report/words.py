@@ -16,6 +16,7 @@ STEPS = {  # unit -> from this size on, size of the unit taken instead, its name
     "s": ((0.1, 1.0, "s"), (0.0, 1e-3, "ms")),
 } | {unit: tuple((least, size, name + unit) for least, size, name in FORCES) for unit in ("N", "N m")}
 COUNTS = ("nothing", "one thing", "two things", "three things", "four things", "five things", "six things")
+UNTRIED = "nothing was tried to explain it (the vessel's list of suspects and --library NAME say what is tried)"
 MOST = 3  # numbers of one effect in the sentence; the table has all of them
 FACTOR = "(kg|rad|N|m|s)([2-9]?)"
 UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")  # how keys spell a unit
@@ -184,6 +185,8 @@ def sentence(answer: Mapping[str, Any], words: Mapping[str, str] | None = None) 
     `words` is what parameters mean, by "effect.parameter".
     """
     effects = answer["effects"]
+    if not tried(answer):
+        return f"{capital(_untried(answer))}."
     physics = [_clause(e, words or {}) for e in effects if e["kind"] != "measurement"]
     measured = [_clause(e, words or {}) for e in effects if e["kind"] == "measurement"]
     unknown = answer["verdict"] == "unknown"
@@ -202,6 +205,18 @@ def sentence(answer: Mapping[str, Any], words: Mapping[str, str] | None = None) 
     if ties:
         parts.append(f"but these recordings cannot tell {listed(ties)}")
     return f"{capital('; '.join(parts))}."
+
+
+def tried(answer: Mapping[str, Any]) -> bool:
+    """Whether there was any entry to explain the recordings with."""
+    return bool(answer["candidates"])
+
+
+def _untried(answer: Mapping[str, Any]) -> str:
+    """What can be said all the same: whether more force is left than the vessel file tolerates."""
+    if answer["verdict"] == "unknown":
+        return f"something is missing{_sizes(answer)}, and {UNTRIED}"
+    return f"no more force is missing than the vessel file tolerates, but {UNTRIED}"
 
 
 def _sizes(answer: Mapping[str, Any]) -> str:

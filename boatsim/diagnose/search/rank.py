@@ -138,7 +138,7 @@ class _Search:
 
     def there(self, best: Fit, name: str) -> bool:
         """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it."""
-        params = next(type(e).params() for e in self.problem.program.suspects if e.name() == name)
+        params = next(type(e).params() for e in self.problem.program.suspects if e.name == name)
         fitted = {f.name: params[f.name].absent for f in best.free if f.effect == name and not f.relative}
         found = {n: best.value(name, n) for n in fitted}
         return not found or any(abs(x - fitted[n]) > sd for n, (x, sd) in found.items())

@@ -37,7 +37,7 @@ def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, 
     off = known.T @ white + (base.theta - space.mean) / space.sd
     score = log_prior(base.free, base.theta) - 0.5 * float(white @ white)
     begin = Begin(known, off, score)
-    effects = {e.name(): e for e in problem.program.effects}
+    effects = {e.name: e for e in problem.program.suspects}
     tried = {n: _look(problem, base, effects[n], begin) for n in candidates if not _random(effects[n])}
     return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if _random(effects[n])}
 
@@ -71,23 +71,22 @@ def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -
 
 
 def handed_over(start: Fit, effect: Effect) -> Fit:
-    """What recalibration made of a coefficient put into the factor of the suspect that multiplies it.
+    """What recalibration made of a coefficient put into the factor of the suspect that releases it.
 
     The product is all that the data know: along the curve on which it stays the same straight steps get nowhere.
     """
     theta = start.theta.copy()
-    place = {(f.effect, f.name): i for i, f in enumerate(start.free)}
-    for name, about in type(effect).params().items():
-        owner, _, key = about.scales.partition(".")
-        own, coefficient = place.get((effect.name(), name)), place.get((owner, key))
-        if own is not None and coefficient is not None:
+    coefficients = {f.at: i for i, f in enumerate(start.free) if f.relative}
+    for own, f in enumerate(start.free):
+        if f.effect == effect.name and f.how == "scales" and not f.relative and f.at in coefficients:
+            coefficient = coefficients[f.at]
             theta[own], theta[coefficient] = theta[coefficient], start.free[coefficient].mean
     return replace(start, theta=theta)
 
 
 def _look(problem: Problem, base: Fit, effect: Effect, begin: Begin) -> Fit:
     """One suspect: a first step from each of its starts, the best of them followed further."""
-    begun = [handed_over(joined(problem, base, effect.name(), s), effect) for s in starts(problem, effect)]
+    begun = [handed_over(joined(problem, base, effect.name, s), effect) for s in starts(problem, effect)]
     first = [_step(problem, b, begin, ROUNDS if len(begun) == 1 else 1) for b in begun]
     best = max(first, key=lambda f: f[1])
     if len(begun) > 1:
@@ -137,7 +136,7 @@ def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit,
 
 def _random_look(problem: Problem, base: Fit, effect: Effect) -> Fit:
     """A random force takes over a share of the latent one, at each of the frequencies it may have."""
-    on = problem.program.switches((*base.suspects, effect.name()))
+    on = problem.program.switches((*base.suspects, effect.name))
     levels = replace(base.levels, force=SWELL_SHARE * base.levels.force)
     of_axis = dict(zip(axes_of(problem.program.vessel), levels.force.tolist(), strict=True))
     # linearised once; the determinant of what was free before is much the same with and without
@@ -146,7 +145,7 @@ def _random_look(problem: Problem, base: Fit, effect: Effect) -> Fit:
     tried = []
     for start in starts(problem, effect):
         rms = {n: of_axis.get(n, 0.0) for n in type(effect).strength}
-        at = replace(joined(problem, base, effect.name(), {**start, **rms}), levels=levels)
+        at = replace(joined(problem, base, effect.name, {**start, **rms}), levels=levels)
         score = problem.likelihood(at.free, at.theta, on, levels, fresh=False) + log_prior(at.free, at.theta)
         tried.append(replace(at, evidence=base.evidence + score + force_prior(problem, levels) - was))
     return max(tried, key=lambda f: f.evidence)

@@ -1,20 +1,26 @@
 """Added mass: the water a hull sets in motion when it accelerates."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import Force, Inertia, Mass, Wrench, param
+from boatsim.physics.base import UNSET, Force, Inertia, Mass, Release, Wrench, factor, mass, param, shift, wrench
 
 
 @njit(inline="always")
 def inertia(q: Any) -> Mass:
     """Sway mass acts at its own centre, ahead and below, so it couples into yaw and roll."""
     a, z = q.sway_at, q.sway_below
-    return Mass(
-        q.surge, q.sway, q.sway * a, q.yaw + q.sway * a * a, -q.sway * z, q.roll + q.sway * z * z, -q.sway * z * a
+    return mass(
+        surge=q.surge,
+        sway=q.sway,
+        sway_yaw=q.sway * a,
+        yaw=q.yaw + q.sway * a * a,
+        sway_roll=-q.sway * z,
+        roll=q.roll + q.sway * z * z,
+        roll_yaw=-q.sway * z * a,
     )
 
 
@@ -24,8 +30,8 @@ def law(m: Any, q: Any) -> Wrench:
     b = q.sway * q.sway_at
     along = q.surge * m.ur  # [kg m/s] added momentum in surge
     across = q.sway * (m.vr - q.sway_below * m.p) + b * m.r
-    return Wrench(
-        q.coriolis * across * m.r, -q.coriolis * along * m.r, 0.0, q.coriolis * (across * -m.ur + along * m.vr)
+    return wrench(
+        X=q.coriolis * across * m.r, Y=-q.coriolis * along * m.r, N=q.coriolis * (across * -m.ur + along * m.vr)
     )
 
 
@@ -44,12 +50,12 @@ class AddedMass(Inertia, Force):
     inertia: ClassVar = inertia
     law: ClassVar = law
 
-    surge: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-X_udot", fit=True, spread=0.5, axis="surge")
-    sway: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-Y_vdot", fit=True, spread=5.0, axis="sway")
+    surge: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="-X_udot", fit=True, spread=0.5, axis="surge")
+    sway: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="-Y_vdot", fit=True, spread=5.0, axis="sway")
     sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead")
     sway_below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="sway added mass acts this far below")
     yaw: float = param(
-        0.0,
+        UNSET,
         low=0.0,
         high=1e13,
         unit="kg m^2",
@@ -59,18 +65,57 @@ class AddedMass(Inertia, Force):
         axis="yaw",
     )
     roll: float = param(
-        0.0, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot about that point", fit=True, spread=0.02, axis="roll"
+        UNSET, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot about that point", fit=True, spread=0.02, axis="roll"
     )
-    coriolis: float = param(1.0, low=0.0, high=1.0, unit="", words="share of the Coriolis force that is modelled")
+    coriolis: float = param(1.0, low=-1.0, high=3.0, unit="", words="share of the Coriolis force that is modelled")
     spheroid: float = param(0.0, low=0.0, high=1.0, unit="", words="1: surge, sway, yaw and roll by the hull's size")
     roll_share: float = param(0.2, low=0.0, high=2.0, unit="", words="roll inertia per the body's, if by size")
 
-    def completed(self, vessel: Any) -> Self:
+    def rules(self, vessel: Any) -> dict[str, float]:
         """Values by the vessel's size, where they are wanted."""
-        own, body = super().completed(vessel), vessel.body
         if not self.spheroid:
-            return own
-        share = particulars.spheroid(vessel.length, vessel.draught)
+            return {}
+        share, body = particulars.spheroid(vessel.length, vessel.draught), vessel.body
         sway = share.sway * body.mass
         roll = self.roll_share * body.roll_inertia - sway * self.sway_below**2
-        return replace(own, surge=share.surge * body.mass, sway=sway, yaw=share.yaw * body.yaw_inertia, roll=roll)
+        return {"surge": share.surge * body.mass, "sway": sway, "yaw": share.yaw * body.yaw_inertia, "roll": roll}
+
+
+@dataclass(frozen=True)
+class AddedMassError(Release):
+    """Added mass off by a factor in each axis: another draught, shallow water, a wrong formula."""
+
+    words: ClassVar[str] = "the added mass is off: the hull lies deeper or shallower than stated"
+    shown_by: ClassVar[str] = AddedMass.shown_by
+    source: ClassVar[str] = AddedMass.source
+
+    surge_factor: float = factor("added_mass.surge", words="surge", axis="surge")
+    sway_factor: float = factor("added_mass.sway", words="sway", axis="sway")
+    yaw_factor: float = factor("added_mass.yaw", words="yaw", axis="yaw")
+
+
+@dataclass(frozen=True)
+class AddedMassCoriolis(Release):
+    """What the Coriolis force of the vessel's own added mass has beyond the share its model keeps."""
+
+    words: ClassVar[str] = "the water that moves with the hull turns it broadside to its course (Munk moment)"
+    shown_by: ClassVar[str] = "turning while making way sideways and ahead"
+    source: ClassVar[str] = AddedMass.source
+
+    fraction: float = shift(
+        "added_mass.coriolis", words="share of the force that is missing", unit="", spread=0.8, low=-1.0, high=2.0
+    )
+
+
+@dataclass(frozen=True)
+class ShallowWater(Release):
+    """What a small water depth adds to the sway and yaw of a hull that has added mass, and to its cross-flow drag."""
+
+    words: ClassVar[str] = "the bottom is near: sway and yaw move more water and drag more"
+    shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
+    source: ClassVar[str] = "assumption [A] of the checked thesis specification, section 2 (factor k)"
+
+    factor: float = factor(
+        "added_mass.sway", "added_mass.yaw", "cross_flow_drag.section_drag_coefficient", "cross_flow_drag.linear",
+        words="k of shallow water; 1 in deep water", low=1.0, high=10.0,
+    )  # fmt: skip

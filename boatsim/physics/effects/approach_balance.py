@@ -5,22 +5,23 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Role, Wrench, param, wrench
 
 
 @njit(inline="always")
-def law(m: Any, q: Any) -> Wrench:
+def law(m: Any, q: Any, s: Any) -> Wrench:
     """X = -damping (u - speed n / shaft_rate): at a shaft rate n the hull settles at the speed in proportion to it."""
-    return Wrench(-q.damping * (m.ur - q.speed * m.n_rps / q.shaft_rate), 0.0, 0.0, 0.0)
+    return wrench(X=-q.damping * (m.ur - q.speed * s.shaft / q.shaft_rate))
 
 
 @dataclass(frozen=True)
 class ApproachBalance(Force):
-    """Thrust less resistance near the approach speed, whose propeller turns at `n_rps`."""
+    """Thrust less resistance near the approach speed, whose propeller turns with the shaft."""
 
     words: ClassVar[str] = "propeller and resistance hold the approach speed"
     shown_by: ClassVar[str] = "a straight run from a slightly different speed"
     source: ClassVar[str] = "M. A. Abkowitz, Lectures on Ship Hydrodynamics, 1964: the linear term in u - U0"
+    roles: ClassVar = {"shaft": Role("1/s", "the propeller's rate, ahead positive")}
     law: ClassVar = law
 
     damping: float = param(

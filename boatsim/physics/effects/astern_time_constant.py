@@ -5,16 +5,16 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 from boatsim.physics.effects.reversing_jet import ahead
 
 
 @njit(inline="always")
-def law(m: Any, q: Any) -> Wrench:
+def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
     """Nomoto's r' = (K delta - r) / T with another T astern: what jet and damping give, less what they would give."""
     if m.ur >= 0.0:
-        return Wrench(0.0, 0.0, 0.0, 0.0)
-    return Wrench(0.0, 0.0, 0.0, (1.0 / q.factor - 1.0) * (q.jet * ahead(m) * m.jet_rad - q.yaw * m.r))
+        return wrench()
+    return wrench(N=(1.0 / q.factor - 1.0) * (t.yaw * ahead(s) * s.angle - q.yaw * m.r))
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class AsternTimeConstant(Force):
     source: ClassVar[str] = (
         "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, section 3.2: 1/T is not consistent"
     )
+    rides: ClassVar[str] = "reversing_jet"
     law: ClassVar = law
     starts: ClassVar = ({"factor": 0.7}, {"factor": 1.4})
 
     factor: float = param(1.0, low=0.1, high=10.0, unit="", words="astern per ahead", fit=True, spread=0.4, absent=1.0)
-    jet: float = param(0.0, low=-1e9, high=1e9, unit="N m/rad", words="the vessel's", follows="reversing_jet.yaw")
-    yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
+    yaw: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")

@@ -1,13 +1,13 @@
 """Bilge keels: a plate along each bilge that moves across the water when the hull rolls."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import hypot, pi, sqrt
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
 FLAT_PLATE = 2.4  # drag coefficient at a large swing (Ikeda)
 SMALL_SWING = 22.5  # grows with breadth per swing: 22.5 / pi breadth / (arm amplitude)
@@ -22,7 +22,7 @@ def law(m: Any, q: Any) -> Wrench:
     reach = q.density * q.length * q.breadth * q.arm * q.arm * q.flow
     linear = 8.0 / (3.0 * pi) * SMALL_SWING / pi * reach * q.breadth * q.frequency
     quadratic = FLAT_PLATE * reach * q.arm * q.flow
-    return Wrench(0.0, 0.0, -(linear + quadratic * abs(m.p)) * m.p, 0.0)
+    return wrench(K=-(linear + quadratic * abs(m.p)) * m.p)
 
 
 @dataclass(frozen=True)
@@ -38,22 +38,18 @@ class BilgeKeels(Force):
     starts: ClassVar = ({"breadth": 0.01}, {"breadth": 0.04})
 
     breadth: float = param(0.0, low=0.0, high=3.0, unit="m", words="of a keel", fit=True, spread=0.02, axis="roll")
-    length: float = param(0.0, low=0.0, high=300.0, unit="m", words="of a keel; 0: 0.3 of the vessel's")
+    length: float = param(UNSET, low=0.0, high=300.0, unit="m", words="of a keel; if not given, 0.3 of the vessel's")
     arm: float = param(
-        0.0, low=0.0, high=60.0, unit="m", words="from the roll axis; 0: 0.8 of that to the hull's corner"
+        UNSET, low=0.0, high=60.0, unit="m", words="from the roll axis; if not given, 0.8 of that to the hull's corner"
     )
     flow: float = param(1.0, low=0.5, high=2.0, unit="", words="speed of the water at the bilge per that of the keel")
-    frequency: float = param(0.0, low=0.0, high=50.0, unit="rad/s", words="of roll; 0: the vessel's own")
+    frequency: float = param(UNSET, low=0.0, high=50.0, unit="rad/s", words="of roll; if not given, the vessel's own")
     density: float = param(particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water")
 
-    def completed(self, vessel: Any) -> Self:
-        """With what is not given taken from the vessel's size, righting arm and inertia."""
-        return replace(
-            super().completed(vessel),
-            length=self.length or 0.3 * vessel.length,
-            arm=self.arm or 0.8 * hypot(0.5 * vessel.beam, vessel.draught),
-            frequency=self.frequency or _frequency(vessel),
-        )
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """What is not given, from the vessel's size, righting arm and inertia."""
+        arm = 0.8 * hypot(0.5 * vessel.beam, vessel.draught)
+        return {"length": 0.3 * vessel.length, "arm": arm, "frequency": _frequency(vessel)}
 
 
 def _frequency(vessel: Any) -> float:

@@ -11,7 +11,9 @@ from boatsim.physics.base import Measurement, Shown, param
 @njit(inline="always")
 def shown(m: Shown, q: Any) -> Shown:
     """Recorded x = (1 + x_fraction) x about the origin of the tank, y alike."""
-    return Shown((1.0 + q.x_fraction) * m.x, (1.0 + q.y_fraction) * m.y, m.psi, m.phi, m.u, m.v, m.p, m.r)
+    return Shown(
+        (1.0 + q.x_fraction) * m.x, (1.0 + q.y_fraction) * m.y, m.z, m.phi, m.theta, m.psi, m.u, m.v, m.w, m.p, m.q, m.r
+    )
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, param
+from boatsim.physics.base import Array, Channel, Course, mean_of, param
 
 SAME = 1e-9  # [s] instants this close are one
 HISTORY = 80  # commands remembered of each actuator: one every 20 ms for the longest delay
@@ -26,12 +26,13 @@ def remember(x: float, memory: Array, at: int, dt: float) -> int:
 
 
 @njit
-def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
-    """Mean command of the time window that is `delay` old: exact for held commands, smooth in the delay."""
-    i = remember(x, memory, at, dt)
+def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+    """Mean command of the time window that is `delay` old: exact, for no step reaches beyond a change."""
+    given = mean_of(x)
+    i = remember(given, memory, at, dt)
     if q.delay <= 0.0:
         return x
-    left, age, total, held = dt, 0.0, 0.0, x  # age [s] at the end of the step, walking back in time
+    left, age, total, held = dt, 0.0, 0.0, given  # age [s] at the end of the step, walking back in time
     for _ in range(HISTORY):
         held = memory[at + 1 + 2 * i]
         older = age + memory[at + 2 + 2 * i]
@@ -41,9 +42,10 @@ def channel(x: float, side: float, source: float, memory: Array, at: int, dt: fl
             left -= part
         age = older
         if age >= q.delay + dt:
-            return total / dt
+            return Course(total / dt, total / dt, total / dt)
         i = i - 1 if i > 0 else HISTORY - 1
-    return (total + left * held) / dt
+    mean = (total + left * held) / dt
+    return Course(mean, mean, mean)
 
 
 @njit

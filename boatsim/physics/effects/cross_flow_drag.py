@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
 WATER_DENSITY = 1000.0  # [kg/m^3] fresh water
 GAUSS = 0.5 / sqrt(3.0)  # two-point Gauss abscissa on an interval of length 1
@@ -33,11 +33,10 @@ def law(m: Any, q: Any) -> Wrench:
     k = 0.5 * WATER_DENSITY * q.section_drag_coefficient * q.draught  # [kg/m^2]
     even = q.linear * q.length * (m.vr + q.centre * m.r)
     even_moment = q.linear * q.length * (q.centre * m.vr + (q.centre * q.centre + q.length * q.length / 12.0) * m.r)
-    return Wrench(
-        -q.surge_quadratic * m.ur * abs(m.ur),
-        -k * (aft + fore) - even,
-        0.0,
-        -k * (aft_moment + fore_moment) - even_moment,
+    return wrench(
+        X=-q.surge_quadratic * m.ur * abs(m.ur),
+        Y=-k * (aft + fore) - even,
+        N=-k * (aft_moment + fore_moment) - even_moment,
     )
 
 
@@ -64,10 +63,15 @@ class CrossFlowDrag(Force):
         0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="-X_u|u| that goes with it", fit=True, spread=4.0
     )
     length: float = param(
-        0.0, low=0.0, high=500.0, unit="m", words="waterline length; 0: the vessel's own", follows="vessel.length"
+        UNSET,
+        low=0.0,
+        high=500.0,
+        unit="m",
+        words="waterline length; if not given, the vessel's own",
+        follows="vessel.length",
     )
     draught: float = param(
-        0.0, low=0.0, high=50.0, unit="m", words="draught; 0: the vessel's own", follows="vessel.draught"
+        UNSET, low=0.0, high=50.0, unit="m", words="draught; if not given, the vessel's own", follows="vessel.draught"
     )
     centre: float = param(0.0, low=-250.0, high=250.0, unit="m", words="mid-length ahead of the origin of motion")
     linear: float = param(0.0, low=0.0, high=1e9, unit="N s/m^2", words="linear sectional damping, for very slow flow")

@@ -5,21 +5,21 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Inertia, Mass, Wrench, param
+from boatsim.physics.base import Force, Inertia, Mass, Release, Wrench, mass, param, shift, wrench
 
 
 @njit(inline="always")
 def inertia(q: Any) -> Mass:
     """A point mass on the centreline."""
     first = q.mass * q.x
-    return Mass(q.mass, q.mass, first, first * q.x, 0.0, 0.0, 0.0)
+    return mass(surge=q.mass, sway=q.mass, sway_yaw=first, yaw=first * q.x)
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
     """Its Coriolis and centripetal force over ground: (v + x r) r and -u r at its place."""
     across, along = q.mass * (m.v + q.x * m.r), q.mass * m.u
-    return Wrench(across * m.r, -along * m.r, 0.0, -q.x * along * m.r)
+    return wrench(X=across * m.r, Y=-along * m.r, N=-q.x * along * m.r)
 
 
 @dataclass(frozen=True)
@@ -37,3 +37,23 @@ class ExtraMass(Inertia, Force):
 
     mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="its mass", fit=True, spread=1.5)
     x: float = param(0.0, low=-250.0, high=250.0, unit="m", words="positive forward", fit=True, spread=0.3)
+
+
+@dataclass(frozen=True)
+class Payload(Release):
+    """Mass spread over the hull like its own; the deeper draught that comes with it is an error of the added mass."""
+
+    words: ClassVar[str] = "the whole boat is heavier than stated"
+    shown_by: ClassVar[str] = "sharp starts and stops in every axis"
+    source: ClassVar[str] = ExtraMass.source
+    strength: ClassVar = ("mass",)
+
+    mass: float = shift(
+        "body.mass", "body.roll_inertia", "body.yaw_inertia", words="more than stated", unit="kg", spread=1.5,
+        low=-1e9, high=1e9,
+    )  # fmt: skip
+
+    def weights(self, vessel: Any) -> dict[str, float]:
+        """The hull's radii of gyration stay."""
+        body = vessel.body
+        return {f"body.{name}": getattr(body, name) / body.mass for name in ("roll_inertia", "yaw_inertia")}

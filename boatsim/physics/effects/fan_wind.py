@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param, wrench
 
 AIR_DENSITY = 1.2  # [kg/m^3] dry air at 20 deg C, 1013 hPa
 
@@ -19,7 +19,7 @@ def law(m: Any, q: Any) -> Wrench:
     across = m.cos_psi * east - m.sin_psi * north - m.v
     pressure = 0.5 * AIR_DENSITY * sqrt(along * along + across * across)
     Y = pressure * q.side * across
-    return Wrench(pressure * q.front * along, Y, 0.0, q.arm * Y)
+    return wrench(X=pressure * q.front * along, Y=Y, N=q.arm * Y)
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,9 @@ class FanWind(Force):
     words: ClassVar[str] = "a steady wind pushes the hull downwind and swings its bow"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = "checked thesis specification, section 7 (wind model [A])"
+    anchored: ClassVar[str] = "the air"
     law: ClassVar = law
+    of_air: ClassVar = True
 
     speed: float = param(1.5, low=0.0, high=40.0, unit="m/s", words="air speed")
     toward: float = param(0.0, low=-pi, high=pi, unit="rad", words="where the air goes")

@@ -5,14 +5,14 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param, wrench
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
     """|u| v, |u| p and |u| r, each axis for itself: lift of hull and fins at a small angle to the flow."""
     speed = abs(m.ur)
-    return Wrench(0.0, -q.sway * speed * m.vr, -q.roll * speed * m.p, -q.yaw * speed * m.r)
+    return wrench(Y=-q.sway * speed * m.vr, K=-q.roll * speed * m.p, N=-q.yaw * speed * m.r)
 
 
 @dataclass(frozen=True)

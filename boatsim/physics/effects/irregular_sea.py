@@ -4,23 +4,14 @@ from dataclasses import dataclass, replace
 from math import cos, exp, pi, sin, sqrt
 from typing import Any, ClassVar, Self
 
-import numpy as np
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
+from boatsim.physics.chance import course, drawn
 
 LOWEST = 0.45  # of the modal frequency: below it lies less than 1e-13 of the energy
 GRAVITY = particulars.GRAVITY
-
-
-@njit(inline="always")
-def drawn(realisation: float, k: int) -> float:
-    """A number in [0, 1) that depends on realisation and k alone (G. Steele et al., SplitMix, OOPSLA 2014)."""
-    z = np.uint64(realisation) * np.uint64(0xD1342543DE82EF95) + np.uint64(k + 1) * np.uint64(0x9E3779B97F4A7C15)
-    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    return float((z ^ (z >> np.uint64(31))) >> np.uint64(11)) / 9007199254740992.0  # 2^53
 
 
 @njit(inline="always")
@@ -43,7 +34,7 @@ def law(m: Any, q: Any) -> Wrench:
     """Sum over waves, one from each cell of the frequencies; each carries the elevation's energy of its cell."""
     Y = K = N = 0.0
     if q.significant_height == 0.0:
-        return Wrench(0.0, 0.0, 0.0, 0.0)
+        return wrench()
     ahead, across = cos(q.toward), sin(q.toward)  # of where the waves run: earth axes
     run = ahead * m.x + across * m.y  # [m] the ship's way with them
     if q.course_kept != 0.0:
@@ -73,7 +64,7 @@ def law(m: Any, q: Any) -> Wrench:
         below = above
     Y *= q.sway * across * (q.mass * GRAVITY if q.flat != 0.0 else weight)
     N *= q.yaw * across * weight * half
-    return Wrench(0.0, Y, q.roll * across * q.stiffness * K + q.arm * Y, N)
+    return wrench(Y=Y, K=q.roll * across * q.stiffness * K + q.arm * Y, N=N)
 
 
 @dataclass(frozen=True)
@@ -88,6 +79,7 @@ class IrregularSea(Force):
     words: ClassVar[str] = "wind waves push, turn and heel the hull"
     shown_by: ClassVar[str] = "lying across the sea without steering"
     source: ClassVar[str] = "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V"
+    anchored: ClassVar[str] = "the ground, where the phase of its waves is counted from"
     law: ClassVar = law
 
     significant_height: float = param(
@@ -96,7 +88,14 @@ class IrregularSea(Force):
     modal_period: float = param(7.5, low=0.2, high=40.0, unit="s", words="at the peak of the elevation's spectrum")
     toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where the waves run to")
     course_kept: float = param(0.0, low=0.0, high=1.0, unit="", words="1: met as on course north at `speed`")
-    speed: float = param(0.0, low=-50.0, high=50.0, unit="m/s", words="then; 0: that of the vessel's speed_hold")
+    speed: float = param(
+        UNSET,
+        low=-50.0,
+        high=50.0,
+        unit="m/s",
+        words="then; if not given, that of the vessel's speed_hold",
+        follows="speed_hold.speed?",
+    )
     cut: float = param(3.0, low=0.0, high=100.0, unit="rad/s", words="shorter waves are left out")
     components: float = param(160.0, low=1.0, high=2000.0, unit="", words="number of waves")
     realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course")
@@ -105,28 +104,38 @@ class IrregularSea(Force):
     yaw: float = param(1.0, low=0.0, high=10.0, unit="", words="scale of the yaw moment")
     flat: float = param(0.0, low=0.0, high=1.0, unit="", words="1: waves long against the hull, weight times slope")
     taper: float = param(1.0, low=-10.0, high=10.0, unit="", words="sections 1 - taper (2 x / L)^2; 1: ellipsoid")
-    centre_depth: float = param(0.0, low=0.0, high=50.0, unit="m", words="of buoyancy; 0: 0.4 of the draught")
+    centre_depth: float = param(
+        UNSET, low=0.0, high=50.0, unit="m", words="of buoyancy; if not given, 0.4 of the draught"
+    )
     density: float = param(particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water")
-    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="0: the vessel's own", follows="vessel.length")
-    draught: float = param(0.0, low=0.0, high=50.0, unit="m", words="0: the vessel's own", follows="vessel.draught")
-    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the vessel's own; filled in")
-    stiffness: float = param(0.0, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM; filled in if it has one")
+    length: float = param(
+        UNSET, low=0.0, high=500.0, unit="m", words="if not given, the vessel's own", follows="vessel.length"
+    )
+    draught: float = param(
+        UNSET, low=0.0, high=50.0, unit="m", words="if not given, the vessel's own", follows="vessel.draught"
+    )
+    mass: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="the vessel's own", follows="vessel.body.mass")
+    stiffness: float = param(
+        UNSET,
+        low=0.0,
+        high=1e13,
+        unit="N m",
+        words="the vessel's m g GM; if not given, its own if it has one",
+        follows="righting_arm.stiffness?",
+    )
     arm: float = param(
-        0.0, low=-100.0, high=100.0, unit="m", words="the vessel's roll by sway; filled in if it has one"
+        UNSET,
+        low=-100.0,
+        high=100.0,
+        unit="m",
+        words="the vessel's roll by sway; if not given, its own if it has one",
+        follows="linear_hull.arm?",
     )
 
-    def completed(self, vessel: Any) -> Self:
-        """With what is known of the vessel's hull."""
-        own = super().completed(vessel)
-        return replace(
-            own,
-            speed=self.speed or getattr(vessel.effect("speed_hold"), "speed", 0.0),
-            centre_depth=self.centre_depth or 0.4 * own.draught,
-            mass=vessel.body.mass,
-            stiffness=getattr(vessel.effect("righting_arm"), "stiffness", self.stiffness),
-            arm=getattr(vessel.effect("linear_hull"), "arm", self.arm),
-        )
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """The depth of buoyancy, 0.4 of the draught."""
+        return {"centre_depth": 0.4 * self.draught}
 
     def seeded(self, seed: int) -> Self:
         """Another course for each seed."""
-        return replace(self, realisation=self.realisation + seed)
+        return replace(self, realisation=course(self.realisation, seed))

@@ -1,12 +1,12 @@
 """Linear hull: sway force and yaw moment of a displacement hull about its approach speed, from its particulars."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
 
 @njit(inline="always")
@@ -14,7 +14,7 @@ def law(m: Any, q: Any) -> Wrench:
     """Sway force at a depth below the mass centre; `arm` turns what accelerates the hull in sway into a roll moment."""
     Y = -q.sway * m.vr - q.sway_by_yaw * m.r
     N = -q.yaw_by_sway * m.vr - q.yaw * m.r + q.yaw_by_heel * m.phi
-    return Wrench(0.0, Y, -q.below * Y + q.arm * (Y - q.mass * m.u * m.r), N)
+    return wrench(Y=Y, K=-q.below * Y + q.arm * (Y - q.mass * m.ur * m.r), N=N)
 
 
 @dataclass(frozen=True)
@@ -40,30 +40,30 @@ class LinearHull(Force):
     above_keel: float = param(0.0, low=0.0, high=100.0, unit="m", words="mass centre above the keel, VCG")
     heel_to_yaw: float = param(-0.0076, low=-1.0, high=1.0, unit="", words="N'phi; -0.0076 for Martin's worked example")
     density: float = param(particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water")
-    speed: float = param(0.0, low=-50.0, high=50.0, unit="m/s", words="approach speed", follows="speed_hold.speed")
-    sway: float = param(0.0, low=-1e11, high=1e11, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway")
-    sway_by_yaw: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping")
-    yaw_by_sway: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping")
-    yaw: float = param(0.0, low=-1e13, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw")
-    yaw_by_heel: float = param(0.0, low=-1e13, high=1e13, unit="N m", words="N_phi", calibrates="damping", axis="roll")
-    below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="depth of the sway force, z_H", axis="roll")
-    arm: float = param(0.0, low=-100.0, high=100.0, unit="m", words="roll moment per force that accelerates in sway")
-    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the vessel's own; filled in")
+    speed: float = param(UNSET, low=-50.0, high=50.0, unit="m/s", words="approach speed", follows="speed_hold.speed")
+    sway: float = param(UNSET, low=-1e11, high=1e11, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway")
+    sway_by_yaw: float = param(UNSET, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping")
+    yaw_by_sway: float = param(UNSET, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping")
+    yaw: float = param(UNSET, low=-1e13, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw")
+    yaw_by_heel: float = param(
+        UNSET, low=-1e13, high=1e13, unit="N m", words="N_phi", calibrates="damping", axis="roll"
+    )
+    below: float = param(UNSET, low=-100.0, high=100.0, unit="m", words="depth of the sway force, z_H", axis="roll")
+    arm: float = param(UNSET, low=-100.0, high=100.0, unit="m", words="roll moment per force that accelerates in sway")
+    mass: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="the vessel's own", follows="vessel.body.mass")
 
-    def completed(self, vessel: Any) -> Self:
-        """With derivatives and levers of the vessel's size, speed and added mass. Raises BadInput without that."""
-        own, L, T, water = super().completed(vessel), vessel.length, vessel.draught, self.needed(vessel, "added_mass")
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """Derivatives and levers of the vessel's size, speed and added mass. Raises BadInput without that."""
+        L, T, water = vessel.length, vessel.draught, self.needed(vessel, "added_mass")
         d = particulars.derivatives(L, vessel.beam, T, self.trim, self.block)
-        q, x = 0.5 * self.density * L * T * own.speed, -self.ahead  # x: midship seen from the mass centre
-        below, mass = self.above_keel - 0.5 * T, vessel.body.mass
-        return replace(
-            own,
-            sway=-q * d.sway_by_sway,
-            sway_by_yaw=-q * L * d.sway_by_yaw + water.surge * own.speed,  # m_x V: Coriolis force of the water
-            yaw_by_sway=-q * (L * d.yaw_by_sway + d.sway_by_sway * x),
-            yaw=-q * L * (L * d.yaw_by_yaw + d.sway_by_yaw * x),
-            yaw_by_heel=q * L * own.speed * self.heel_to_yaw,
-            below=below,
-            arm=0.0 if water.sway_below else below * water.sway / (mass + water.sway),
-            mass=mass,
-        )
+        q, x = 0.5 * self.density * L * T * self.speed, -self.ahead  # x: midship seen from the mass centre
+        below = self.above_keel - 0.5 * T
+        return {
+            "sway": -q * d.sway_by_sway,
+            "sway_by_yaw": -q * L * d.sway_by_yaw + water.surge * self.speed,  # m_x V: Coriolis force of the water
+            "yaw_by_sway": -q * (L * d.yaw_by_sway + d.sway_by_sway * x),
+            "yaw": -q * L * (L * d.yaw_by_yaw + d.sway_by_yaw * x),
+            "yaw_by_heel": q * L * self.speed * self.heel_to_yaw,
+            "below": below,
+            "arm": 0.0 if water.sway_below else below * water.sway / (vessel.body.mass + water.sway),
+        }

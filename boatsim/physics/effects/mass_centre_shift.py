@@ -1,25 +1,25 @@
 """Mass centre shift: the hull's own mass lies ahead of or behind where the model has it."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Inertia, Mass, Wrench, param
+from boatsim.physics.base import UNSET, Force, Inertia, Mass, Wrench, mass, param, wrench
 
 
 @njit(inline="always")
 def inertia(q: Any) -> Mass:
     """First and second moment of the shifted mass about the origin of motion; the mass itself is the hull's."""
     first = q.hull_mass * q.shift
-    return Mass(0.0, 0.0, first, first * q.shift, 0.0, 0.0, 0.0)
+    return mass(sway_yaw=first, yaw=first * q.shift)
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
     """Coriolis force of that moment: (m x_g r^2, 0, -m x_g u r)."""
     first = q.hull_mass * q.shift
-    return Wrench(first * m.r * m.r, 0.0, 0.0, -first * m.u * m.r)
+    return wrench(X=first * m.r * m.r, N=-first * m.u * m.r)
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,11 @@ class MassCentreShift(Inertia, Force):
     law: ClassVar = law
 
     shift: float = param(0.0, low=-200.0, high=200.0, unit="m", words="positive forward", fit=True, spread=0.1)
-    hull_mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the hull's; 0: the vessel's own")
-
-    def completed(self, vessel: Any) -> Self:
-        """The effect with the vessel's mass filled in."""
-        return replace(super().completed(vessel), hull_mass=self.hull_mass or vessel.body.mass)
+    hull_mass: float = param(
+        UNSET,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="the hull's; if not given, the vessel's own",
+        follows="vessel.body.mass",
+    )

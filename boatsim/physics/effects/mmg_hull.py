@@ -6,9 +6,10 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 from boatsim.physics.effects.abkowitz_hull import derivative
 
+BOW_ON = 2.0  # R_0 is taken whole where u / U is above its inverse, up to 60 deg of drift; the model is for much less
 FASTEST = 3.0  # [-] r L / U up to which the polynomials are taken; the tightest turns of a ship under way are below 1.5
 
 
@@ -16,15 +17,17 @@ FASTEST = 3.0  # [-] r L / U up to which the polynomials are taken; the tightest
 def law(m: Any, q: Any) -> Wrench:
     """Polynomials of v/U and r L/U, and the Coriolis force of the added mass in surge and sway.
 
-    In yaw that force is part of N_v. A hull that hardly moves but turns takes the speed of its fastest turn for U.
+    In yaw that force is part of N_v. A hull that hardly moves but turns takes the speed of its fastest turn for U. The
+    resistance is against the way: beyond the drift of any turn under way it goes to zero broadside on, and turns round.
     """
     U = max(sqrt(m.ur * m.ur + m.vr * m.vr), abs(m.r) * q.length / FASTEST, 1e-9)
     v, r = m.vr / U, m.r * q.length / U
-    X = -q.R_0 + v * v * (q.X_vv + q.X_vvvv * v * v) + r * (q.X_vr * v + q.X_rr * r)
+    against = min(max(BOW_ON * m.ur / U, -1.0), 1.0)
+    X = -q.R_0 * against + v * v * (q.X_vv + q.X_vvvv * v * v) + r * (q.X_vr * v + q.X_rr * r)
     Y = v * (q.Y_v + v * (q.Y_vvv * v + q.Y_vvr * r)) + r * (q.Y_r + r * (q.Y_vrr * v + q.Y_rrr * r))
     N = v * (q.N_v + v * (q.N_vvv * v + q.N_vvr * r)) + r * (q.N_r + r * (q.N_vrr * v + q.N_rrr * r))
     k = 0.5 * q.density * q.length * q.draught * U * U  # [N]
-    return Wrench(k * X + q.m_y * m.vr * m.r, k * Y - q.m_x * m.ur * m.r, 0.0, k * q.length * N)
+    return wrench(X=k * X + q.m_y * m.vr * m.r, Y=k * Y - q.m_x * m.ur * m.r, N=k * q.length * N)
 
 
 @dataclass(frozen=True)
@@ -36,11 +39,11 @@ class MmgHull(Force):
     source: ClassVar[str] = "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015 (MMG standard method)"
     law: ClassVar = law
 
-    length: float = param(0.0, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
-    draught: float = param(0.0, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught")
+    length: float = param(UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
+    draught: float = param(UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught")
     density: float = param(1000.0, low=0.0, high=1100.0, unit="kg/m^3", words="of the water")
-    m_x: float = param(0.0, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge")
-    m_y: float = param(0.0, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway")
+    m_x: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge")
+    m_y: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway")
     R_0: float = derivative("R_0")
     X_vv: float = derivative("X_vv")
     X_vr: float = derivative("X_vr")

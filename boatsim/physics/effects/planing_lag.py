@@ -1,20 +1,20 @@
 """Planing lag: a planing craft gains and loses speed slowly until it planes."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Reaction, Wrench, param
+from boatsim.physics.base import UNSET, Reaction, Wrench, param, wrench
 
 
 @njit(inline="always")
 def reaction(m: Any, w: Wrench, q: Any) -> Wrench:
     """(kappa - 1) times the surge force there is, m v r included; kappa = u / full_speed within [least, 1]."""
     if q.full_speed <= 0.0:
-        return Wrench(0.0, 0.0, 0.0, 0.0)
+        return wrench()
     kappa = min(max(m.ur / q.full_speed, q.least), 1.0)
-    return Wrench((kappa - 1.0) * (w.X + q.hull_mass * m.v * m.r), 0.0, 0.0, 0.0)
+    return wrench(X=(kappa - 1.0) * (w.X + q.hull_mass * m.vr * m.r))
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,11 @@ class PlaningLag(Reaction):
         0.0, low=0.0, high=100.0, unit="m/s", words="speed from which nothing lags", fit=True, spread=8.0
     )
     least: float = param(0.2, low=0.02, high=1.0, unit="", words="smallest factor", fit=True, spread=0.3, absent=0.2)
-    hull_mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the hull's; 0: the vessel's own")
-
-    def completed(self, vessel: Any) -> Self:
-        """The effect with the vessel's mass filled in."""
-        return replace(super().completed(vessel), hull_mass=self.hull_mass or vessel.body.mass)
+    hull_mass: float = param(
+        UNSET,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="the hull's; if not given, the vessel's own",
+        follows="vessel.body.mass",
+    )

@@ -14,7 +14,7 @@ def shown(m: Shown, q: Any) -> Shown:
     """Position and speed of a point `forward` and `starboard` of the mass centre."""
     c, s = cos(m.psi), sin(m.psi)
     x, y = m.x + c * q.forward - s * q.starboard, m.y + s * q.forward + c * q.starboard
-    return Shown(x, y, m.psi, m.phi, m.u - m.r * q.starboard, m.v + m.r * q.forward, m.p, m.r)
+    return Shown(x, y, m.z, m.phi, m.theta, m.psi, m.u - m.r * q.starboard, m.v + m.r * q.forward, m.w, m.p, m.q, m.r)
 
 
 @dataclass(frozen=True)

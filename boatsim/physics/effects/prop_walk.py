@@ -5,20 +5,14 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param, wrench
 
 
 @njit(inline="always")
-def side_force(thrust: float, q: Any) -> float:
-    """Starboard force of one propeller [N]."""
-    return q.side_force_per_thrust * thrust * (q.ahead_share if thrust > 0.0 else 1.0)
-
-
-@njit(inline="always")
-def law(m: Any, q: Any) -> Wrench:
-    """Both propellers turn the same way, so their side forces at the stern add up."""
-    Y = side_force(m.thrust_port_N, q) + side_force(m.thrust_starboard_N, q)
-    return Wrench(0.0, Y, 0.0, q.x * Y)
+def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
+    """All propellers turn the same way, so their side forces add up."""
+    Y = q.side_force_per_thrust * s.thrust * (q.ahead_share if s.thrust > 0.0 else 1.0)
+    return wrench(Y=Y, N=t.x * Y)
 
 
 @dataclass(frozen=True)
@@ -28,10 +22,10 @@ class PropWalk(Force):
     words: ClassVar[str] = "the propellers walk the stern sideways, most of all astern"
     shown_by: ClassVar[str] = "straight astern, then straight ahead"
     source: ClassVar[str] = "J. Brix (ed.), Manoeuvring Technical Manual, 1993; a third of it ahead is an assumption"
+    rides: ClassVar[str] = "thruster"
     law: ClassVar = law
 
     side_force_per_thrust: float = param(
         0.0, low=-0.6, high=0.6, unit="", words="starboard force per thrust, astern", fit=True, spread=0.1
     )
     ahead_share: float = param(1.0 / 3.0, low=0.0, high=1.0, unit="", words="of it ahead")
-    x: float = param(0.0, low=-500.0, high=500.0, unit="m", words="the vessel's thrusters", follows="outboards.x")

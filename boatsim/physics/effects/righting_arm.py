@@ -1,38 +1,68 @@
 """Righting arm: buoyancy turns a heeled hull upright."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Release, Wrench, factor, param, shift, wrench
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """K = -stiffness phi: the tangent of the righting arm curve at zero heel."""
-    return Wrench(0.0, 0.0, -q.stiffness * (m.phi - q.list), 0.0)
+    """K = -stiffness (phi + cubic phi^3): the righting arm curve about zero heel."""
+    return wrench(K=-q.stiffness * (m.phi - q.list + q.cubic * m.phi * m.phi * m.phi))
 
 
 @dataclass(frozen=True)
 class RightingArm(Force):
-    """Linear restoring moment in roll, m g GM."""
+    """Restoring moment in roll, m g GM at small heel."""
 
     words: ClassVar[str] = "buoyancy rights the hull in proportion to its heel"
     shown_by: ClassVar[str] = "a roll decay"
     law: ClassVar = law
 
     stiffness: float = param(
-        1.0, low=0.0, high=1e13, unit="N m", words="m g GM, per rad", calibrates="restoring", axis="roll"
+        UNSET, low=0.0, high=1e13, unit="N m", words="m g GM, per rad", calibrates="restoring", axis="roll"
+    )
+    cubic: float = param(
+        0.0,
+        low=-20.0,
+        high=20.0,
+        unit="1/rad^2",
+        words="relative change per heel squared",
+        axis="roll",
     )
     list: float = param(0.0, low=-0.5, high=0.5, unit="rad", words="heel at rest", axis="roll")
-    metacentric_height: float = param(
-        0.0, low=0.0, high=50.0, unit="m", words="GM, from which the stiffness follows; 0: stiffness as given"
-    )
+    metacentric_height: float = param(0.0, low=0.0, high=50.0, unit="m", words="GM, from which the stiffness follows")
 
-    def completed(self, vessel: Any) -> Self:
-        """With the stiffness of the vessel's weight at the given GM."""
-        own = super().completed(vessel)
-        stiffness = vessel.body.mass * particulars.GRAVITY * self.metacentric_height
-        return replace(own, stiffness=stiffness) if self.metacentric_height else own
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """The stiffness of the vessel's weight at the given GM."""
+        return {"stiffness": vessel.body.mass * particulars.GRAVITY * self.metacentric_height}
+
+
+@dataclass(frozen=True)
+class MetacentricHeightError(Release):
+    """The righting moment is off by more than its stated uncertainty."""
+
+    words: ClassVar[str] = "the metacentric height is off by more than its stated uncertainty"
+    shown_by: ClassVar[str] = "the period of a roll decay"
+    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 4"
+
+    factor: float = factor("righting_arm.stiffness", words="GM per stated GM", axis="roll")
+
+
+@dataclass(frozen=True)
+class RightingArmStiffening(Release):
+    """GZ bends away from its tangent: the roll period depends on the amplitude."""
+
+    words: ClassVar[str] = (
+        "the righting moment is not in proportion to the heel, so the roll period changes with amplitude"
+    )
+    shown_by: ClassVar[str] = "a roll decay from a large heel"
+
+    cubic: float = shift(
+        "righting_arm.cubic", words="relative change per heel squared", unit="1/rad^2", spread=3.0, low=-20.0,
+        high=20.0, axis="roll",
+    )  # fmt: skip

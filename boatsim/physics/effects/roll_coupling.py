@@ -5,13 +5,13 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param, wrench
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
     """What the linear damping matrix has outside its diagonal in the row and the column of roll."""
-    return Wrench(0.0, -q.sway_by_roll * m.p, -q.roll_by_sway * m.vr - q.roll_by_yaw * m.r, -q.yaw_by_roll * m.p)
+    return wrench(Y=-q.sway_by_roll * m.p, K=-q.roll_by_sway * m.vr - q.roll_by_yaw * m.r, N=-q.yaw_by_roll * m.p)
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,19 @@
 """Roll damping: a share of the critical one, larger with headway where the bilge is round."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import sqrt
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
     """K = -roll p."""
-    return Wrench(0.0, 0.0, -q.roll * m.p, 0.0)
+    return wrench(K=-q.roll * m.p)
 
 
 @dataclass(frozen=True)
@@ -27,17 +27,16 @@ class RollDamping(Force):
 
     at_rest: float = param(0.09, low=0.0, high=2.0, unit="", words="per critical, without headway; 0.09: hard chine")
     round_bilge: float = param(0.0, low=0.0, high=1.0, unit="", words="1: grows with headway by the published formula")
-    roll: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll")
+    roll: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll")
     stiffness: float = param(
-        0.0, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM", follows="righting_arm.stiffness"
+        UNSET, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM", follows="righting_arm.stiffness"
     )
 
-    def completed(self, vessel: Any) -> Self:
-        """With the coefficient of the vessel's own stiffness, inertia, form and speed. Raises BadInput."""
-        own = super().completed(vessel)
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """The coefficient of the vessel's own stiffness, inertia, form and speed. Raises BadInput."""
         inertia = vessel.body.roll_inertia + _water(vessel.effect("added_mass"))
-        ratio = self.at_rest + (self._with_headway(vessel, own.stiffness) if self.round_bilge else 0.0)
-        return replace(own, roll=2.0 * ratio * sqrt(own.stiffness * inertia))
+        ratio = self.at_rest + (self._with_headway(vessel, self.stiffness) if self.round_bilge else 0.0)
+        return {"roll": 2.0 * ratio * sqrt(self.stiffness * inertia)}
 
     def _with_headway(self, vessel: Any, stiffness: float) -> float:
         """Share of the critical damping that headway adds."""

@@ -1,23 +1,27 @@
 """Rudder: a blade behind the propeller, linear in its angle at the approach speed."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from math import pi
+from typing import Any, ClassVar
 
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Release, Role, Wrench, number, param, wrench
+
+NEVER = 0.5 * pi  # [rad] no rudder turns further
 
 
 @njit(inline="always")
-def law(m: Any, q: Any) -> Wrench:
-    """Side force, heeling and yaw moment in proportion to the angle."""
-    return Wrench(0.0, q.sway * m.delta_rad, q.roll * m.delta_rad, q.yaw * m.delta_rad)
+def law(m: Any, q: Any, s: Any) -> Wrench:
+    """Side force, heeling and yaw moment in proportion to the angle, up to that of stall."""
+    angle = min(max(s.angle, -q.stall), q.stall)
+    return wrench(Y=q.sway * angle, K=q.roll * angle, N=q.yaw * angle)
 
 
 @dataclass(frozen=True)
 class Rudder(Force):
-    """Linear rudder; the signs say to which side a positive angle `delta_rad` steers.
+    """Linear rudder; the signs say to which side a positive angle steers.
 
     With `area` given, the coefficients are those of a blade: normal force by its area, aspect ratio and inflow, more by
     the share of it that the hull before it takes up, at its place ahead of and below the mass centre; a positive angle
@@ -29,23 +33,38 @@ class Rudder(Force):
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9; blade: Inoue et al. 1981"
     )
+    roles: ClassVar = {"angle": Role("rad", "the rudder, positive where its coefficients say")}
     law: ClassVar = law
 
-    sway: float = param(0.0, low=-1e11, high=1e11, unit="N/rad", words="Y_delta", calibrates="thrust", axis="sway")
-    yaw: float = param(0.0, low=-1e13, high=1e13, unit="N m/rad", words="N_delta", calibrates="thrust", axis="yaw")
-    roll: float = param(0.0, low=-1e13, high=1e13, unit="N m/rad", words="K_delta", calibrates="thrust", axis="roll")
+    sway: float = param(UNSET, low=-1e11, high=1e11, unit="N/rad", words="Y_delta", calibrates="thrust", axis="sway")
+    yaw: float = param(UNSET, low=-1e13, high=1e13, unit="N m/rad", words="N_delta", calibrates="thrust", axis="yaw")
+    roll: float = param(UNSET, low=-1e13, high=1e13, unit="N m/rad", words="K_delta", calibrates="thrust", axis="roll")
+    stall: float = param(NEVER, low=0.02, high=NEVER, unit="rad", words="angle from which the force grows no further")
     area: float = param(0.0, low=0.0, high=500.0, unit="m^2", words="of the blade; 0: coefficients as given")
     aspect: float = param(1.5, low=0.1, high=10.0, unit="", words="span per chord")
     inflow: float = param(0.0, low=0.0, high=50.0, unit="m/s", words="speed of the water at the blade, V_R")
     at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="place ahead of the mass centre")
     below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="place below the mass centre")
 
-    def completed(self, vessel: Any) -> Self:
-        """With the coefficients of a blade, where one is given. Raises BadInput on a vessel without linear_hull."""
-        own = super().completed(vessel)
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """The coefficients of a blade, where one is given. Raises BadInput on a vessel without linear_hull."""
         if not self.area:
-            return own
+            return {}
         hull = self.needed(vessel, "linear_hull")
         slope = particulars.rudder_slope(self.area, self.aspect, self.inflow, hull.density)
         sway = -(1.0 + particulars.hull_share(hull.block)) * slope
-        return replace(own, sway=sway, yaw=self.at * sway, roll=(hull.arm - self.below) * sway)
+        return {"sway": sway, "yaw": self.at * sway, "roll": (hull.arm - self.below) * sway}
+
+
+@dataclass(frozen=True)
+class RudderStall(Release):
+    """The flow leaves the blade: its force grows no further with the angle."""
+
+    words: ClassVar[str] = "the rudder stalls: beyond an angle its force grows no further"
+    shown_by: ClassVar[str] = "turns at small and at large rudder angles"
+    source: ClassVar[str] = "L. F. Whicker, L. F. Fehlner, DTMB report 933, 1958: lift of low aspect ratio surfaces"
+    starts: ClassVar = ({"angle": 0.2}, {"angle": 0.35}, {"angle": 0.5})
+
+    angle: float = number(
+        "rudder.stall", words="angle of stall", unit="rad", spread=1.0, low=0.02, high=NEVER, absent=NEVER
+    )

@@ -1,38 +1,58 @@
 """Servo: a steering machine with a range, a rate limit and a lag."""
 
 from dataclasses import dataclass
-from math import exp, pi
+from math import exp, inf, pi
 from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, param
+from boatsim.physics.base import Array, Channel, Course, course, mean_of, param
+
+NONE = 1e-4  # [s] a shorter lag is none
 
 
 @njit(inline="always")
-def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
-    """First-order approach to the limited command, no faster than the rate; the mean of the step's two ends.
+def ramp(gap: float, q: Any) -> float:
+    """Time [s] at the largest rate until the lag alone would be as slow."""
+    slow = q.rate * q.lag if q.lag >= NONE else 0.0
+    return max(abs(gap) - slow, 0.0) / q.rate
 
-    Without a lag it is a ramp that ends within the step: its mean is exact.
-    """
-    goal = min(max(x, -q.range), q.range)
-    share = 1.0 if q.lag < 1e-4 else 1.0 - exp(-dt / q.lag)
-    turn = min(max((goal - memory[at]) * share, -q.rate * dt), q.rate * dt)
-    memory[at] += turn
-    ramp = abs(turn) / (q.rate * dt) if q.lag < 1e-4 else 1.0  # share of the step
-    return memory[at] - 0.5 * turn * ramp
+
+@njit(inline="always")
+def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+    """Towards the limited command at the largest rate, then as a first-order lag: exact for a held command."""
+    y = memory[at]
+    gap = min(max(mean_of(x), -q.range), q.range) - y
+    turning = min(ramp(gap, q), dt)
+    turned = q.rate * turning if gap > 0.0 else -q.rate * turning
+    rest, left = gap - turned, dt - turning
+    area = 0.5 * turned * turning + turned * left  # [rad s] by which the angle is beyond y
+    if q.lag >= NONE:
+        decay = exp(-left / q.lag)
+        area += rest * (left - q.lag * (1.0 - decay))
+        rest *= decay
+    memory[at] = y + gap - rest
+    return course(y, y + area / dt, memory[at])
+
+
+@njit(inline="always")
+def pause(x: float, memory: Array, at: int, q: Any) -> float:
+    """Until the ramp ends."""
+    left = ramp(min(max(x, -q.range), q.range) - memory[at], q)
+    return left if left > 0.0 else inf
 
 
 @dataclass(frozen=True)
 class Servo(Channel):
-    """Steering angle follows its command through a first-order lag inside a range and a rate limit."""
+    """An angle follows its command through a first-order lag inside a range and a rate limit."""
 
     words: ClassVar[str] = "the steering follows with a limited rate and range"
     shown_by: ClassVar[str] = "quick steering reversals"
-    source: ClassVar[str] = "checked thesis specification, section 4: 0.06 s, 400 deg/s [A], 0 to 45 deg (T9)"
-    acts_on: ClassVar[str] = "steer"
+    source: ClassVar[str] = "J. van Amerongen, Adaptive Steering of Ships, PhD thesis 1982 (steering machine)"
+    acts_on: ClassVar[str] = "angle"
     slots: ClassVar[int] = 1
     channel: ClassVar = channel
+    pause: ClassVar = pause
 
     range: float = param(pi / 4, low=0.0, high=pi, unit="rad", words="largest angle either way")
     rate: float = param(400.0 * pi / 180.0, low=0.001, high=1e3, unit="rad/s", words="fastest turning")

@@ -5,21 +5,18 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
 
 @njit(inline="always")
-def law(m: Any, q: Any) -> Wrench:
+def law(m: Any, q: Any, s: Any) -> Wrench:
     """What linear hull (by u / U0) and rudder (by its square) gain over their values at the approach speed U0."""
     ratio = m.ur / q.speed
     hull, rudder = ratio - 1.0, ratio * ratio - 1.0
     Y = -q.hull_sway * hull * (q.sway * m.vr + q.sway_by_yaw * m.r)
     N = -q.hull_yaw * hull * (q.yaw_by_sway * m.vr + q.yaw * m.r)
-    return Wrench(
-        0.0,
-        Y + q.rudder_sway * rudder * q.steer_sway * m.delta_rad,
-        0.0,
-        N + q.rudder_yaw * rudder * q.steer_yaw * m.delta_rad,
+    return wrench(
+        Y=Y + q.rudder_sway * rudder * q.steer_sway * s.angle, N=N + q.rudder_yaw * rudder * q.steer_yaw * s.angle
     )
 
 
@@ -30,6 +27,7 @@ class SpeedScaledSteering(Force):
     words: ClassVar[str] = "hull and rudder forces change with the speed ahead instead of staying those of the approach"
     shown_by: ClassVar[str] = "zig-zags in which the ship loses much of its speed"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapters 6 and 9"
+    roles: ClassVar = {"angle": Role("rad", "the rudder, positive where its coefficients say")}
     law: ClassVar = law
 
     hull_sway: float = param(
@@ -44,14 +42,14 @@ class SpeedScaledSteering(Force):
     rudder_yaw: float = param(
         0.0, low=-5.0, high=5.0, unit="", words="share of its yaw moment with u^2", fit=True, spread=1.0
     )
-    speed: float = param(1.0, low=0.01, high=50.0, unit="m/s", words="U0", follows="approach_balance.speed")
-    sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-Y_v", follows="linear_damping.sway")
-    yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-N_r", follows="linear_damping.yaw")
+    speed: float = param(UNSET, low=0.01, high=50.0, unit="m/s", words="U0", follows="approach_balance.speed")
+    sway: float = param(UNSET, low=0.0, high=1e9, unit="N s/m", words="-Y_v", follows="linear_damping.sway")
+    yaw: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="-N_r", follows="linear_damping.yaw")
     sway_by_yaw: float = param(
-        0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r", follows="linear_damping.sway_by_yaw"
+        UNSET, low=-1e11, high=1e11, unit="N s", words="-Y_r", follows="linear_damping.sway_by_yaw"
     )
     yaw_by_sway: float = param(
-        0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", follows="linear_damping.yaw_by_sway"
+        UNSET, low=-1e11, high=1e11, unit="N s", words="-N_v", follows="linear_damping.yaw_by_sway"
     )
-    steer_sway: float = param(0.0, low=-1e11, high=1e11, unit="N/rad", words="Y_delta", follows="rudder.sway")
-    steer_yaw: float = param(0.0, low=-1e13, high=1e13, unit="N m/rad", words="N_delta", follows="rudder.yaw")
+    steer_sway: float = param(UNSET, low=-1e11, high=1e11, unit="N/rad", words="Y_delta", follows="rudder.sway")
+    steer_yaw: float = param(UNSET, low=-1e13, high=1e13, unit="N m/rad", words="N_delta", follows="rudder.yaw")

@@ -5,15 +5,23 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, param
+from boatsim.physics.base import Array, Channel, Course, param
 
 
 @njit(inline="always")
-def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
+def pushed(y: float, x: float, half: float) -> float:
     """The play operator: the angle moves only when the command pushes against an end of the play."""
+    return min(max(y, x - half), x + half)
+
+
+@njit(inline="always")
+def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+    """Pushed along by the command's course."""
     half = 0.5 * q.width
-    memory[at] = min(max(memory[at], x - half), x + half)
-    return memory[at]
+    begin = pushed(memory[at], x.begin, half)
+    middle = pushed(begin, x.middle, half)
+    memory[at] = pushed(middle, x.end, half)
+    return Course(begin, middle, memory[at])
 
 
 @dataclass(frozen=True)
@@ -23,7 +31,7 @@ class SteeringBacklash(Channel):
     words: ClassVar[str] = "the steering linkage has play, so an angle stays behind when the steering reverses"
     shown_by: ClassVar[str] = "small steering reversals while pushing"
     source: ClassVar[str] = "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, 1996 (play operator)"
-    acts_on: ClassVar[str] = "steer"
+    acts_on: ClassVar[str] = "angle"
     slots: ClassVar[int] = 1
     channel: ClassVar = channel
     starts: ClassVar = ({"width": 0.05}, {"width": 0.2})

@@ -5,13 +5,13 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param, wrench
 
 
 @njit(inline="always")
-def law(m: Any, q: Any) -> Wrench:
+def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
     """X = -drag delta^2: the lift's part along the ship."""
-    return Wrench(-q.drag * m.delta_rad * m.delta_rad, 0.0, 0.0, 0.0)
+    return wrench(X=-q.drag * s.angle * s.angle)
 
 
 @dataclass(frozen=True)
@@ -21,6 +21,7 @@ class SteeringDrag(Force):
     words: ClassVar[str] = "the rudder brakes with the square of its angle"
     shown_by: ClassVar[str] = "large rudder angles that reverse before the ship turns"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9"
+    rides: ClassVar[str] = "rudder"
     law: ClassVar = law
 
     drag: float = param(0.0, low=0.0, high=1e11, unit="N/rad^2", words="-X_delta_delta", fit=True, spread=0.1)

@@ -5,13 +5,13 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param, wrench
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
     """X = -(linear + quadratic |u|) u."""
-    return Wrench(-(q.linear + q.quadratic * abs(m.ur)) * m.ur, 0.0, 0.0, 0.0)
+    return wrench(X=-(q.linear + q.quadratic * abs(m.ur)) * m.ur)
 
 
 @dataclass(frozen=True)

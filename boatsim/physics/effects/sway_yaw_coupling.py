@@ -1,17 +1,17 @@
-"""Sway-yaw coupling: side force of turning and moment of drifting that grow with the speed ahead."""
+"""Sway-yaw coupling: products of two speeds, in surge, sway and yaw, of a hull that turns and drifts with way on."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param, preset, wrench
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Y_ur u r and N_uv u v: they change sign with the way of the boat."""
-    return Wrench(0.0, -q.sway * m.ur * m.r, 0.0, -q.yaw * m.ur * m.vr)
+    """X_vr v r beside the rigid hull's own, Y_ur u r and N_uv u v: these change sign with the way of the boat."""
+    return wrench(X=q.mass * m.vr * m.r, Y=-q.sway * m.ur * m.r, N=-q.yaw * m.ur * m.vr)
 
 
 @dataclass(frozen=True)
@@ -25,3 +25,15 @@ class SwayYawCoupling(Force):
 
     sway: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="-Y_ur", fit=True, spread=5.0)
     yaw: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="-N_uv", fit=True, spread=5.0)
+    mass: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="X_vr")
+
+
+SpeedLossInTurn = preset(
+    SwayYawCoupling,
+    "SpeedLossInTurn",
+    words="a hull that drifts while it turns loses speed, in proportion to drift times yaw rate",
+    shown_by="turning circles and large zig-zags with the propeller held",
+    source="H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015: m_y + X_vr",
+    frees={"mass": {"words": "m_y + X_vr", "spread": 4.0}},  # negative force: the hull drifts outwards
+    fixed={"sway": 0.0, "yaw": 0.0},
+)

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
 SOFT = 0.02  # [m] over which the line goes from slack to taut; a wider one can not follow a short stiff line
 NEAR = 0.05  # [m] keeps the direction of the pull defined at the anchor
@@ -30,7 +30,7 @@ def law(m: Any, q: Any) -> Wrench:
     pull = (q.tension + q.stiffness * stretch(distance - q.length)) / distance
     X = pull * (m.cos_psi * north + m.sin_psi * east) - q.drag * m.ur
     Y = pull * (m.cos_psi * east - m.sin_psi * north) - q.drag * (m.vr + q.at * m.r)
-    return Wrench(X, Y, 0.0, q.at * Y)
+    return wrench(X=X, Y=Y, N=q.at * Y)
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,7 @@ class Tether(Force):
 
     words: ClassVar[str] = "a line or cable pulls the boat towards a fixed point"
     shown_by: ClassVar[str] = "visiting the corners of the tank on several headings"
+    anchored: ClassVar[str] = "a fixed point"
     law: ClassVar = law
     strength: ClassVar = ("tension", "stiffness", "drag")
     starts: ClassVar = (
@@ -59,5 +60,9 @@ class Tether(Force):
     north: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=4.0)
     east: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=3.0)
     at: float = param(
-        0.0, low=-500.0, high=500.0, unit="m", words="made fast at the vessel's thrusters", follows="outboards.x"
+        UNSET, low=-500.0, high=500.0, unit="m", words="made fast this far ahead; if not given, at the stern"
     )
+
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """The stern is half a length behind."""
+        return {"at": -0.5 * vessel.length}

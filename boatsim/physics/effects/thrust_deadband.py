@@ -5,13 +5,19 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, param
+from boatsim.physics.base import Array, Channel, Course, param
 
 
 @njit(inline="always")
-def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
+def beyond(x: float, q: Any) -> float:
     """Nothing inside the half width, the rest of the command beyond it."""
     return x - min(max(x, -q.width), q.width)
+
+
+@njit(inline="always")
+def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+    """At each instant for itself."""
+    return Course(beyond(x.begin, q), beyond(x.middle, q), beyond(x.end, q))
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,14 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, param
+from boatsim.physics.base import Array, Channel, Course, param
 
 
 @njit(inline="always")
-def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
+def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
     """Port thrust times 1 + f, starboard times 1 - f."""
-    return x * (1.0 - side * q.fraction)
+    share = 1.0 - side * q.fraction
+    return Course(x.begin * share, x.middle * share, x.end * share)
 
 
 @dataclass(frozen=True)

@@ -6,19 +6,28 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, param
+from boatsim.physics.base import Array, Channel, Course, course, param
+
+NONE = 1e-4  # [s] a shorter lag is none
 
 
 @njit(inline="always")
-def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
-    """First-order lag, exact for a held command; the mean over the step keeps its impulse exact."""
-    if q.time_constant < 1e-4:
-        memory[at] = x
+def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+    """First-order lag, exact for a command whose course is a parabola.
+
+    T y' = x - y with x = b + c s + d s^2, s in steps, has the solution f + g s + d s^2 beside a decaying rest.
+    """
+    y = memory[at]
+    if q.time_constant < NONE:
+        memory[at] = x.end
         return x
-    decay = exp(-dt / q.time_constant)
-    gap = memory[at] - x
-    memory[at] = x + gap * decay
-    return x + gap * (1.0 - decay) * q.time_constant / dt
+    quick = dt / q.time_constant
+    c, d = 4.0 * x.middle - 3.0 * x.begin - x.end, 2.0 * (x.begin + x.end) - 4.0 * x.middle
+    g = c - 2.0 * d / quick
+    f = x.begin - g / quick
+    decay = exp(-quick)
+    memory[at] = f + g + d + (y - f) * decay
+    return course(y, f + 0.5 * g + d / 3.0 + (y - f) * (1.0 - decay) / quick, memory[at])
 
 
 @dataclass(frozen=True)

@@ -6,16 +6,13 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.effects.thruster import at_mount
 
 
 @njit(inline="always")
-def law(m: Any, q: Any) -> Wrench:
-    """Each outboard's thrust T loses loss |T| u: falls ahead, grows when it brakes."""
-    port = -q.gain * q.loss * m.ur * abs(m.thrust_port_N)
-    starboard = -q.gain * q.loss * m.ur * abs(m.thrust_starboard_N)
-    port_X, starboard_X = port * m.cos_steer_port_rad, starboard * m.cos_steer_starboard_rad
-    Y = port * m.sin_steer_port_rad + starboard * m.sin_steer_starboard_rad
-    return Wrench(port_X + starboard_X, Y, 0.0, q.x * Y + q.half_spacing * (port_X - starboard_X))
+def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
+    """Each thruster's thrust T loses loss |T| u: falls ahead, grows when it brakes."""
+    return at_mount(-t.gain * q.loss * m.ur * abs(s.thrust), s, t)
 
 
 @dataclass(frozen=True)
@@ -25,11 +22,7 @@ class ThrustLossWithSpeed(Force):
     words: ClassVar[str] = "the propellers push less the faster the boat goes"
     shown_by: ClassVar[str] = "the same thrust command from rest and at full speed"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T(J)"
+    rides: ClassVar[str] = "thruster"
     law: ClassVar = law
 
     loss: float = param(0.0, low=0.0, high=50.0, unit="s/m", words="share lost per speed ahead", fit=True, spread=0.5)
-    x: float = param(0.0, low=-500.0, high=500.0, unit="m", words="mounts", follows="outboards.x")
-    half_spacing: float = param(
-        0.0, low=0.0, high=100.0, unit="m", words="mount to centreline", follows="outboards.half_spacing"
-    )
-    gain: float = param(0.0, low=0.0, high=5.0, unit="", words="the vessel's", follows="outboards.gain")

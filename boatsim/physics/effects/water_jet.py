@@ -1,11 +1,11 @@
 """Water jet: a shaft power that the throttle sets, so the thrust falls with the speed it drives."""
 
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
 IDLE = 1.0  # throttle of a handle nobody touches
 PLANES = 2.0  # throttle at which the first branch of the power curve ends
@@ -23,9 +23,9 @@ def power(throttle: float, q: Any) -> float:
 
 
 @njit(inline="always")
-def law(m: Any, q: Any) -> Wrench:
+def law(m: Any, q: Any, s: Any) -> Wrench:
     """Thrust = power / speed ahead."""
-    return Wrench(q.gain * q.mass * power(m.throttle, q) / max(m.ur, q.slowest), 0.0, 0.0, 0.0)
+    return wrench(X=q.gain * q.mass * power(s.throttle, q) / max(m.ur, q.slowest))
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,7 @@ class WaterJet(Force):
     words: ClassVar[str] = "a water jet pushes with the power that the throttle sets"
     shown_by: ClassVar[str] = "throttle steps"
     source: ClassVar[str] = "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, eq. 10 and Table 2"
+    roles: ClassVar = {"throttle": Role("", "the handle, 1 idle to 7 full")}
     law: ClassVar = law
 
     m1: float = param(12.10, low=0.0, high=1e3, unit="m^2/s^3", words="throttle below 2: per throttle")
@@ -46,8 +47,11 @@ class WaterJet(Force):
     q2: float = param(154.9, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle from 4: at 0; printed 164.5")
     slowest: float = param(0.5, low=0.01, high=100.0, unit="m/s", words="below this speed the thrust rises no more")
     gain: float = param(1.0, low=0.0, high=20.0, unit="", words="power per stated power", calibrates="thrust")
-    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="the curve is per unit mass; 0: the vessel's own")
-
-    def completed(self, vessel: Any) -> Self:
-        """The effect with the vessel's mass filled in."""
-        return replace(super().completed(vessel), mass=self.mass or vessel.body.mass)
+    mass: float = param(
+        UNSET,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="the curve is per unit mass; if not given, the vessel's own",
+        follows="vessel.body.mass",
+    )

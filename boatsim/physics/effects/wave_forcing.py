@@ -1,46 +1,40 @@
 """Wave forcing: an irregular force about one frequency on every axis."""
 
-from dataclasses import dataclass
-from math import cos, floor, pi, sqrt, tan
-from typing import Any, ClassVar
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
 
 from numba import njit
 
-from boatsim.physics.base import Swell, Unsteady, Wrench, param
+from boatsim.physics.base import Swell, Unsteady, Wrench, param, wrench
+from boatsim.physics.chance import course, noise
 
-WAVES = 8  # components of the realisation, of equal energy
-GOLDEN = 0.6180339887498949  # multiples of it modulo 1 are spread evenly: phases without a random generator
-
-
-@njit(inline="always")
-def phase(k: int) -> float:
-    """Phase of component k [rad]."""
-    return 2.0 * pi * (k * GOLDEN - floor(k * GOLDEN))
+WAVES = 64  # components of the realisation on each axis
+SURGE, SWAY, ROLL, YAW = 100, 101, 102, 103  # channels of the noise, beyond those of other effects
 
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """One realisation: components at the quantiles of the oscillator's spectrum, each axis with phases of its own."""
+    """One realisation of the oscillators of `swell`; axes that nothing pushes cost nothing."""
     X = Y = K = N = 0.0
     if q.realisation == 0.0:
-        return Wrench(X, Y, K, N)
-    for k in range(WAVES):
-        off = q.damping * tan(pi * ((k + 0.5) / WAVES - 0.5))  # quantile of a Lorentz line
-        w = q.frequency * max(1.0 + off, 0.2)
-        first = 1000 * int(q.realisation) + 3 * k
-        X += cos(w * m.t + phase(first))
-        Y += cos(w * m.t + phase(first + 1))
-        N += cos(w * m.t + phase(first + 2))
-        K += cos(w * m.t + phase(first + 3 * WAVES))
-    share = sqrt(2.0 / WAVES)
-    return Wrench(q.surge * share * X, q.sway * share * Y, q.roll * share * K, q.yaw * share * N)
+        return wrench(X=X, Y=Y, K=K, N=N)
+    w, z, number = q.frequency, q.damping, q.realisation
+    if q.surge > 0.0:
+        X = q.surge * noise(m.t, w, z, number, SURGE, WAVES)
+    if q.sway > 0.0:
+        Y = q.sway * noise(m.t, w, z, number, SWAY, WAVES)
+    if q.roll > 0.0:
+        K = q.roll * noise(m.t, w, z, number, ROLL, WAVES)
+    if q.yaw > 0.0:
+        N = q.yaw * noise(m.t, w, z, number, YAW, WAVES)
+    return wrench(X=X, Y=Y, K=K, N=N)
 
 
 @njit(inline="always")
 def swell(q: Any) -> Swell:
     """The oscillators that the diagnosis follows; none where the force is zero."""
     there = q.surge > 0.0 or q.sway > 0.0 or q.roll > 0.0 or q.yaw > 0.0
-    return Swell(q.surge, q.sway, q.roll, q.yaw, q.frequency if there else 0.0, q.damping)
+    return Swell(q.surge, q.sway, 0.0, q.roll, 0.0, q.yaw, q.frequency if there else 0.0, q.damping)
 
 
 @dataclass(frozen=True)
@@ -67,4 +61,8 @@ class WaveForcing(Unsteady):
     damping: float = param(
         0.08, low=0.005, high=0.5, unit="", words="width of the spectrum", fit=True, spread=0.05, absent=0.08
     )
-    realisation: float = param(1.0, low=0.0, high=1e6, unit="", words="number of the random course; 0: still")
+    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still")
+
+    def seeded(self, seed: int) -> Self:
+        """Another course for each seed, unless the water is still."""
+        return replace(self, realisation=course(self.realisation, seed) if self.realisation else 0.0)

@@ -5,13 +5,19 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, param
+from boatsim.physics.base import Array, Channel, Course, param
 
 
 @njit(inline="always")
-def channel(x: float, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> float:
+def weakened(x: float, q: Any) -> float:
     """Astern thrust times a factor."""
     return x * q.astern_factor if x < 0.0 else x
+
+
+@njit(inline="always")
+def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+    """At each instant for itself."""
+    return Course(weakened(x.begin, q), weakened(x.middle, q), weakened(x.end, q))
 
 
 @dataclass(frozen=True)

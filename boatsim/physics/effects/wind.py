@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, Wrench, param, wrench
 
 
 @njit(inline="always")
@@ -16,7 +16,7 @@ def law(m: Any, q: Any) -> Wrench:
     along = m.cos_psi * north + m.sin_psi * east
     across = m.cos_psi * east - m.sin_psi * north
     arm = q.arm + (q.swing * along / q.force if q.force > 0.0 else 0.0)
-    return Wrench(q.end_on * along, across, 0.0, arm * across)
+    return wrench(X=q.end_on * along, Y=across, N=arm * across)
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,7 @@ class Wind(Force):
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"
     law: ClassVar = law
+    of_air: ClassVar = True
     strength: ClassVar = ("force",)
     starts: ClassVar = tuple({"force": 0.08, "toward": quarter * pi / 2} for quarter in (-1, 0, 1, 2))
 

@@ -1,33 +1,27 @@
 """Yaw-rate waves: an irregular sea that adds a narrow-band yaw rate to whatever turn the hull makes."""
 
 from dataclasses import dataclass, replace
-from math import cos, floor, hypot, pi, sin, sqrt, tan
+from math import cos, hypot, pi, sin, sqrt
 from typing import Any, ClassVar, Self
 
 from numba import njit
 
-from boatsim.physics.base import Swell, Unsteady, Wrench, param
+from boatsim.physics.base import UNSET, Swell, Unsteady, Wrench, param, wrench
+from boatsim.physics.chance import course, drawn, line
 
-PAIRS = 32  # pairs of components of the realisation
+WAVES = 64  # components of the realisation
+FIRST = 20_000  # of the numbers drawn: beyond those of other effects, which may have the same realisation
 
 
 @njit(inline="always")
-def spread(k: int, damping: float) -> tuple[float, float, float]:
-    """Frequencies of pair k above and below the filter's own, per its own, and the upper one's share of their energy.
+def component(k: int, q: Any) -> tuple[float, float, float]:
+    """Frequency [rad/s], amplitude [rad/s] and phase [rad] of one part of the yaw rate r_w.
 
-    With x = (w - 1/w) / (2 damping) the spectrum w^2 / ((1 - w^2)^2 + (2 damping w)^2) is that of a Lorentz line in
-    x; a pair lies at +-x, where the lines of equal energy are, its members share by w^2 : 1.
+    It lies in the middle of its part of the line: the moment grows with the frequency, and one drawn by lot from the
+    ends of the line, which reach to zero and to infinity, would drown all others.
     """
-    off = damping * tan(0.5 * pi * (k + 0.5) / PAIRS)
-    root = sqrt(1.0 + off * off)
-    return root + off, root - off, 0.5 * (root + off) / root
-
-
-@njit(inline="always")
-def phase(k: int, realisation: float) -> float:
-    """Phase of component k [rad]: the fraction of a large sine, as good as drawn by lot."""
-    far = 43758.5453 * sin(12.9898 * k + 78.233 * realisation)
-    return 2.0 * pi * (far - floor(far))
+    w, weight = line((k + 0.5) / WAVES - 0.5, q.damping)
+    return q.frequency * w, q.rms * sqrt(2.0 * weight / WAVES), 2.0 * pi * drawn(q.realisation, FIRST + k)
 
 
 @njit
@@ -35,22 +29,18 @@ def law(m: Any, q: Any) -> Wrench:
     """The moment I r_w' + d r_w under which a hull of yaw inertia I and damping d turns with r_w beside its own r."""
     N = 0.0
     if q.realisation == 0.0 or q.rms == 0.0:
-        return Wrench(0.0, 0.0, 0.0, N)
-    for k in range(PAIRS):
-        above, below, share = spread(k, q.damping)
-        for side in range(2):
-            w = q.frequency * (above if side == 0 else below)
-            size = q.rms * sqrt(2.0 * (share if side == 0 else 1.0 - share) / PAIRS)
-            angle = w * m.t + phase(2 * k + side, q.realisation)
-            N += size * (q.drag * cos(angle) - q.inertia * w * sin(angle))
-    return Wrench(0.0, 0.0, 0.0, N)
+        return wrench(N=N)
+    for k in range(WAVES):
+        w, size, phase = component(k, q)
+        N += size * (q.drag * cos(w * m.t + phase) - q.inertia * w * sin(w * m.t + phase))
+    return wrench(N=N)
 
 
 @njit(inline="always")
 def swell(q: Any) -> Swell:
     """The oscillator that the diagnosis follows: the moment is narrow-band too; none where there are no waves."""
     moment = q.rms * hypot(q.inertia * q.frequency, q.drag)
-    return Swell(0.0, 0.0, 0.0, moment, q.frequency if q.rms > 0.0 else 0.0, q.damping)
+    return Swell(0.0, 0.0, 0.0, 0.0, 0.0, moment, q.frequency if q.rms > 0.0 else 0.0, q.damping)
 
 
 @dataclass(frozen=True)
@@ -67,17 +57,16 @@ class YawRateWaves(Unsteady):
     frequency: float = param(3.0, low=0.05, high=20.0, unit="rad/s", words="of the filter, omega_w")
     damping: float = param(0.1, low=0.005, high=0.9, unit="", words="of the filter, lambda_w")
     inertia: float = param(
-        0.0, low=0.0, high=1e13, unit="kg m^2", words="in yaw, of hull and water; 0: the vessel's own"
+        UNSET, low=0.0, high=1e13, unit="kg m^2", words="in yaw, of hull and water; if not given, the vessel's own"
     )
-    drag: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
-    realisation: float = param(1.0, low=0.0, high=1e6, unit="", words="number of the random course; 0: still")
+    drag: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
+    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still")
 
-    def completed(self, vessel: Any) -> Self:
-        """The effect with the vessel's inertia and damping filled in."""
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """The vessel's inertia in yaw, its water's included."""
         water = vessel.effect("added_mass")
-        whole = vessel.body.yaw_inertia + (water.yaw + water.sway * water.sway_at**2 if water else 0.0)
-        return replace(super().completed(vessel), inertia=self.inertia or whole)
+        return {"inertia": vessel.body.yaw_inertia + (water.yaw + water.sway * water.sway_at**2 if water else 0.0)}
 
     def seeded(self, seed: int) -> Self:
-        """The realisation of that number, unless the water is still."""
-        return replace(self, realisation=float(1 + seed % 999_999) if self.realisation else 0.0)
+        """Another course for each seed, unless the water is still."""
+        return replace(self, realisation=course(self.realisation, seed) if self.realisation else 0.0)

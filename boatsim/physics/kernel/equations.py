@@ -383,7 +383,7 @@ def written(freedoms: tuple[str, ...], centred: bool) -> str:
     ]
     shows = [i for i in w.free] + [6 + i for i in w.free]
     parts = [
-        f'"""Equations of motion in {", ".join(AXES[i] for i in w.free)}, written by boatsim; not meant to be edited."""',
+        f'"""Equations of motion in {", ".join(AXES[i] for i in w.free)}, by boatsim; not meant to be edited."""',
         "",
         "from math import cos, sin",
         "",

@@ -17,7 +17,8 @@ def invert(m: Array) -> None:
     """Inverse of a mass matrix by its two blocks, in place; a held axis stands apart with a one of its own."""
     for b in range(2):
         (i, j, k), (d, e, f), (x, y, z) = DIAGONAL[b], COUPLINGS[b], BLOCKS[b]
-        xx, yy, zz = FREED[x] * m[i] + 1.0 - FREED[x], FREED[y] * m[j] + 1.0 - FREED[y], FREED[z] * m[k] + 1.0 - FREED[z]
+        xx, yy = FREED[x] * m[i] + 1.0 - FREED[x], FREED[y] * m[j] + 1.0 - FREED[y]
+        zz = FREED[z] * m[k] + 1.0 - FREED[z]
         xy, xz, yz = FREED[x] * FREED[y] * m[d], FREED[x] * FREED[z] * m[e], FREED[y] * FREED[z] * m[f]
         determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
         m[i], m[j], m[k] = (

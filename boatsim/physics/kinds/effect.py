@@ -8,7 +8,8 @@ from operator import attrgetter
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
 from boatsim.errors import BadInput
-from boatsim.physics.param import Checked, snake_case
+from boatsim.physics.content import snake_case
+from boatsim.physics.param import UNSET, Checked
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,9 @@ class Effect(Checked):
     roles: ClassVar[Mapping[str, Role]] = {}  # signals its law takes as its third argument, each with a channel
     rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
 
+    filled: frozenset[str] = field(  # parameters by `completed`, which nobody stated
+        default=frozenset(), kw_only=True, repr=False, compare=False, metadata={"ours": True}
+    )
     name: str = field(default="", kw_only=True)  # of this instance; that of the idea where there is one only
     # role -> channel or a number that is held; or the channels, or the instances it rides on, that it acts on
     on: Mapping[str, str | float] | Sequence[str] = field(default=(), kw_only=True, hash=False)
@@ -77,18 +81,46 @@ class Effect(Checked):
 
     def values(self) -> Any:
         """The parameters as the law's second argument."""
-        return type(self).values_type()(*(float(getattr(self, n)) for n in type(self).params()))
+        given = ((self.stated(n), getattr(self, n)) for n in type(self).params())
+        return type(self).values_type()(*(float(x) if there else 0.0 for there, x in given))
+
+    def stated(self, name: str) -> bool:
+        """Whether a parameter has a value, be it zero."""
+        return getattr(self, name) is not UNSET
 
     def completed(self, vessel: Any) -> Self:
-        """The effect with what it must know of the vessel it is put on (`follows`) filled in. Raises BadInput."""
-        taken = {}
+        """The effect with what nobody stated filled in: what `follows` the vessel, then what `rules` give, else 0.
+
+        What a file states wins. Raises BadInput where the vessel lacks what the effect builds on.
+        """
+        own = self
         for name, about in type(self).params().items():
-            owner, _, key = about.follows.partition(".")
-            if owner == "vessel":
-                taken[name] = getattr(self, name) or attrgetter(key)(vessel)
-            elif owner:
-                taken[name] = getattr(self.needed(vessel, owner), key)
-        return replace(self, **taken)
+            if about.follows and not self.stated(name):
+                own = replace(own, **{name: self._followed(about.follows, vessel)})
+        ruled = {n: x for n, x in own.rules(vessel).items() if not own.stated(n)} if own._left() else {}
+        own = replace(own, **ruled)
+        for fact, names in type(self).facts.items():
+            for missing in (n for n in names if not own.stated(n)):
+                where = f"state it in its table, or {fact} among the facts of a recording or of the vessel's diagnosis"
+                raise BadInput(f"{vessel.name}: {self.name} needs {missing}: {where}")
+        return replace(own, **dict.fromkeys(own._left(), 0.0), filled=frozenset(self._left()) | self.filled)
+
+    def rules(self, vessel: Any) -> dict[str, float]:
+        """Parameters by a rule of the effect's own, for those that nobody states; what follows is filled in before."""
+        return {}
+
+    def _left(self) -> list[str]:
+        """Parameters without a value."""
+        return [n for n in type(self).params() if not self.stated(n)]
+
+    def _followed(self, source: str, vessel: Any) -> float:
+        """The value of the vessel, or of one of its effects, that a parameter follows. Raises BadInput."""
+        owner, _, key = source.removesuffix("?").partition(".")
+        if owner == "vessel":
+            return float(attrgetter(key)(vessel))
+        if source.endswith("?") and vessel.effect(owner) is None:
+            return 0.0
+        return float(getattr(self.needed(vessel, owner), key))
 
     def needed(self, vessel: Any, owner: str) -> Any:
         """The vessel's effect that this one builds on. Raises BadInput where it has none."""

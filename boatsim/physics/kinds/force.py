@@ -28,7 +28,8 @@ class Force(Kind):
 
     parts: ClassVar = (WRENCH,)
     laws: ClassVar = ("law",)
-    of_the_air: ClassVar[bool] = False  # logged apart, as the force of the wind
+    of_air: ClassVar[bool] = False  # a force of the air, which a run logs apart
+    anchored: ClassVar[str] = ""  # what it holds on to beside the water: "the air", "walls"; empty: nothing
     law: ClassVar[Callable[..., Wrench]]
 
     @classmethod

@@ -1,0 +1,168 @@
+"""Damping: the water resists a power of the speed through it, axis by axis."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Force, Release, Wrench, factor, number, param, preset, shift, wrench
+
+# a start too strong in one axis spoils the others, so only one of them leaves the linear law
+NEARLY_LINEAR = {"surge_exponent": 1.001, "sway_exponent": 1.001, "yaw_exponent": 1.001}
+ITTC = "ITTC Recommended Procedure 7.5-02-07-04.5, Estimation of Roll Damping"
+
+
+@njit(inline="always")
+def power(speed: float, exponent: float, equal: float) -> float:
+    """Speed times (|speed| / equal)^(exponent - 1), without a power where products do."""
+    if exponent == 1.0:
+        return speed
+    if exponent == 2.0:
+        return speed * abs(speed) / equal
+    if exponent == 3.0:
+        return speed * speed * speed / (equal * equal)
+    return float(speed * (abs(speed) / equal) ** (exponent - 1.0))
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    """-D nu_r with each speed to its power; the sway damping acts on the flow at its own place."""
+    Y = -q.sway * power(m.vr + q.sway_at * m.r, q.sway_exponent, q.sway_equal)
+    return wrench(
+        X=-q.surge * power(m.ur, q.surge_exponent, q.surge_equal),
+        Y=Y - q.sway_by_yaw * m.r,
+        K=-q.roll * power(m.p, q.roll_exponent, q.roll_equal),
+        N=-q.yaw * power(m.r, q.yaw_exponent, q.yaw_equal) - q.yaw_by_sway * m.vr + q.sway_at * Y,
+    )
+
+
+def exponent(axis: str) -> Any:
+    """The power of the speed of one axis."""
+    return param(1.0, low=1.0, high=3.0, unit="", words=f"power of the speed in {axis}; 1: linear", axis=axis)
+
+
+def equal(axis: str, unit: str) -> Any:
+    """The speed at which a power law is as strong as the linear one of the same coefficient."""
+    return param(1.0, low=0.01, high=20.0, unit=unit, words="speed at which the power does not count", axis=axis)
+
+
+@dataclass(frozen=True)
+class LinearDamping(Force):
+    """Damping of a slow or small motion: skin friction, wave making, lift of the hull at small angles."""
+
+    words: ClassVar[str] = "the water resists in proportion to the speed"
+    shown_by: ClassVar[str] = "coasting down from a low speed"
+    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4"
+    law: ClassVar = law
+
+    surge: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-X_u", calibrates="damping", axis="surge")
+    sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway")
+    yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw")
+    roll: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll")
+    sway_by_yaw: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping")
+    yaw_by_sway: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping")
+    sway_at: float = param(0.0, low=-200.0, high=200.0, unit="m", words="the sway damping acts this far ahead")
+    surge_exponent: float = exponent("surge")
+    sway_exponent: float = exponent("sway")
+    yaw_exponent: float = exponent("yaw")
+    roll_exponent: float = exponent("roll")
+    surge_equal: float = equal("surge", "m/s")
+    sway_equal: float = equal("sway", "m/s")
+    yaw_equal: float = equal("yaw", "rad/s")
+    roll_equal: float = equal("roll", "rad/s")
+
+
+AXES = ("surge", "sway", "yaw", "roll")
+PLAIN = dict.fromkeys(("sway_by_yaw", "yaw_by_sway", "sway_at"), 0.0) | {f"{axis}_equal": 1.0 for axis in AXES}
+
+QuadraticDamping = preset(
+    LinearDamping,
+    "QuadraticDamping",
+    words="damping grows with the square of the speed",
+    shown_by="the same motion at a large and at a small amplitude",
+    source=ITTC,
+    frees={
+        "surge": {"unit": "N s^2/m^2", "words": "surge", "spread": 4.0},
+        "sway": {"unit": "N s^2/m^2", "words": "sway", "spread": 40.0},
+        "yaw": {"unit": "N m s^2", "words": "yaw", "spread": 1.5},
+        "roll": {"unit": "N m s^2", "words": "roll", "spread": 0.1},
+    },
+    fixed=PLAIN | {f"{axis}_exponent": 2.0 for axis in AXES},
+)
+
+CubicDamping = preset(
+    LinearDamping,
+    "CubicDamping",
+    words="damping grows with the cube of the speed",
+    shown_by="the same motion at a large and at a small amplitude",
+    source=ITTC,
+    frees={
+        "surge": {"unit": "N s^3/m^3", "words": "surge", "spread": 4.0},
+        "sway": {"unit": "N s^3/m^3", "words": "sway", "spread": 40.0},
+        "yaw": {"unit": "N m s^3", "words": "yaw", "spread": 1.5},
+        "roll": {"unit": "N m s^3", "words": "roll", "spread": 0.003},
+    },
+    fixed=PLAIN | {f"{axis}_exponent": 3.0 for axis in AXES},
+)
+
+
+@dataclass(frozen=True)
+class DampingError(Release):
+    """Linear damping is off by more than its stated uncertainty."""
+
+    words: ClassVar[str] = "the linear damping coefficients are off by more than their stated uncertainty"
+    shown_by: ClassVar[str] = "coasting down in each axis"
+
+    surge_factor: float = factor("linear_damping.surge", words="surge", axis="surge")
+    sway_factor: float = factor("linear_damping.sway", words="sway", axis="sway")
+    yaw_factor: float = factor("linear_damping.yaw", words="yaw", axis="yaw")
+    roll_factor: float = factor("linear_damping.roll", words="roll", axis="roll")
+
+
+@dataclass(frozen=True)
+class LateralCentreShift(Release):
+    """Centre of the linear sway damping ahead of or behind the origin of motion (skeg, trim, load)."""
+
+    words: ClassVar[str] = "the water's sideways resistance acts ahead of or behind the mass centre"
+    shown_by: ClassVar[str] = "pushing sideways, and coasting after a turn"
+    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4 (Y_r, N_v)"
+
+    shift: float = shift(
+        "linear_damping.sway_at", words="positive forward", unit="m", spread=0.1, low=-200.0, high=200.0
+    )
+
+
+def another_power(axis: str) -> Any:
+    """The power of the speed in one axis."""
+    return number(
+        f"linear_damping.{axis}_exponent", words=axis, unit="", spread=0.5, low=1.0, high=3.0, absent=1.0, axis=axis
+    )
+
+
+def agreement(axis: str, unit: str) -> Any:
+    """The speed at which both laws agree."""
+    return number(
+        f"linear_damping.{axis}_equal", words="both laws agree", unit=unit, spread=0.5, low=0.01, high=20.0,
+        absent=1.0, axis=axis,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class DampingExponent(Release):
+    """A power law in place of the vessel's linear damping; both agree at one speed of each axis."""
+
+    words: ClassVar[str] = "damping follows another power of the speed than the first, in place of the linear one"
+    shown_by: ClassVar[str] = "the same motion at a large and at a small amplitude"
+    source: ClassVar[str] = "Y. Huang and Z. Ji, Autonomous boat dynamics, eqs 4-6: d sign(x) |x|^a"
+    strength: ClassVar = ("surge_exponent", "sway_exponent", "yaw_exponent")
+    starts: ClassVar = tuple(
+        {**NEARLY_LINEAR, f"{axis}_exponent": 2.0, f"{axis}_equal": equal}
+        for axis, equal in (("surge", 1.0), ("sway", 1.0), ("sway", 0.3), ("sway", 0.1), ("yaw", 1.0))
+    )
+
+    surge_exponent: float = another_power("surge")
+    sway_exponent: float = another_power("sway")
+    yaw_exponent: float = another_power("yaw")
+    surge_equal: float = agreement("surge", "m/s")
+    sway_equal: float = agreement("sway", "m/s")
+    yaw_equal: float = agreement("yaw", "rad/s")

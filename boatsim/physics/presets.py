@@ -1,0 +1,40 @@
+"""Presets: several entries of the library over one law."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, TypeVar
+
+from boatsim.physics.kinds.effect import Effect
+
+E = TypeVar("E", bound=Effect)
+
+
+def preset(
+    law: type[E],
+    name: str,
+    *,
+    frees: Mapping[str, Mapping[str, Any]] | None = None,
+    fixed: Mapping[str, float] | None = None,
+    **about: Any,
+) -> type[E]:
+    """Another entry over the same law, under a name of its own; `about` is its words, shown_by, source, starts ...
+
+    `frees` are the parameters that a diagnosis may fit, with what is otherwise known of them (`Param`); `fixed` are
+    those that make the entry what it is. The rest stays open to a file.
+    """
+    types: dict[str, type] = {}
+    namespace: dict[str, Any] = {**about, "__doc__": about["words"], "__module__": law.__module__}
+    namespace["__annotations__"] = types
+    for key, known in law.params().items():
+        nominal = next(f.default for f in fields(law) if f.name == key)
+        if key in (frees or {}):
+            known = known._replace(**{"fit": True, "calibrates": "", **(frees or {})[key]})
+            nominal = known.absent
+        elif key in (fixed or {}):
+            nominal = (fixed or {})[key]
+            known = known._replace(low=nominal, high=nominal, fit=False, calibrates="", follows="")
+        else:
+            known = known._replace(fit=False)
+        namespace[key] = field(default=nominal, metadata={"param": known})
+        types[key] = float
+    return dataclass(frozen=True)(type(law)(name, (law,), namespace))

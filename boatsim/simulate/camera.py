@@ -1,0 +1,111 @@
+"""The camera above the water: sees any number of marks fixed to the hull, and gives the pose that fits them best."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from boatsim.errors import BadInput
+from boatsim.physics.base import Array, Checked, param
+from boatsim.physics.vessel import Vessel
+
+Pose = tuple[float, float, float]  # x, y [m] of the CG, psi [rad]
+
+
+class Frame(NamedTuple):
+    """One camera frame: the pose that its marks give, and the marks themselves."""
+
+    t: float  # [s]
+    x: float  # [m] CG
+    y: float  # [m]
+    psi: float  # [rad] in [-pi, pi]
+    marks: tuple[float, ...]  # [m] x and y of each, in the order of the camera's
+
+
+@dataclass(frozen=True)
+class Camera(Checked):
+    """A picture some times a second, on each of which the marks are pointed out by hand.
+
+    Places in the water's plane are complex numbers, north + i east (on the hull ahead + i starboard). Heading and CG
+    are those of the drawing of the marks that lies nearest to what was seen; its size is free, as a picture's is.
+    """
+
+    rate: float = param(6.0, low=0.1, high=240.0, unit="Hz", words="frames evaluated per second")
+    mark_sd: float = param(0.002, low=0.0, high=0.1, unit="m", words="marking noise per coordinate and mark")
+    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # [m] ahead and to starboard of the CG
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name, place in self.marks.items():
+            if not _is_place(place):
+                raise BadInput(f"Camera.marks.{name} = {place!r}; allowed are two numbers, m ahead and to starboard")
+        if len({tuple(place) for place in self.marks.values()}) < 2:
+            raise BadInput(f"Camera.marks = {dict(self.marks)}; a heading needs two marks in different places")
+
+    @cached_property
+    def places(self) -> Array:
+        """(M,) complex, where the marks are on the hull [m]."""
+        return np.array([complex(*place) for place in self.marks.values()])
+
+    @cached_property
+    def _weights(self) -> tuple[Array, Array]:
+        """(M,) each: by which the marks seen sum up to the place of the CG, and to the way the bow points."""
+        off = self.places - self.places.mean()
+        turn = off.conj() / (np.abs(off) ** 2).sum()
+        return 1.0 / len(off) - self.places.mean() * turn, turn
+
+    def seen(self, place: Array, psi: Array, noise: Array) -> Array:
+        """(..., M) marks of a boat at `place` (...) on heading `psi` (...); `noise` (..., 2 M) is standard normal."""
+        shaken = self.mark_sd * (noise[..., 0::2] + 1j * noise[..., 1::2])
+        return np.asarray(np.asarray(place)[..., None] + np.exp(1j * np.asarray(psi))[..., None] * self.places + shaken)
+
+    def pose(self, seen: Array) -> tuple[Array, Array]:
+        """Place (...) [m] of the CG and heading (...) [rad] of marks seen (..., M)."""
+        centre, turn = self._weights
+        return seen @ centre, np.angle(seen @ turn)
+
+    def noise(self) -> dict[str, float]:
+        """Standard deviations of the pose that a frame gives, as a recording's notes have them."""
+        centre, turn = (float(np.sqrt((np.abs(w) ** 2).sum())) for w in self._weights)
+        return {"position_sd_m": self.mark_sd * centre, "heading_sd_rad": self.mark_sd * turn}
+
+    def shoot(self, t: float, pose: Pose, noise: Array) -> Frame:
+        """One frame of a boat at a true pose; `noise` holds two standard normal numbers a mark."""
+        marks = self.seen(np.asarray(complex(pose[0], pose[1])), np.asarray(pose[2]), noise)
+        place, psi = self.pose(marks)
+        return Frame(t, place.real.item(), place.imag.item(), psi.item(), tuple(marks.view(float).tolist()))
+
+    def due(self, number: int, t: float) -> bool:
+        """Whether frame `number` has been taken by the time t [s]."""
+        return number / self.rate <= t + 1e-9
+
+    def film(
+        self, t0: float, before: Pose, t1: float, after: Pose, first: int, rng: np.random.Generator
+    ) -> Iterator[Frame]:
+        """Frames number `first` on that fall into (t0, t1], the pose interpolated between its two ends."""
+        number = first
+        while self.due(number, t1):
+            w = 1.0 if t1 == t0 else min(max((number / self.rate - t0) / (t1 - t0), 0.0), 1.0)
+            x, y, psi = (a + w * (b - a) for a, b in zip(before, after, strict=True))
+            yield self.shoot(number / self.rate, (x, y, psi), rng.standard_normal(2 * len(self.marks)))
+            number += 1
+
+
+def camera_over(vessel: Vessel, settings: Mapping[str, Any]) -> Camera:
+    """The camera of a [camera] table over a vessel, whose marks the table may move or add to.
+
+    Where neither file names a mark they are half a length ahead and astern of the CG. Raises BadInput.
+    """
+    given = settings.get("marks", {})
+    if not isinstance(given, Mapping):
+        raise BadInput(f"Camera.marks = {given!r}; allowed is a table: name = [m ahead, m to starboard]")
+    ends = {"bow": (0.5 * vessel.length, 0.0), "stern": (-0.5 * vessel.length, 0.0)}
+    return Camera.from_settings({**settings, "marks": {**vessel.marks, **given} or ends})
+
+
+def _is_place(given: object) -> bool:
+    """Whether it is two finite numbers."""
+    numbers = given if isinstance(given, list | tuple) else ()
+    return len(numbers) == 2 and all(type(x) in (int, float) and np.isfinite(x) for x in numbers)

@@ -1,0 +1,128 @@
+"""Judges a run: the norms of its measure and the checks of its signals, beside the values they are held against."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from math import isfinite, sqrt
+from typing import Any
+
+import numpy as np
+
+from boatsim.errors import BadInput, unknown_name
+from boatsim.physics.base import Array
+from boatsim.recordings.table import Recording
+from boatsim.simulate.film import FilmMeasure, film
+from boatsim.simulate.run import Run
+from boatsim.simulate.scenario import CheckTable, NormTable
+
+REPRODUCED, MISSED, UNSTATED = "reproduced", "not reproduced", "no tolerance stated"
+
+
+@dataclass(frozen=True)
+class Norm:
+    """One norm of a run beside the paper's value, and apart from it the band about our own value."""
+
+    value: float | None  # None: the run never got as far as the norm asks
+    unit: str
+    published: float | None = None
+    tolerance: float | None = None  # of what is published, where its document states one
+    guard: tuple[float, float] | None = None  # low, high: no promise, only that a change does not go unseen
+    ok: bool | None = None  # whether the value lies within the guard; None: there is none
+    at_reported: float | None = None  # of measures on camera frames: at the rate reported beside the one scored
+    noise_floor: float | None = None  # what the camera's noise alone would give, error-free motion, as many frames
+
+    @property
+    def verdict(self) -> str | None:
+        """Whether what is published is reproduced, signs included; None where nothing is."""
+        if self.published is None:
+            return None
+        if self.tolerance is None:
+            return UNSTATED
+        close = self.value is not None and within(self.value, self.published, self.tolerance)
+        return REPRODUCED if close else MISSED
+
+    def to_json(self) -> dict[str, Any]:
+        """Its entry in norms.json; an open end of a guard is null."""
+        guard = None if self.guard is None else [end if isfinite(end) else None for end in self.guard]
+        return asdict(self) | {"verdict": self.verdict, "guard": guard}
+
+
+def within(value: float, published: float, tolerance: float) -> bool:
+    """Whether a value lies so near to a published one, on the edge too."""
+    return abs(value - published) <= tolerance * (1 + 1e-9)
+
+
+def norms(run: Run) -> dict[str, Norm]:
+    """All norms the scenario asks for, by name: those of its `measure`, then its checks. Raises BadInput."""
+    measure = run.scenario.measure
+    found: dict[str, Norm] = {}
+    if isinstance(measure, FilmMeasure):
+        values, beside = film_values(run, measure, measure.scored), film_values(run, measure, measure.reported)
+        floor = measure.noise_floor(round(values["frames"]), run.scenario.camera) if values else {}
+        for name, unit in type(measure).units.items():
+            found[name] = _judged(run, name, values.get(name), unit, beside.get(name), floor.get(name))
+    elif measure:
+        values = measure.values(run.recording)
+        found = {n: _judged(run, n, values.get(n), measure.unit(n)) for n in type(measure).units}
+    return found | {f"{c.signal}_{c.norm}": _checked(run.recording, c) for c in run.scenario.file.check}
+
+
+def to_json(run: Run, norms: Mapping[str, Norm]) -> dict[str, Any]:
+    """Content of norms.json."""
+    return {
+        "scenario": run.scenario.name,
+        "controller": run.scenario.file.controller["use"],
+        "seed": run.seed,
+        "complete": run.complete,
+        "steps": run.steps,
+        "saturated_steps": run.saturated,  # by channel: more was sent than it takes
+        "norms": {name: norm.to_json() for name, norm in norms.items()},
+    }
+
+
+def film_values(run: Run, measure: FilmMeasure, rate: float) -> dict[str, float]:
+    """Norms of a measure on the frames of a run at a rate [Hz], which the camera's own rate is a multiple of."""
+    start = run.scenario.file.start
+    every = round(run.scenario.camera.rate / rate)
+    return measure.of_film(film(run.camera, run.recording, (start.x, start.y, start.psi), every))
+
+
+def signal_norm(t: Array, x: Array, kind: str) -> float:
+    """Norm of a logged signal; rows without a value (a camera between its frames) are left out.
+
+    Over the time T of the log: inf max|x|, rms sqrt(mean x^2), l2 sqrt(T mean x^2), l1 T mean|x|, so that l1 and l2 are
+    integrals that do not depend on the step.
+    """
+    known = np.abs(x[np.isfinite(x)])
+    span = float(t[-1] - t[0])
+    return {
+        "inf": float(known.max(initial=0.0)),
+        "rms": sqrt((known**2).mean()) if len(known) else 0.0,
+        "l2": sqrt(span * (known**2).mean()) if len(known) else 0.0,
+        "l1": span * float(known.mean()) if len(known) else 0.0,
+    }[kind]
+
+
+def _checked(log: Recording, check: CheckTable) -> Norm:
+    if check.signal not in log.signals:
+        raise BadInput(unknown_name("[[check]] signal", check.signal, log.signals))
+    value = signal_norm(log.t, log[check.signal], check.norm)
+    unit = log.unit(check.signal) + {"l2": " s^0.5", "l1": " s"}.get(check.norm, "")
+    return Norm(value, unit.strip(), guard=(0.0, check.below), ok=value < check.below)
+
+
+def _judged(
+    run: Run,
+    name: str,
+    value: float | None,
+    unit: str,
+    at_reported: float | None = None,
+    floor: float | None = None,
+) -> Norm:
+    """The norm beside what the scenario says of it; its guard may be widened by the noise floor."""
+    table = run.scenario.file.norms.get(name, NormTable())
+    guard, ok = table.guard, None
+    if guard is not None:
+        more = floor if run.scenario.file.noise_widens_guards and floor is not None else 0.0
+        guard = (guard[0] - more, guard[1] + more)
+        ok = value is not None and guard[0] <= value <= guard[1]
+    return Norm(value, unit, table.published, table.tolerance, guard, ok, at_reported, floor)

@@ -1,0 +1,121 @@
+"""A patched file gives back the boat that was fitted: nothing that it states is overwritten on loading."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from boatsim.diagnose.analysis import composed
+from boatsim.diagnose.filter import MAX_STEP, Levels, Track, axes_of, body_of
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.report import patch
+from boatsim.errors import BadInput
+from boatsim.physics import content, vessel
+from boatsim.physics.base import Array
+from boatsim.physics.content import load_class
+from boatsim.physics.effects.linear_hull import LinearHull
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+
+ROWS, ROW = 61, 0.1  # 6 s
+OFF = 0.1  # relative, of every coefficient that a diagnosis recalibrates
+
+
+def problem_of(boat: Vessel) -> Problem:
+    """A made-up run of a vessel, to fit nothing with: commands in steps, no measurements."""
+    program, _ = composed(boat)
+    rng = np.random.default_rng(7)
+    low, high = (np.array([getattr(c, a) for c in boat.commands.values()]) for a in ("low", "high"))
+    commands = np.zeros((ROWS, 1))
+    if boat.commands:
+        steps = rng.uniform(0.25, 0.75, (ROWS // 10 + 1, len(low)))
+        commands = np.repeat(low + steps * (high - low), 10, axis=0)[:ROWS]
+    nq = len(axes_of(boat))
+    measured, scale = np.full((ROWS, 1), np.nan), {"heading_sd_rad": 1.0}
+    track = Track(
+        "made_up", program, ROW * np.arange(ROWS), measured, ("heading_sd_rad",), ("psi_rad",), np.array([nq - 1]),
+        np.ascontiguousarray(commands), np.append(program.values(), program.body), scale,
+    )  # fmt: skip
+    levels = Levels(np.ones(nq), 1.0, {"heading_sd_rad": 0.01})
+    return Problem([track], levels, {"damping": OFF, "thrust": OFF, "restoring": OFF})
+
+
+def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
+    """Channels of a free run from a slow, turning, heeled start, (ROWS, 2 NQ)."""
+    track, nq = problem.tracks[0], problem.program.module.NQ
+    out, start = np.full((1, ROWS, 2 * nq), np.nan), np.zeros((1, 2 * nq))
+    start[0, nq - 1 :] = 0.02
+    start[0, nq] = getattr(problem.program.vessel.effect("speed_hold"), "speed", 0.5)
+    problem.program.module.free_runs(
+        track.times, track.commands, MAX_STEP, body_of(values), values, problem.program.switches(acting), np.array([0]),
+        np.array([ROWS - 1]), start, out,
+    )  # fmt: skip
+    return out[0]
+
+
+def recalibrated(problem: Problem, by: float) -> Fit:
+    """Every coefficient that may be off, off by about so much, and differently."""
+    nominal = problem.nominal()
+    return replace(
+        nominal, theta=1.0 + by * np.linspace(0.5, 1.5, len(nominal.free)) * (-1.0) ** np.arange(len(nominal.free))
+    )
+
+
+@pytest.mark.parametrize("name", content.names("vessel"))
+def test_replay_of_the_patched_file_is_the_free_run_in_memory(name: str, tmp_path: Path) -> None:
+    boat = vessel.load(name)
+    problem = problem_of(boat)
+    found = recalibrated(problem, OFF)
+    fitted = free_run(problem, problem.values(problem.tracks[0], found.free, found.theta), ())
+    patch.write(problem, boat, found, tmp_path / "patched.toml")
+    again = problem_of(vessel.load(str(tmp_path / "patched.toml")))
+    replayed = free_run(again, again.tracks[0].values, ())
+    assert np.isfinite(fitted).all()
+    np.testing.assert_allclose(replayed, fitted, rtol=1e-7, atol=1e-7)
+    if found.free:
+        assert np.abs(fitted - free_run(problem, problem.tracks[0].values, ())).max() > 1e-5  # something was patched
+
+
+def test_a_patched_file_states_what_a_rule_would_fill_in_otherwise(tmp_path: Path) -> None:
+    boat = vessel.load("eastward_ho", ["condition_1"])
+    problem = problem_of(boat)
+    found = recalibrated(problem, OFF)
+    patch.write(problem, boat, found, tmp_path / "patched.toml")
+    again = vessel.load(str(tmp_path / "patched.toml"), ["condition_1"])
+    fitted = problem.values(problem.tracks[0], found.free, found.theta)
+    np.testing.assert_allclose(Program(again).values(), fitted[: len(Program(again).values())], rtol=1e-9)
+
+
+def test_what_is_stated_wins_and_zero_is_a_value() -> None:
+    boat = vessel.load("eastward_ho", ["condition_1"])
+    own = LinearHull(speed=4.0).completed(boat)
+    stated = LinearHull(speed=4.0, sway=0.0, yaw=7.0).completed(boat)
+    assert (stated.sway, stated.yaw) == (0.0, 7.0)
+    assert stated.yaw_by_sway == own.yaw_by_sway != 0.0
+    assert load_class("effect", "cross_flow_drag")(length=0.0).completed(boat).length == 0.0
+    with pytest.raises(BadInput, match="LinearHull.sway = nan"):
+        LinearHull.from_settings({"sway": float("nan")})
+
+
+def test_a_folder_with_vessel_and_patched_file_can_move(tmp_path: Path) -> None:
+    here, there = tmp_path / "here", tmp_path / "there"
+    shutil.copytree(content.find("vessel", "trial_boat").parent, here / "boat")
+    (here / "out").mkdir()
+    boat = vessel.load(str(here / "boat" / "vessel.toml"))
+    problem = problem_of(boat)
+    patch.write(problem, boat, recalibrated(problem, OFF), here / "out" / "patched.toml")
+    here.rename(there)
+    moved = vessel.load(str(there / "out" / "patched.toml"))
+    assert moved.path == (there / "boat").resolve()
+    assert (moved.path / moved.hull).is_file()
+
+
+def test_a_patched_patch_still_finds_the_hull(tmp_path: Path) -> None:
+    boat = vessel.load("trial_boat")
+    for _ in range(2):
+        problem = problem_of(boat)
+        patch.write(problem, boat, recalibrated(problem, OFF), tmp_path / "patched.toml")
+        boat = vessel.load(str(tmp_path / "patched.toml"))
+        assert boat.path == content.find("vessel", "trial_boat").parent
