@@ -5,8 +5,11 @@ python -m benchmarks.papers --update   write it
 
 A paper's file has `title`, `source`, [[scenario]] tables (`name`, and what holds for all its published norms) and
 [[row]] tables. Ours is the pinned `norm` of a `scenario`, a `figure` of a `module` here, or a number `ours` that
-`command` prints. `within` is the share of the published figure that still counts as reproduced; where ours is further
-off, `reason` says why.
+`command` prints.
+
+The verdict is computed, signs and all: from the figures and the `tolerance` of the published one (or `within`, its
+share of it; else that of the scenario's norm), or from the `span` of ours that published words stand for. Words alone
+are not judged. `because` and `reason` say why a figure differs; they do not make it another verdict.
 """
 
 import argparse
@@ -16,18 +19,22 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
+from math import isinf
 from pathlib import Path
 from typing import Any
 
 from benchmarks import golden
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
+from boatsim.simulate import scenario
+from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED, within
 
 HOME = Path(__file__).parents[1]
 OUT = HOME / "docs" / "papers.md"
-WITHIN = 0.10
-VERDICTS = ("reproduced", "corrected", "can't be", "diagnosed")  # the last: a concealed case of the paper's
-KEYS = {"what", "unit", "published", "within", "verdict", "reason"}
+WORDS = "in words"  # nothing to compute with
+VERDICTS = (REPRODUCED, MISSED, UNSTATED, WORDS)
+BECAUSE = ("corrected", "can't be", "diagnosed")  # the last: a concealed case of the paper's
+KEYS = {"what", "unit", "published", "tolerance", "within", "span", "because", "reason"}
 OURS = ({"scenario", "norm"}, {"module", "figure"}, {"ours", "command"}, {"ours"}, set[str]())
 
 
@@ -42,6 +49,8 @@ class Row:
     verdict: str
     reason: str
     command: str
+    tolerance: float | None = None  # of the published figure, either way
+    span: tuple[float, float] | None = None  # of ours, that the published words stand for
 
     def line(self) -> str:
         """Row of the table."""
@@ -81,33 +90,56 @@ def _row(table: Mapping[str, Any], file: Path) -> Row:
         command = f"`{table['command']}`"
     if published is None:
         raise BadInput(f"{file.name}: {table['what']}: nothing published to compare with")
-    within = table.get("within", WITHIN)
-    verdict = table.get("verdict") or _verdict(published, ours, within)
-    if verdict == "reproduced" and not isinstance(published, str) and not isinstance(ours, str):
-        verdict = _verdict(published, ours, within)  # a word does not make a number closer
-    if verdict not in VERDICTS:
-        raise BadInput(f"{file.name}: {table['what']}: verdict = {verdict!r}; allowed are {', '.join(VERDICTS)}")
-    reason = table.get("reason", "")
-    if verdict != "reproduced" and not reason:
+    tolerance, span = _tolerance(table, published), tuple(table["span"]) if "span" in table else None
+    verdict = verdict_on(published, ours, tolerance, span)
+    because, reason = table.get("because", ""), table.get("reason", "")
+    if because not in ("", *BECAUSE):
+        raise BadInput(f"{file.name}: {table['what']}: because = {because!r}; allowed are {', '.join(BECAUSE)}")
+    if verdict == MISSED and not reason:
         raise BadInput(f"{file.name}: {table['what']}: {published} against {ours} needs a reason")
-    if verdict == "reproduced" and not isinstance(published, str) and not isinstance(ours, str):
-        told = f"within {within:.1%}" if within < 0.01 else f"within {within:.0%}"
-        reason = f"{told}; {table['reason']}" if "reason" in table and "verdict" in table else told
-    return Row(table["what"], published, ours, unit or "", verdict, reason, command)
+    told = "; ".join(part for part in (_margin(tolerance, span, unit or ""), because, reason) if part)
+    return Row(table["what"], published, ours, unit or "", verdict, told, command, tolerance, span)
 
 
-def _verdict(published: Any, ours: Any, within: float) -> str:
-    """Reproduced if close enough; a figure that is not must say itself what it is."""
-    if isinstance(published, str) or isinstance(ours, str):
-        return "reproduced" if published == ours else "can't be"
-    close = ours is not None and abs(abs(ours) - abs(published)) <= within * abs(published) + 1e-12
-    return "reproduced" if close else "can't be"
+def _tolerance(table: Mapping[str, Any], published: Any) -> float | None:
+    """Either way of a published number: the row's own, or what the scenario's norm has for the same figure."""
+    if isinstance(published, str):
+        return None
+    if "tolerance" in table:
+        return float(table["tolerance"])
+    if "within" in table:
+        return float(table["within"] * abs(published))
+    norm = _norms(table["scenario"]).get(table["norm"]) if "norm" in table else None
+    return norm.tolerance if norm is not None and norm.published == published else None
+
+
+def verdict_on(published: Any, ours: Any, tolerance: float | None, span: tuple[float, float] | None) -> str:
+    """What figures alone say."""
+    if isinstance(ours, str) or (isinstance(published, str) and span is None):
+        return WORDS
+    if span is not None:
+        return REPRODUCED if ours is not None and span[0] <= ours <= span[1] else MISSED
+    if tolerance is None:
+        return UNSTATED
+    return REPRODUCED if ours is not None and within(ours, published, tolerance) else MISSED
+
+
+def _margin(tolerance: float | None, span: tuple[float, float] | None, unit: str) -> str:
+    """The margin of a verdict in words."""
+    if span is not None:
+        return f"at least {_shown(span[0], unit)}" if isinf(span[1]) else f"{span[0]:.4g} to {_shown(span[1], unit)}"
+    return "" if tolerance is None else f"within {_shown(tolerance, unit)}"
 
 
 @cache
-def _golden(scenario: str) -> dict[str, Any]:
-    if not (found := golden.kept(scenario)):
-        raise BadInput(f"{scenario}: no norms pinned; python -m benchmarks.golden --update pins them")
+def _norms(name: str) -> Mapping[str, scenario.NormTable]:
+    return scenario.load(name).file.norms
+
+
+@cache
+def _golden(name: str) -> dict[str, Any]:
+    if not (found := golden.kept(name)):
+        raise BadInput(f"{name}: no norms pinned; python -m benchmarks.golden --update pins them")
     return found
 
 
@@ -132,7 +164,7 @@ def document() -> str:
     for file in sorted((HOME / "docs" / "papers").glob("*.toml")):
         paper, found = read_toml(file), list(rows(file))
         counts.update(r.verdict for r in found)
-        head = "| figure | published | ours | verdict | reason | from |\n| --- | --- | --- | --- | --- | --- |"
+        head = "| figure | published | ours | verdict | margin, reason | from |\n| --- | --- | --- | --- | --- | --- |"
         parts.append(f"## {paper['title']}\n\n{paper['source']}\n\n{head}\n" + "\n".join(r.line() for r in found))
     parts.insert(1, ", ".join(f"{counts[v]} {v}" for v in VERDICTS) + ".")
     return "\n\n".join(parts) + "\n"

@@ -26,21 +26,26 @@ def progress(tasks: Sequence[tuple[str, float]]) -> Iterator[Callable[[int, floa
 
 
 def norms(found: dict[str, Any], folder: Path) -> None:
-    """Table norm, value, published, verdict on it, guard, met of a run, from the content of its norms.json."""
+    """Table norm, value, published, whether it is the same, guard, met, from the content of norms.json."""
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
+    from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED
+
+    short = {REPRODUCED: "same", MISSED: "[bold]differs[/]", UNSTATED: "unstated"}  # in a table 80 columns wide
     state = "" if found["complete"] else ", interrupted"
-    table = Table(title=Text(f"{found['scenario']}, {found['controller']}, seed {found['seed']}{state}"))
-    table.add_column("norm")
+    table = Table(
+        title=Text(f"{found['scenario']}, {found['controller']}, seed {found['seed']}{state}"), pad_edge=False
+    )
+    table.add_column("norm", no_wrap=True)
     for heading in ("value", "published"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True)
     for heading in ("verdict", "guard", "met"):
-        table.add_column(heading)
+        table.add_column(heading, no_wrap=True)
     for name, norm in found["norms"].items():
         published = "" if norm["published"] is None else f"{norm['published']:.4g}"
-        verdict = norm["verdict"] or ""
+        verdict = short.get(norm["verdict"], "")
         table.add_row(name, _value(norm), published, verdict, _guard(norm["guard"]), _met(norm["ok"]))
     console = Console()
     if found["norms"]:
