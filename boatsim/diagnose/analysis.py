@@ -4,6 +4,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -73,7 +74,8 @@ def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple
 def suspects_of(vessel: Vessel, library: Sequence[str], facts: Mapping[str, Any] | None = None) -> tuple[Effect, ...]:
     """Entries there are: the vessel's list and --library, less what the vessel already has.
 
-    One that needs a fact nobody states (where walls are) is left out; `facts` are a recording's. The vessel's own list may name files beside it, --library files from the working directory. Raises BadInput.
+    One that needs a fact nobody states (where walls are) is left out; `facts` are a recording's. The vessel's own list
+    may name files beside it, --library files from the working directory. Raises BadInput.
     """
     kinds: dict[str, type[Effect]] = {}
     for name, folder in [*((n, vessel.path) for n in vessel.diagnosis.suspects), *((n, Path()) for n in library)]:
@@ -100,7 +102,8 @@ def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     own = tuple(e for e in vessel.effects if e.name() not in vessel.diagnosis.suspects)
     there = {e.name(): e for e in vessel.effects if e not in own}
     nominal = replace(vessel, effects=own)
-    suspects = tuple(there.get(e.name(), e) for e in suspects_of(nominal, ()))
+    tried = {e.name(): e for e in suspects_of(nominal, ())}
+    suspects = tuple((tried | there).values())
     return Program(nominal, suspects), tuple(e.name() for e in suspects if e.name() in there)
 
 

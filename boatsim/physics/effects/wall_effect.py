@@ -34,7 +34,7 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class WallEffect(Force):
-    """More damping and suction near the walls of a rectangular tank; a recording's facts, or its table, say where they are."""
+    """More damping and suction near the walls of a rectangular tank, told by a recording's facts or its own table."""
 
     words: ClassVar[str] = "near the walls of the tank the boat drags more and is drawn towards them"
     shown_by: ClassVar[str] = "approaching a wall slowly and leaving it again"
