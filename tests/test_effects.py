@@ -12,6 +12,7 @@ import boats
 import numpy as np
 import pytest
 
+from boatsim.diagnose.analysis import absent
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import (
@@ -34,9 +35,9 @@ from boatsim.physics.effects.added_mass import AddedMass, ShallowWater
 from boatsim.physics.effects.cross_flow_drag import CrossFlowDrag
 from boatsim.physics.effects.current import Current
 from boatsim.physics.effects.damping import CubicDamping, DampingError, LinearDamping, QuadraticDamping
+from boatsim.physics.effects.drive_map import PwmThrust
 from boatsim.physics.effects.fan_wind import AIR_DENSITY, FanWind
 from boatsim.physics.effects.outboards import Outboards, ThrustGainError
-from boatsim.physics.effects.pwm_thrust import PwmThrust
 from boatsim.physics.effects.righting_arm import RightingArm, RightingArmStiffening
 from boatsim.physics.effects.servo import Servo
 from boatsim.physics.effects.steering_offset import SteeringOffset
@@ -212,7 +213,7 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 @pytest.mark.parametrize("seed", range(3))
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
-    effect = on_a_vessel(kind(**{n: p.absent for n, p in kind.params().items() if p.fit}))
+    effect = on_a_vessel(absent(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
     if isinstance(effect, Release):
         boat = next(b for b in map(vessel.load, content.names("vessel")) if effect.changes(b))
         assert vessel.added(boat, effect) == boat
@@ -418,7 +419,7 @@ def test_outboards_are_two_forces_at_two_places() -> None:
 
 
 def test_pwm_curve() -> None:
-    curve = PwmThrust(at_150=0.6, dead=30.0, exponent=2.0)
+    curve = PwmThrust(at_span=0.6, dead=30.0, exponent=2.0)
     thrust = [stepped(curve, [0.0], 0.02, 1.0, pwm)[0] for pwm in (0.0, 30.0, 90.0, 150.0, 255.0, -150.0)]
     assert thrust == pytest.approx([0.0, 0.0, 0.15, 0.6, 0.6 * 1.875**2, -0.6])
     assert stepped(curve, [0.4], 0.02, 1.0, 150.0) == [1.0]
@@ -509,7 +510,7 @@ def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float
 @pytest.mark.parametrize("first", ["weak_reverse", "pwm_thrust"])
 def test_channels_act_in_the_order_of_the_file(tmp_path: Any, first: str) -> None:
     order = [first, "pwm_thrust" if first == "weak_reverse" else "weak_reverse"]
-    values = {"weak_reverse": {"astern_factor": 0.5}, "pwm_thrust": {"at_150": 1.0}}
+    values = {"weak_reverse": {"astern_factor": 0.5}, "pwm_thrust": {"at_span": 1.0}}
     pwm = '[channels]\npwm_port = { low = -255.0, high = 255.0, family = "pwm", side = -1, actuator = false }'
     folder = boats.written(tmp_path, "ordered", boats.PLANAR.replace("[channels]", pwm))
     boat = vessel.load(str(folder), extra=[{"use": name} | values[name] for name in order])

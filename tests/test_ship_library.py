@@ -18,13 +18,13 @@ from boatsim.physics.base import Array, Wrench, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.approach_balance import ApproachBalance
 from boatsim.physics.effects.damping import LinearDamping
+from boatsim.physics.effects.drive_map import ShaftRpm
 from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
 from boatsim.physics.effects.outboards import Outboards
 from boatsim.physics.effects.planing_lag import PlaningLag
 from boatsim.physics.effects.rate_limit import SteeringRateLimit
 from boatsim.physics.effects.righting_arm import MetacentricHeightError, RightingArm
 from boatsim.physics.effects.rudder import Rudder
-from boatsim.physics.effects.shaft_rpm import ShaftRpm
 from boatsim.physics.effects.speed_scaled_steering import SpeedScaledSteering
 from boatsim.physics.effects.steering_drag import SteeringDrag
 from boatsim.physics.effects.sway_yaw_coupling import SpeedLossInTurn

@@ -331,12 +331,13 @@ def preset(
     *,
     frees: Mapping[str, Mapping[str, Any]] | None = None,
     fixed: Mapping[str, float] | None = None,
+    otherwise: Mapping[str, float] | None = None,
     **about: Any,
 ) -> type[E]:
     """Another entry over the same law, under a name of its own; `about` is its words, shown_by, source, starts ...
 
     `frees` are the parameters that a diagnosis may fit, with what is otherwise known of them (`Param`); `fixed` are
-    those that make the entry what it is. The rest stays open to a file.
+    those that make the entry what it is. The rest stays open to a file, with `otherwise` as its other nominal values.
     """
     types: dict[str, type] = {}
     namespace: dict[str, Any] = {**about, "__doc__": about["words"], "__module__": law.__module__}
@@ -350,6 +351,7 @@ def preset(
             nominal = (fixed or {})[key]
             known = known._replace(low=nominal, high=nominal, fit=False, calibrates="", follows="")
         else:
+            nominal = (otherwise or {}).get(key, nominal)
             known = known._replace(fit=False)
         namespace[key] = field(default=nominal, metadata={"param": known})
         types[key] = float
