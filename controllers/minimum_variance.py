@@ -17,6 +17,8 @@ class MinimumVariance(LearningHelm):
     """
 
     words: ClassVar[str] = "adaptive minimum variance by three-way swings, with or without roll reduction"
+    nominal_yaw: ClassVar = (0.8, 0.03, 0.0)  # Martin's nominal ship, section 3.2
+    nominal_roll: ClassVar = (-1.7624, 0.9561, 0.01, -0.3)
 
     yaw_first: float = param(1.8, low=-2.0, high=2.0, unit="", words="ideal yaw")
     yaw_second: float = param(-0.8099, low=-1.0, high=1.0, unit="", words="ideal yaw, one period earlier")

@@ -27,6 +27,8 @@ class PolePlacement(LearningHelm):
     """Martin (1993), section 2.8: u = -K x on the heading, with roll reduction on heading and roll."""
 
     words: ClassVar[str] = "adaptive pole placement, with or without roll reduction"
+    nominal_yaw: ClassVar = (0.8, 0.03, 0.0)  # Martin's nominal ship, section 3.2
+    nominal_roll: ClassVar = (-1.7624, 0.9561, 0.01, -0.3)
 
     yaw_fast: float = param(0.89, low=0.0, high=1.0, unit="", words="pole of yaw in z")
     yaw_slow: float = param(0.91, low=0.0, high=1.0, unit="", words="the other pole of yaw")

@@ -28,6 +28,8 @@ class Predictive(LearningHelm):
     """Martin (1993), section 2.6 and appendix II, control horizon 1: bang-bang, or any swing within the rate."""
 
     words: ClassVar[str] = "adaptive GPC, bang-bang or rate-constrained, with or without roll reduction"
+    nominal_yaw: ClassVar = (0.8, 0.03, 0.0)  # Martin's nominal ship, section 3.2
+    nominal_roll: ClassVar = (-1.7624, 0.9561, 0.01, -0.3)
 
     bang_bang: bool = False  # port, stop or starboard only
     horizon: float = param(0.0, low=0.0, high=100.0, unit="", words="N, periods; 0: 10 with roll reduction, else 11")

@@ -7,11 +7,12 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.control.helm import Helm
-from boatsim.control.identification import ROLL, YAW, state_space, with_rudder
+from boatsim.control.identification import state_space, with_rudder
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, param
 
 FAST = radians(10.0)  # [rad/s] design rates above this are those of the repeat at 15 deg/s
+YAW, ROLL = (0.8, 0.03, 0.0), (-1.7624, 0.9561, 0.01, -0.3)  # the nominal ship, section 3.2
 PRINTED = {  # (roll reduction, fast) -> G as printed, section 3.2
     (False, False): (107.8961, -254.926, 150.573),
     (True, False): (43.06, -38.32, 16.69, -0.839, 4.6215),
@@ -45,7 +46,7 @@ def surface(a: Array, b: Array, weights: Array, swing: float) -> Array:
 def nominal(roll_reduction: bool) -> tuple[Array, Array]:
     """A, B of the ship the surfaces are made for: (psi, psi-1, phi, phi-1, u-1), or (psi-2, psi-1, psi)."""
     if roll_reduction:
-        return with_rudder(*state_space(YAW, ROLL[:4]))
+        return with_rudder(*state_space(YAW, ROLL))
     return np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.8, -2.6, 2.8]]), np.array([0.0, 0.0, 0.017])
 
 

@@ -144,5 +144,5 @@ def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> No
     turning = np.convolve(np.gradient(seen["psi_rad"], seen.t), smooth, "same")
     push = np.convolve(seen["pwm_left_us"] - seen["pwm_right_us"], smooth, "same")
     assert np.corrcoef(turning, push)[0, 1] > 0.9
-    port = replace(boat.effect("pulse_thrust"), full=2.0)  # type: ignore[type-var]
+    port = replace(boat.effect("pulse_thrust"), at_span=2.0)  # type: ignore[type-var]
     assert type(port).channel(0.0, -1.0, 1700.0, np.zeros(1), 0, 0.1, port.values()) == pytest.approx(1.0)

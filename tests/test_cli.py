@@ -111,12 +111,12 @@ def test_scenarios_of_one_name_do_not_share_a_folder() -> None:
 
 
 def test_camera_csv_is_a_recording_that_knows_its_boat(tmp_path: Path) -> None:
-    text = PLAIN.replace("[controller]", "[set.pwm_thrust]\nat_150 = 0.314\n[controller]")
+    text = PLAIN.replace("[controller]", "[set.pwm_thrust]\nat_span = 0.314\n[controller]")
     file = write(tmp_path / "s.toml", text.replace("2.0", "8.0"))
     assert boatsim("run", file, "--out", tmp_path / "out").exit_code == 0
     seen = recording.read(tmp_path / "out" / "camera.csv")
     assert (seen.notes.vessel, seen.notes.load) == ("joystick_boat", ("light", "narrow"))
-    assert seen.notes.settings == {"pwm_thrust": {"at_150": 0.314}}
+    assert seen.notes.settings == {"pwm_thrust": {"at_span": 0.314}}
     assert set(seen.notes.noise) == {"position_sd_m", "heading_sd_rad"} and not seen.remarks
     assert {"x_m", "y_m", "psi_rad", "pwm_port", "steer_starboard_rad"} <= set(seen.signals)
     assert np.diff(seen.t) == pytest.approx(1.0 / 6.0)

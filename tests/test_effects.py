@@ -12,9 +12,8 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
-from boatsim.physics.effects.outboards import Outboards, ThrustGainError
-from boatsim.physics.effects.pwm_thrust import PwmThrust
 
+from boatsim.diagnose.analysis import absent
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import (
@@ -37,7 +36,9 @@ from boatsim.physics.effects.added_mass import AddedMass, ShallowWater
 from boatsim.physics.effects.cross_flow_drag import CrossFlowDrag
 from boatsim.physics.effects.current import Current
 from boatsim.physics.effects.damping import CubicDamping, DampingError, LinearDamping, QuadraticDamping
+from boatsim.physics.effects.drive_map import PwmThrust
 from boatsim.physics.effects.fan_wind import AIR_DENSITY, FanWind
+from boatsim.physics.effects.outboards import Outboards, ThrustGainError
 from boatsim.physics.effects.righting_arm import RightingArm, RightingArmStiffening
 from boatsim.physics.effects.servo import Servo
 from boatsim.physics.effects.steering_offset import SteeringOffset
@@ -120,7 +121,7 @@ def mirrored(effect: Any) -> Any:
     image = {}
     for name in kind.params():
         steers = swapped(name) != name and getattr(kind, "acts_on", "") == "steer"
-        turns = steers or name in WALLS or not TO_STARBOARD.isdisjoint({name, f"{kind.idea()}.{name}"})
+        turns = steers or name in WALLS or not TO_STARBOARD.isdisjoint({name, f"{kind.name()}.{name}"})
         image[swapped(name)] = (-1.0 if turns else 1.0) * getattr(effect, name)
     return replace(effect, **image)
 
@@ -132,7 +133,7 @@ def on_a_vessel(effect: Effect) -> Any:
             return effect.completed(vessel.load(name))
         except BadInput:
             continue
-    raise AssertionError(f"no vessel can take {effect.name}")
+    raise AssertionError(f"no vessel can take {effect.name()}")
 
 
 def mass_of(effect: Any) -> Array:
@@ -240,7 +241,11 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 @pytest.mark.parametrize("seed", range(3))
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
+<<<<<<<
     effect = on_a_vessel(kind(**{n: p.absent for n, p in kind.params().items() if p.fit}))
+=======
+    effect = on_a_vessel(absent(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
+>>>>>>>
     if isinstance(effect, Release):
         boat = next(b for b in map(vessel.load, content.names("vessel")) if effect.changes(b))
         assert vessel.added(boat, effect) == boat
@@ -263,7 +268,7 @@ def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, se
 @pytest.mark.parametrize("name", SHELF)
 def test_an_effect_says_what_it_is(name: str) -> None:
     kind = SHELF[name]
-    assert kind.idea() == name
+    assert kind.name() == name
     assert kind.words and kind.shown_by and not kind.words.endswith(".")
     assert kind.kind in ("physics", "measurement")
     assert inspect.getdoc(sys.modules[kind.__module__]) and "__doc__" in vars(kind) and kind.__doc__
@@ -348,7 +353,7 @@ def test_righting_arm_stiffening_bends_the_vessels_own_curve() -> None:
     [(DampingError, "joystick_boat"), (RightingArmStiffening, "trial_boat"), (ShallowWater, "mariner")],
 )
 def test_an_effect_that_changes_another_says_which_one_is_missing(kind: type[Effect], boat: str) -> None:
-    with pytest.raises(BadInput, match=f"{boat}: {kind.idea()} needs a vessel with"):
+    with pytest.raises(BadInput, match=f"{boat}: {kind.name()} needs a vessel with"):
         kind().completed(vessel.load(boat))
 
 
@@ -386,6 +391,19 @@ def test_shallow_water_multiplies_sway_and_yaw(factor: float) -> None:
     boat, m = vessel.load("joystick_boat"), motion(u=0.3, v=-0.2, r=0.5)
     mass, drag = boat.effect("added_mass"), boat.effect("cross_flow_drag")
     assert isinstance(mass, AddedMass) and isinstance(drag, CrossFlowDrag)
+<<<<<<<
+=======
+    shallow = vessel.added(boat, ShallowWater(factor=factor))
+    deeper, more = shallow.effect("added_mass"), shallow.effect("cross_flow_drag")
+    assert isinstance(deeper, AddedMass) and isinstance(more, CrossFlowDrag)
+    assert deeper.matrix()[1:, 1:] == pytest.approx(factor * mass.matrix()[1:, 1:])
+    assert deeper.matrix()[0, 0] == mass.matrix()[0, 0]
+    assert more.wrench(m)[1:] == pytest.approx(factor * np.array(drag.wrench(m)[1:]))
+    assert more.wrench(m).X == drag.wrench(m).X
+
+
+def test_cross_flow_drag_takes_length_and_draught_of_its_vessel() -> None:
+>>>>>>>
     shallow = vessel.added(boat, ShallowWater(factor=factor))
     deeper, more = shallow.effect("added_mass"), shallow.effect("cross_flow_drag")
     assert isinstance(deeper, AddedMass) and isinstance(more, CrossFlowDrag)
@@ -446,7 +464,7 @@ def test_outboards_are_two_forces_at_two_places() -> None:
 
 
 def test_pwm_curve() -> None:
-    curve = PwmThrust(at_150=0.6, dead=30.0, exponent=2.0)
+    curve = PwmThrust(at_span=0.6, dead=30.0, exponent=2.0)
     thrust = [stepped(curve, [0.0], 0.02, 1.0, pwm)[0] for pwm in (0.0, 30.0, 90.0, 150.0, 255.0, -150.0)]
     assert thrust == pytest.approx([0.0, 0.0, 0.15, 0.6, 0.6 * 1.875**2, -0.6])
     assert stepped(curve, [0.4], 0.02, 1.0, 150.0) == [1.0]
@@ -460,6 +478,17 @@ def test_weak_reverse(command: float, thrust: float) -> None:
 def test_imbalance_and_gain_error() -> None:
     uneven = ThrustImbalance(fraction=0.1)
     assert [stepped(uneven, [2.0], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx([2.2, 1.8])
+<<<<<<<
+=======
+    own = vessel.load("trial_boat").effect("outboards")
+    gained = vessel.added(vessel.load("trial_boat"), ThrustGainError(factor=1.3)).effect("outboards")
+    m = motion(thrust_port_N=-2.0, thrust_starboard_N=0.5, steer_port_rad=0.1, steer_starboard_rad=0.2)
+    assert isinstance(own, Outboards) and isinstance(gained, Outboards)
+    assert gained.wrench(m) == pytest.approx(1.3 * np.array(own.wrench(m)))
+
+
+def test_steering_offset_of_each_side() -> None:
+>>>>>>>
     own = vessel.load("trial_boat").effect("outboards")
     gained = vessel.added(vessel.load("trial_boat"), ThrustGainError(factor=1.3)).effect("outboards")
     m = motion(thrust_port_N=-2.0, thrust_starboard_N=0.5, steer_port_rad=0.1, steer_starboard_rad=0.2)
@@ -537,7 +566,7 @@ def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float
 @pytest.mark.parametrize("first", ["weak_reverse", "pwm_thrust"])
 def test_channels_act_in_the_order_of_the_file(tmp_path: Any, first: str) -> None:
     order = [first, "pwm_thrust" if first == "weak_reverse" else "weak_reverse"]
-    values = {"weak_reverse": {"astern_factor": 0.5}, "pwm_thrust": {"at_150": 1.0}}
+    values = {"weak_reverse": {"astern_factor": 0.5}, "pwm_thrust": {"at_span": 1.0}}
     pwm = '[channels]\npwm_port = { low = -255.0, high = 255.0, family = "pwm", side = -1, actuator = false }'
     folder = boats.written(tmp_path, "ordered", boats.PLANAR.replace("[channels]", pwm))
     boat = vessel.load(str(folder), extra=[{"use": name} | values[name] for name in order])

@@ -322,7 +322,12 @@ def test_the_later_covariance_in_the_gain_counts_a_sample_twice() -> None:
 def test_a_ship_of_the_assumed_form_is_identified_from_her_motion() -> None:
     yaw, roll = (0.7, 0.05, -0.01), (-1.7, 0.9, 0.02, -0.25)
     a, b = state_space(yaw, roll)
-    ship, rng, x, u = Ship(Forgetting(**PLAIN, covariance=1e3)), np.random.default_rng(1), np.zeros(4), 0.0
+    ship, rng, x, u = (
+        Ship(Forgetting(**PLAIN, covariance=1e3), (0.8, 0.03, 0.0), (-1.7, 0.9, 0.01, -0.3)),
+        np.random.default_rng(1),
+        np.zeros(4),
+        0.0,
+    )
     past = [x]
     for _ in range(400):
         u = radians(float(rng.uniform(-20.0, 20.0)))

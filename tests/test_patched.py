@@ -11,6 +11,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.simulate.engine import Engine
 
+WALLS = {"x_low": -4.0, "x_high": 4.0, "y_low": -3.0, "y_high": 3.0}
 SMOOTH: list[dict[str, Any]] = [
     {"use": "wind", "force": 0.1, "toward": 0.7, "arm": 0.05},
     {"use": "current", "north": 0.03, "east": -0.02},

@@ -119,3 +119,38 @@ def test_a_patched_patch_still_finds_the_hull(tmp_path: Path) -> None:
         patch.write(problem, boat, recalibrated(problem, OFF), tmp_path / "patched.toml")
         boat = vessel.load(str(tmp_path / "patched.toml"))
         assert boat.path == content.find("vessel", "trial_boat").parent
+
+
+RELEASED = {
+    "trial_boat": {"damping_error": [1.4, 0.7, 1.2], "thrust_gain_error": [0.8], "lateral_centre_shift": [0.1]},
+    "catamaran": {"payload": [2.0], "added_mass_error": [1.3, 1.2, 0.8], "added_mass_coriolis": [-0.4]},
+    "eastward_ho": {"metacentric_height_error": [1.3], "righting_arm_stiffening": [-1.0], "rudder_stall": [0.05]},
+}
+
+
+@pytest.mark.parametrize("name", RELEASED)
+def test_a_release_is_written_as_the_coefficients_it_found_to_be_off(name: str, tmp_path: Path) -> None:
+    boat = vessel.load(name)
+    problem = problem_of(boat)
+    found = recalibrated(problem, 0.5 * OFF)
+    free = problem.parameters(tuple(RELEASED[name]))
+    off = [x for values in RELEASED[name].values() for x in values]
+    found = replace(found, suspects=tuple(RELEASED[name]), free=free, theta=np.append(found.theta, off))
+    assert len(free) == len(found.theta)
+    fitted = free_run(problem, problem.values(problem.tracks[0], free, found.theta), found.suspects)
+    patch.write(problem, boat, found, tmp_path / "patched.toml")
+    patched = vessel.load(str(tmp_path / "patched.toml"))
+    assert [e.name() for e in patched.effects] == [e.name() for e in boat.effects]  # no further law
+    again = problem_of(patched)
+    np.testing.assert_allclose(free_run(again, again.tracks[0].values, ()), fitted, rtol=1e-7, atol=1e-7)
+    text = (tmp_path / "patched.toml").read_text()
+    assert all(f"{entry}, " in text for entry in RELEASED[name])
+
+
+def test_a_release_costs_nothing_to_compile_and_acts_in_a_file() -> None:
+    boat = vessel.load("trial_boat")
+    program = Program(boat, (load_class("effect", "damping_error")().completed(boat),))
+    assert program.effects == boat.effects and program.module is Program(boat).module
+    table = {"use": "damping_error", "sway_factor": 0.5}
+    off, own = vessel.load("trial_boat", extra=[table]).effect("linear_damping"), boat.effect("linear_damping")
+    assert off == replace(own, sway=0.5 * own.sway)  # type: ignore[attr-defined, call-arg, type-var]

@@ -20,6 +20,7 @@ from boatsim.physics.base import Array, Wrench, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.approach_balance import ApproachBalance
 from boatsim.physics.effects.damping import LinearDamping
+from boatsim.physics.effects.drive_map import ShaftRpm
 from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
 from boatsim.physics.effects.planing_lag import PlaningLag
 from boatsim.physics.effects.rate_limit import SteeringRateLimit

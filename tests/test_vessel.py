@@ -7,6 +7,7 @@ import boats
 import pytest
 from boatsim.physics.effects.outboards import Outboards
 
+from boatsim.diagnose.analysis import absent
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.effects.added_mass import AddedMass
@@ -32,7 +33,8 @@ def test_suspects_of_a_vessel_can_be_put_on_it(name: str) -> None:
     own = {e.name for e in boat.effects}
     for suspect in boat.diagnosis.suspects:
         assert suspect not in own
-        vessel.load(name, extra=[{"use": suspect}])
+        kind = content.load_class("effect", suspect, boat.path)
+        vessel.added(boat, absent(kind, boat.diagnosis.facts))
 
 
 def test_a_load_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:
@@ -40,7 +42,7 @@ def test_a_load_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:
     assert (plain.body.mass, laden.body.mass) == (6.0, 8.0)
     assert (plain.length, laden.length) == (1.0, 1.5)
     assert laden.body.yaw_inertia == plain.body.yaw_inertia
-    assert laden.effect("added_mass") == AddedMass(surge=0.9, sway=3.0, yaw=0.3)
+    assert laden.effect("added_mass") == AddedMass(surge=0.9, sway=3.0, yaw=0.3, roll=0.0)
     assert plain.effects[1:] == laden.effects[1:]
 
 

@@ -62,8 +62,8 @@ ADDED: list[dict[str, Any]] = [
     {"use": "fan_wind", "speed": 0.0},
 ]
 OWN = (
-    Knob("pwm_thrust", "at_150", "N", 0.5, 0.3, 0.01, 3.0, tests=SWAY),  # prior: 0.2 to 0.8 N (the thesis prints none)
-    Knob("pwm_thrust", "at_150", "N", 0.5, 0.3, 0.01, 3.0, tests=YAW),
+    Knob("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=SWAY),  # prior: 0.2 to 0.8 N (the thesis prints none)
+    Knob("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=YAW),
 )
 CANDIDATES: dict[str, tuple[Knob, ...]] = {
     "weak_reverse": (Knob("weak_reverse", "astern_factor", "", 1.0, 0.3, 0.3, 1.3),),

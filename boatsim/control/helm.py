@@ -91,14 +91,17 @@ class Helm(Controller):
 
 @dataclass
 class LearningHelm(Forgetting, Helm):
-    """Base of autopilots that identify their ship while they steer her."""
+    """Base of autopilots that identify their ship while they steer her, from a nominal one that the subclass states."""
+
+    nominal_yaw: ClassVar[tuple[float, float, float]]  # a2y, b1y, b2y of `Ship`
+    nominal_roll: ClassVar[tuple[float, float, float, float]]  # a1r, a2r, b1r, b2r
 
     roll_reduction: bool = False
 
     def reset(self) -> None:
         """Nothing learnt beyond the nominal ship."""
         super().reset()
-        self.ship = Ship(self)
+        self.ship = Ship(self, self.nominal_yaw, self.nominal_roll)
 
     def needs_roll(self) -> bool:
         """With roll reduction."""

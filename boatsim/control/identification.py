@@ -12,9 +12,6 @@ import numpy as np
 
 from boatsim.physics.base import Array, Checked, param
 
-YAW = (0.8, 0.03, 0.0)  # a2, b1, b2 at the start: Martin's nominal ship, section 3.2
-ROLL = (-1.7624, 0.9561, 0.01, -0.3, 0.0, 0.0)  # a1, a2, b1, b2, c1, c2
-
 
 @dataclass
 class Forgetting(Checked):
@@ -64,9 +61,9 @@ class Ship:
     phi(k+1) = -a1r phi(k) - a2r phi(k-1) + b1r u(k) + b2r (psi(k) - psi(k-1))
     """
 
-    def __init__(self, law: Forgetting) -> None:
-        """Knows Martin's nominal ship only."""
-        self._yaw, self._roll = Estimator(np.array(YAW), law), Estimator(np.array(ROLL), law)
+    def __init__(self, law: Forgetting, yaw: Sequence[float], roll: Sequence[float]) -> None:
+        """Knows a nominal ship only: (a2y, b1y, b2y) and (a1r, a2r, b1r, b2r); of the roll's noise, nothing."""
+        self._yaw, self._roll = Estimator(np.array(yaw), law), Estimator(np.array([*roll, 0.0, 0.0]), law)
         self._left = [0.0, 0.0]  # [deg] errors of roll that were left, one period ago and two
 
     @property

@@ -107,7 +107,8 @@ def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     own = tuple(e for e in vessel.effects if e.name not in suspected)
     there = {e.name: e for e in vessel.effects if e not in own}
     nominal = replace(vessel, effects=own)
-    suspects = tuple(there.get(e.name, e) for e in suspects_of(nominal, ()))
+    tried = {e.name: e for e in suspects_of(nominal, ())}
+    suspects = tuple((tried | there).values())
     return Program(nominal, suspects), tuple(e.name for e in suspects if e.name in there)
 
 

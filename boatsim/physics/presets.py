@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from types import new_class
 from typing import Any, TypeVar
 
 from boatsim.physics.kinds.effect import Effect
@@ -15,12 +16,13 @@ def preset(
     *,
     frees: Mapping[str, Mapping[str, Any]] | None = None,
     fixed: Mapping[str, float] | None = None,
+    otherwise: Mapping[str, float] | None = None,
     **about: Any,
 ) -> type[E]:
     """Another entry over the same law, under a name of its own; `about` is its words, shown_by, source, starts ...
 
     `frees` are the parameters that a diagnosis may fit, with what is otherwise known of them (`Param`); `fixed` are
-    those that make the entry what it is. The rest stays open to a file.
+    those that make the entry what it is. The rest stays open to a file, with `otherwise` as its other nominal values.
     """
     types: dict[str, type] = {}
     namespace: dict[str, Any] = {**about, "__doc__": about["words"], "__module__": law.__module__}
@@ -34,7 +36,9 @@ def preset(
             nominal = (fixed or {})[key]
             known = known._replace(low=nominal, high=nominal, fit=False, calibrates="", follows="")
         else:
+            nominal = (otherwise or {}).get(key, nominal)
             known = known._replace(fit=False)
         namespace[key] = field(default=nominal, metadata={"param": known})
         types[key] = float
-    return dataclass(frozen=True)(type(law)(name, (law,), namespace))
+    made: type[E] = dataclass(frozen=True)(new_class(name, (law,), exec_body=lambda body: body.update(namespace)))
+    return made

@@ -351,7 +351,7 @@ def _changed(vessel: Vessel, change: Change, value: float) -> Vessel:
         follows = {n: type(e).params()[n].follows.removesuffix("?") for n in e.filled}
         keys = [n for n, place in follows.items() if place == source]
         own = [change.key] if e.name == change.owner else []
-        effects.append(replace(e, **dict.fromkeys([*keys, *own], new)))
+        effects.append(e.having(dict.fromkeys([*keys, *own], new)))
     return replace(vessel, effects=tuple(effects))
 
 

@@ -101,7 +101,7 @@ def _hold(document: Any, problem: Problem, vessel: Vessel, found: Fit) -> None:
         off = {n: _rounded(x) for n, x in fitted.items() if abs(x - getattr(effect, n)) > SAME * abs(x)}
         for name, x in off.items():
             _state(table, name, x, "as fitted")
-        boat = added(boat, replace(effect, **off))
+        boat = added(boat, effect.having(off))
 
 
 def _state(table: Any, name: str, value: float, why: str) -> None:

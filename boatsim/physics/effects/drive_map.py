@@ -5,17 +5,17 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, param
+from boatsim.physics.base import Array, Channel, Course, param, preset
 
 
 @njit(inline="always")
 def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
-    """Command plus full ((|source - neutral| - dead) / (rated - dead))^exponent, to the side of neutral it is on."""
+    """Command plus k ((|source - neutral| - dead) / (span - dead))^n, to the side of neutral it is on."""
     off = source - q.neutral
-    drive = (abs(off) - q.dead) / (q.rated - q.dead)
+    drive = (abs(off) - q.dead) / (q.span - q.dead)
     if drive <= 0.0:
         return x
-    given = q.full * drive**q.exponent if off > 0.0 else -q.full * drive**q.exponent
+    given = q.at_span * drive**q.exponent if off > 0.0 else -q.at_span * drive**q.exponent
     return Course(x.begin + given, x.middle + given, x.end + given)
 
 
@@ -28,8 +28,37 @@ class DriveMap(Channel):
     acts_on: ClassVar[str] = "thrust"
     channel: ClassVar = channel
 
-    full: float = param(1.0, low=-1e6, high=1e6, unit="", words="what it gives, in its own unit, at the rated command")
-    rated: float = param(1.0, low=1e-6, high=1e6, unit="", words="raw command, from neutral, at which it gives that")
+    at_span: float = param(
+        1.0, low=-1e6, high=1e6, unit="", words="k: what it gives, in its own unit, `span` off neutral"
+    )
+    span: float = param(1.0, low=1e-6, high=1e6, unit="", words="raw command, from neutral, at which it gives that")
     neutral: float = param(0.0, low=-1e6, high=1e6, unit="", words="raw command at which it stands still")
     dead: float = param(0.0, low=0.0, high=1e6, unit="", words="from neutral, below which nothing turns")
-    exponent: float = param(1.0, low=0.5, high=3.0, unit="", words="of the curve")
+    exponent: float = param(1.0, low=0.5, high=3.0, unit="", words="n of the curve")
+
+
+PwmThrust = preset(
+    DriveMap,
+    "PwmThrust",
+    words="thrust follows the motor's duty by a curve",
+    shown_by="a staircase of duties",
+    otherwise={"span": 255.0},
+)
+
+PulseThrust = preset(
+    DriveMap,
+    "PulseThrust",
+    words="thrust follows the servo pulse by a curve",
+    shown_by="a staircase of pulse widths",
+    source="hobby speed controllers: neutral 1500 us, full 400 us from it",
+    otherwise={"span": 400.0, "neutral": 1500.0},  # [us]
+)
+
+ShaftRpm = preset(
+    DriveMap,
+    "ShaftRpm",
+    words="the propeller's rate is given per minute",
+    shown_by="any manoeuvre",
+    acts_on="shaft",
+    fixed={"span": 60.0, "neutral": 0.0, "dead": 0.0, "exponent": 1.0},  # [rpm] that are 1/s, times a gear
+)

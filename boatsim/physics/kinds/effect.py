@@ -88,6 +88,10 @@ class Effect(Checked):
         """Whether a parameter has a value, be it zero."""
         return getattr(self, name) is not UNSET
 
+    def having(self, values: Mapping[str, Any]) -> Self:
+        """The effect with other values of some parameters."""
+        return replace(self, **values)
+
     def completed(self, vessel: Any) -> Self:
         """The effect with what nobody stated filled in: what `follows` the vessel, then what `rules` give, else 0.
 
@@ -96,14 +100,14 @@ class Effect(Checked):
         own = self
         for name, about in type(self).params().items():
             if about.follows and not self.stated(name):
-                own = replace(own, **{name: self._followed(about.follows, vessel)})
+                own = own.having({name: self._followed(about.follows, vessel)})
         ruled = {n: x for n, x in own.rules(vessel).items() if not own.stated(n)} if own._left() else {}
-        own = replace(own, **ruled)
+        own = own.having(ruled)
         for fact, names in type(self).facts.items():
             for missing in (n for n in names if not own.stated(n)):
                 where = f"state it in its table, or {fact} among the facts of a recording or of the vessel's diagnosis"
                 raise BadInput(f"{vessel.name}: {self.name} needs {missing}: {where}")
-        return replace(own, **dict.fromkeys(own._left(), 0.0), filled=frozenset(self._left()) | self.filled)
+        return replace(own.having(dict.fromkeys(own._left(), 0.0)), filled=frozenset(self._left()) | self.filled)
 
     def rules(self, vessel: Any) -> dict[str, float]:
         """Parameters by a rule of the effect's own, for those that nobody states; what follows is filled in before."""
