@@ -12,6 +12,7 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
+from boatsim.physics.effects.outboards import Outboards, ThrustGainError
 
 from boatsim.diagnose.analysis import absent
 from boatsim.errors import BadInput
@@ -38,7 +39,6 @@ from boatsim.physics.effects.current import Current
 from boatsim.physics.effects.damping import CubicDamping, DampingError, LinearDamping, QuadraticDamping
 from boatsim.physics.effects.drive_map import PwmThrust
 from boatsim.physics.effects.fan_wind import AIR_DENSITY, FanWind
-from boatsim.physics.effects.outboards import Outboards, ThrustGainError
 from boatsim.physics.effects.righting_arm import RightingArm, RightingArmStiffening
 from boatsim.physics.effects.servo import Servo
 from boatsim.physics.effects.steering_offset import SteeringOffset
@@ -241,11 +241,7 @@ def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None
 @pytest.mark.parametrize("seed", range(3))
 def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, seed: int) -> None:
     kind = SHELF[name]
-<<<<<<<
-    effect = on_a_vessel(kind(**{n: p.absent for n, p in kind.params().items() if p.fit}))
-=======
     effect = on_a_vessel(absent(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
->>>>>>>
     if isinstance(effect, Release):
         boat = next(b for b in map(vessel.load, content.names("vessel")) if effect.changes(b))
         assert vessel.added(boat, effect) == boat
@@ -391,19 +387,6 @@ def test_shallow_water_multiplies_sway_and_yaw(factor: float) -> None:
     boat, m = vessel.load("joystick_boat"), motion(u=0.3, v=-0.2, r=0.5)
     mass, drag = boat.effect("added_mass"), boat.effect("cross_flow_drag")
     assert isinstance(mass, AddedMass) and isinstance(drag, CrossFlowDrag)
-<<<<<<<
-=======
-    shallow = vessel.added(boat, ShallowWater(factor=factor))
-    deeper, more = shallow.effect("added_mass"), shallow.effect("cross_flow_drag")
-    assert isinstance(deeper, AddedMass) and isinstance(more, CrossFlowDrag)
-    assert deeper.matrix()[1:, 1:] == pytest.approx(factor * mass.matrix()[1:, 1:])
-    assert deeper.matrix()[0, 0] == mass.matrix()[0, 0]
-    assert more.wrench(m)[1:] == pytest.approx(factor * np.array(drag.wrench(m)[1:]))
-    assert more.wrench(m).X == drag.wrench(m).X
-
-
-def test_cross_flow_drag_takes_length_and_draught_of_its_vessel() -> None:
->>>>>>>
     shallow = vessel.added(boat, ShallowWater(factor=factor))
     deeper, more = shallow.effect("added_mass"), shallow.effect("cross_flow_drag")
     assert isinstance(deeper, AddedMass) and isinstance(more, CrossFlowDrag)
@@ -478,17 +461,6 @@ def test_weak_reverse(command: float, thrust: float) -> None:
 def test_imbalance_and_gain_error() -> None:
     uneven = ThrustImbalance(fraction=0.1)
     assert [stepped(uneven, [2.0], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx([2.2, 1.8])
-<<<<<<<
-=======
-    own = vessel.load("trial_boat").effect("outboards")
-    gained = vessel.added(vessel.load("trial_boat"), ThrustGainError(factor=1.3)).effect("outboards")
-    m = motion(thrust_port_N=-2.0, thrust_starboard_N=0.5, steer_port_rad=0.1, steer_starboard_rad=0.2)
-    assert isinstance(own, Outboards) and isinstance(gained, Outboards)
-    assert gained.wrench(m) == pytest.approx(1.3 * np.array(own.wrench(m)))
-
-
-def test_steering_offset_of_each_side() -> None:
->>>>>>>
     own = vessel.load("trial_boat").effect("outboards")
     gained = vessel.added(vessel.load("trial_boat"), ThrustGainError(factor=1.3)).effect("outboards")
     m = motion(thrust_port_N=-2.0, thrust_starboard_N=0.5, steer_port_rad=0.1, steer_starboard_rad=0.2)

@@ -217,14 +217,7 @@ MISTAKES = [
     ({"goal": [{"sway": 0.07}]}, r"\[\[goal\]\] key 'sway' .*did you mean 'sway_mps'"),
     ({"goal": [{"from": 3.0}, {"from": 1.0}]}, r"times in ascending order"),
     ({"effect": [{"use": "weak_revers"}]}, r"effect 'weak_revers' .*did you mean 'weak_reverse'"),
-<<<<<<<
-    ({"set": {"pwm_thrust": {"at_15": 0.3}}}, r"setting 'at_15' .*did you mean 'at_150'"),
-=======
     ({"set": {"pwm_thrust": {"at_spa": 0.3}}}, r"setting 'at_spa' .*did you mean 'at_span'"),
-    ({"norms": {"moved": {"high": 1.0}}}, r"\[norms\] key 'moved' does not exist"),
-]
-
->>>>>>>
     ({"norms": {"yaw_rate_l1": {"guard": [2.0, 1.0]}}}, r"guard = \[2\.0, 1\.0\]; allowed are its lower end"),
     ({"norms": {"yaw_rate_l1": {"tolerance": 1.0}}}, r"tolerance needs published"),
     ({"norms": {"moved": {"guard": [0.0, 1.0]}}}, r"\[norms\] key 'moved' does not exist"),

@@ -9,8 +9,6 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
-from boatsim.physics.effects.outboards import Outboards
-from boatsim.physics.effects.shaft_rpm import ShaftRpm
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnose import analysis

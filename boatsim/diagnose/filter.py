@@ -196,9 +196,8 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     needed = ["psi_rad"] if "yaw" in axes else []
     missing = [n for n in needed if n not in recording.signals] or _unfed(recording, vessel)
     if missing or all(s.rate for s in found):
-        raise BadInput(
-            f"{where}: column {(missing or [signals_of(vessel.freedoms)[0].column])[0]} is missing, without which {vessel.name} can not be followed"
-        )
+        column = (missing or [signals_of(vessel.freedoms)[0].column])[0]
+        raise BadInput(f"{where}: column {column} is missing, without which {vessel.name} can not be followed")
     if len(recording) < FEWEST_IN_PART:
         raise BadInput(
             f"{where}: {recording.name} has {len(recording)} rows to use; at least {FEWEST_IN_PART} are needed"

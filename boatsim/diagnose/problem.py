@@ -1,5 +1,6 @@
 """What is to be fitted: recordings on one program, the coefficients and suspects that are free, and a fit of them."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -165,15 +166,19 @@ class Problem:
         return Fit((), free, np.ones(len(free)), np.zeros((len(free), len(free))), self.ambient, -np.inf)
 
     def _nuisances(self) -> tuple[Free, ...]:
-        found = []
-        freedoms = self.program.vessel.freedoms
-        for effect in self.program.vessel.effects:
+        """Coefficients of the vessel's own that are never known exactly; what several instances share is one."""
+        vessel, shared = self.program.vessel, defaultdict[tuple[str, str, float], list[tuple[str, int]]](list)
+        for effect in vessel.effects:
             for name, about in type(effect).params().items():
                 sd = self.uncertainty.get(about.calibrates, 0.0)
                 at = self.program.index(effect.name, name)
-                used = self.tracks[0].values[at] != 0.0 and (not about.axis or about.axis in freedoms)
+                used = self.tracks[0].values[at] != 0.0 and (not about.axis or about.axis in vessel.freedoms)
                 if about.calibrates and sd > 0 and used:
-                    found.append(Free(effect.name, name, (at,), 1.0, sd, 0.05, 20.0, True, how="scales"))
+                    shared[type(effect).idea(), name, sd].append((effect.name, at))
+        found = []
+        for (idea, name, sd), places in shared.items():
+            called, at = idea if len(places) > 1 else places[0][0], tuple(at for _, at in places)
+            found.append(Free(called, name, at, 1.0, sd, 0.05, 20.0, True, False, "scales", (1.0,) * len(at)))
         return tuple(found)
 
     def _links(self) -> list[tuple[int, int]]:

@@ -62,7 +62,7 @@ def _evidence(problem: Problem, found: Fit) -> tuple[Evidence, dict[str, Callabl
 
 def _damping(problem: Problem, found: Fit, parts: Array) -> Array:
     """(N, axes) damping of the vessel as written."""
-    kinds = {e.name: type(e).params() for e in problem.program.effects}
+    kinds = {n: type(e).params() for e in problem.program.effects for n in (e.name, type(e).idea())}
     own = np.array([kinds[f.effect][f.name].calibrates == "damping" for f in found.free], dtype=float)
     return np.asarray(np.tensordot(own, parts, axes=1))
 

@@ -32,8 +32,9 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
     settings: dict[str, dict[str, float]] = {name: {} for name in found.suspects}
     for free, x in zip(found.free, found.theta, strict=True):
         if free.relative:
-            change = Change(free.name, free.effect, free.name, "scales", 1.0)
-            _alter(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
+            for one in vessel.known_as(free.effect):
+                change = Change(free.name, one, free.name, "scales", 1.0)
+                _alter(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
         else:
             settings[free.effect][free.name] = float(x)
     for effect in problem.program.suspects:  # channels act in the order of the diagnosis
