@@ -16,10 +16,9 @@ import numpy as np
 import pytest
 from dm_env import test_utils
 
-from boatsim import scenario  # before dm_control, whose renderer it chooses
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.recordings.notes import unit_of
-from boatsim.simulate import env
+from boatsim.simulate import env, scenario
 from boatsim.simulate.cases import Place
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.run import commands_of, run

@@ -87,10 +87,11 @@ def cases(path: Path) -> list[str]:
 
 def located(given: str, beside: Path | None = None) -> Place:
     """The place of a scenario by its name, or by a path from the folder `beside`: a file, or `file.toml:case`."""
-    file, colon, case = given.rpartition(":")
-    path = find("scenario", file if colon else given, beside)
+    file, _, case = given.rpartition(":")
+    named = file.endswith(".toml")
+    path = find("scenario", file if named else given, beside)
     there = cases(path)
-    if colon:
+    if named:
         if case not in there:
             raise BadInput(unknown_name(f"{path.name}: case", case, there))
         return Place(path, case)

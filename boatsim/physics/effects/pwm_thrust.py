@@ -7,7 +7,7 @@ from numba import njit
 
 from boatsim.physics.base import Array, Channel, param
 
-NOMINAL_PWM = 150.0  # Arduino counts of 255, the thesis' operating point (Appendix H)
+NOMINAL_PWM = 150.0  # Arduino counts of 255, operating point of Bayless 2017, appendix H
 
 
 @njit(inline="always")
@@ -26,7 +26,7 @@ class PwmThrust(Channel):
 
     words: ClassVar[str] = "thrust follows the motor's PWM by a curve"
     shown_by: ClassVar[str] = "a staircase of PWM levels"
-    source: ClassVar[str] = "checked thesis specification, section 4 [A]: p0 = 0, n = 1"
+    source: ClassVar[str] = "checked specification of Bayless 2017, section 4 [A]: p0 = 0, n = 1"
     acts_on: ClassVar[str] = "thrust"
     source_family: ClassVar[str] = "pwm"
     channel: ClassVar = channel

@@ -29,7 +29,7 @@ class Servo(Channel):
 
     words: ClassVar[str] = "the steering follows with a limited rate and range"
     shown_by: ClassVar[str] = "quick steering reversals"
-    source: ClassVar[str] = "checked thesis specification, section 4: 0.06 s, 400 deg/s [A], 0 to 45 deg (T9)"
+    source: ClassVar[str] = "checked specification of Bayless 2017, section 4: 0.06 s, 400 deg/s [A], 0 to 45 deg (T9)"
     acts_on: ClassVar[str] = "steer"
     slots: ClassVar[int] = 1
     channel: ClassVar = channel

@@ -33,7 +33,7 @@ class ShallowWater(Inertia, Force):
 
     words: ClassVar[str] = "the bottom is near: sway and yaw move more water and drag more"
     shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
-    source: ClassVar[str] = "assumption [A] of the checked thesis specification, section 2 (factor k)"
+    source: ClassVar[str] = "assumption [A] of the checked specification of Bayless 2017, section 2 (factor k)"
     moves_with: ClassVar[str] = "water"
     inertia: ClassVar = inertia
     law: ClassVar = law

@@ -32,7 +32,7 @@ class SteeringRateLimit(Channel):
 
     words: ClassVar[str] = "the steering machine is slower than commanded: it turns at one rate at most"
     shown_by: ClassVar[str] = "hard-over steering reversals"
-    source: ClassVar[str] = "J. van Amerongen, Adaptive Steering of Ships, PhD thesis 1982 (steering machine)"
+    source: ClassVar[str] = "J. van Amerongen, Adaptive Steering of Ships, PhD, Delft 1982 (steering machine)"
     acts_on: ClassVar[str] = "steer"
     slots: ClassVar[int] = 1
     channel: ClassVar = channel
