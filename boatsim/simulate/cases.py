@@ -62,7 +62,8 @@ def meant(given: str) -> list[str]:
     if any(sign in given for sign in "*?[") and not Path(given).is_file():
         found = [n for n in shipped if fnmatchcase(n, given)]
         if not found:
-            raise BadInput(f"no scenario is like {given!r} (there are: {', '.join(shipped)})")
+            folders = sorted({n.partition("/")[0] for n in shipped})
+            raise BadInput(f"no scenario is like {given!r} (they are in {', '.join(folders)})")
         return found
     if given.endswith(".toml"):
         return [f"{given}:{case}" for case in cases(find("scenario", given))] or [given]
