@@ -125,7 +125,7 @@ class ShallowWater(Release):
 
     words: ClassVar[str] = "the bottom is near: sway and yaw move more water and drag more"
     shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
-    source: ClassVar[str] = "assumption [A] of the checked thesis specification, section 2 (factor k)"
+    source: ClassVar[str] = "assumption [A] of the checked specification of Bayless 2017, section 2 (factor k)"
 
     factor: float = factor(
         "added_mass.sway", "added_mass.yaw", "cross_flow_drag.section_drag_coefficient", "cross_flow_drag.linear",
