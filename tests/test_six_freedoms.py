@@ -164,7 +164,7 @@ def test_a_heavier_otter_floats_deeper_by_her_weight() -> None:
     assert engine.state.z == pytest.approx(5.5 * 9.81 / 7541.4375 * (1 + 0.04 * 7541.4375 / 2551.7764024), rel=1e-3)
 
 
-# ---- any set of freedoms: Lagrange's equations of the kinetic energy of hull and water, differentiated by complex steps
+# ---- any set of freedoms: Lagrange's equations of the kinetic energy of hull and water, slopes by complex steps
 
 HULL = """
 about = "a hull for tests, free as they need it"

@@ -35,7 +35,7 @@ class Composition:
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.effects = tuple(effects)
         self.actuators, self.commands = vessel.actuators, tuple(vessel.commands)
-        self.held = [*self.actuators, *(f"{part}_{a}" for a in vessel.angles for part in ("cos", "sin"))]
+        self.held: Sequence[str] = [*self.actuators, *(f"{part}_{a}" for a in vessel.angles for part in ("cos", "sin"))]
 
     # What kinds may ask -----------------------------------------------------------------------------------------------
 

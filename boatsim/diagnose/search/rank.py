@@ -123,7 +123,7 @@ class _Search:
     def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
         """A candidate fitted in full from its quick look; where that leaves much over, from each of its starts."""
         found = fit(self.problem, look)
-        effect = next(e for e in self.problem.program.suspects if e.name() == name)
+        effect = next(e for e in self.problem.program.suspects if e.name == name)
         begun = starts(self.problem, effect)
         if len(begun) == 1 or isinstance(effect, Unsteady) or left_over(self.problem, found) < UNKNOWN:
             return found
