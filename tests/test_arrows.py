@@ -24,7 +24,7 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "control.identification control.helm".split()
 )
 HEAVY = {  # library -> the only modules that may import it
-    "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env", "free_body")},
+    "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")},
     "dm_control": {"simulate.env"},
     "dm_env": {"simulate.env"},
     "rerun": {"view.rerun_log", "view.blueprint", "recordings.readers.rrd"},
