@@ -4,6 +4,7 @@ from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
+from math import cos, sin
 from operator import attrgetter
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
@@ -78,6 +79,14 @@ class Effect(Checked):
         """NamedTuple type of the signals of its roles, with cosine and sine of those that are angles."""
         angles = [f"{part}_{n}" for n, role in cls.roles.items() if role.unit == "rad" for part in ("cos", "sin")]
         return namedtuple(f"{cls.__name__}Signals", [*cls.roles, *angles])
+
+    @classmethod
+    def signals(cls, **given: float) -> Any:
+        """Signals of its roles as the law's third argument; one not given is as if nothing were bound to it, or 0."""
+        held = {name: role.fixed or 0.0 for name, role in cls.roles.items()} | given
+        angles = [name for name, role in cls.roles.items() if role.unit == "rad"]
+        parts = {f"{part}_{n}": of(held[n]) for n in angles for part, of in (("cos", cos), ("sin", sin))}
+        return cls.signals_type()(**held, **parts)
 
     def values(self) -> Any:
         """The parameters as the law's second argument."""
