@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import pi, radians, sin, sqrt
+from math import asinh, cos, exp, hypot, pi, radians, sin, sinh, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from boatsim.diagnose import analysis
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, Wrench, motion
+from boatsim.physics.base import Array, Course, Effect, Wrench, mean_of, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.approach_balance import ApproachBalance
 from boatsim.physics.effects.damping import LinearDamping
@@ -28,11 +28,19 @@ from boatsim.physics.effects.speed_scaled_steering import SpeedScaledSteering
 from boatsim.physics.effects.steering_drag import SteeringDrag
 from boatsim.physics.effects.sway_yaw_coupling import SpeedLossInTurn
 from boatsim.physics.effects.thrust_loss_with_speed import ThrustLossWithSpeed
+from boatsim.physics.effects.thruster import Thruster
 from boatsim.recordings import table as recording
 from boatsim.recordings.table import Notes, Recording
 
 SHIP = vessel.load("kvlcc2")
-TURN = {"u": 0.8, "v": 0.15, "r": -0.06, "delta_rad": 0.4}  # of the 7 m model, to port
+TURN, HELM = {"u": 0.8, "v": 0.15, "r": -0.06}, 0.4  # of the 7 m model, to port
+
+
+def signals(kind: type[Effect], **given: float) -> Any:
+    """Signals of a law's roles, with cosine and sine of those that are angles."""
+    angles = {n: a for n, a in given.items() if kind.roles[n].unit == "rad"}
+    parts = {f"cos_{n}": cos(a) for n, a in angles.items()} | {f"sin_{n}": sin(a) for n, a in angles.items()}
+    return kind.signals_type()(**given, **parts)
 
 
 # ---- laws
@@ -40,23 +48,25 @@ TURN = {"u": 0.8, "v": 0.15, "r": -0.06, "delta_rad": 0.4}  # of the 7 m model, 
 
 def test_balance_holds_a_speed_in_proportion_to_the_propellers_rate() -> None:
     balance = ApproachBalance(damping=90.0, speed=1.2, shaft_rate=10.0)
-    assert balance.wrench(motion(u=0.9, n_rps=7.5)) == pytest.approx((0, 0, 0, 0))
-    assert balance.wrench(motion(u=1.0, n_rps=10.0)).X == pytest.approx(18.0)
+    assert balance.wrench(motion(u=0.9), signals(ApproachBalance, shaft=7.5)) == pytest.approx(Wrench())
+    assert balance.wrench(motion(u=1.0), signals(ApproachBalance, shaft=10.0)).X == pytest.approx(18.0)
 
 
 def test_speed_scaled_hull_and_rudder_are_the_nondimensional_form() -> None:
     hull, rudder = LinearDamping(sway=591.4, sway_by_yaw=-801.8, yaw_by_sway=1800.6, yaw=4508.0), SHIP.effect("rudder")
     assert isinstance(rudder, Rudder)
     whole = SpeedScaledSteering(hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1).completed(SHIP)
-    m = motion(**TURN)
+    m, helm = motion(**TURN), signals(Rudder, angle=HELM)
     ratio = m.u / 1.179
-    wanted = ratio * np.array(hull.wrench(m)) + ratio**2 * np.array(rudder.wrench(m))
-    assert np.add(np.add(hull.wrench(m), rudder.wrench(m)), whole.wrench(m)) == pytest.approx(wanted)
+    of_hull, of_rudder = np.array(hull.wrench(m)), np.array(rudder.wrench(m, helm))
+    more = whole.wrench(m, signals(SpeedScaledSteering, angle=HELM))
+    assert of_hull + of_rudder + more == pytest.approx(ratio * of_hull + ratio**2 * of_rudder)
 
 
 def test_speed_scaling_vanishes_at_the_approach_speed_whatever_its_shares() -> None:
     shares = SpeedScaledSteering(hull_sway=2, hull_yaw=-1, rudder_sway=0.5, rudder_yaw=3).completed(SHIP)
-    assert shares.wrench(motion(**{**TURN, "u": 1.179})) == pytest.approx((0, 0, 0, 0), abs=1e-12)
+    at_it = shares.wrench(motion(**{**TURN, "u": 1.179}), signals(SpeedScaledSteering, angle=HELM))
+    assert at_it == pytest.approx(Wrench(), abs=1e-12)
 
 
 @pytest.mark.parametrize("u", [0.7, -0.7])
@@ -77,7 +87,8 @@ def test_steering_drag_is_the_part_along_the_ship_of_a_force_normal_to_the_blade
     slope = 53.0  # [N/rad] of the force normal to the blade
     for delta in (-0.2, 0.3):
         along = -slope * sin(delta) * sin(delta)
-        assert SteeringDrag(drag=slope).wrench(motion(delta_rad=delta)).X == pytest.approx(along, rel=delta**2 / 2.5)
+        seen = SteeringDrag(drag=slope).wrench(motion(), signals(Rudder, angle=delta), None)
+        assert seen.X == pytest.approx(along, rel=delta**2 / 2.5)
 
 
 def test_rate_limit_takes_the_time_of_a_ramp_and_its_mean_is_exact() -> None:
@@ -86,7 +97,7 @@ def test_rate_limit_takes_the_time_of_a_ramp_and_its_mean_is_exact() -> None:
     memory, fine = np.zeros(1), 2000
     angle = 0.0
     for x in commands:
-        mean = SteeringRateLimit.channel(x, 0.0, 0.0, memory, 0, dt, limit.values())
+        mean = mean_of(SteeringRateLimit.channel(Course(x, x, x), 0.0, 0.0, memory, 0, dt, limit.values()))
         path = angle + np.sign(x - angle) * np.minimum(limit.rate * dt * np.arange(fine + 1) / fine, abs(x - angle))
         assert mean == pytest.approx(np.trapezoid(path) / fine, abs=1e-7)
         angle = path[-1]
@@ -103,28 +114,27 @@ def test_metacentric_height_changes_the_period_by_the_inverse_root() -> None:
 
 
 @pytest.mark.parametrize("u", [1.5, -0.5])
-def test_thrust_lost_with_speed_scales_each_outboard(u: float) -> None:
-    boat = vessel.load("trial_boat")
-    angles = {"steer_port_rad": 0.3, "steer_starboard_rad": -0.2}
-    m = motion(u=u, thrust_port_N=0.8, thrust_starboard_N=-0.5, **angles)
-    left = motion(u=u, thrust_port_N=0.8 * (1 - 0.2 * u), thrust_starboard_N=-0.5 * (1 + 0.2 * u), **angles)
-    own = Outboards(x=-0.6, half_spacing=0.19)
-    loss = ThrustLossWithSpeed(loss=0.2).completed(boat)
-    assert np.add(own.wrench(m), loss.wrench(m)) == pytest.approx(own.wrench(left))
+def test_thrust_lost_with_speed_scales_each_thruster(u: float) -> None:
+    own, loss = Thruster(x=-0.6, y=0.19, gain=1.2), ThrustLossWithSpeed(loss=0.2)
+    for thrust in (0.8, -0.5):
+        given, less = (signals(Thruster, thrust=t, angle=0.3) for t in (thrust, thrust - 0.2 * u * abs(thrust)))
+        seen = np.add(own.wrench(motion(u=u), given), loss.wrench(motion(u=u), given, own.values()))
+        assert seen == pytest.approx(own.wrench(motion(u=u), less))
 
 
 @pytest.mark.parametrize(("u", "kappa"), [(2.0, 0.2), (14.0, 0.5), (35.0, 1.0)])
 def test_planing_lag_is_the_kappa_form(u: float, kappa: float) -> None:
     values = PlaningLag(full_speed=28.0, least=0.2, hull_mass=1.0).values()
-    others = Wrench(5.0 - drag(u), 0.0, 0.0, 0.0)
+    others = Wrench(X=5.0 - drag(u))
     force = others.X - 0.4 * 0.5  # per unit mass, with v r
     lag = PlaningLag.reaction(motion(u=u, v=-0.4, r=0.5), others, values)
     assert force + lag.X == pytest.approx(kappa * force)
-    assert PlaningLag.reaction(motion(u=u), Wrench(0.0, 0.0, 0.0, 0.0), values).X == 0.0  # steady
+    assert PlaningLag.reaction(motion(u=u), Wrench(), values).X == 0.0  # steady
 
 
 def test_revolutions_a_minute_add_to_those_a_second() -> None:
-    assert ShaftRpm.channel(0.5, 0.0, 90.0, np.zeros(1), 0, 0.1, ShaftRpm().values()) == pytest.approx(2.0)
+    turning = ShaftRpm.channel(Course(0.5, 0.5, 0.5), 0.0, 90.0, np.zeros(1), 0, 0.1, ShaftRpm().values())
+    assert turning == pytest.approx([2.0, 2.0, 2.0])
 
 
 # ---- the vessel
@@ -172,6 +182,8 @@ def test_full_scale_kvlcc2_is_the_model_by_froudes_law() -> None:
     for own in SHIP.effects:
         scaled = full.effect(own.name)
         for name, about in type(own).params().items():
+            if getattr(own, name.replace("_equal", "_exponent")) == 1.0 and name.endswith("_equal"):
+                continue  # where a linear law meets another power says nothing of it
             wanted = getattr(own, name) * grows(about.unit)
             loose = 1e-2 if name == "shaft_rate" else 1e-3  # the tanks' propellers turned at slightly different rates
             assert getattr(scaled, name) == pytest.approx(wanted, rel=loose), f"{own.name}.{name}"
@@ -197,9 +209,14 @@ def tanker(t: float, y: Array, angle: Callable[[float], float], shaft: float, re
     """Newton's law about midship, mass centre 0.2436 m ahead, published derivatives about 1.179 m/s."""
     psi, u, v, r = y[2:]
     m, ahead, delta = 3272.0, 0.2436, angle(t)
-    e = u / 1.179 - 1.0
-    lift, steer = 1.0 + real.hull * e, 1.0 + real.blade * ((1.0 + e) ** 2 - 1.0)
-    X = -97.6 * (u - 1.179 * shaft) + real.drift * v * r - real.brake * delta**2 + m * (v * r + ahead * r**2)
+    way = hypot(u, v) / 1.179
+    lift, steer = 1.0 + real.hull * (way - 1.0), 1.0 + real.blade * (way**1.9 - 1.0)
+    X = (
+        -97.6 * (u - 1.179 * shaft)
+        + real.drift * (0.9 + abs(v)) * v * r
+        - real.brake * sin(delta) ** 2
+        + m * (v * r + ahead * r**2)
+    )
     Y = lift * (-591.4 * v + 801.8 * r) - steer * 113.9 * delta - m * u * r
     N = lift * (-1800.6 * v - 4508.0 * r) + steer * 391.9 * delta - m * ahead * u * r
     matrix = np.array([[m + 2486.0, m * ahead], [m * ahead, 9908.6 + m * ahead**2 + 6009.0]])
@@ -219,7 +236,11 @@ def sailed(real: Real, seed: int) -> Recording:
         rows.append([i * dt, *y, order])
 
         def machine(t: float, begin: float = angle, goal: float = order) -> float:
-            return begin + float(np.clip(goal - begin, -real.rate * t, real.rate * t)) if real.rate < 5.0 else goal
+            """It turns at its rate but for the last degrees, in which its valve closes."""
+            if real.rate > 5.0:
+                return goal
+            near = 0.5 * real.rate  # [rad]
+            return goal - near * asinh(sinh((goal - begin) / near) * exp(-real.rate * t / near))
 
         y = solve_ivp(tanker, (0.0, dt), y, args=(machine, shaft, real), rtol=1e-7, atol=1e-9).y[:, -1]
         angle = machine(dt)
@@ -280,10 +301,10 @@ draught = 0.2
 body = { mass = 388.0, roll_inertia = 50.0, yaw_inertia = 220.0 }
 
 [channels]
-thrust_port_N = { low = 0.0, high = 4000.0, family = "thrust", side = -1 }
-thrust_starboard_N = { low = 0.0, high = 4000.0, family = "thrust", side = 1 }
-steer_port_rad = { low = -0.3, high = 0.3, family = "steer", side = -1 }
-steer_starboard_rad = { low = -0.3, high = 0.3, family = "steer", side = 1 }
+thrust_port_N = { low = 0.0, high = 4000.0 }
+thrust_starboard_N = { low = 0.0, high = 4000.0 }
+steer_port_rad = { low = -0.3, high = 0.3 }
+steer_starboard_rad = { low = -0.3, high = 0.3 }
 
 [[effect]]
 use = "surge_drag"
@@ -296,9 +317,18 @@ sway = 85.0
 yaw = 150.0
 
 [[effect]]
-use = "outboards"
+use = "thruster"
+name = "port"
+on = { thrust = "thrust_port_N", angle = "steer_port_rad" }
 x = -1.6
-half_spacing = 0.3
+y = -0.3
+
+[[effect]]
+use = "thruster"
+name = "starboard"
+on = { thrust = "thrust_starboard_N", angle = "steer_starboard_rad" }
+x = -1.6
+y = 0.3
 
 [diagnosis]
 suspects = ["thrust_loss_with_speed", "quadratic_damping", "planing_lag"]
@@ -330,11 +360,11 @@ def drag(u: float) -> float:
 
 
 def lagging(a: float, u: float) -> float:
-    return min(max(u / 28.0, 0.2), 1.0) * (a - drag(u))
+    return min((0.2**4 + max(u / 28.0, 0.0) ** 4) ** 0.25, 1.0) * (a - drag(u))  # it planes by and by
 
 
 def slipping(a: float, u: float) -> float:
-    return a * (1.0 - 0.015 * u) - drag(u)
+    return a * (1.0 - 0.015 * u * (0.8 + 0.2 * u / 12.0)) - drag(u)  # more than in proportion
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,12 @@ from typing import Any
 
 import boats
 import pytest
-from boatsim.physics.effects.outboards import Outboards
 
 from boatsim.diagnose.analysis import absent
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.effects.added_mass import AddedMass
+from boatsim.physics.effects.thruster import Thruster
 
 
 def of(text: str, tmp_path: Path, **more: Any) -> vessel.Vessel:
@@ -30,11 +30,12 @@ def test_every_vessel_loads_in_every_load(name: str) -> None:
 @pytest.mark.parametrize("name", content.names("vessel"))
 def test_suspects_of_a_vessel_can_be_put_on_it(name: str) -> None:
     boat = vessel.load(name)
-    own = {e.name for e in boat.effects}
     for suspect in boat.diagnosis.suspects:
-        assert suspect not in own
-        kind = content.load_class("effect", suspect, boat.path)
-        vessel.added(boat, absent(kind, boat.diagnosis.facts))
+        table = {"use": suspect} if isinstance(suspect, str) else suspect
+        assert not boat.known_as(str(table.get("name", table["use"])))
+        kind = content.load_class("effect", str(table["use"]), boat.path)
+        found = absent(kind, boat.diagnosis.facts, {k: v for k, v in table.items() if k != "use"})
+        vessel.check_bindings(vessel.added(boat, found), name)
 
 
 def test_a_load_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:
@@ -47,9 +48,10 @@ def test_a_load_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:
 
 
 def test_loads_add_up_and_settings_go_on_top() -> None:
-    boat = vessel.load("joystick_boat", ["heavy", "wide"], {"outboards": {"gain": 0.9}})
+    boat = vessel.load("joystick_boat", ["heavy", "wide"], {"port": {"gain": 0.9}})
     assert boat.load == ("heavy", "wide")
-    assert boat.effect("outboards") == Outboards(x=-0.571, half_spacing=0.28, gain=0.9)
+    on = {"thrust": "thrust_port_N", "angle": "steer_port_rad"}
+    assert boat.effect("port") == Thruster(x=-0.571, y=-0.28, gain=0.9, name="port", on=on)
     assert boat.body.mass == 5.6 and boat.body.roll_inertia == 0.3
     assert boat.geometry["ballast_mass"] == 1.0 and boat.geometry["motor_half_spacing"] == 0.28
 
@@ -60,7 +62,7 @@ def test_settings_can_change_the_body(tmp_path: Path) -> None:
 
 def test_extra_effects_come_after_the_vessels_own() -> None:
     boat = vessel.load("trial_boat", extra=[{"use": "current", "north": 0.1}, {"use": "weak_reverse"}])
-    assert [e.name for e in boat.effects][-3:] == ["outboards", "current", "weak_reverse"]
+    assert [e.name for e in boat.effects][-4:] == ["port", "starboard", "current", "weak_reverse"]
 
 
 def test_what_the_vessel_is_asked_for() -> None:
@@ -68,8 +70,13 @@ def test_what_the_vessel_is_asked_for() -> None:
     assert boat.effect("wind") is None
     assert boat.actuators == ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
     assert boat.limits()["pwm_port"] == (-255.0, 255.0)
-    assert boat.beside("thrust_starboard_N", "pwm") == "pwm_starboard"
-    assert boat.beside("thrust_port_N", "rudder") is None
+    assert boat.roles["thrust_port_N"] == "thrust" and "pwm_port" not in boat.roles
+    assert boat.angles == ("steer_port_rad", "steer_starboard_rad")
+    fed = boat.effect("pwm_thrust")
+    assert fed is not None and boat.feeder(fed, "thrust_starboard_N") == "pwm_starboard"
+    assert [boat.side(n) for n in ("thrust_port_N", "pwm_starboard", "steer_starboard_rad")] == [-1, 1, 1]
+    assert boat.known_as("thruster") == ["port", "starboard"] and boat.known_as("port") == ["port"]
+    assert boat.effect("thruster") is None  # which of them?
 
 
 @pytest.mark.parametrize(
@@ -79,8 +86,11 @@ def test_what_the_vessel_is_asked_for() -> None:
         (("roll_inertia", "roll_inerta"), r"key in \[body\] 'roll_inerta' .*did you mean 'roll_inertia'"),
         (("mass = 6.0", "mass = -6.0"), r"vessel\.toml: body\.mass = -6\.0; input should be greater than 0"),
         (("beam = 0.4\n", ""), r"vessel\.toml: beam is missing"),
-        (('"yaw"]', '"jaw"]'), r"freedoms\.2 = 'jaw'; input should be 'surge', 'sway', 'roll' or 'yaw'"),
-        (("side = -1", "side = 2"), r"channels\.thrust_port_N\.side = 2"),
+        (
+            ('"yaw"]', '"jaw"]'),
+            r"freedoms\.2 = 'jaw'; input should be 'surge', 'sway', 'heave', 'roll', 'pitch' or 'yaw'",
+        ),
+        (("high = 100.0 }", "high = 100.0, side = 1 }"), r"key in \[channels\.thrust_port_N\] 'side' does not exist"),
         (('use = "current"', 'use = "curent"'), "effect 'curent' does not exist; did you mean 'current'"),
         (
             ("sway = 3.0", "swai = 3.0"),

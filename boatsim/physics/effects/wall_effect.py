@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import UNSET, Force, Wrench, param
+from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
 REACH = 0.5  # [boat lengths] over which what a wall does falls to 37 %
 
@@ -24,11 +24,10 @@ def law(m: Any, q: Any) -> Wrench:
     e, w = nearness(m.y, q.y_low, q.y_high, q.reach)
     rise = q.damping_rise * (n + s + e + w)
     north, east = q.pull * (n - s), q.pull * (e - w)  # [N]
-    return Wrench(
-        m.cos_psi * north + m.sin_psi * east - rise * q.surge * m.ur,
-        m.cos_psi * east - m.sin_psi * north - rise * q.sway * m.vr,
-        0.0,
-        -rise * q.yaw * m.r,
+    return wrench(
+        X=m.cos_psi * north + m.sin_psi * east - rise * q.surge * m.ur,
+        Y=m.cos_psi * east - m.sin_psi * north - rise * q.sway * m.vr,
+        N=-rise * q.yaw * m.r,
     )
 
 
@@ -39,6 +38,7 @@ class WallEffect(Force):
     words: ClassVar[str] = "near the walls of the tank the boat drags more and is drawn towards them"
     shown_by: ClassVar[str] = "approaching a wall slowly and leaving it again"
     source: ClassVar[str] = "assumption: exponential fall-off; its reach is half a boat length"
+    anchored: ClassVar[str] = "the walls"
     law: ClassVar = law
     strength: ClassVar = ("damping_rise", "pull")
     facts: ClassVar = {"walls_m": ("x_low", "x_high", "y_low", "y_high")}

@@ -56,7 +56,7 @@ class Effect(Checked):
         if isinstance(on, Mapping):
             good = wants_table and all(isinstance(c, str | float | int) for c in on.values())
         else:
-            good = isinstance(on, Sequence) and all(isinstance(c, str) for c in on) and not (wants_table and on)
+            good = isinstance(on, list | tuple) and all(isinstance(c, str) for c in on) and not (wants_table and on)
         if not good:
             allowed = f"a table of {', '.join(type(self).roles)}" if wants_table else "a name or a list of names"
             raise BadInput(f"{self.name}: on = {self.on!r}; allowed is {allowed}")

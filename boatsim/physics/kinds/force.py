@@ -27,7 +27,7 @@ class Force(Kind):
     """
 
     parts: ClassVar = (WRENCH,)
-    laws: ClassVar = ("law",)
+    laws: ClassVar[tuple[str, ...]] = ("law",)
     of_air: ClassVar[bool] = False  # a force of the air, which a run logs apart
     anchored: ClassVar[str] = ""  # what it holds on to beside the water: "the air", "walls"; empty: nothing
     law: ClassVar[Callable[..., Wrench]]
