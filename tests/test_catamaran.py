@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from boatsim.physics.effects.azimuth_thruster import AzimuthThruster
 from real_catamaran import Real, navigation, recording
 
 from boatsim.cli import diagnosis as commands
@@ -20,13 +19,14 @@ from boatsim.measures.arrival import Arrival
 from boatsim.measures.speed_reached import SpeedReached
 from boatsim.measures.turning_radius import TurningRadius
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, motion
+from boatsim.physics.base import Array, Wrench, motion
 from boatsim.physics.content import load_class, names
 from boatsim.physics.effects.added_mass import AddedMassError
 from boatsim.physics.effects.damping import DampingExponent
 from boatsim.physics.effects.extra_mass import Payload
 from boatsim.physics.effects.push import Gust, GustOffCentre
 from boatsim.physics.effects.speed_hold import SpeedHold
+from boatsim.physics.effects.thruster import Thruster
 from boatsim.recordings import table as recordings
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
@@ -253,10 +253,10 @@ def test_turning_radius_of_a_circle() -> None:
 # Effects in closed form
 
 
-def test_azimuth_thruster_is_a_force_on_a_lever() -> None:
-    force = AzimuthThruster(x=0.4).wrench(motion(thrust_N=20.0, azimuth_rad=0.3))
-    assert force == pytest.approx((20 * cos(0.3), 20 * sin(0.3), 0.0, 8 * sin(0.3)))
-    assert AzimuthThruster(x=-0.4).wrench(motion(thrust_N=20.0, azimuth_rad=0.3)).N == pytest.approx(-8 * sin(0.3))
+def test_a_thruster_is_a_force_on_a_lever() -> None:
+    ahead, astern = (Thruster(x=x).wrench(motion(), thrust=20.0, angle=0.3) for x in (0.4, -0.4))
+    assert ahead == pytest.approx(Wrench(X=20 * cos(0.3), Y=20 * sin(0.3), N=8 * sin(0.3)))
+    assert astern == pytest.approx(ahead._replace(N=-ahead.N))
 
 
 def test_gust_is_a_sine_in_one_direction_of_the_world() -> None:
@@ -264,9 +264,9 @@ def test_gust_is_a_sine_in_one_direction_of_the_world() -> None:
     m = motion(t=1.0, psi=0.7)
     force = 10 + 5 * sin(0.4 * pi)
     X, Y = force * cos(2.0 - 0.7), force * sin(2.0 - 0.7)
-    assert gust.wrench(m) == pytest.approx((X, Y, 0.0, 0.1 * Y))
+    assert gust.wrench(m) == pytest.approx(Wrench(X=X, Y=Y, N=0.1 * Y))
     Y = force * sin(2.0)
-    assert replace(gust, turns_with_hull=1.0).wrench(m) == pytest.approx((force * cos(2.0), Y, 0.0, 0.1 * Y))
+    assert replace(gust, turns_with_hull=1.0).wrench(m) == pytest.approx(Wrench(X=force * cos(2.0), Y=Y, N=0.1 * Y))
 
 
 def test_gust_off_centre_is_what_a_lever_adds_to_the_vessels_own_gust() -> None:
@@ -275,7 +275,7 @@ def test_gust_off_centre_is_what_a_lever_adds_to_the_vessels_own_gust() -> None:
     own: Any = boat.effect("gust")
     off: Any = vessel.added(boat, GustOffCentre(arm=0.1)).effect("gust")
     Y = own.wrench(m).Y
-    assert off.wrench(m) == pytest.approx((own.wrench(m).X, Y, 0.0, own.wrench(m).N + 0.1 * Y))
+    assert off.wrench(m) == pytest.approx(own.wrench(m)._replace(N=own.wrench(m).N + 0.1 * Y))
 
 
 def test_speed_hold_keeps_the_speed_whatever_the_turn() -> None:
@@ -302,8 +302,8 @@ def test_damping_exponent_makes_a_power_law_of_the_vessels_linear_damping() -> N
     boat, m = vessel.load("catamaran"), motion(u=0.5, v=-0.2, r=0.4)
     release = DampingExponent(surge_exponent=1.5, sway_exponent=2.0, sway_equal=0.5, yaw_exponent=3.0)
     power: Any = vessel.added(boat, release).effect("linear_damping")
-    assert power.wrench(m) == pytest.approx((-14 * 0.5**1.5, 80 * 0.2**2 / 0.5, 0.0, -5 * 0.4**3))
-    assert power.wrench(motion()) == (0.0, 0.0, 0.0, 0.0)
+    assert power.wrench(m) == pytest.approx(Wrench(X=-14 * 0.5**1.5, Y=80 * 0.2**2 / 0.5, N=-5 * 0.4**3))
+    assert power.wrench(motion()) == Wrench()
 
 
 # What was left out: recordings of boats that differ from the catamaran

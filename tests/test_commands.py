@@ -80,7 +80,7 @@ def test_nothing_leaves_its_range(boat: Vessel) -> None:
 
 
 def test_rows_of_a_recording_are_limited_and_what_it_lacks_is_neutral(tmp_path: Path) -> None:
-    text = PLANAR.replace('family = "steer", side = 1', 'neutral = 0.5, family = "steer", side = 1')
+    text = PLANAR.replace("steer_starboard_rad = { low", "steer_starboard_rad = { neutral = 0.5, low")
     own = vessel.load(str(written(tmp_path, "test_boat", text)))
     rows = taken_rows(own, {"thrust_port_N": np.array([1.0, 500.0]), "sent_thrust_port_N": np.full(2, 7.0)}, 2)
     assert rows.tolist() == [[1.0, 0.0, 0.0, 0.5], [100.0, 0.0, 0.0, 0.5]]
@@ -242,11 +242,11 @@ BREATH = """
 from dataclasses import dataclass
 from typing import ClassVar
 from numba import njit
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, param, wrench
 
 @njit(inline="always")
 def law(m, q):
-    return Wrench(0.0, q.push * m.t, 0.0, 0.0)
+    return wrench(Y=q.push * m.t)
 
 @dataclass(frozen=True)
 class Breath(Force):

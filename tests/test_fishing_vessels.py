@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 from benchmarks.martin_vessels import (
     PERIOD,
-    PUSHES,
+    WAVES,
     force,
     held,
     inertia,
@@ -21,6 +21,7 @@ from benchmarks.martin_vessels import (
 )  # fmt: skip
 from boatsim.physics import particulars, vessel
 from boatsim.physics.base import Array
+from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.twin import Twin
 
@@ -119,7 +120,7 @@ def test_worked_example_coefficient_by_coefficient() -> None:
     below, arm = own.below, own.arm  # type: ignore[union-attr]
     assert arm * 1066.479 == pytest.approx(671.383, rel=3e-4)  # roll moment of a sway acceleration
     assert below * 309.136 == pytest.approx(419.771, rel=3e-4)
-    rudder = force(boat, rudder_rad=1.0) / TONNE
+    rudder = force(boat, rudder=1.0) / TONNE
     assert rudder[:2] == pytest.approx([3213.883, -256.926], rel=3e-4)
     assert rudder[2] - arm * rudder[1] == pytest.approx(607.8455, rel=3e-4)
     assert -force(boat, r=1.0)[2] / TONNE - arm * 848.9842 == pytest.approx(4042.015, rel=3e-4)
@@ -224,13 +225,14 @@ def test_sway_added_mass_heels_one_way_as_printed_or_both_ways_as_energy_demands
 
 def on_twin(boat: Vessel, rudder: Array, waves: Array) -> Array:
     """(N + 1, 5) states of the run in the twin."""
-    twin, y = Twin(boat, 0.02), np.array([0, 0, 0, 0, speed_of(boat), 0, 0, 0.0])
-    at, values, rows = [twin.program.index("push", n) for n in PUSHES], twin.program.values(), [y]
+    twin, symbols = Twin(boat, 0.02), [signal.symbol for signal in signals_of(boat.freedoms)]
+    y = np.array([speed_of(boat) if n == "u" else 0.0 for n in symbols])
+    at, values, rows = [twin.program.index("push", n) for n in WAVES], twin.program.values(), [y]
     for i, (angle, wave) in enumerate(zip(rudder, waves, strict=True)):
         values[at] = wave * inertia(boat).diagonal()
         y = twin.rollout(y, np.array([[angle]]), PERIOD, values, t0=PERIOD * i)[-1]
         rows.append(y)
-    return np.array(rows)[:, [2, 6, 5, 3, 7]]
+    return np.array(rows)[:, [symbols.index(n) for n in ("psi", "r", "v", "phi", "p")]]
 
 
 @pytest.mark.parametrize("run", [on_mujoco, on_twin])

@@ -11,15 +11,16 @@ from boatsim.control.adaptive import l1_norm, project_interval, unfiltered
 from boatsim.control.adaptive_loop import AdaptiveLoop, adapt, filtered, projected
 from boatsim.control.allocation import JetThrottle
 from boatsim.physics import vessel
-from boatsim.physics.base import Wrench, motion
+from boatsim.physics.base import Course, Force, Wrench, mean_of, motion
 from boatsim.physics.content import load_class, names
 from boatsim.physics.effects.jet_steering import JetSteering
 from boatsim.physics.effects.nomoto_yaw import NomotoYaw
 from boatsim.physics.effects.push import Push
-from boatsim.physics.effects.rate_limit import ThrottleRateLimit
+from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.roll_coupling import RollCoupling
 from boatsim.physics.effects.steering_offset import SteeringAsymmetry
 from boatsim.physics.effects.water_jet import WaterJet
+from boatsim.physics.signals import signals_of
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.norms import norms
@@ -37,7 +38,7 @@ MASS, ROLL, YAW = CRAFT.body.mass, CRAFT.body.roll_inertia, CRAFT.body.yaw_inert
 def test_power_curve_has_the_published_corners(throttle: float, wanted: float) -> None:
     jet = WaterJet(mass=1.0)
     for h in (throttle - 1e-9, throttle):  # both sides
-        assert jet.wrench(motion(u=2.0, throttle=h)).X * 2.0 == pytest.approx(wanted, abs=1e-6)
+        assert jet.wrench(motion(u=2.0), throttle=h).X * 2.0 == pytest.approx(wanted, abs=1e-6)
 
 
 def test_power_rises_with_the_throttle_and_its_inverse_gives_the_throttle_back() -> None:
@@ -49,65 +50,55 @@ def test_power_rises_with_the_throttle_and_its_inverse_gives_the_throttle_back()
 
 
 def test_printed_q2_makes_the_power_jump_at_4() -> None:
-    jump = [WaterJet(mass=1.0, q2=164.5).wrench(motion(u=1.0, throttle=h)).X for h in (4.0 - 1e-9, 4.0)]
+    jump = [WaterJet(mass=1.0, q2=164.5).wrench(motion(u=1.0), throttle=h).X for h in (4.0 - 1e-9, 4.0)]
     assert jump[1] - jump[0] == pytest.approx(9.6, abs=1e-5)
 
 
 def test_thrust_rises_no_more_below_half_a_metre_a_second() -> None:
-    slow = [WaterJet(mass=1.0).wrench(motion(u=u, throttle=1.0)).X for u in (-1.0, 0.0, 0.5, 1.0)]
+    slow = [WaterJet(mass=1.0).wrench(motion(u=u), throttle=1.0).X for u in (-1.0, 0.0, 0.5, 1.0)]
     assert slow == pytest.approx([1.6, 1.6, 1.6, 0.8])
 
 
 def test_sway_roll_and_yaw_of_the_craft_are_the_printed_matrix() -> None:
-    given = {
-        "u": 20.0,
-        "v": -0.7,
-        "p": 0.3,
-        "r": 0.5,
-        "phi": 0.2,
-        "jet_rad": 0.15,
-        "throttle": 3.0,
-        "elevator_rad": 0.0,
-    }
-    m = motion(**given)
-    total = np.sum([e.wrench(m) for e in CRAFT.effects if hasattr(e, "wrench")], axis=0)
-    accelerations = total[1] / MASS - m.u * m.r, total[2] / ROLL, total[3] / YAW
-    assert accelerations == pytest.approx(STEERING @ [m.v, m.p, m.r, m.phi, m.jet_rad], rel=1e-9)
+    jet, m = 0.15, motion(u=20.0, v=-0.7, p=0.3, r=0.5, phi=0.2)
+    seen = {"angle": jet, "throttle": 3.0, "bucket": 0.0}
+    forces = [e for e in CRAFT.effects if isinstance(e, Force)]
+    total = np.sum([e.wrench(m, **{role: seen[role] for role in type(e).roles}) for e in forces], axis=0)
+    accelerations = total[1] / MASS - m.u * m.r, total[3] / ROLL, total[5] / YAW
+    assert accelerations == pytest.approx(STEERING @ [m.v, m.p, m.r, m.phi, jet], rel=1e-9)
 
 
 def test_roll_coupling_and_jet_are_linear() -> None:
     coupling = RollCoupling(sway_by_roll=2.0, yaw_by_roll=-3.0, roll_by_sway=4.0, roll_by_yaw=5.0)
-    assert coupling.wrench(motion(v=0.1, p=0.2, r=-0.3)) == pytest.approx((0.0, -0.4, -0.4 + 1.5, 0.6))
+    felt = coupling.wrench(motion(v=0.1, p=0.2, r=-0.3))
+    assert felt == pytest.approx(Wrench(Y=-0.4, K=-0.4 + 1.5, N=0.6))
     jet = JetSteering(sway=-2.0, roll=3.0, yaw=4.0)
-    assert jet.wrench(motion(jet_rad=-0.1)) == pytest.approx((0.0, 0.2, -0.3, -0.4))
+    assert jet.wrench(motion(), angle=-0.1) == pytest.approx(Wrench(Y=0.2, K=-0.3, N=-0.4))
 
 
 def test_first_order_yaw_changes_in_a_straight_line() -> None:
     law = NomotoYaw(gain=1.0, gain_later=4.0, time_constant=1.5, time_constant_later=0.5, duration=40.0, inertia=2.0)
     for t, gain, lag in ((0.0, 1.0, 1.5), (20.0, 2.5, 1.0), (50.0, 4.0, 0.5)):
-        assert law.wrench(motion(t=t, r=0.2, jet_rad=0.1)).N == pytest.approx(2.0 * (gain * 0.1 - 0.2) / lag)
+        assert law.wrench(motion(t=t, r=0.2), angle=0.1).N == pytest.approx(2.0 * (gain * 0.1 - 0.2) / lag)
 
 
 def test_a_push_begins_and_ends() -> None:
-    push = Push(surge=1.0, sway=2.0, yaw=3.0, begin=5.0, end=15.0)
-    assert [push.wrench(motion(t=t)) for t in (4.9, 5.0, 14.9, 15.0)] == [
-        (0,) * 4,
-        (1, 2, 0, 3),
-        (1, 2, 0, 3),
-        (0,) * 4,
-    ]
+    push, there = Push(surge=1.0, sway=2.0, yaw=3.0, begin=5.0, end=15.0), Wrench(X=1.0, Y=2.0, N=3.0)
+    assert [push.wrench(motion(t=t)) for t in (4.9, 5.0, 14.9, 15.0)] == [Wrench(), there, there, Wrench()]
 
 
 def test_throttle_follows_a_ramp_and_its_mean_is_exact() -> None:
-    memory, limit = np.zeros(1), ThrottleRateLimit(rate=3.0).values()
-    means = [ThrottleRateLimit.channel(1.0, 0.0, 0.0, memory, 0, 0.2, limit) for _ in range(3)]
-    assert means == pytest.approx([0.3, 1.0 - 0.5 * 0.4 * (0.4 / 3.0) / 0.2, 1.0])
+    memory, limit, full = np.zeros(1), RateLimit(rate=3.0).values(), Course(1.0, 1.0, 1.0)
+    courses = [RateLimit.channel(full, 0.0, 0.0, memory, 0, 0.2, limit) for _ in range(3)]
+    assert [mean_of(c) for c in courses] == pytest.approx([0.3, 1.0 - 0.5 * 0.4 * (0.4 / 3.0) / 0.2, 1.0])
+    assert [(c.begin, c.end) for c in courses] == [(0.0, pytest.approx(0.6)), (pytest.approx(0.6), 1.0), (1.0, 1.0)]
 
 
 def test_asymmetric_steering_is_even_in_the_angle() -> None:
     values = SteeringAsymmetry(gain=0.05).values()
-    right, left = (SteeringAsymmetry.channel(x, 0.0, 0.0, np.zeros(1), 0, 0.1, values) for x in (0.2, -0.2))
-    assert right == pytest.approx(0.21) and left == pytest.approx(-0.19)
+    held = [Course(x, x, x) for x in (0.2, -0.2)]
+    right, left = (SteeringAsymmetry.channel(x, 0.0, 0.0, np.zeros(1), 0, 0.1, values) for x in held)
+    assert right == pytest.approx([0.21] * 3) and left == pytest.approx([-0.19] * 3)
 
 
 @pytest.mark.parametrize(("u", "kappa"), [(2.0, 0.2), (14.0, 0.5), (35.0, 1.0)])
@@ -115,11 +106,11 @@ def test_kappa_scales_the_whole_surge_acceleration(u: float, kappa: float) -> No
     lag = CRAFT.effect("planing_lag")
     assert lag is not None
     m = motion(u=u, v=-0.4, r=0.5)
-    others = Wrench(1000.0, 20.0, 3.0, 4.0)
+    others = Wrench(X=1000.0, Y=20.0, K=3.0, N=4.0)
     answer = type(lag).reaction(m, others, lag.values())  # type: ignore[attr-defined]
     before = others.X / MASS + m.v * m.r
     assert (others.X + answer.X) / MASS + m.v * m.r == pytest.approx(kappa * before)
-    assert answer[1:] == (0.0, 0.0, 0.0)
+    assert answer == Wrench(X=answer.X)
 
 
 # ---- the craft
@@ -127,18 +118,19 @@ def test_kappa_scales_the_whole_surge_acceleration(u: float, kappa: float) -> No
 
 @pytest.mark.parametrize(("throttle", "jet"), [(1.0, 0.0), (4.0, radians(15.0)), (7.0, radians(-8.0))])
 def test_engine_and_twin_follow_an_integration_of_the_printed_equations(throttle: float, jet: float) -> None:
-    start = (0.0, 0.0, 0.3, 0.05, 20.0, 0.2, 0.1, -0.1)  # x, y, psi, phi, u, v, p, r
-    truth = solved(Craft(), throttle, jet, np.array(start), np.array([0.0, 10.0]))[-1]
+    names = ("x", "y", "psi", "phi", "u", "v", "p", "r")
+    start = dict(zip(names, (0.0, 0.0, 0.3, 0.05, 20.0, 0.2, 0.1, -0.1), strict=True))
+    truth = solved(Craft(), throttle, jet, np.array(list(start.values())), np.array([0.0, 10.0]))[-1]
     engine = Engine(CRAFT, step=0.01)
-    moving = dict(zip(("x", "y", "psi", "phi", "u", "v", "p", "r"), start, strict=True))
-    engine.reset(State(**moving), {"throttle": throttle, "jet_rad": jet})
+    engine.reset(State(**start), {"throttle": throttle, "jet_rad": jet})
     engine.advance(1000)
     s = engine.state
-    assert [s.x, s.y, s.psi, s.phi, s.u, s.v, s.p, s.r] == pytest.approx(truth.tolist(), abs=1e-6)
+    assert [getattr(s, n) for n in names] == pytest.approx(truth.tolist(), abs=1e-6)
     twin = Twin(CRAFT, 0.01)
     rows = np.tile(twin.program.command_array({"throttle": throttle, "jet_rad": jet}), (100, 1))
-    end = twin.rollout((0.0, 0.0, 0.3, 0.05, 20.0, 0.2, -0.1, 0.1), rows, 0.1)[-1]
-    assert end == pytest.approx([s.x, s.y, s.psi, s.phi, s.u, s.v, s.r, s.p], abs=1e-8)
+    ours = [signal.symbol for signal in signals_of(CRAFT.freedoms)]
+    end = twin.rollout([start[n] for n in ours], rows, 0.1)[-1]
+    assert end == pytest.approx([getattr(s, n) for n in ours], abs=1e-8)
 
 
 def test_eigenvalues_of_the_steering_are_the_published_ones() -> None:

@@ -17,7 +17,7 @@ from boatsim.measures.crossing import Crossing
 from boatsim.measures.heading_hold import HeadingHold
 from boatsim.measures.step_response import StepResponse
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, motion
+from boatsim.physics.base import Array, Wrench, motion
 from boatsim.physics.content import load_class, names
 from boatsim.physics.effects.astern_time_constant import AsternTimeConstant
 from boatsim.physics.effects.reversing_jet import JetLeak, ReversingJet
@@ -97,16 +97,15 @@ def test_nozzle_and_bucket_turn_with_30_deg_per_second() -> None:
 @pytest.mark.parametrize("beta", [0.0, 0.5, pi / 4, 0.9])
 def test_leak_and_time_constant_astern_are_the_nomoto_model_with_another_gain_or_time(beta: float) -> None:
     own = ReversingJet(thrust=185.0, yaw=275.0)
-    m = motion(u=-0.5, r=0.1, jet_rad=0.2, elevator_rad=beta)
+    m, seen = motion(u=-0.5, r=0.1), {"angle": 0.2, "bucket": beta}
     boat = vessel.load("jet_ski", ["low_speed"])
     leaking: Any = vessel.added(replace(boat, effects=(own,)), JetLeak(fraction=0.25)).effects[0]
-    assert leaking.wrench(m) == pytest.approx(
-        [185.0 * (cos(2 * beta) + 0.25), 0.0, 0.0, 275.0 * (cos(2 * beta) + 0.25) * 0.2]
-    )
-    moment = own.wrench(m).N - 270.0 * 0.1
+    share = cos(2 * beta) + 0.25
+    assert leaking.wrench(m, **seen) == pytest.approx(Wrench(X=185.0 * share, N=275.0 * share * 0.2))
+    moment = own.wrench(m, **seen).N - 270.0 * 0.1
     quicker = AsternTimeConstant(factor=0.7, jet=275.0, yaw=270.0)
-    assert moment + quicker.wrench(m).N == pytest.approx(moment / 0.7)
-    assert quicker.wrench(m._replace(ur=0.1)).N == 0.0
+    assert moment + quicker.wrench(m, **seen).N == pytest.approx(moment / 0.7)
+    assert quicker.wrench(m._replace(ur=0.1), **seen).N == 0.0
 
 
 # ---- waves

@@ -10,7 +10,7 @@ import pytest
 from benchmarks import thesis_models
 from boatsim.control.adaptive import lyapunov
 from boatsim.physics import vessel
-from boatsim.physics.base import motion
+from boatsim.physics.base import Wrench, motion
 
 ARM = thesis_models.ARM
 SWAY_YAW = thesis_models.SWAY_YAW
@@ -61,17 +61,20 @@ def test_reference_model_turns_in_a_pure_sway() -> None:
 def moment(load: str, spacing: str) -> Callable[[float], float]:
     """Yaw moment [N m] about the centre of lateral resistance over the inward angle [deg], 1 N ahead, 1 N astern."""
     boat: Any = vessel.load("joystick_boat", [load, spacing])
-    outboards = boat.effect("outboards")
 
     def at(angle: float) -> float:
-        a = radians(angle)
-        wrench = outboards.wrench(
-            motion(thrust_port_N=1.0, thrust_starboard_N=-1.0, steer_port_rad=a, steer_starboard_rad=-a)
-        )
-        resistance_ahead_of_cg = outboards.x + ARM[load]
-        return float(wrench.N - resistance_ahead_of_cg * wrench.Y)
+        pushed = inward(boat, 1.0, -1.0, angle)
+        resistance_ahead_of_cg = boat.effect("port").x + ARM[load]
+        return float(pushed.N - resistance_ahead_of_cg * pushed.Y)
 
     return at
+
+
+def inward(boat: Any, port: float, starboard: float, angle: float) -> Wrench:
+    """Wrench of both motors at these thrusts [N], turned inward by an angle [deg]."""
+    a = radians(angle)
+    one = boat.effect("port").wrench(motion(), thrust=port, angle=a)
+    return Wrench(*np.add(one, boat.effect("starboard").wrench(motion(), thrust=starboard, angle=-a)))
 
 
 @pytest.mark.parametrize(
@@ -106,8 +109,5 @@ def test_turning_lever_spans_the_published_range(load: str, spacing: str, straig
 
 def test_sway_force_of_the_motors_is_the_sum_of_both_thrusts_times_the_sine() -> None:
     boat: Any = vessel.load("joystick_boat", ["light", "narrow"])
-    a = radians(20.0)
-    wrench = boat.effect("outboards").wrench(
-        motion(thrust_port_N=0.5, thrust_starboard_N=-0.3, steer_port_rad=a, steer_starboard_rad=-a)
-    )
+    wrench, a = inward(boat, 0.5, -0.3, 20.0), radians(20.0)
     assert (wrench.X, wrench.Y) == pytest.approx((0.2 * cos(a), 0.8 * sin(a)))
