@@ -21,7 +21,7 @@ import numpy as np
 from rich.progress import track as shown
 
 from boatsim.diagnose.analysis import suspects_of
-from boatsim.diagnose.filter import axes_of, nominal_levels, track
+from boatsim.diagnose.filter import axes_of, nominal_levels, track, usual_time_constant
 from boatsim.diagnose.next.experiment import Plan, next_experiment, plans, question
 from boatsim.diagnose.problem import Problem, scale_of
 from boatsim.diagnose.search.rank import Ranking, rank
@@ -115,7 +115,7 @@ def recorded(name: str, boat: Boat, start: Array, commands: Array, rng: np.rando
     code.settle(commands[0], memory, boat.values, boat.on, act)
     about = program().vessel.diagnosis
     rms = np.array([about.ambient[axis] for axis in axes_of(program().vessel)])
-    kept = np.exp(-1.0 / RATE / about.time_constant)
+    kept = np.exp(-1.0 / RATE / usual_time_constant(program().vessel))
     force, rows = rms * rng.standard_normal(3), []
     for i in range(len(commands)):
         rows.append(y[:3].copy())

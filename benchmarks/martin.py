@@ -25,9 +25,9 @@ from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
+from boatsim.simulate.engine import State
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.twin import earth_rates
 
 VESSELS = ("eastward_ho", "kynoc")
 CALM = ("offset", "impulse", "half_speed", "full_load", "full_load_half_speed", "slow_servo", "yaw_moment")
@@ -76,35 +76,23 @@ def autopilot(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]:
 # A run on the twin ----------------------------------------------------------------------------------------------------
 
 
-MODULES: dict[tuple[str, ...], Any] = {}
-
-
-def compiled(program: Program) -> Any:
-    """The program's compiled functions, one set for all runs with the same effects, whatever their values."""
-    key = (*program.vessel.actuators, *(e.name for e in program.effects))
-    if key not in MODULES:
-        MODULES[key] = program.module
-    return MODULES[key]
-
-
 def sailed(test: Scenario, seed: int = 0) -> Recording:
     """The log of a scenario's course, roll and rudder, a row each control period, without the simulator around it."""
     boat = replace(test.vessel, effects=tuple(e.seeded(seed) for e in test.vessel.effects))
-    program, start = Program(boat), test.file.start
-    code, p, on = compiled(program), program.values(), program.switches()
-    memory, act, k = np.zeros(program.memory_size), np.zeros(code.HELD), np.zeros(code.K)
-    code.constants(program.body, p, on, k)
-    y = earth_rates(np.array([start.x, start.y, start.psi, start.phi, start.u, start.v, start.r, start.p]))
-    pilot, period = test.controller, test.controller.period
+    program, start = Program(boat), State(**test.file.start.motion())
+    code, p, on = program.module, program.values(), program.switches()
+    memory, none, after = np.zeros(program.memory_size), np.zeros(code.NQ), np.empty((2, 2 * code.NQ))
+    code.settle(program.command_array({}), memory, p, on, np.zeros(program.held_size))
+    y = program.joint_rates(np.array(start[1:])[list(code.SHOWS)])
+    pilot, period, step = test.controller, test.controller.period, test.file.step
     pilot.reset()
     rows = np.empty((round(test.file.duration / period) + 1, 4))
     for i, row in enumerate(rows):
-        t = i * period
-        sense = Sense(t, y[2], y[6], nan, nan, nan, nan, nan, nan, y[3], y[7])
-        commands = program.command_array(pilot.step(sense, test.goal_at(t)))
-        row[:] = t, y[2], y[3], commands[0]
-        code.actuate_in_place(commands, memory, period, p, on, act)
-        code.steps(t, y, test.file.step, round(period / test.file.step), act, p, on, k)
+        s = State(i * period, *code.moved.py_func(y.tolist()))  # one call needs no compiling
+        sense = Sense(s.t, s.psi, s.r, nan, nan, nan, nan, nan, nan, s.phi, s.p)
+        commands = program.command_array(pilot.step(sense, test.goal_at(s.t)))
+        row[:] = s.t, s.psi, s.phi, commands[0]
+        code.rollout(s.t, y, commands[None], memory, step, round(period / step), program.body, p, on, none, after)
     return Recording(test.name, rows[:, 0], dict(zip(("psi_rad", "phi_rad", "rudder_rad"), rows[:, 1:].T, strict=True)))
 
 

@@ -14,7 +14,7 @@ from rich.table import Table
 from scipy.linalg import expm
 
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, Force, motion
+from boatsim.physics.base import AXES, Array, Force, Wrench, motion
 from boatsim.physics.effects.irregular_sea import IrregularSea
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.engine import Engine, State
@@ -24,14 +24,15 @@ REALISATIONS = 2000
 SEAS = (  # condition, angle of encounter [deg], significant height [m] (0: by resonance), modal period [s]
     (4, 90, 0.0, 0.0), (3, 45, 0.88, 7.5), (1, 60, 0.88, 7.5), (2, 30, 1.88, 8.8),
 )  # fmt: skip
-PUSHES = ("yaw", "sway", "roll")
+WAVES = ("yaw", "sway", "roll")  # freedoms they push
 
 
 def inertia(boat: Vessel) -> Array:
     """(3, 3) over (yaw, sway, roll), water included."""
     body, water = boat.body, boat.effect("added_mass")
-    whole = np.diag([body.mass, body.mass, body.roll_inertia, body.yaw_inertia]) + water.matrix()  # type: ignore[union-attr]
-    return np.asarray(whole[np.ix_([3, 1, 2], [3, 1, 2])])
+    at = [AXES.index(axis) for axis in WAVES]
+    hull = np.diag([body.yaw_inertia, body.mass, body.roll_inertia])
+    return np.asarray(hull + water.matrix()[np.ix_(at, at)])  # type: ignore[union-attr]
 
 
 def speed_of(boat: Vessel) -> float:
@@ -41,19 +42,21 @@ def speed_of(boat: Vessel) -> float:
 
 def force(boat: Vessel, **moved: float) -> Array:
     """Yaw moment, sway force and roll moment at the approach speed, the hull's own Coriolis force in it."""
-    m = motion(**{"u": speed_of(boat), "rudder_rad": 0.0, **moved})
-    w = np.sum([e.wrench(m) for e in boat.effects if isinstance(e, Force)], axis=0)
-    return np.array([w[3], w[1] - boat.body.mass * speed_of(boat) * m.r, w[2]])
+    angle = {"angle": moved.pop("rudder", 0.0)}
+    m = motion(**{"u": speed_of(boat), **moved})
+    forces = [e.wrench(m, **(angle if type(e).roles else {})) for e in boat.effects if isinstance(e, Force)]
+    w = Wrench(*np.sum(forces, axis=0))
+    return np.array([w.N, w.Y - boat.body.mass * speed_of(boat) * m.r, w.K])
 
 
 def linear(boat: Vessel) -> tuple[Array, Array, Array]:
     """Continuous A (5, 5) over (psi, r, v, phi, p), B (5,) of the rudder, K (5, 3) of waves as (yaw, sway, roll)."""
-    rates = {n: np.linalg.solve(inertia(boat), force(boat, **{n: 1.0})) for n in ("r", "v", "phi", "p", "rudder_rad")}
+    rates = {n: np.linalg.solve(inertia(boat), force(boat, **{n: 1.0})) for n in ("r", "v", "phi", "p", "rudder")}
     A, K, mass = np.zeros((5, 5)), np.zeros((5, 3)), inertia(boat).diagonal()
     A[0, 1] = A[3, 4] = K[1, 0] = K[2, 1] = K[4, 2] = 1.0
     A[np.ix_([1, 2, 4], [1, 2, 3, 4])] = np.column_stack([rates[n] for n in ("r", "v", "phi", "p")])
     K[4, 1] = boat.effect("linear_hull").arm * mass[1] / mass[2]  # type: ignore[union-attr]
-    return A, np.array([0, *rates["rudder_rad"][:2], 0, rates["rudder_rad"][2]]), K
+    return A, np.array([0, *rates["rudder"][:2], 0, rates["rudder"][2]]), K
 
 
 def held(A: Array, B: Array, period: float = PERIOD) -> tuple[Array, Array]:
@@ -88,7 +91,7 @@ def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> 
     """(N + 1, 5) states of the same run in the engine."""
     engine, mass = Engine(boat, step=step), inertia(boat).diagonal()
     engine.reset(State(u=speed_of(boat)))
-    at, rows = [engine.program.index("push", n) for n in PUSHES], [[0.0] * 5]
+    at, rows = [engine.program.index("push", n) for n in WAVES], [[0.0] * 5]
     for angle, wave in zip(rudder, waves, strict=True):
         engine._values[at] = wave * mass
         engine._write_userdata()
@@ -102,9 +105,9 @@ def on_mujoco(boat: Vessel, rudder: Array, waves: Array, step: float = 0.02) -> 
 def accelerations(boat: Vessel, sea: IrregularSea) -> tuple[list[float], float]:
     """Rms of yaw, sway and direct roll acceleration [deg/s^2] over realisations, and of the slope [deg]."""
     law, m = IrregularSea.law, motion()
-    w = np.array([law(m, sea.seeded(i).values()) for i in range(REALISATIONS)])
-    direct = w[:, 2] - sea.arm * w[:, 1]
-    parts = zip((w[:, 3], w[:, 1], direct), inertia(boat).diagonal(), strict=True)
+    w = Wrench(*np.array([law(m, sea.seeded(i).values()) for i in range(REALISATIONS)]).T)
+    direct = w.K - sea.arm * w.Y
+    parts = zip((w.N, w.Y, direct), inertia(boat).diagonal(), strict=True)
     slope = direct.std() / (sea.stiffness * abs(np.sin(sea.toward)))
     return [degrees(a.std() / b) for a, b in parts], degrees(slope)
 

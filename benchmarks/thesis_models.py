@@ -6,12 +6,11 @@ python -m benchmarks.thesis_models
 from math import degrees, pi, sqrt
 
 import numpy as np
-from boatsim.physics.effects.outboards import Outboards
 from scipy.optimize import brentq
 
 from boatsim.control.adaptive import LinearSystem, step_response
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, motion
+from boatsim.physics.base import Array, Force, motion
 
 STEP = 1e-3  # [s]
 SURGE = np.array([[-1.4]])
@@ -78,14 +77,13 @@ def _crossing(x: Array, level: float) -> float:
 
 def neutral_angle(load: str, spacing: str) -> float:
     """Inward angle [deg] at which thrust ahead on one side and astern on the other turn the boat neither way."""
-    outboards = vessel.load("joystick_boat", [load, spacing]).effect("outboards")
-    assert isinstance(outboards, Outboards)
-    resistance = outboards.x + ARM[load]  # [m] centre of lateral resistance ahead of the CG
+    port, starboard = vessel.load("joystick_boat", [load, spacing]).all_of("thruster")
+    assert isinstance(port, Force) and isinstance(starboard, Force)
+    resistance = port.x + ARM[load]  # type: ignore[attr-defined]  # [m] centre of lateral resistance ahead of the CG
 
     def moment(angle: float) -> float:
-        boat = motion(thrust_port_N=1.0, thrust_starboard_N=-1.0, steer_port_rad=angle, steer_starboard_rad=-angle)
-        wrench = outboards.wrench(boat)
-        return float(wrench.N - resistance * wrench.Y)
+        pushes = port.wrench(motion(), thrust=1.0, angle=angle), starboard.wrench(motion(), thrust=-1.0, angle=-angle)
+        return float(sum(w.N - resistance * w.Y for w in pushes))
 
     return degrees(brentq(moment, 0.0, pi / 4))
 

@@ -17,9 +17,13 @@ def diagnosed(runs: Sequence[Recording], folder: Path, vessel: str, library: Seq
     return analysis.diagnose(files[:-1], files[-1:], vessel, library=library).findings.answer
 
 
-def named(answer: Mapping[str, Any], name: str, true: Mapping[str, float]) -> None:
-    """This effect and no other, none tied with it; every true value within 3.5 sd, and known to 30 %."""
-    assert answer["verdict"] == "named" and [e["name"] for e in answer["effects"]] == [name], answer["sentence"]
+def named(answer: Mapping[str, Any], name: str, true: Mapping[str, float], more: bool = False) -> None:
+    """This effect and no other, none tied with it; every true value within 3.5 sd, and known to 30 %.
+
+    With `more` there is a force besides that is no effect's, and the answer must say so.
+    """
+    assert [e["name"] for e in answer["effects"]] == [name] and not answer["effects"][0]["tied_with"]
+    assert answer["verdict"] == ("unknown" if more else "named"), answer["sentence"]
     found = answer["effects"][0]["parameters"]
     for key, value in true.items():
         assert abs(found[key]["value"] - value) < 3.5 * found[key]["sd"] < 3.5 * 0.3 * abs(value), (key, found[key])

@@ -33,6 +33,7 @@ class Craft:
     bias: float = 0.0  # [rad] of the jet
     starboard: float = 1.0  # jet angle that is effective to starboard, per commanded one
     q2: float = 154.9
+    blunt: bool = False  # in its own way: it planes by and by, is uneven by and by, and loses speed as it skids
 
 
 def power(h: float, q2: float = 154.9) -> float:
@@ -45,10 +46,18 @@ def power(h: float, q2: float = 154.9) -> float:
 def slopes(y: Array, h: float, delta: float, craft: Craft) -> Array:
     """Derivative of (x, y, psi, phi, u, v, p, r), the printed model."""
     psi, phi, u, v, p, r = y[2:]
-    kappa = min(max(u / craft.full_speed, craft.least), 1.0) if craft.full_speed > 0.0 else 1.0
-    du = kappa * (A1 * u + A2 * u * abs(u) + craft.turn_loss * v * r + power(h, craft.q2) / max(u, 0.5))
+    kappa, skid = 1.0, 1.0
+    if craft.full_speed > 0.0:
+        part = u / craft.full_speed
+        kappa = min((craft.least**6 + abs(part) ** 6) ** (1 / 6) if craft.blunt else max(part, craft.least), 1.0)
+    if craft.blunt:
+        skid = 0.95 + 0.05 * abs(v)
+    du = kappa * (A1 * u + A2 * u * abs(u) + craft.turn_loss * skid * v * r + power(h, craft.q2) / max(u, 0.5))
     jet = delta + craft.bias
-    jet *= craft.starboard if jet > 0.0 else 1.0
+    if craft.blunt:
+        jet *= 1.0 + 0.5 * (craft.starboard - 1.0) * (1.0 + np.tanh(jet / 0.03))
+    else:
+        jet *= craft.starboard if jet > 0.0 else 1.0
     dv, dp, dr = STEERING @ [v, p, r, phi, jet]
     c, s = np.cos(psi), np.sin(psi)
     return np.array([u * c - v * s, u * s + v * c, r, p, du, dv, dp, dr])

@@ -1,7 +1,7 @@
 """The water-jet craft at low speed as it might really be, integrated in steps of 10 ms by equations of its own."""
 
 from dataclasses import dataclass
-from math import cos, pi, sin
+from math import cos, exp, pi, sin, tanh
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from boatsim.recordings.table import Notes, Recording
 
 FINE, ROW = 0.01, 0.1  # [s]
 RATE = 30.0 * pi / 180.0 * FINE  # [rad] nozzle and bucket turn in a step
+LIP = 12.0 * pi / 180.0  # [rad] of the bucket's way on which it comes to lie in the jet
 BUCKETS = (0.0, 15.0, 30.0, 40.0, 50.0, 55.0)  # [deg]
 
 
@@ -17,8 +18,8 @@ BUCKETS = (0.0, 15.0, 30.0, 40.0, 50.0, 55.0)  # [deg]
 class Real:
     """What the craft really has, in the words of this file."""
 
-    leak: float = 0.0  # share of the jet that passes the bucket
-    late: float = 0.0  # [s] commands
+    leak: float = 0.0  # share of the jet that passes a lowered bucket; a raised one has nothing to leak
+    late: float = 0.0  # [s] commands, up to a tenth more or less each
     astern_time: float = 1.67  # [s] T_n while it goes astern
     sea: float = 0.0  # [rad/s] rms of waves in the yaw rate
     sea_frequency: float = 2.5  # [rad/s]
@@ -44,10 +45,18 @@ def waves(real: Real, n: int, seed: int) -> Array:
     return np.asarray(real.sea * summed)
 
 
+def arrivals(real: Real, rows: int, seed: int) -> Array:
+    """Fine steps (rows,) at which the commands of each row arrive; those of 3 s are late by one time."""
+    rng = np.random.default_rng(2000 + seed)
+    late = real.late * np.repeat(rng.uniform(0.9, 1.1, rows // 30 + 1), 30)[:rows]
+    return np.round((ROW * np.arange(rows) + late) / FINE)
+
+
 def recorded(real: Real, seed: int, commands: tuple[Array, Array] | None = None) -> Recording:
     """A run from rest as compass, gyro, speed log and a position fix record it."""
     nozzle, bucket = commands or commanded(seed)
-    every, held = round(ROW / FINE), round(real.late / FINE)
+    every = round(ROW / FINE)
+    arrived = arrivals(real, len(nozzle), seed)
     n = every * len(nozzle)
     wave = waves(real, n + 1, seed) if real.sea else np.zeros(n + 1)
     x = y = psi = r = u = delta = beta = 0.0
@@ -55,13 +64,13 @@ def recorded(real: Real, seed: int, commands: tuple[Array, Array] | None = None)
     for i in range(n):
         if i % every == 0:
             rows.append((x, y, psi, u, r + wave[i]))
-        command = nozzle[max(i - held, 0) // every] if i >= held else nozzle[0]
-        delta += min(max(command - delta, -RATE), RATE)
-        lowered = bucket[max(i - held, 0) // every]
-        beta += min(max(lowered - beta, -RATE), RATE)
-        share = cos(2.0 * beta) + real.leak
-        lag = 1.67 if u >= 0.0 else real.astern_time
-        r += FINE * ((share * delta - r) / lag + real.pushed)
+        row = max(int(np.searchsorted(arrived, i, "right")) - 1, 0)
+        delta += min(max(nozzle[row] - delta, -RATE), RATE)
+        beta += min(max(bucket[row] - beta, -RATE), RATE)
+        passes = real.leak * (1.0 - exp(-beta / LIP))
+        share = cos(2.0 * beta) + passes
+        lag = 1.67 + (real.astern_time - 1.67) * 0.5 * (1.0 - tanh(u / 0.15))  # the flow turns by and by
+        r += FINE * ((share * delta - r) / lag + real.pushed * (1.0 + 0.3 * sin(0.7 * i * FINE)))
         u += FINE * (2.46 * share - u) / 5.58
         psi += FINE * (r + wave[i])
         x, y = x + FINE * u * cos(psi), y + FINE * u * sin(psi)

@@ -10,6 +10,7 @@ from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 
 SWING = 0.47 * pi  # [rad] largest azimuth
+CREEP = 0.02  # [m/s] below which a power law's damping is linear
 LEVER = 0.4  # [m] mass centre to thruster
 Control = Callable[[float, list[float]], tuple[float, float]]  # t, state -> thrust [N], azimuth [rad]
 
@@ -20,7 +21,7 @@ class Real:
 
     mass: float = 7.0  # [kg]
     depth: float = 0.045  # [m] D of its Table I
-    sway: tuple[float, float] = (80.0, 1.0)  # damping d |v|^a sign(v)
+    sway: tuple[float, float] = (80.0, 1.0)  # damping d |v|^a sign(v), in very slow flow linear
     stern: bool = False  # thruster behind the mass centre
     gust: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [N] steady, [N] sine of 0.4 pi rad/s, [rad] towards
     lever: float = 0.0  # [m] of the gust ahead of the mass centre
@@ -38,9 +39,9 @@ class Real:
         ahead, abeam = force * cos(toward - z), force * sin(toward - z)
         side = thrust * sin(azimuth)
         du = (thrust * cos(azimuth) + ahead + my * v * w - 14.0 * u) / mx
-        dv = ((-side if self.stern else side) + abeam - mx * u * w - d * abs(v) ** a * np.sign(v)) / my
+        dv = ((-side if self.stern else side) + abeam - mx * u * w - d * hypot(v, CREEP) ** (a - 1.0) * v) / my
         munk = water / 2 - 0.05 * self.mass
-        dw = (LEVER * side + self.lever * abeam - munk * u * v - 5.0 * w) / mz
+        dw = (LEVER * side + self.lever * (1.0 + 0.2 * cos(toward - z)) * abeam - munk * u * v - 5.0 * w) / mz
         if self.replay:
             return [u, v, w, du, dv, dw]
         return [u * cos(z) - v * sin(z), u * sin(z) + v * cos(z), w, du, dv, dw]

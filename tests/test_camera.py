@@ -1,12 +1,16 @@
 """Laws of the camera above: any marks fixed to the hull give the pose, as exactly as its notes say."""
 
+import re
 from dataclasses import replace
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
+from boatsim.physics import vessel
+from boatsim.physics.content import names
 from boatsim.simulate import scenario
 from boatsim.simulate.camera import Camera
 from boatsim.simulate.run import run
@@ -40,6 +44,14 @@ def test_the_log_has_a_column_for_each_mark_of_vessel_and_scenario() -> None:
     told = scenario.load("joystick_boat/sway_1", {"duration": 1.0, "camera": {"marks": {"mast": [0.0, 0.1]}}})
     seen = [n for n in run(told).recording.signals if n.startswith("camera_") and n.endswith("_x_m")]
     assert seen == ["camera_led_x_m", "camera_button_x_m", "camera_mast_x_m", "camera_x_m"]
+
+
+def test_general_code_names_no_mark_and_no_work_that_has_them() -> None:
+    """What belongs to one tank or one paper stands in its vessel and scenarios."""
+    marks = {mark for name in names("vessel") for mark in vessel.load(name).marks}
+    said = re.compile(rf"\b({'|'.join(marks)}|thesis)\b", re.IGNORECASE)
+    files = sorted((Path(__file__).parents[1] / "boatsim").rglob("*.py"))
+    assert marks and [(f.name, m.group()) for f in files if (m := said.search(f.read_text()))] == []
 
 
 def test_a_hull_without_marks_is_followed_by_its_ends() -> None:

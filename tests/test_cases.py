@@ -138,5 +138,5 @@ def test_a_base_that_leads_round_through_files_is_one_line(tmp_path: Path) -> No
 
 
 def test_a_pattern_that_nothing_is_like_is_one_line() -> None:
-    with pytest.raises(BadInput, match=r"no scenario is like 'joystick_boat/swy_\*' \(there are: "):
+    with pytest.raises(BadInput, match=r"no scenario is like 'joystick_boat/swy_\*' \(they are in catamaran, "):
         plan(["joystick_boat/swy_*"], None, None, False)

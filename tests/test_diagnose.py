@@ -126,11 +126,15 @@ XU, YV, NR, X_MOTOR, Y_MOTOR = 3.0, 10.0, 1.0, -0.6, 0.19
 
 
 def truth(t, y, thrust, steer, astern, toward):
-    """Surge, sway, yaw of the trial boat with its rigid-body Coriolis force only, written out for this test."""
+    """Surge, sway, yaw of the trial boat with its rigid-body Coriolis force only, written out for this test.
+
+    Astern the propellers lose the more the harder they turn; the air's force has a bluff body's curve over its angle.
+    """
     _, _, psi, u, v, r = y
-    push = np.where(thrust < 0, astern, 1.0) * thrust
-    X = (push * np.cos(steer)).sum() + toward[0] * 0.5 * np.cos(toward[1] - psi)
-    Y = (push * np.sin(steer)).sum() + toward[0] * np.sin(toward[1] - psi)
+    push = np.where(thrust < 0, 1.0 - (1.0 - astern) * (0.8 + 0.3 * abs(thrust)), 1.0) * thrust
+    off = toward[1] - psi
+    X = (push * np.cos(steer)).sum() + toward[0] * np.cos(off) * (0.45 + 0.1 * np.cos(off) ** 2)
+    Y = (push * np.sin(steer)).sum() + toward[0] * np.sin(off) * (1.0 - 0.1 * np.cos(off) ** 2)
     N = X_MOTOR * (push * np.sin(steer)).sum() + Y_MOTOR * (push[0] * np.cos(steer[0]) - push[1] * np.cos(steer[1]))
     du = (X - XU * u + M * v * r) / (M + A11)
     dv = (Y - YV * v - M * u * r) / (M + A22)

@@ -51,7 +51,7 @@ def values(found: Any) -> dict[str, Array]:
 
 def test_hidden_planing_lag_is_named_with_its_two_numbers_and_helps_on_unseen_throttle_steps(tmp_path: Path) -> None:
     boat = nominal_without(tmp_path, "planing_lag")
-    found = answer(throttled, Craft(), tmp_path, str(boat))
+    found = answer(throttled, Craft(blunt=True), tmp_path, str(boat))
     assert found["verdict"] == "named" and [e["name"] for e in found["effects"]] == ["planing_lag"]
     full_speed, least = (values(found)[f"planing_lag.{key}"] for key in ("full_speed_mps", "least"))
     assert full_speed[0] == pytest.approx(28.0, abs=0.7)
@@ -62,7 +62,7 @@ def test_hidden_planing_lag_is_named_with_its_two_numbers_and_helps_on_unseen_th
 
 
 def test_turn_asymmetry_is_named_as_offset_and_asymmetry(tmp_path: Path) -> None:
-    found = answer(steered, Craft(bias=np.radians(1.0), starboard=1.1), tmp_path, "jet_ski")
+    found = answer(steered, Craft(bias=np.radians(1.0), starboard=1.1, blunt=True), tmp_path, "jet_ski")
     assert {e["name"] for e in found["effects"]} == {"steering_offset", "steering_asymmetry"}
     seen = values(found)
     assert set(seen) == {"steering_offset.middle_rad", "steering_asymmetry.gain"}
@@ -74,7 +74,7 @@ def test_turn_asymmetry_is_named_as_offset_and_asymmetry(tmp_path: Path) -> None
 
 def test_speed_loss_in_turns_left_out_is_named_with_alpha_3(tmp_path: Path) -> None:
     boat = nominal_without(tmp_path, "speed_loss_in_turn")
-    found = answer(steered, Craft(), tmp_path, str(boat))
+    found = answer(steered, Craft(blunt=True), tmp_path, str(boat))
     assert [e["name"] for e in found["effects"]] == ["speed_loss_in_turn"]
     mass, sd = values(found)["speed_loss_in_turn.mass_kg"]
     # the rigid body has 1 of it itself; the prior of a hull's added mass, 0.87 of its own, draws the rest towards 0

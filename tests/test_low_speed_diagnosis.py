@@ -54,11 +54,15 @@ def test_leak_and_delay_are_named_together_and_recovered(tmp_path: Path) -> None
     found = diagnosed(tmp_path, real, without=("clock_offset",))  # which is the same data in open loop
     effects = named(found)
     assert found.findings.answer["verdict"] == "named" and set(effects) == {"jet_leak", "command_delay"}
-    assert effects["jet_leak"]["fraction"]["value"] == pytest.approx(0.25, abs=0.02)
+    # a raised bucket leaks nothing, so that less of the whole jet is left for the steering; a lowered one leaks 0.25
+    best = found.ranking.best
+    (jet,) = (x for f, x in zip(best.free, best.theta, strict=True) if (f.effect, f.name) == ("reversing_jet", "yaw"))
+    assert jet * effects["jet_leak"]["fraction"]["value"] == pytest.approx(0.25, abs=0.02)
     assert effects["command_delay"]["delay_s"]["value"] == pytest.approx(0.40, abs=0.02)
     for seed in (1, 3):  # fitted and held out
-        assert yaw_rate_error(found, seed, real, patched=False) > 1.5
-        assert yaw_rate_error(found, seed, real, patched=True) == pytest.approx(0.50, abs=0.05)  # the gyro's noise
+        before, after = (yaw_rate_error(found, seed, real, patched) for patched in (False, True))
+        assert before > 1.5
+        assert after**2 - 0.5**2 < 0.1 * (before**2 - 0.5**2)  # of its power beyond the gyro's noise [deg/s]
 
 
 def test_another_time_constant_astern_is_named(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ The truth is written out here from the thesis' equations and tables; nothing of 
 """
 
 from collections.abc import Callable
-from math import cos, degrees, pi, radians, sin, sqrt
+from math import cos, degrees, pi, radians, sin, sqrt, tanh
 from pathlib import Path
 from typing import Any
 
@@ -25,12 +25,17 @@ PERIOD, AT_REST, KEEL = 1.49, 0.0119, 1.065  # [s]; damping ratio of the simulat
 INERTIA = 102.0 * (3.50094 / 15.0) ** 2 * 1.2  # [kg m^2] water included
 
 
+def eddies(quadratic: float, p: float, usual: float) -> float:
+    """Moment [per inertia] that is quadratic |p| p at the usual roll rate [rad/s]: a blunt edge's power is below 2."""
+    return quadratic * usual * (abs(p) / usual) ** 0.85 * p
+
+
 def release(heel: float, stiffer: float, noise: float, seed: int) -> Recording:
-    """12 s at 100 Hz after a release [deg]: zeta_0 and a concealed |p| p, GM by a factor; noise [deg]."""
+    """12 s at 100 Hz after a release [deg]: zeta_0 and a keel's eddies, GM by a factor; noise [deg]."""
     w, t = 2.0 * pi / PERIOD, np.arange(1201) * 0.01
 
     def rates(_: float, s: Array) -> list[float]:
-        return [s[1], -2.0 * AT_REST * w * s[1] - KEEL * abs(s[1]) * s[1] - stiffer * w * w * s[0]]
+        return [s[1], -2.0 * AT_REST * w * s[1] - eddies(KEEL, s[1], 1.0) - stiffer * w * w * s[0]]
 
     phi = solve_ivp(rates, (0.0, 12.0), [radians(heel), 0.0], t_eval=t, rtol=1e-10, atol=1e-12).y[0]
     return Recording("decay", t, {"phi_rad": phi + radians(noise) * np.random.default_rng(seed).standard_normal(1201)})
@@ -63,7 +68,9 @@ def test_a_concealed_bilge_keel_is_told_from_a_wrong_metacentric_height(
         factor = named["metacentric_height_error"]["parameters"]["factor"]["value"]
         assert sqrt(factor) == pytest.approx(1.0488, abs=0.005)
     rms = {k: degrees(v) for k, v in said["fit"]["roll_rms_rad"].items()}
-    assert rms["nominal"] > 1.0 and rms["patched"] < 1.1 * noise  # the unseen release from 5 degrees
+    assert (
+        rms["nominal"] > (1.0 if noise < 0.2 else 0.6) and rms["patched"] < 1.1 * noise
+    )  # the unseen release from 5 degrees
 
 
 # ---- the ship under way: linear sway, yaw and roll at constant speed, section 2 of the thesis
@@ -111,7 +118,7 @@ def sailed(
     s, demand, delta, rows = np.zeros(7), 0.0, 0.0, []
     for i in range(round(seconds / STEP)):
         demand = steer(s[2], s[5], demand)
-        delta += min(max(demand - delta, -slow * STEP), slow * STEP)
+        delta += slow * STEP * tanh((demand - delta) / (slow * STEP))  # its valve closes as it comes near
         rows.append([STEP * i, *s, demand])
         s = solve_ivp(
             lambda t, y, d=delta: rates(c, d, push(t, y), y), (STEP * i, STEP * (i + 1)), s, rtol=1e-8, atol=1e-9
@@ -138,12 +145,12 @@ def zigzag(angle: float, rate: float) -> Steer:
 
 
 def strips(drag: float) -> Push:
-    """Cross-flow drag of a hull of constant section: sway force and yaw moment, by a sum over 200 strips."""
+    """Cross-flow drag of a hull with fined ends: sway force and yaw moment, by a sum over 200 strips."""
     x = (np.arange(200) + 0.5) / 200 * L - L / 2
 
     def push(t: float, s: Array) -> tuple[float, float, float]:
         w = s[4] + x * s[5]
-        per_length = -0.5 * RHO * drag * T * w * np.abs(w)
+        per_length = -0.5 * RHO * drag * T * (1.15 - 0.45 * (2 * x / L) ** 2) * w * np.abs(w)
         return float(per_length.sum() * L / 200), 0.0, float((per_length * x).sum() * L / 200)
 
     return push
@@ -159,7 +166,7 @@ def uniform(number: int, k: int) -> float:
 
 
 def beam_sea(height: float, period: float, number: int, count: int, quadratic: float) -> Push:
-    """Sea on the port beam by the thesis' simple form, weight and righting moment times the slope, and |p| p."""
+    """Sea on the port beam by the thesis' simple form, weight and righting moment times the slope, and eddies."""
     modal = 2 * pi / period
     edges = np.linspace(0.45 * modal, 3.0, count + 1)
     energy = np.diff([0.0, *np.exp(-1.25 * (modal / edges[1:]) ** 4)])
@@ -169,7 +176,7 @@ def beam_sea(height: float, period: float, number: int, count: int, quadratic: f
 
     def push(t: float, s: Array) -> tuple[float, float, float]:
         slope = float(np.sum(slopes * np.sin(w * t + phase)))
-        return MASS * G * slope, G * MASS * GM * slope - quadratic * abs(s[6]) * s[6], 0.0
+        return MASS * G * slope, G * MASS * GM * slope - eddies(quadratic, s[6], 0.1), 0.0
 
     return push
 

@@ -75,13 +75,13 @@ def test_a_realisation_of_waves_has_the_rms_and_the_frequency_it_states_and_inde
     assert not np.any(law(motion(t=3.0), sea.values()._replace(realisation=0.0)))
 
 
-def diagnosed(folder: Path, real: Real, library: tuple[str, ...] = ()) -> dict[str, Any]:
+def diagnosed(folder: Path, real: Real) -> dict[str, Any]:
     """Answer for three runs of a real boat, the third unseen."""
     files = []
     for seed in (1, 2, 3):
         files.append(folder / f"{seed}.csv")
         recording.write_csv(recorded(real, seed), files[-1])
-    return analysis.diagnose(files[:2], files[2:], "trial_boat", library=library).findings.answer
+    return analysis.diagnose(files[:2], files[2:], "trial_boat", library=FURTHER).findings.answer
 
 
 @pytest.mark.parametrize(
@@ -105,9 +105,9 @@ def test_a_measurement_error_is_named_as_such_and_undone(tmp_path: Path, real: R
     assert rms["patched"] < 0.7 * rms["recalibrated"] and rms["patched"] < 0.02  # replays show what the camera shows
 
 
-def test_entries_outside_the_vessels_list_are_found_when_asked_for(tmp_path: Path) -> None:
+def test_an_antenna_off_the_mass_centre_and_a_turned_compass_are_told_apart(tmp_path: Path) -> None:
     real = Real(compass=(0.12, 0.0, 0.0), antenna=(0.25, 0.0))
-    answer = diagnosed(tmp_path, real, FURTHER)
+    answer = diagnosed(tmp_path, real)
     found = {e["name"]: e["parameters"] for e in answer["effects"]}
     assert set(found) == {"heading_offset", "position_frame_error"}
     assert found["heading_offset"]["offset_rad"]["value"] == pytest.approx(0.12, abs=0.02)

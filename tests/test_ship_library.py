@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import cos, pi, radians, sin, sqrt
+from math import asinh, cos, exp, hypot, pi, radians, sin, sinh, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -209,9 +209,14 @@ def tanker(t: float, y: Array, angle: Callable[[float], float], shaft: float, re
     """Newton's law about midship, mass centre 0.2436 m ahead, published derivatives about 1.179 m/s."""
     psi, u, v, r = y[2:]
     m, ahead, delta = 3272.0, 0.2436, angle(t)
-    e = u / 1.179 - 1.0
-    lift, steer = 1.0 + real.hull * e, 1.0 + real.blade * ((1.0 + e) ** 2 - 1.0)
-    X = -97.6 * (u - 1.179 * shaft) + real.drift * v * r - real.brake * delta**2 + m * (v * r + ahead * r**2)
+    way = hypot(u, v) / 1.179
+    lift, steer = 1.0 + real.hull * (way - 1.0), 1.0 + real.blade * (way**1.9 - 1.0)
+    X = (
+        -97.6 * (u - 1.179 * shaft)
+        + real.drift * (0.9 + abs(v)) * v * r
+        - real.brake * sin(delta) ** 2
+        + m * (v * r + ahead * r**2)
+    )
     Y = lift * (-591.4 * v + 801.8 * r) - steer * 113.9 * delta - m * u * r
     N = lift * (-1800.6 * v - 4508.0 * r) + steer * 391.9 * delta - m * ahead * u * r
     matrix = np.array([[m + 2486.0, m * ahead], [m * ahead, 9908.6 + m * ahead**2 + 6009.0]])
@@ -231,7 +236,11 @@ def sailed(real: Real, seed: int) -> Recording:
         rows.append([i * dt, *y, order])
 
         def machine(t: float, begin: float = angle, goal: float = order) -> float:
-            return begin + float(np.clip(goal - begin, -real.rate * t, real.rate * t)) if real.rate < 5.0 else goal
+            """It turns at its rate but for the last degrees, in which its valve closes."""
+            if real.rate > 5.0:
+                return goal
+            near = 0.5 * real.rate  # [rad]
+            return goal - near * asinh(sinh((goal - begin) / near) * exp(-real.rate * t / near))
 
         y = solve_ivp(tanker, (0.0, dt), y, args=(machine, shaft, real), rtol=1e-7, atol=1e-9).y[:, -1]
         angle = machine(dt)
@@ -351,11 +360,11 @@ def drag(u: float) -> float:
 
 
 def lagging(a: float, u: float) -> float:
-    return min(max(u / 28.0, 0.2), 1.0) * (a - drag(u))
+    return min((0.2**4 + max(u / 28.0, 0.0) ** 4) ** 0.25, 1.0) * (a - drag(u))  # it planes by and by
 
 
 def slipping(a: float, u: float) -> float:
-    return a * (1.0 - 0.015 * u) - drag(u)
+    return a * (1.0 - 0.015 * u * (0.8 + 0.2 * u / 12.0)) - drag(u)  # more than in proportion
 
 
 @pytest.mark.parametrize(

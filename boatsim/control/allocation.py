@@ -17,9 +17,9 @@ from typing import NamedTuple
 from boatsim.control.base import clip, wrap
 from boatsim.physics.base import Checked, param
 
-PWM_RATED = 150.0  # thrusts are quoted at this PWM value (thesis, Appendix H: nominalpower)
+PWM_RATED = 150.0  # thrusts are quoted at this PWM value (Bayless 2017, appendix H: nominalpower)
 PWM_MAX = 255  # eight bits
-ANGLE_MAX = radians(45.0)  # [rad] inward range of the steering (thesis, Fig. 8)
+ANGLE_MAX = radians(45.0)  # [rad] inward range of the steering (Bayless 2017, Fig. 8)
 HOLD_SHARE = 0.45  # surge correction over differential thrust while the motors give sway (bayless.md section 9)
 TURN_SHARE = 0.8  # the same while they only turn the boat
 SURGE_RESERVE = 0.3  # part of that share which a turn at the motors' limits leaves to surge, or the boat drifts ahead

@@ -22,8 +22,8 @@ class Forgetting(Checked):
     beta: float = param(1e-5, low=0.0, high=10.0, unit="", words="keeps the covariance from vanishing")
     delta: float = param(0.05, low=0.0, high=10.0, unit="", words="keeps the covariance from growing")
     covariance: float = param(0.01, low=1e-6, high=1e4, unit="", words="P(0)")
-    inverse_alone: bool = False  # the thesis prints 1/lambda where P/lambda is meant
-    later_gain: bool = False  # the thesis prints P(t+1) in the gain where P(t) is meant
+    inverse_alone: bool = False  # Martin 1993 prints 1/lambda where P/lambda is meant
+    later_gain: bool = False  # Martin 1993 prints P(t+1) in the gain where P(t) is meant
 
 
 @dataclass

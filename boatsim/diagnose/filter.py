@@ -22,6 +22,7 @@ FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into 
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
 FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sample
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
+SMALL_BOAT = 1.2  # [m]
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
 # [kg], [m], [kg m^2] numbers of the body at the end of a track's values, as in `Program.body`
@@ -283,6 +284,11 @@ def _called(recording: Recording) -> str:
     return str(recording.path or recording.name)
 
 
+def usual_time_constant(vessel: Vessel) -> float:
+    """Correlation time [s] of what the water does: 1 s on a boat of 1.2 m, by Froude's law on others."""
+    return float(np.sqrt(vessel.length / SMALL_BOAT))
+
+
 def nominal_levels(vessel: Vessel, recording: Recording) -> Levels:
     """What is stated before any fit: ambient force of recording or vessel, sensor noise. Raises BadInput."""
     axes = axes_of(vessel)
@@ -291,7 +297,7 @@ def nominal_levels(vessel: Vessel, recording: Recording) -> Levels:
         given = dict(zip(recording.notes.ambient.get("axes", axes), np.atleast_1d(given).tolist(), strict=False))
     ambient = {str(a): rms for a, rms in vessel.diagnosis.ambient.items()}
     force = np.array([float(given.get(a, ambient.get(a, 0.0))) for a in axes])
-    time_constant = float(recording.notes.ambient.get("time_constant_s", vessel.diagnosis.time_constant))
+    time_constant = float(recording.notes.ambient.get("time_constant_s", usual_time_constant(vessel)))
     noise = stated_noise(vessel, recording)
     for axis, rms in zip(axes, force.tolist(), strict=True):
         if not 0 < rms < HUGE:

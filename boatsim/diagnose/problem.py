@@ -177,8 +177,8 @@ class Problem:
                     shared[type(effect).idea(), name, sd].append((effect.name, at))
         found = []
         for (idea, name, sd), places in shared.items():
-            called, at = idea if len(places) > 1 else places[0][0], tuple(at for _, at in places)
-            found.append(Free(called, name, at, 1.0, sd, 0.05, 20.0, True, False, "scales", (1.0,) * len(at)))
+            called, all_of = idea if len(places) > 1 else places[0][0], tuple(at for _, at in places)
+            found.append(Free(called, name, all_of, 1.0, sd, 0.05, 20.0, True, False, "scales", (1.0,) * len(all_of)))
         return tuple(found)
 
     def _links(self) -> list[tuple[int, int]]:

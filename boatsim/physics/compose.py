@@ -1,10 +1,9 @@
 """Writes a vessel's effects out as the source of one program: `laws.py`, what they add up to, unrolled.
 
 Kinds say what they add (`boatsim.physics.kinds`); this module gathers their lines, part by part. The text is meant to
-be read: `python -m boatsim.physics.compose VESSEL` prints it.
+be read: `python -m boatsim.physics.program VESSEL` prints it.
 """
 
-import sys
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from math import cos, sin
@@ -36,7 +35,7 @@ class Composition:
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.effects = tuple(effects)
         self.actuators, self.commands = vessel.actuators, tuple(vessel.commands)
-        self.held = [*self.actuators, *(f"{part}_{a}" for a in vessel.angles for part in ("cos", "sin"))]
+        self.held: Sequence[str] = [*self.actuators, *(f"{part}_{a}" for a in vessel.angles for part in ("cos", "sin"))]
 
     # What kinds may ask -----------------------------------------------------------------------------------------------
 
@@ -180,15 +179,3 @@ def _calls(line: str) -> Iterator[str]:
 def classes_of(addresses: Sequence[str]) -> list[type[Effect]]:
     """Effect classes of a composed program, for the program's own use."""
     return [load_class("effect", a) for a in addresses]
-
-
-def main(arguments: Sequence[str]) -> None:
-    """Print a vessel's composed laws."""
-    from boatsim.physics import vessel as vessels
-    from boatsim.physics.program import Program
-
-    print(Program(vessels.load(arguments[0])).composition.source_text())
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

@@ -1,5 +1,6 @@
 """A vessel's effects as one compiled program that engine, twin and diagnosis share."""
 
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -8,6 +9,7 @@ from types import FunctionType, ModuleType
 import numpy as np
 
 from boatsim.physics import cache
+from boatsim.physics import vessel as vessels
 from boatsim.physics.commands import taken_row
 from boatsim.physics.compose import Composition
 from boatsim.physics.kernel.equations import written
@@ -100,3 +102,12 @@ class Program:
             "motion.py": written(self.vessel.freedoms, centred=self.vessel.body.centre == (0.0, 0.0)),
         }
         return cache.module(text, {type(e) for e in self.effects})
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Print a vessel's composed laws."""
+    print(Program(vessels.load(arguments[0])).composition.source_text())
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -11,6 +11,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from boatsim.physics.records import known_to_numba
+
 Array = NDArray[np.float64]
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
@@ -104,9 +106,8 @@ class Wrench(NamedTuple):
     N: float = 0.0  # [N m] yaw
 
 
-@njit(inline="always")
 def wrench(X: float = 0.0, Y: float = 0.0, Z: float = 0.0, K: float = 0.0, M: float = 0.0, N: float = 0.0) -> Wrench:
-    """`Wrench` by the names of its components, the others zero: numba knows no defaults of named tuples."""
+    """`Wrench` by the names of its components, the others zero."""
     return Wrench(X, Y, Z, K, M, N)
 
 
@@ -139,7 +140,6 @@ MASS_ENTRIES = tuple(
 )
 
 
-@njit(inline="always")
 def mass(
     surge: float = 0.0, sway: float = 0.0, heave: float = 0.0, roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0,
     surge_heave: float = 0.0, surge_pitch: float = 0.0, heave_pitch: float = 0.0, sway_roll: float = 0.0,
@@ -164,13 +164,16 @@ class Swell(NamedTuple):
     damping: float  # share of the critical one
 
 
-@njit(inline="always")
 def swell(
     X: float = 0.0, Y: float = 0.0, Z: float = 0.0, K: float = 0.0, M: float = 0.0, N: float = 0.0,
     frequency: float = 0.0, damping: float = 1.0,
 ) -> Swell:  # fmt: skip
     """`Swell` by name; a frequency of zero means that there is none."""
     return Swell(X, Y, Z, K, M, N, frequency, damping)
+
+
+for _constructor, _record in ((wrench, Wrench), (mass, Mass), (swell, Swell)):
+    known_to_numba(_constructor, _record)
 
 
 class Course(NamedTuple):

@@ -50,7 +50,6 @@ class DiagnosisTable(Table):
     ambient: dict[
         Freedom, PositiveFloat
     ] = {}  # tolerated unmodelled force per axis (surge, sway, roll, yaw), rms [N, N m]
-    time_constant: float = Field(default=1.0, gt=0)  # [s] of the ambient force
     horizon: float = Field(default=6.0, gt=0)  # [s] length of a free run
     rate: float = Field(default=20.0, gt=0)  # [Hz] rows closer together are thinned out: their noise is not independent
     most: int = Field(default=3, ge=1, le=8)  # effects in one answer

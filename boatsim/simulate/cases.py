@@ -62,7 +62,8 @@ def meant(given: str) -> list[str]:
     if any(sign in given for sign in "*?[") and not Path(given).is_file():
         found = [n for n in shipped if fnmatchcase(n, given)]
         if not found:
-            raise BadInput(f"no scenario is like {given!r} (there are: {', '.join(shipped)})")
+            folders = sorted({n.partition("/")[0] for n in shipped})
+            raise BadInput(f"no scenario is like {given!r} (they are in {', '.join(folders)})")
         return found
     if given.endswith(".toml"):
         return [f"{given}:{case}" for case in cases(find("scenario", given))] or [given]
@@ -87,10 +88,11 @@ def cases(path: Path) -> list[str]:
 
 def located(given: str, beside: Path | None = None) -> Place:
     """The place of a scenario by its name, or by a path from the folder `beside`: a file, or `file.toml:case`."""
-    file, colon, case = given.rpartition(":")
-    path = find("scenario", file if colon else given, beside)
+    file, _, case = given.rpartition(":")
+    named = file.endswith(".toml")
+    path = find("scenario", file if named else given, beside)
     there = cases(path)
-    if colon:
+    if named:
         if case not in there:
             raise BadInput(unknown_name(f"{path.name}: case", case, there))
         return Place(path, case)

@@ -15,6 +15,7 @@ import numpy as np
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
+from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate import imo, scenario
 from boatsim.simulate.cases import Place
@@ -235,7 +236,7 @@ def _roll_period(vessel: Vessel) -> float:
     guess = 2.0 * float(np.sqrt(vessel.beam))  # [s] of a ship of usual stability, GM a twentieth of the beam
     twin = Twin(vessel, guess / 400)
     start = [0.0] * (2 * _half(vessel))
-    roll = 0 if _half(vessel) == 1 else 3
+    roll = [signal.symbol for signal in signals_of(vessel.freedoms)].index("phi")
     start[roll] = radians(1.0)
     rows = np.tile(twin.program.command_array({}), (8000, 1))
     phi = twin.rollout(start, rows, guess / 400)[:, roll]

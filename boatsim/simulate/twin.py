@@ -60,4 +60,5 @@ class Twin:
         self.code.constants(self.program.body, self._values, self._on, k)
         y = self.program.joint_rates(np.array(start, dtype=float))
         self.code.steps(0.0, y, self.step, steps, act, self._values, self._on, k)
-        return self.program.body_rates(y[None])[0]
+        state: Array = self.program.body_rates(y[None])[0]
+        return state

@@ -8,7 +8,8 @@ import numpy as np
 from boatsim.diagnose.fit import converge, descend, fit, reduced
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.screen import screen
+from boatsim.diagnose.search.screen import handed_over, joined, screen, starts
+from boatsim.physics.base import Unsteady
 
 ENOUGH = 4.0  # [nats] an effect must gain to be named
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
@@ -116,8 +117,18 @@ class _Search:
         if key not in self.looks:
             tried = screen(self.problem, best, [n for n in self.candidates if n not in best.suspects])
             front = _front(tried, best)[:MANY]
-            self.looks[key] = tried | {n: fit(self.problem, tried[n]) for n in front}
+            self.looks[key] = tried | {n: self.fitted(best, n, tried[n]) for n in front}
         return self.looks[key]
+
+    def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
+        """A candidate fitted in full from its quick look; where that leaves much over, from each of its starts."""
+        found = fit(self.problem, look)
+        effect = next(e for e in self.problem.program.suspects if e.name == name)
+        begun = starts(self.problem, effect)
+        if len(begun) == 1 or isinstance(effect, Unsteady) or left_over(self.problem, found) < UNKNOWN:
+            return found
+        others = [fit(self.problem, handed_over(joined(self.problem, best, name, s), effect)) for s in begun]
+        return max((found, *others), key=lambda f: f.evidence)
 
     def pruned(self, best: Fit) -> Fit:
         """Without the earlier effects that the newest one has made needless."""

@@ -16,6 +16,8 @@ def inertia(q: Any) -> Mass:
     return mass(
         surge=q.surge,
         sway=q.sway,
+        heave=q.heave,
+        pitch=q.pitch,
         sway_yaw=q.sway * a,
         yaw=q.yaw + q.sway * a * a,
         sway_roll=-q.sway * z,
@@ -26,12 +28,20 @@ def inertia(q: Any) -> Mass:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Coriolis force -C_A(nu_r) nu_r of the added mass, Munk moment included (Fossen 2021, eq. 6.42)."""
-    b = q.sway * q.sway_at
-    along = q.surge * m.ur  # [kg m/s] added momentum in surge
-    across = q.sway * (m.vr - q.sway_below * m.p) + b * m.r
+    """Coriolis force -C_A(nu_r) nu_r of the added mass, Munk moment included (Fossen 2021, eqs 3.46 and 6.42)."""
+    along = q.coriolis * q.surge * m.ur  # [kg m/s] momentum of the water, linear
+    across = q.coriolis * q.sway * (m.vr - q.sway_below * m.p + q.sway_at * m.r)
+    down = q.coriolis * q.heave * m.wr
+    rolling = q.coriolis * q.roll * m.p - q.sway_below * across  # [kg m^2/s] and angular
+    pitching = q.coriolis * q.pitch * m.q
+    turning = q.coriolis * q.yaw * m.r + q.sway_at * across
     return wrench(
-        X=q.coriolis * across * m.r, Y=-q.coriolis * along * m.r, N=q.coriolis * (across * -m.ur + along * m.vr)
+        X=across * m.r - down * m.q,
+        Y=down * m.p - along * m.r,
+        Z=along * m.q - across * m.p,
+        K=across * m.wr - down * m.vr + pitching * m.r - turning * m.q,
+        M=down * m.ur - along * m.wr + turning * m.p - rolling * m.r,
+        N=along * m.vr - across * m.ur + rolling * m.q - pitching * m.p,
     )
 
 
@@ -52,6 +62,8 @@ class AddedMass(Inertia, Force):
 
     surge: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="-X_udot", fit=True, spread=0.5, axis="surge")
     sway: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="-Y_vdot", fit=True, spread=5.0, axis="sway")
+    heave: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-Z_wdot", fit=True, spread=5.0, axis="heave")
+    pitch: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="-M_qdot", fit=True, spread=0.7, axis="pitch")
     sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead")
     sway_below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="sway added mass acts this far below")
     yaw: float = param(
@@ -113,7 +125,7 @@ class ShallowWater(Release):
 
     words: ClassVar[str] = "the bottom is near: sway and yaw move more water and drag more"
     shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
-    source: ClassVar[str] = "assumption [A] of the checked thesis specification, section 2 (factor k)"
+    source: ClassVar[str] = "assumption [A] of the checked specification of Bayless 2017, section 2 (factor k)"
 
     factor: float = factor(
         "added_mass.sway", "added_mass.yaw", "cross_flow_drag.section_drag_coefficient", "cross_flow_drag.linear",

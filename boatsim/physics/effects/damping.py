@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Release, Wrench, factor, number, param, preset, shift, wrench
+from boatsim.physics.base import AXES, Force, Release, Wrench, factor, number, param, preset, shift, wrench
 
 # a start too strong in one axis spoils the others, so only one of them leaves the linear law
 NEARLY_LINEAR = {"surge_exponent": 1.001, "sway_exponent": 1.001, "yaw_exponent": 1.001}
@@ -31,7 +31,9 @@ def law(m: Any, q: Any) -> Wrench:
     return wrench(
         X=-q.surge * power(m.ur, q.surge_exponent, q.surge_equal),
         Y=Y - q.sway_by_yaw * m.r,
+        Z=-q.heave * power(m.wr, q.heave_exponent, q.heave_equal),
         K=-q.roll * power(m.p, q.roll_exponent, q.roll_equal),
+        M=-q.pitch * power(m.q, q.pitch_exponent, q.pitch_equal),
         N=-q.yaw * power(m.r, q.yaw_exponent, q.yaw_equal) - q.yaw_by_sway * m.vr + q.sway_at * Y,
     )
 
@@ -59,6 +61,8 @@ class LinearDamping(Force):
     sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway")
     yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw")
     roll: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll")
+    heave: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-Z_w", calibrates="damping", axis="heave")
+    pitch: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-M_q", calibrates="damping", axis="pitch")
     sway_by_yaw: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping")
     yaw_by_sway: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping")
     sway_at: float = param(0.0, low=-200.0, high=200.0, unit="m", words="the sway damping acts this far ahead")
@@ -66,13 +70,16 @@ class LinearDamping(Force):
     sway_exponent: float = exponent("sway")
     yaw_exponent: float = exponent("yaw")
     roll_exponent: float = exponent("roll")
+    heave_exponent: float = exponent("heave")
+    pitch_exponent: float = exponent("pitch")
     surge_equal: float = equal("surge", "m/s")
     sway_equal: float = equal("sway", "m/s")
     yaw_equal: float = equal("yaw", "rad/s")
     roll_equal: float = equal("roll", "rad/s")
+    heave_equal: float = equal("heave", "m/s")
+    pitch_equal: float = equal("pitch", "rad/s")
 
 
-AXES = ("surge", "sway", "yaw", "roll")
 PLAIN = dict.fromkeys(("sway_by_yaw", "yaw_by_sway", "sway_at"), 0.0) | {f"{axis}_equal": 1.0 for axis in AXES}
 
 QuadraticDamping = preset(
@@ -86,6 +93,8 @@ QuadraticDamping = preset(
         "sway": {"unit": "N s^2/m^2", "words": "sway", "spread": 40.0},
         "yaw": {"unit": "N m s^2", "words": "yaw", "spread": 1.5},
         "roll": {"unit": "N m s^2", "words": "roll", "spread": 0.1},
+        "heave": {"unit": "N s^2/m^2", "words": "heave", "spread": 40.0},
+        "pitch": {"unit": "N m s^2", "words": "pitch", "spread": 1.5},
     },
     fixed=PLAIN | {f"{axis}_exponent": 2.0 for axis in AXES},
 )
@@ -101,6 +110,8 @@ CubicDamping = preset(
         "sway": {"unit": "N s^3/m^3", "words": "sway", "spread": 40.0},
         "yaw": {"unit": "N m s^3", "words": "yaw", "spread": 1.5},
         "roll": {"unit": "N m s^3", "words": "roll", "spread": 0.003},
+        "heave": {"unit": "N s^3/m^3", "words": "heave", "spread": 40.0},
+        "pitch": {"unit": "N m s^3", "words": "pitch", "spread": 1.5},
     },
     fixed=PLAIN | {f"{axis}_exponent": 3.0 for axis in AXES},
 )

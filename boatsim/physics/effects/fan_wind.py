@@ -28,7 +28,7 @@ class FanWind(Force):
 
     words: ClassVar[str] = "a steady wind pushes the hull downwind and swings its bow"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
-    source: ClassVar[str] = "checked thesis specification, section 7 (wind model [A])"
+    source: ClassVar[str] = "checked specification of Bayless 2017, section 7 (wind model [A])"
     anchored: ClassVar[str] = "the air"
     law: ClassVar = law
     of_air: ClassVar = True

@@ -21,7 +21,7 @@ class ForwardSpeedDamping(Force):
 
     words: ClassVar[str] = "damping of sway, roll and yaw grows with the forward speed"
     shown_by: ClassVar[str] = "the same turns at two forward speeds"
-    source: ClassVar[str] = "M. Blanke, Ship Propulsion Losses, PhD thesis 1981: terms Y_|u|v, K_|u|p, N_|u|r"
+    source: ClassVar[str] = "M. Blanke, Ship Propulsion Losses, PhD, DTU 1981: terms Y_|u|v, K_|u|p, N_|u|r"
     law: ClassVar = law
 
     sway: float = param(0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="-Y_|u|v", fit=True, spread=20.0, axis="sway")

@@ -52,7 +52,7 @@ SteeringRateLimit = preset(
     "SteeringRateLimit",
     words="the steering machine is slower than commanded: it turns at one rate at most",
     shown_by="hard-over steering reversals",
-    source="J. van Amerongen, Adaptive Steering of Ships, PhD thesis 1982 (steering machine)",
+    source="J. van Amerongen, Adaptive Steering of Ships, PhD, Delft 1982 (steering machine)",
     acts_on="angle",
     starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
     frees={

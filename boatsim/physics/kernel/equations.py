@@ -180,13 +180,13 @@ class Writer:
             found = self.solved(lines, [total(frame.J[a][i] * named[a] for a in range(6)) for i in self.free], "")
             lines.say(f"return {self.tuple(found)}")
             return lines.text
-        named = {i: lines.let(f"load{i}", load[i]) for i in self.free}
-        nudot = {i: total(entry(WHOLE, i, j) * named[j] for j in self.free) for i in self.free}
+        pushed = {i: lines.let(f"load{i}", load[i]) for i in self.free}
+        nudot = {i: total(entry(WHOLE, i, j) * pushed[j] for j in self.free) for i in self.free}
         for i in LINEAR:
             if i in nudot:  # the drift of level or tilting axes taken out: acceleration along them, over ground
                 nudot[i] = nudot[i] - frame.drift[i]
-        named = {i: lines.let(f"a{i}", a) for i, a in nudot.items()}
-        lines.say(f"return {self.tuple(self.joints(lines, frame, named, moving=True))}")
+        moved = {i: lines.let(f"a{i}", a) for i, a in nudot.items()}
+        lines.say(f"return {self.tuple(self.joints(lines, frame, moved, moving=True))}")
         return lines.text
 
     def joints(self, lines: Lines, frame: Frame, body: dict[int, Sum], moving: bool) -> list[str]:

@@ -21,7 +21,7 @@ def step_in_place(t: float, y: Array, dt: float, act: Array, p: Array, on: Any, 
     """One Runge-Kutta step of fourth order; act: the actuators at its begin, middle and end."""
 
 
-def forces(t: float, s: Array, act: Array, at: int, p: Array, on: Any) -> tuple[float, ...]:
+def forces(t: float, s: Array, act: Array, at: Any, p: Array, on: Any) -> tuple[float, ...]:
     """Body force of all laws, over the freedoms, under the actuators act[at:]."""
     raise NotImplementedError
 
@@ -45,6 +45,6 @@ def observe_level(s: Array, code: int, row: Array) -> float:
 
 
 def add_to_mujoco(
-    t: float, q: Array, qd: Array, act: Array, at: int, p: Array, k: Array, force: Array, M: Array
+    t: float, q: Array, qd: Array, act: Array, at: Any, p: Array, k: Array, force: Array, M: Array
 ) -> None:
     """Add the passive force and the lower triangle of J' M J, in MuJoCo's z-up joint coordinates."""

@@ -11,7 +11,7 @@ from .inertia import constants
 from .laws import HAS_PAUSE, HELD, actuate, pause
 from .motion import NQ, K, step_in_place
 
-SHORTEST = 1e-3  # [s] of a step; within one, a signal that jumps counts with its mean
+SHORTEST = 1e-6  # [s] of a step; within one, a signal that jumps counts with its mean
 LONG = 1e4  # [s] longer than any actuator takes
 ENOUGH = 1e-9  # [s] a step is done
 

@@ -46,7 +46,7 @@ class Channel(Kind):
     """
 
     parts: ClassVar = (ACTUATE, PAUSE)
-    laws: ClassVar = ("channel", "pause")
+    laws: ClassVar[tuple[str, ...]] = ("channel", "pause")
     acts_on: ClassVar[str] = "thrust"  # role of the signals it acts on where `on` names none; "": every actuator
     slots: ClassVar[int] = 0
     pause: ClassVar[Callable[[float, Array, int, Any], float] | None] = None

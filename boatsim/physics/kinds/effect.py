@@ -4,6 +4,7 @@ from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
+from math import cos, sin
 from operator import attrgetter
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
@@ -55,7 +56,7 @@ class Effect(Checked):
         if isinstance(on, Mapping):
             good = wants_table and all(isinstance(c, str | float | int) for c in on.values())
         else:
-            good = isinstance(on, Sequence) and all(isinstance(c, str) for c in on) and not (wants_table and on)
+            good = isinstance(on, list | tuple) and all(isinstance(c, str) for c in on) and not (wants_table and on)
         if not good:
             allowed = f"a table of {', '.join(type(self).roles)}" if wants_table else "a name or a list of names"
             raise BadInput(f"{self.name}: on = {self.on!r}; allowed is {allowed}")
@@ -78,6 +79,14 @@ class Effect(Checked):
         """NamedTuple type of the signals of its roles, with cosine and sine of those that are angles."""
         angles = [f"{part}_{n}" for n, role in cls.roles.items() if role.unit == "rad" for part in ("cos", "sin")]
         return namedtuple(f"{cls.__name__}Signals", [*cls.roles, *angles])
+
+    @classmethod
+    def signals(cls, **given: float) -> Any:
+        """Signals of its roles as the law's third argument; one not given is as if nothing were bound to it, or 0."""
+        held = {name: role.fixed or 0.0 for name, role in cls.roles.items()} | given
+        angles = [name for name, role in cls.roles.items() if role.unit == "rad"]
+        parts = {f"{part}_{n}": of(held[n]) for n in angles for part, of in (("cos", cos), ("sin", sin))}
+        return cls.signals_type()(**held, **parts)
 
     def values(self) -> Any:
         """The parameters as the law's second argument."""

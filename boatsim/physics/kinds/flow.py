@@ -14,7 +14,7 @@ class Flow(Kind):
     """Water that moves under the hull: compiled `flow(values) -> (north, east)` in m/s."""
 
     parts: ClassVar = (FLOW,)
-    laws: ClassVar = ("flow",)
+    laws: ClassVar[tuple[str, ...]] = ("flow",)
     flow: ClassVar[Callable[[Any], tuple[float, float]]]
 
     @classmethod

@@ -27,7 +27,7 @@ class Force(Kind):
     """
 
     parts: ClassVar = (WRENCH,)
-    laws: ClassVar = ("law",)
+    laws: ClassVar[tuple[str, ...]] = ("law",)
     of_air: ClassVar[bool] = False  # a force of the air, which a run logs apart
     anchored: ClassVar[str] = ""  # what it holds on to beside the water: "the air", "walls"; empty: nothing
     law: ClassVar[Callable[..., Wrench]]
@@ -40,9 +40,10 @@ class Force(Kind):
                 yield f"f = {site.call('law', 'm')}"
                 yield ADD
 
-    def wrench(self, m: Any, *signals: Any) -> Wrench:
-        """The force at one motion."""
-        return Wrench(*type(self).law(m, self.values(), *signals))
+    def wrench(self, m: Any, *given: Any, **signals: float) -> Wrench:
+        """The force at one motion, its roles at these signals; what it rides on gives it signals and values instead."""
+        own = (type(self).signals(**signals),) if type(self).roles and not given else ()
+        return Wrench(*type(self).law(m, self.values(), *given, *own))
 
 
 def is_force(effect: Effect) -> bool:

@@ -18,7 +18,7 @@ class Inertia(Kind):
     """
 
     parts: ClassVar = (INERTIAS,)
-    laws: ClassVar = ("inertia",)
+    laws: ClassVar[tuple[str, ...]] = ("inertia",)
     moves_with: ClassVar[str] = "water"
     inertia: ClassVar[Callable[[Any], Mass]]
 

@@ -18,7 +18,7 @@ class Reaction(Kind):
     `wrench` is the sum of all laws that stand before it: the vessel's own in the order of its file, then the suspects.
     """
 
-    laws: ClassVar = ("reaction",)
+    laws: ClassVar[tuple[str, ...]] = ("reaction",)
     reaction: ClassVar[Callable[[Any, Wrench, Any], Wrench]]
 
     @classmethod

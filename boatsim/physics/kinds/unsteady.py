@@ -20,7 +20,7 @@ class Unsteady(Force):
     """
 
     parts: ClassVar = (SWELL,)
-    laws: ClassVar = ("law", "swell")
+    laws: ClassVar[tuple[str, ...]] = ("law", "swell")
     swell: ClassVar[Callable[[Any], Swell]]
 
     @classmethod

@@ -1,0 +1,75 @@
+"""Chooses the latent force's correlation time by one rule for every vessel, from the fitted recordings alone.
+
+What is judged in the end is a free run. The correlation time decides how much of a misfit the coefficients have to
+explain and how much is left to the latent force, of which a free run knows nothing; the evidence of a model that lacks
+something prefers to leave much to it. So each half of the recordings is predicted by a fit to the other half, what was
+named included. The usual value of a hull of this length is halved, or doubled, as long as that predicts clearly better.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from boatsim.diagnose.filter import Track
+from boatsim.diagnose.fit import fit
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.report import show
+
+STEPS = 2  # halvings or doublings at most
+CLEARLY = 0.98  # error per error before, below which a step is taken
+
+
+def timed(problem: Problem, found: Fit) -> Problem:
+    """The same question with the correlation time that suits a hypothesis: itself if that is the one it has."""
+    seconds = correlation_time(problem, found)
+    if seconds == problem.ambient.time_constant:
+        return problem
+    return Problem(problem.tracks, replace(problem.ambient, time_constant=seconds), problem.uncertainty)
+
+
+def correlation_time(problem: Problem, found: Fit) -> float:
+    """The correlation time [s] for a hypothesis."""
+    usual = problem.ambient.time_constant
+    if not found.suspects:
+        return usual  # it leaves nothing to the latent force that coefficients could explain
+    at_usual = halves_error(problem, found, usual)
+    for factor in (0.5, 2.0):
+        seconds, error = usual, at_usual
+        for _ in range(STEPS):
+            further = halves_error(problem, found, factor * seconds)
+            if not further < CLEARLY * error:
+                break
+            seconds, error = factor * seconds, further
+        if seconds != usual:
+            return seconds
+    return usual
+
+
+def halves(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
+    """Every second recording and the others; of a single one its halves in time."""
+    if len(tracks) > 1:
+        return list(tracks[0::2]), list(tracks[1::2])
+    middle = len(tracks[0].times) // 2
+    return [part(tracks[0], 0, middle)], [part(tracks[0], middle, len(tracks[0].times))]
+
+
+def part(track: Track, begin: int, end: int) -> Track:
+    """Some rows of a recording."""
+    times, measured, commands = (
+        np.ascontiguousarray(x[begin:end]) for x in (track.times, track.measured, track.commands)
+    )
+    return replace(track, times=times, measured=measured, commands=commands)
+
+
+def halves_error(problem: Problem, start: Fit, seconds: float) -> float:
+    """Geometric mean of the rms of position [m] and heading or roll [rad]: each half by a fit of the other half."""
+    ambient = replace(problem.ambient, time_constant=seconds)
+    begin = replace(start, levels=replace(start.levels, time_constant=seconds), evidence=-np.inf)
+    first, second = halves(problem.tracks)
+    horizon = min(problem.program.vessel.diagnosis.horizon, *(float(np.ptp(t.times)) for t in (*first, *second)))
+    stretches = []
+    for fitted, unseen in ((first, second), (second, first)):
+        rest = Problem(fitted, ambient, problem.uncertainty)
+        stretches += show.free_runs(rest, {"": fit(rest, begin)}, unseen, horizon)
+    return float(np.exp(np.mean([np.log(found[""]) for found in show.errors(stretches).values()])))
