@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from boatsim.errors import BadPhysics
 from boatsim.physics import vessel
-from boatsim.physics.base import Array, motion
+from boatsim.physics.base import Array, Force, Wrench, motion
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.free_body import FreeBody, Solid, angles, rotation
@@ -100,12 +100,14 @@ def mmg(s: Array, delta: float) -> Array:
     return np.array([*earth(s), du, dv, dr])
 
 
-def mmg_wrench(**given: float) -> Array:
-    """Sum of the three effects, without the Coriolis force of the added mass."""
+def mmg_wrench(angle: float, shaft: float, **given: float) -> Array:
+    """X, Y, N of the three effects together, without the Coriolis force of the added mass."""
     boat, m = vessel.load("kvlcc2_mmg"), motion(**given)
-    names = ("mmg_hull", "mmg_propeller", "mmg_rudder")
-    total = np.sum([boat.effect(name).wrench(m) for name in names], axis=0)  # type: ignore[union-attr]
-    return np.asarray(total[[0, 1, 3]] - (M_Y * m.v * m.r, -M_X * m.u * m.r, 0.0))
+    hull, propeller, rudder = (boat.effect(f"mmg_{part}") for part in ("hull", "propeller", "rudder"))
+    assert isinstance(hull, Force) and isinstance(propeller, Force) and isinstance(rudder, Force)
+    forces = hull.wrench(m), propeller.wrench(m, shaft=shaft), rudder.wrench(m, angle=angle, shaft=shaft)
+    total = np.sum(forces, axis=0)[[0, 1, 5]]
+    return np.asarray(total - (M_Y * m.v * m.r, -M_X * m.u * m.r, 0.0))
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -113,16 +115,16 @@ def test_mmg_effects_are_the_published_formulas(seed: int) -> None:
     rng = np.random.default_rng(seed)
     u, v, r = rng.uniform(0.3, 1.5), rng.uniform(-0.3, 0.3), rng.uniform(-0.1, 0.1)
     delta, n = rng.uniform(-0.6, 0.6), rng.uniform(2.0, 15.0)
-    assert mmg_wrench(u=u, v=v, r=r, delta_rad=delta, n_rps=n) == pytest.approx(mmg_forces(u, v, r, delta, n), rel=1e-5)
+    assert mmg_wrench(delta, n, u=u, v=v, r=r) == pytest.approx(mmg_forces(u, v, r, delta, n), rel=1e-5)
 
 
 def test_mmg_propeller_that_stands_still_drags_and_a_ship_at_rest_feels_its_race() -> None:
     boat = vessel.load("kvlcc2_mmg")
     propeller, rudder, hull = (boat.effect(f"mmg_{part}") for part in ("propeller", "rudder", "hull"))
     assert propeller is not None and rudder is not None and hull is not None
-    stopped = propeller.wrench(motion(u=1.0, delta_rad=0.0, n_rps=0.0)).X  # type: ignore[attr-defined]
+    stopped = propeller.wrench(motion(u=1.0), shaft=0.0).X  # type: ignore[attr-defined]
     assert stopped == pytest.approx(0.78 * RHO * D_P**2 * -0.1385 * 0.6**2, rel=1e-9)
-    assert rudder.wrench(motion(delta_rad=0.3, n_rps=10.0)).N > 0.0  # type: ignore[attr-defined]
+    assert rudder.wrench(motion(), angle=0.3, shaft=10.0).N > 0.0  # type: ignore[attr-defined]
     spun = hull.wrench(motion(r=0.2)), hull.wrench(motion(r=0.4))  # type: ignore[attr-defined]
     assert spun[0].N < 0.0 and spun[1].N == pytest.approx(4.0 * spun[0].N)
 
@@ -138,10 +140,10 @@ def test_mmg_resistance_is_against_the_way_through_the_water() -> None:
 
 
 def test_mmg_propeller_and_rudder_amidships_do_not_drive_a_ship_that_goes_straight_astern() -> None:
-    boat, astern = vessel.load("kvlcc2_mmg"), motion(u=-0.8, delta_rad=0.0, n_rps=0.0)
-    stopped = boat.effect("mmg_propeller").wrench(astern).X  # type: ignore[union-attr]
+    boat, astern = vessel.load("kvlcc2_mmg"), motion(u=-0.8)
+    stopped = boat.effect("mmg_propeller").wrench(astern, shaft=0.0).X  # type: ignore[union-attr]
     assert stopped == pytest.approx(0.78 * RHO * D_P**2 * 0.1385 * (0.6 * 0.8) ** 2)  # astern the wake is that of ahead
-    assert boat.effect("mmg_rudder").wrench(astern) == (0.0, 0.0, 0.0, 0.0)  # type: ignore[union-attr]
+    assert boat.effect("mmg_rudder").wrench(astern, angle=0.0, shaft=0.0) == Wrench()  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize("delta", [0.0, 0.6])
@@ -159,7 +161,7 @@ def test_mmg_ship_without_power_comes_to_rest_in_the_water_from_any_start(delta:
 
 
 def test_propeller_balances_the_resistance_at_the_published_rate() -> None:
-    found = brentq(lambda n: float(mmg_wrench(u=U0, delta_rad=0.0, n_rps=n)[0]), 8.0, 15.0)
+    found = brentq(lambda n: float(mmg_wrench(0.0, n, u=U0)[0]), 8.0, 15.0)
     assert found == pytest.approx(11.8516, abs=5e-5)
 
 

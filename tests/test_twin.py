@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.base import Array
+from boatsim.physics.base import AXES, Array
+from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.twin import Twin, body_rates, earth_rates
+from boatsim.simulate.twin import Twin
 
 NO_COMMANDS = np.zeros((100, 0))
 
@@ -28,17 +29,35 @@ def held(twin: Twin, rows: int, X: float, N: float) -> Array:
     return np.tile(twin.program.command_array(boats.push(X, N)), (rows, 1))
 
 
-@given(st.lists(st.floats(-10.0, 10.0), min_size=6, max_size=6))
-def test_body_and_earth_velocities_are_each_others_inverse(state: list[float]) -> None:
-    y = np.array(state)
-    assert earth_rates(body_rates(y)) == pytest.approx(y, abs=1e-12)
-    assert np.hypot(*earth_rates(y)[3:5]) == pytest.approx(np.hypot(*y[3:5]))
+FREEDOMS = [("surge", "sway", "yaw"), ("surge", "sway", "roll", "yaw"), AXES]
 
 
-def test_ahead_on_an_easterly_heading_is_motion_along_y() -> None:
-    assert earth_rates(np.array([0.0, 0.0, pi / 2, 1.0, 0.0, 0.3])) == pytest.approx(
-        [0, 0, pi / 2, 0, 1, 0.3], abs=1e-15
-    )
+def freed(folder: Path, freedoms: tuple[str, ...]) -> Program:
+    """The boat of the reference cases with other freedoms."""
+    text = boats.PLANAR.replace('["surge", "sway", "yaw"]', f"{list(freedoms)}")
+    text = text.replace("yaw_inertia = 0.5 }", "yaw_inertia = 0.5, pitch_inertia = 0.4 }", 1)
+    return Program(vessel.load(str(boats.written(folder, "freed", text))))
+
+
+@pytest.mark.parametrize("freedoms", FREEDOMS, ids=["3", "4", "6"])
+def test_body_and_joint_velocities_are_each_others_inverse(
+    freedoms: tuple[str, ...], tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    program = freed(tmp_path_factory.mktemp("boat"), freedoms)
+    n, moves = program.module.NQ, sum(axis in ("surge", "sway", "heave") for axis in freedoms)
+
+    @given(st.lists(st.floats(-1.5, 1.5), min_size=2 * n, max_size=2 * n))
+    def inverse(state: list[float]) -> None:
+        joints = program.joint_rates(np.array(state))
+        assert program.body_rates(joints[None])[0] == pytest.approx(state, abs=1e-12)
+        assert np.linalg.norm(joints[n : n + moves]) == pytest.approx(np.linalg.norm(state[n : n + moves]))
+
+    inverse()
+
+
+def test_ahead_on_an_easterly_heading_is_motion_along_y(tmp_path: Path) -> None:
+    joints = freed(tmp_path, FREEDOMS[0]).joint_rates(np.array([0.0, 0.0, pi / 2, 1.0, 0.0, 0.3]))
+    assert joints == pytest.approx([0, 0, pi / 2, 0, 1, 0.3], abs=1e-15)
 
 
 def test_an_undamped_roll_is_a_harmonic(roller: Vessel) -> None:
