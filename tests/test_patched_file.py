@@ -140,7 +140,7 @@ def test_a_release_is_written_as_the_coefficients_it_found_to_be_off(name: str, 
     fitted = free_run(problem, problem.values(problem.tracks[0], free, found.theta), found.suspects)
     patch.write(problem, boat, found, tmp_path / "patched.toml")
     patched = vessel.load(str(tmp_path / "patched.toml"))
-    assert [e.name() for e in patched.effects] == [e.name() for e in boat.effects]  # no further law
+    assert [e.name for e in patched.effects] == [e.name for e in boat.effects]  # no further law
     again = problem_of(patched)
     np.testing.assert_allclose(free_run(again, again.tracks[0].values, ()), fitted, rtol=1e-7, atol=1e-7)
     text = (tmp_path / "patched.toml").read_text()
