@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from boatsim.simulate.free_body import FreeBody, Solid, angles, rotation
+from boatsim.simulate.pontoon_boat import PontoonBoat, otter, strips
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
@@ -18,9 +20,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array, Force, Wrench, motion
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.free_body import FreeBody, Solid, angles, rotation
 from boatsim.simulate.norms import norms
-from boatsim.simulate.pontoon_boat import PontoonBoat, otter, strips
 from boatsim.simulate.run import run
 from boatsim.simulate.twin import Twin
 
