@@ -1,10 +1,11 @@
 """Composition: an edited law is compiled anew, a suspect that is off does nothing, a user's own effect works."""
 
 import os
+import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import boats
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.physics import vessel
+from boatsim.physics import cache, content, vessel
 from boatsim.physics.base import AXES, Array, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.current import Current
@@ -47,6 +48,8 @@ class Spring(Force):
     stiffness: float = param(1.0, low=0.0, high=10.0, unit="N m", words="per rad")
 '''
 PITCH = "pitch_inertia = 0.5, "
+IMPORT = "from boatsim.physics.base import"
+GRAVITY = f"from boatsim.physics import particulars\n{IMPORT}"
 USE_SPRING = '[[effect]]\nuse = "spring"\n'
 SNIPPET = """
 import sys
@@ -67,9 +70,12 @@ def with_spring(folder: Path) -> Path:
     return place
 
 
-def moment(place: Path) -> float:
-    """Roll moment [N m] at 0.1 rad, in a fresh process."""
-    done = subprocess.run([sys.executable, "-c", SNIPPET, str(place)], capture_output=True, text=True, check=True)
+def moment(place: Path, more: Mapping[str, str] | None = None) -> float:
+    """Roll moment [N m] at 0.1 rad, in a fresh process with further variables in its environment."""
+    done = subprocess.run(
+        [sys.executable, "-c", SNIPPET, str(place)], cwd=place, env=os.environ | dict(more or {}), capture_output=True,
+        text=True, check=True,
+    )  # fmt: skip
     return float(done.stdout)
 
 
@@ -87,6 +93,17 @@ def test_an_edited_law_gives_its_new_number(tmp_path: Path, monkeypatch: pytest.
     law.write_text(law.read_text().replace("-3.0", "-4.0"))
     assert moment(place) == pytest.approx(-0.1 * (2.0 + 4.0))
     assert len(list((tmp_path / "cache").glob("program_*"))) == 2
+
+
+def test_a_law_edited_while_the_program_runs_gives_its_new_number(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
+    place = with_spring(tmp_path)
+    law = place / "spring.py"
+    for factor in (3.0, 4.0):
+        law.write_text(SPRING.replace("-3.0", f"-{factor}"))
+        assert forces(Program(vessel.load(str(place))), [0.1, 0.0]) == pytest.approx([-0.1 * (2.0 + factor)])
 
 
 def test_effects_of_one_name_beside_two_vessels_are_two_effects(
@@ -182,3 +199,91 @@ def test_programs_not_used_for_90_days_are_removed_when_a_new_one_is_composed(
 def boats_own_roller(folder: Path) -> vessel.Vessel:
     """A vessel whose program no other test composes."""
     return vessel.load(str(boats.written(folder, "roller", boats.ROLL + '[[effect]]\nuse = "wind"\n')))
+
+
+# A program's name covers all that its laws can reach: tried on a copy of the package
+
+
+STAMP = """
+import sys
+from boatsim.physics import cache, vessel
+from boatsim.physics.program import Program
+
+cache._imported = lambda path, name: name  # the name alone: nothing is compiled
+print(*(Program(vessel.load(place)).module for place in sys.argv[1:]))
+"""
+EDITS = [  # a file, what of it is changed into what, whether a spring in roll, and waves, can feel it
+    ("particulars.py", ("GRAVITY = 9.81", "GRAVITY = 19.62"), (True, True)),
+    ("chance.py", ("9007199254740992.0", "9007199254740993.0"), (False, True)),
+    ("kernel/run.py", ("LONG = 1e4", "LONG = 2e4"), (True, True)),
+    ("kernel/compiling.py", ("\n", "\n\n"), (True, True)),
+    ("kinds/force.py", ('ADD = "; "', 'ADD = ";  "'), (True, True)),
+    ("signals.py", ("\n", "\n\n"), (True, True)),
+    ("effects/irregular_sea.py", ("LOWEST = 0.45", "LOWEST = 0.5"), (False, True)),
+    ("effects/righting_arm.py", ("return wrench(K=-", "return wrench(K=-2.0 * "), (True, False)),
+    ("effects/tether.py", ("SOFT = 0.02", "SOFT = 0.03"), (False, False)),
+]
+
+
+@pytest.fixture(scope="module")
+def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the package, a boat with a spring and one in waves, and the names of their programs."""
+    folder = tmp_path_factory.mktemp("copy")
+    shutil.copytree(content.root() / "boatsim", folder / "boatsim", ignore=shutil.ignore_patterns("__pycache__"))
+    boats.written(folder, "sprung", boats.ROLL)
+    waves = boats.ROLL[: boats.ROLL.index("[[effect]]")].replace('["roll"]', '["sway", "roll", "yaw"]')
+    boats.written(folder, "tossed", f'{waves}[[effect]]\nuse = "irregular_sea"\n')
+    (folder / "before").write_text(" ".join(names_in(folder)))
+    return folder
+
+
+def names_in(folder: Path) -> list[str]:
+    """Names of the programs of both boats, by a fresh process on the package in a folder."""
+    places = [str(folder / name) for name in ("sprung", "tossed")]
+    environment = os.environ | {"PYTHONPATH": str(folder), "BOATSIM_CACHE": str(folder / "cache")}
+    done = subprocess.run(
+        [sys.executable, "-c", STAMP, *places], cwd=folder, env=environment, capture_output=True, text=True, check=True
+    )
+    return done.stdout.split()
+
+
+@pytest.mark.parametrize(("file", "change", "felt"), EDITS, ids=[file for file, _, _ in EDITS])
+def test_a_program_has_another_name_when_anything_its_laws_reach_is_edited(
+    copied: Path, file: str, change: tuple[str, str], felt: tuple[bool, bool]
+) -> None:
+    before, source = (copied / "before").read_text().split(), copied / "boatsim" / "physics" / file
+    text = source.read_text()
+    assert change[0] in text and len(set(before)) == 2
+    try:
+        source.write_text(text.replace(*change, 1))
+        after = names_in(copied)
+    finally:
+        source.write_text(text)
+    assert tuple(a != b for a, b in zip(before, after, strict=True)) == felt
+
+
+def test_what_a_file_imports_by_dots_is_reached_too(copied: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    physics = copied / "boatsim" / "physics"
+    monkeypatch.setattr(cache, "PACKAGE", copied / "boatsim")
+    effect = physics / "effects" / "by_dots.py"
+    effect.write_text("from .thruster import at_mount\nfrom ..chance import drawn\nfrom .. import particulars\n")
+    reached = cache.reach(effect)
+    assert {physics / n for n in ("effects/thruster.py", "chance.py", "particulars.py", "signals.py")} <= reached
+    assert physics / "effects" / "tether.py" not in reached
+
+
+def test_an_edited_constant_gives_its_new_force(tmp_path: Path, copied: Path) -> None:
+    """GRAVITY goes into the law at compile time: what was compiled before must not answer."""
+    source, found = copied / "boatsim" / "physics" / "particulars.py", {}
+    text = source.read_text()
+    place = boats.written(tmp_path, "weighty", boats.ROLL + '[[effect]]\nuse = "weight"\n')
+    (place / "weight.py").write_text(
+        SPRING.replace("Spring", "Weight").replace("-3.0", "-particulars.GRAVITY").replace(IMPORT, GRAVITY)
+    )
+    try:
+        for gravity in (9.81, 19.62):
+            source.write_text(text.replace("GRAVITY = 9.81", f"GRAVITY = {gravity}"))
+            found[gravity] = moment(place, {"PYTHONPATH": str(copied), "BOATSIM_CACHE": str(tmp_path / "cache")})
+    finally:
+        source.write_text(text)
+    assert found == {g: pytest.approx(-0.1 * (2.0 + g)) for g in (9.81, 19.62)}
