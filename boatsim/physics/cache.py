@@ -28,7 +28,12 @@ from boatsim.physics.kinds.effect import Effect
 PACKAGE = Path(__file__).parents[1]
 KERNEL = PACKAGE / "physics" / "kernel"
 WRITTEN = ("laws.py", "motion.py")  # generated in place of the kernel's files of these names
-LEFT_OUT = ("algebra.py", "compiling.py", "equations.py")  # write or compile programs, and are no part of one
+LEFT_OUT = (
+    "algebra.py",
+    "compiling.py",
+    "equations.py",
+    "source.py",
+)  # write or compile programs, and are no part of one
 EXPORTS = '''"""A vessel's program, composed by boatsim; not meant to be edited."""
 
 from .callback import *
