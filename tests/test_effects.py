@@ -316,6 +316,23 @@ def test_parameters_lie_inside_their_bounds_and_say_what_they_are(name: str) -> 
         kind(**start)
 
 
+MACHINES = {"thrust", "throttle", "shaft", "bucket", "angle"}  # roles of what a machine or a rudder does
+DRIVES = [n for n, e in SHELF.items() if issubclass(e, Force) and not MACHINES.isdisjoint(e.roles)]
+
+
+CORRECTIONS = {"speed_scaled_steering"}  # what the vessel's own rudder and hull lack: zero unless it is fitted itself
+
+
+@pytest.mark.parametrize("name", [n for n in DRIVES if n not in CORRECTIONS])
+def test_every_thruster_jet_and_rudder_has_a_coefficient_of_thrust_that_may_be_off(name: str) -> None:
+    assert any(p.calibrates == "thrust" for p in SHELF[name].params().values())
+
+
+@pytest.mark.parametrize("name", sorted(CORRECTIONS))
+def test_a_correction_of_a_rudder_is_fitted_itself_and_absent_otherwise(name: str) -> None:
+    assert all(p.fit or p.follows for p in SHELF[name].params().values())
+
+
 @pytest.mark.parametrize("name", SHELF)
 def test_a_setting_out_of_bounds_or_misspelt_is_refused_in_words(name: str) -> None:
     kind = SHELF[name]
