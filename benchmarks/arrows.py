@@ -178,8 +178,8 @@ def _notes(found: Mapping[tuple[str, str], int], height: int) -> Iterator[str]:
     """What the arrows mean, and those that are not drawn."""
     ground = sum(n for (a, b), n in found.items() if b in LAYERS[0].split() and a in ABOUT)
     text = (
-        "Data go from left to right. An arrow goes from the folder that imports to the one imported, with the number of "
-        f"imports. Not drawn: {ground} of errors.py and files.py."
+        "Data go from left to right. An arrow goes from the folder that imports to the one imported, with the number "
+        f"of imports. Not drawn: {ground} of errors.py and files.py."
     )
     yield f'<text class="note" x="{EDGE}" y="{height - 12}">{escape(text)}</text>'
 
