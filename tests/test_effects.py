@@ -63,7 +63,7 @@ SUSPECTS = [n for n, e in SHELF.items() if any(p.fit for p in e.params().values(
 # sign: name it here when an effect brings a new one, with its effect where others mean something else by it. Pairs
 # named port and starboard change places.
 TO_STARBOARD = {
-    "thruster.y",
+    "thruster.y", "propeller.y",
     "toward", "east", "list", "side_force_per_thrust", "thrust_imbalance.fraction", "Y_0", "Y_0u", "Y_0uu", "N_0",
     "N_0u", "N_0uu", "steering_offset.middle", "steering_offset.gain", "steering_asymmetry.gain",
 }  # fmt: skip
