@@ -1,6 +1,6 @@
 """Textbook L1 blocks against closed forms, published loops, and two adaptive examples integrated here by RK4."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import cos, exp, pi, sin, sqrt, tanh
 from types import FunctionType
 from typing import Any, NamedTuple
@@ -10,23 +10,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
+from numpy.typing import ArrayLike
 
 from boatsim.control import adaptive
 from boatsim.control.adaptive import (
     Gradient,
-    GradientVector,
     LinearSystem,
     PiecewiseConstant,
-    PiecewiseConstantMatrix,
     Predictor,
     l1_condition,
     l1_norm,
     l1_rows,
     loop_margins,
     lyapunov,
-    project_ball,
     project_interval,
-    reference_system,
     step_response,
     unfiltered,
 )
@@ -35,6 +32,14 @@ from boatsim.errors import BadInput
 AM = [[0.0, 1.0], [-1.0, -1.4]]
 P = lyapunov(AM)
 PB = (float(P[0, 1]), float(P[1, 1]))  # P b with b = (0, 1)
+
+
+def project_ball(theta: Sequence[float], rate: Sequence[float], radius: float, tolerance: float) -> list[float]:
+    """Projection operator: the rate, slowed down outwards so that theta never leaves the ball of this radius."""
+    square = sum(t * t for t in theta)
+    along = sum(t * y for t, y in zip(theta, rate, strict=True))
+    share = adaptive.ball_share(square, along, radius, tolerance)
+    return [y - share * t for t, y in zip(theta, rate, strict=True)]
 
 
 # The blocks themselves
@@ -73,17 +78,16 @@ def test_projection_lets_nothing_out_of_the_ball(rate: list[float], direction: l
 
 def test_estimate_under_a_lasting_push_ends_on_the_bound_itself() -> None:
     """Without the factor (1 + tolerance) it would end on sqrt(1 + tolerance) times the bound."""
-    ball, interval = GradientVector([0.0, 0.0], radius=5.0, gain=10.0), Gradient(1.0, low=0.25, high=5.0, gain=10.0)
+    ball, interval = np.zeros(2), Gradient(1.0, low=0.25, high=5.0, gain=10.0)
     for _ in range(4000):
-        ball.step((3.0, 4.0), error=-1.0, dt=1e-3)
+        ball += 1e-3 * 10.0 * np.array(project_ball(list(ball), [3.0, 4.0], 5.0, 0.1))
         interval.step(1.0, error=1.0, dt=1e-3)
-    assert ball.value == pytest.approx([3.0, 4.0], abs=1e-6)
+    assert ball == pytest.approx([3.0, 4.0], abs=1e-6)
     assert interval.value == pytest.approx(0.25, abs=1e-6)
 
 
 def test_a_step_too_long_for_the_gain_stays_inside_the_bounds() -> None:
-    ball, interval = GradientVector([0.0, 0.0], radius=5.0, gain=1e6), Gradient(1.0, low=0.25, high=5.0, gain=1e6)
-    assert np.linalg.norm(ball.step((1.0, -2.0), error=1.0, dt=0.1)) == pytest.approx(5.0)
+    interval = Gradient(1.0, low=0.25, high=5.0, gain=1e6)
     assert interval.step(1.0, error=-1.0, dt=0.1) == 5.0
 
 
@@ -112,25 +116,6 @@ def test_sigma_reads_a_lasting_disturbance_after_one_period() -> None:
         for applied in (0.0, 2.0, -1.0, 0.3):
             law.predict(applied)
             assert law.adapt(boat.predict(applied + disturbance)) == pytest.approx(exp(-0.112) * disturbance, abs=1e-12)
-
-
-def test_matrix_law_reads_matched_and_unmatched_disturbances() -> None:
-    b, disturbance = np.array([[0.0, 1.0], [1.0, 0.0]]), np.array([0.4, -0.1])
-    law = PiecewiseConstantMatrix(AM, b, 0.01)
-    x = np.zeros(2)
-    for _ in range(3):
-        law.predict((2.0, 0.0))
-        x = law.decay @ x + law.gain @ (disturbance + (2.0, 0.0))
-        sigma = law.adapt(x)
-    assert sigma == pytest.approx(np.linalg.solve(law.gain, law.decay @ law.gain @ disturbance), abs=1e-12)
-    assert sigma == pytest.approx(disturbance, abs=0.01)
-
-
-def test_matrix_law_of_one_state_is_the_scalar_law() -> None:
-    scalar, matrix = PiecewiseConstant(1.4, 0.5, 0.08), PiecewiseConstantMatrix([[-1.4]], [[0.5]], 0.08)
-    for applied, measured in ((0.0, 0.1), (1.0, 0.05), (-2.0, -0.3)):
-        assert matrix.predict([applied]) == pytest.approx([scalar.predict(applied)])
-        assert matrix.adapt([measured]) == pytest.approx([scalar.adapt(measured)])
 
 
 # L1 norm
@@ -329,10 +314,21 @@ def test_compiled_rates_are_the_gradient_laws() -> None:
     laws = [Gradient(value, low, high, 1e5).rate(regressor, error) for value, regressor, (low, high) in pairs]
     assert ds[10:] == pytest.approx(laws)
     example_a(0.0, s, np.array([1.0, 0.0, 1e4]), ds)
-    assert ds[10:12] == pytest.approx(GradientVector([-9.9, 9.8], sqrt(200.0), 1e4).rate((1.0, -2.0), error))
-    assert GradientVector([-9.9, 9.8], sqrt(200.0), 1e4).rate((1.0, -2.0), error) != pytest.approx(
-        [-1e4 * error, 2e4 * error]
-    )
+    wanted = [-error, 2.0 * error]
+    projected = project_ball([-9.9, 9.8], wanted, sqrt(200.0), 0.1)
+    assert ds[10:12] == pytest.approx([1e4 * y for y in projected])
+    assert projected != pytest.approx(wanted)
+
+
+def reference_system(am: ArrayLike, b: ArrayLike, theta: ArrayLike, bandwidth: float) -> LinearSystem:
+    """The loop with every unknown known: x' = Am x + b (u + theta'x), u = C(s)(r - theta'x), from r to (x, u).
+
+    Am (n, n) [1/s], b (n,), theta (n,), bandwidth [rad/s]: what the adaptive loop tends to as its gain grows.
+    """
+    a, column = np.asarray(am, dtype=float), np.asarray(b, dtype=float).reshape(-1, 1)
+    row, n = np.asarray(theta, dtype=float).reshape(1, -1), len(a)
+    whole = np.block([[a + column @ row, column], [-bandwidth * row, np.array([[-bandwidth]])]])
+    return LinearSystem(whole, np.vstack([np.zeros((n, 1)), [[bandwidth]]]), np.eye(n + 1))
 
 
 def test_reference_system_of_example_a() -> None:

@@ -2,20 +2,21 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from boatsim.physics.effects.outboards import Outboards
 from scipy.integrate import solve_ivp
 
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnose import analysis
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.physics.base import motion
+from boatsim.physics.base import Course, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.dragged_propeller import DraggedPropeller
 from boatsim.physics.effects.sway_yaw_coupling import SwayYawCoupling
+from boatsim.physics.effects.thruster import Thruster
 from boatsim.recordings import table as recording
 
 DATA = Path(__file__).parent / "data" / "twin_usv_paths"
@@ -87,9 +88,16 @@ def test_more_of_the_channel_called_left_turns_the_blueboat_to_port(tmp_path: Pa
     boat = vessel.load("blueboat")
     assert boat.columns["thrust_starboard_N"] == "force_left_N"
     left, right = 30.0, 10.0
-    wrench = boat.effect("outboards").wrench(motion(thrust_port_N=right, thrust_starboard_N=left))  # type: ignore[union-attr]
-    assert wrench.N == pytest.approx(ARM * (right - left))
-    assert wrench.X == pytest.approx(left + right) and wrench.Y == 0.0
+    thrusts = {"port": right, "starboard": left}
+    wrenches = [e.wrench(motion(), pushing(e, thrusts[e.name])) for e in boat.all_of("thruster")]
+    X, Y, _, _, _, N = np.sum(wrenches, axis=0)
+    assert N == pytest.approx(ARM * (right - left))
+    assert X == pytest.approx(left + right) and Y == 0.0
+
+
+def pushing(thruster: Thruster, thrust: float, angle: float = 0.0) -> Any:
+    """Its signals."""
+    return type(thruster).signals_type()(thrust, angle, np.cos(angle), np.sin(angle))
 
 
 def test_a_run_in_the_columns_of_the_lake_is_replayed_right(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -111,7 +119,7 @@ def test_a_boat_that_turns_without_slipping_has_its_side_force_from_the_coupling
     u, r = 1.5, 0.6
     wrench = SwayYawCoupling(sway=-MASS).wrench(motion(u=u, r=r))
     assert wrench.Y == pytest.approx(MASS * u * r)  # centripetal force of a circle at the speed u
-    assert wrench.X == wrench.K == wrench.N == 0.0
+    assert wrench.X == wrench.Z == wrench.K == wrench.M == wrench.N == 0.0
 
 
 @pytest.mark.parametrize("speed", [2.0, -1.3])
@@ -119,21 +127,18 @@ def test_a_boat_that_turns_without_slipping_has_its_side_force_from_the_coupling
 def test_of_a_thrust_against_the_way_is_left_what_exceeds_the_idle_drag(thrust: float, speed: float) -> None:
     drag, a, yawing = 4.0, 0.4, 0.5
     port = speed + ARM * yawing  # along its axis, of a mount on the port side in a turn to starboard
-    m = motion(
-        u=port * np.cos(a) - ARM * yawing, v=port * np.sin(a), r=yawing, thrust_port_N=thrust, steer_port_rad=a,
-        thrust_starboard_N=0.0, steer_starboard_rad=0.0,
-    )  # fmt: skip
-    own, lost = Outboards(x=0.0, half_spacing=ARM), DraggedPropeller(drag=drag, x=0.0, half_spacing=ARM, gain=1.0)
+    m = motion(u=port * np.cos(a) - ARM * yawing, v=port * np.sin(a), r=yawing)
+    own, signals = Thruster(y=-ARM), pushing(Thruster(), thrust, a)
     left = thrust if thrust * port > 0.0 else np.sign(thrust) * max(abs(thrust) - drag * port**2, 0.0)
-    both = np.add(own.wrench(m), lost.wrench(m))
-    assert both == pytest.approx([left * np.cos(a), left * np.sin(a), 0.0, ARM * left * np.cos(a)])
+    both = np.add(own.wrench(m, signals), DraggedPropeller(drag=drag).wrench(m, signals, own.values()))
+    assert both == pytest.approx([left * np.cos(a), left * np.sin(a), 0.0, 0.0, 0.0, ARM * left * np.cos(a)])
 
 
 def test_an_idle_propeller_and_one_at_rest_lack_nothing() -> None:
-    lost = DraggedPropeller(drag=4.0, x=-0.45, half_spacing=ARM, gain=1.0)
-    idle = motion(u=2.0, v=0.1, r=0.3, thrust_port_N=0.0, thrust_starboard_N=0.0)
-    assert lost.wrench(idle) == pytest.approx((0.0, 0.0, 0.0, 0.0))
-    assert lost.wrench(motion(thrust_port_N=20.0, thrust_starboard_N=-20.0)) == pytest.approx((0.0, 0.0, 0.0, 0.0))
+    lost, at = DraggedPropeller(drag=4.0), Thruster(x=-0.45, y=-ARM).values()
+    idle, nothing = motion(u=2.0, v=0.1, r=0.3), pytest.approx(np.zeros(6))
+    assert lost.wrench(idle, pushing(Thruster(), 0.0), at) == nothing
+    assert lost.wrench(motion(), pushing(Thruster(), 20.0), at) == nothing
 
 
 def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> None:
@@ -145,4 +150,5 @@ def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> No
     push = np.convolve(seen["pwm_left_us"] - seen["pwm_right_us"], smooth, "same")
     assert np.corrcoef(turning, push)[0, 1] > 0.9
     port = replace(boat.effect("pulse_thrust"), at_span=2.0)  # type: ignore[type-var]
-    assert type(port).channel(0.0, -1.0, 1700.0, np.zeros(1), 0, 0.1, port.values()) == pytest.approx(1.0)
+    given = type(port).channel(Course(0.0, 0.0, 0.0), -1.0, 1700.0, np.zeros(1), 0, 0.1, port.values())
+    assert given == pytest.approx((1.0, 1.0, 1.0))

@@ -18,6 +18,7 @@ from boatsim.diagnose.report import show
 from boatsim.diagnose.report.answer import key_of
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
+from boatsim.physics.content import address, load_class
 from boatsim.physics.program import Program
 from boatsim.recordings import table as recording
 from boatsim.recordings.table import Notes, Recording
@@ -45,7 +46,7 @@ def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model()
     found = track(rec, Program(boat))
     levels = Levels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
     on = found.program.switches()
-    values = found.program.values()
+    values = found.values
     # the same model written down here: d/dt (phi, p, K) and its exact discretisation
     inertia, damping, stiffness = 115.6 + 19.8, 6.7, 822.3
     h = rec.t[1] - rec.t[0]
@@ -90,9 +91,8 @@ def test_one_outlier_moves_neither_states_nor_evidence_much():
     spoilt["phi_rad"][20] += 0.5
     levels = Levels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
     program = Program(boat)
-    first, second = (
-        track(r, program).smoothed(program.values(), program.switches(), levels)[0] for r in (clean, spoilt)
-    )
+    laid = (track(r, program) for r in (clean, spoilt))
+    first, second = (t.smoothed(t.values, program.switches(), levels)[0] for t in laid)
     assert np.abs(first[:, 0] - second[:, 0]).max() < 2e-3
 
 
@@ -105,7 +105,8 @@ def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
         spoilt = roll_recording()
         spoilt = replace(spoilt, signals={"phi_rad": spoilt["phi_rad"].copy()})
         spoilt["phi_rad"][20] += off
-        return track(spoilt, program).likelihood(program.values(), program.switches(), levels)
+        laid = track(spoilt, program)
+        return laid.likelihood(laid.values, program.switches(), levels)
 
     off = np.linspace(0.004, 0.02, 161)  # through the gate, which is at 5 sd
     found = np.array([likelihood(x) for x in off])
@@ -316,6 +317,34 @@ def test_horizon_shrinks_to_what_was_kept_unseen():
     assert 10.0 < answer["fit"]["horizon_s"] < 60.0 and answer["fit"]["roll_rms_rad"]["nominal"] > 0
 
 
+WEED = """
+from dataclasses import dataclass
+from numba import njit
+from boatsim.physics.base import Force, param, wrench
+
+@njit(inline="always")
+def law(m, q):
+    return wrench(K=-q.roll * m.p**3)
+
+@dataclass(frozen=True)
+class RollWeed(Force):
+    words = "weed on the bilge resists rolling"
+    shown_by = "a decay"
+    law = law
+    roll: float = param(0.0, low=0.0, high=1e13, unit="N m s^3", words="roll", fit=True, spread=0.003)
+"""
+
+
+def test_own_preset_of_a_shipped_law_is_found_by_its_own_file(tmp_path):
+    file = tmp_path / "weed.py"
+    file.write_text(
+        "from boatsim.physics.base import preset\n"
+        "from boatsim.physics.effects.damping import LinearDamping\n"
+        'Weed = preset(LinearDamping, "Weed", words="weed", fixed={"roll_exponent": 3.0})\n'
+    )
+    assert address(load_class("effect", str(file))) == str(file.resolve())
+
+
 def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder, tmp_path, capsys):
     text = (vessel.load("kvlcc2_roll").file).read_text()
     mine = tmp_path / "mine"
@@ -324,8 +353,7 @@ def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder
     for file in ("hull.xml",):
         (mine / file).write_text((vessel.load("kvlcc2_roll").path / file).read_text())
     own = tmp_path / "roll_weed.py"
-    law = (Path(vessel.__file__).parent / "effects" / "cubic_damping.py").read_text()
-    own.write_text(law.replace("CubicDamping", "RollWeed"))
+    own.write_text(WEED)
     without = ["cubic_damping", "quadratic_damping"]
     code = commands.diagnose([DECAY], [], str(mine / "vessel.toml"), [], tmp_path / "out", [str(own)], without)
     assert code == 0 and "roll_weed" in capsys.readouterr().out

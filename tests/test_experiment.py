@@ -52,7 +52,7 @@ def recorded(name: str, settings: dict[str, float], script: tuple[manoeuvres.Ste
     for key, value in settings.items():
         values[program().index(name, key)] = value
     rows = np.concatenate([np.tile(step[1:], (round(step[0] * RATE), 1)) for step in script])
-    memory, act = np.zeros(program().memory_size), np.zeros(code.HELD)
+    memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
     code.settle(rows[0], memory, values, on, act)
     out = np.zeros((len(rows) + 1, 6))
     code.rollout(0.0, np.zeros(6), rows, memory, 1 / RATE / 8, 8, program().body, values, on, np.zeros(3), out)

@@ -29,6 +29,7 @@ TONNE = 1000.0  # [kg]; the thesis counts in tonnes and kilonewtons
 
 # The worked example, Appendix IV: Eastward Ho, full load, 13 knots, dimensions from feet, added mass from a chart.
 FOOT = 0.3048  # [m]
+LONG_TON = 1016.047  # [kg]
 EXAMPLE: dict[str, Any] = {
     "length": 101.0 * FOOT,
     "beam": 28.67 * FOOT,
@@ -180,6 +181,20 @@ def test_a_rudder_to_starboard_heels_inwards_first_and_outwards_in_the_turn() ->
         assert B[4] > 0.0 and steady[2] == pytest.approx(wanted, abs=6e-3)
 
 
+def roll_ratio_at_rest(
+    length: float, beam: float, mass: float, bilge: float, amplitude: float, keels: float = 0.0, shape: float = 1.0
+) -> float:
+    """Roll damping per critical without headway, of a round bilge.
+
+    The formula, as C. R. Martin, UBC 1993, Appendix IV quotes it, is in feet and long tons; arguments are SI. `bilge`
+    is the distance from waterline at the centre to the turn of the bilge, `amplitude` that of the roll, `keels` the
+    area of both bilge keels, `shape` = sqrt(their length / bilge).
+    """
+    L, B, d, tons = length / FOOT, beam / FOOT, bilge / FOOT, mass / LONG_TON
+    area = 0.0024 * L * B * sqrt(d) + keels / FOOT**2 * shape
+    return 0.55 * area * d * d * sqrt(d) * sqrt(amplitude) / (tons * B * B)
+
+
 @pytest.mark.parametrize(("at_rest", "least", "most"), [(0.0119, 133.0, 143.0), (0.0437, 18.0, 19.0)])
 def test_area_of_bilge_keels_that_the_damping_measured_in_the_tank_asks_for(
     at_rest: float, least: float, most: float
@@ -187,16 +202,14 @@ def test_area_of_bilge_keels_that_the_damping_measured_in_the_tank_asks_for(
     """From each computed ratio to the measured 0.075, equal amplitude; turn of the bilge 13 to 15.1 ft deep."""
     areas = []
     for bilge in (13.0 * FOOT, 15.1 * FOOT):
-        hull, plate = (
-            particulars.roll_ratio_at_rest(30.785, 8.7386, 572.05e3, bilge, 1.0, keels) for keels in (0.0, FOOT**2)
-        )
+        hull, plate = (roll_ratio_at_rest(30.785, 8.7386, 572.05e3, bilge, 1.0, keels) for keels in (0.0, FOOT**2))
         share = plate / hull - 1.0  # what a square foot adds, at any amplitude
         areas.append((0.075 / at_rest - 1.0) / share)
     assert areas == pytest.approx([least, most], abs=0.6)
 
 
 def test_damping_at_rest_grows_with_the_root_of_the_amplitude() -> None:
-    small, large = (particulars.roll_ratio_at_rest(30.8, 8.74, 572e3, 4.0, a) for a in (0.05, 0.2))
+    small, large = (roll_ratio_at_rest(30.8, 8.74, 572e3, 4.0, a) for a in (0.05, 0.2))
     assert large == pytest.approx(2.0 * small)
 
 

@@ -21,7 +21,7 @@ load = ["low_speed"]
 noise = { position_sd_m = 0.3, heading_sd_rad = 0.01, yaw_rate_sd_radps = 0.00873 }
 ambient = { axes = ["surge", "sway", "roll", "yaw"], force_rms = { surge = 20.0, sway = 20.0, roll = 5.0, yaw = 10.0 } }
 """
-YAW_RATE = 6  # of the channels of a free run: x, y, psi, phi, u, v, r, p
+YAW_RATE = 7  # of the channels of a free run: x, y, phi, psi, u, v, p, r
 
 
 def diagnosed(folder: Path, real: Real, unseen: Real | None = None, without: tuple[str, ...] = ()) -> Diagnosis:

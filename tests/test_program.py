@@ -1,9 +1,11 @@
 """Composition: an edited law is compiled anew, a suspect that is off does nothing, a user's own effect works."""
 
 import os
+import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import boats
@@ -11,9 +13,11 @@ import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.physics import vessel
-from boatsim.physics.base import Array
+from boatsim.physics import cache, content, vessel
+from boatsim.physics.base import AXES, Array, motion
+from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.current import Current
+from boatsim.physics.effects.damping import LinearDamping
 from boatsim.physics.effects.wind import Wind
 from boatsim.physics.program import Program
 
@@ -24,13 +28,13 @@ from typing import ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Wrench, param
+from boatsim.physics.base import Force, param, wrench
 
 
 @njit(inline="always")
 def law(m, q):
     """Moment against the heel."""
-    return Wrench(0.0, 0.0, -3.0 * q.stiffness * m.phi, 0.0)
+    return wrench(K=-3.0 * q.stiffness * m.phi)
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,9 @@ class Spring(Force):
 
     stiffness: float = param(1.0, low=0.0, high=10.0, unit="N m", words="per rad")
 '''
+PITCH = "pitch_inertia = 0.5, "
+IMPORT = "from boatsim.physics.base import"
+GRAVITY = f"from boatsim.physics import particulars\n{IMPORT}"
 USE_SPRING = '[[effect]]\nuse = "spring"\n'
 SNIPPET = """
 import sys
@@ -51,8 +58,8 @@ from boatsim.physics import vessel
 from boatsim.physics.program import Program
 
 program = Program(vessel.load(sys.argv[1]))
-act = np.zeros(program.module.HELD)
-print(program.module.forces(0.0, np.array([0.1, 0.0]), act, program.values(), program.switches())[0])
+act = np.zeros(program.held_size)
+print(program.module.forces(0.0, np.array([0.1, 0.0]), act, np.int64(0), program.values(), program.switches())[0])
 """
 
 
@@ -63,16 +70,19 @@ def with_spring(folder: Path) -> Path:
     return place
 
 
-def moment(place: Path) -> float:
-    """Roll moment [N m] at 0.1 rad, in a fresh process."""
-    done = subprocess.run([sys.executable, "-c", SNIPPET, str(place)], capture_output=True, text=True, check=True)
+def moment(place: Path, more: Mapping[str, str] | None = None) -> float:
+    """Roll moment [N m] at 0.1 rad, in a fresh process with further variables in its environment."""
+    done = subprocess.run(
+        [sys.executable, "-c", SNIPPET, str(place)], cwd=place, env=os.environ | dict(more or {}), capture_output=True,
+        text=True, check=True,
+    )  # fmt: skip
     return float(done.stdout)
 
 
-def roll_moment(program: Program, phi: float) -> float:
-    act = np.zeros(program.module.HELD)
-    (K,) = program.module.forces(0.0, np.array([phi, 0.0]), act, program.values(), program.switches())
-    return float(K)
+def forces(program: Program, state: Sequence[float], on: Array | None = None) -> tuple[float, ...]:
+    """Body force over the freedoms at a state in joint coordinates and their rates, actuators at rest."""
+    act, switches = np.zeros(program.held_size), program.switches() if on is None else on
+    return tuple(program.module.forces(0.0, np.array(state), act, np.int64(0), program.values(), switches))
 
 
 def test_an_edited_law_gives_its_new_number(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,7 +92,18 @@ def test_an_edited_law_gives_its_new_number(tmp_path: Path, monkeypatch: pytest.
     law = place / "spring.py"
     law.write_text(law.read_text().replace("-3.0", "-4.0"))
     assert moment(place) == pytest.approx(-0.1 * (2.0 + 4.0))
-    assert len(list((tmp_path / "cache").glob("program_*.py"))) == 2
+    assert len(list((tmp_path / "cache").glob("program_*"))) == 2
+
+
+def test_a_law_edited_while_the_program_runs_gives_its_new_number(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
+    place = with_spring(tmp_path)
+    law = place / "spring.py"
+    for factor in (3.0, 4.0):
+        law.write_text(SPRING.replace("-3.0", f"-{factor}"))
+        assert forces(Program(vessel.load(str(place))), [0.1, 0.0]) == pytest.approx([-0.1 * (2.0 + factor)])
 
 
 def test_effects_of_one_name_beside_two_vessels_are_two_effects(
@@ -95,16 +116,11 @@ def test_effects_of_one_name_beside_two_vessels_are_two_effects(
         places.append(with_spring(tmp_path / folder))
         law = places[-1] / "spring.py"
         law.write_text(law.read_text().replace("-3.0", factor))
-    found = [roll_moment(Program(vessel.load(str(place))), 0.1) for place in places]
-    assert found == pytest.approx([-0.1 * (2.0 + 3.0), -0.1 * (2.0 + 5.0)])
+    found = [forces(Program(vessel.load(str(place))), [0.1, 0.0]) for place in places]
+    assert found == [pytest.approx([-0.1 * (2.0 + 3.0)]), pytest.approx([-0.1 * (2.0 + 5.0)])]
 
 
-STATE = np.array([0.1, 0.2, 0.4, 0.3, -0.2, 0.1])
-
-
-def planar_forces(program: Program, on: Array) -> tuple[float, ...]:
-    act = np.zeros(program.module.HELD)
-    return tuple(program.module.forces(0.0, STATE, act, program.values(), on))
+STATE = [0.1, 0.2, 0.4, 0.3, -0.2, 0.1]
 
 
 def test_a_suspect_acts_only_when_it_is_switched_on(tmp_path: Path) -> None:
@@ -114,18 +130,18 @@ def test_a_suspect_acts_only_when_it_is_switched_on(tmp_path: Path) -> None:
     off, windy = program.switches(), program.switches(["wind"])
     assert list(off[-2:]) == [0.0, 0.0] and list(windy[-2:]) == [1.0, 0.0]
     own = Program(bare)
-    none = planar_forces(own, own.switches())
-    assert planar_forces(program, off) == none
+    none = forces(own, STATE)
+    assert forces(program, STATE, off) == none
     north, east = 0.3 * np.cos(0.2), 0.3 * np.sin(0.2)
     along, across = 0.5 * (np.cos(0.4) * north + np.sin(0.4) * east), np.cos(0.4) * east - np.sin(0.4) * north
-    assert np.subtract(planar_forces(program, windy), none) == pytest.approx([along, across, 0.0])
-    assert planar_forces(program, program.switches(["current"])) != none
+    assert np.subtract(forces(program, STATE, windy), none) == pytest.approx([along, across, 0.0])
+    assert forces(program, STATE, program.switches(["current"])) != none
 
 
 def test_parameters_lie_where_the_index_says(tmp_path: Path) -> None:
     program = Program(boats.planar(tmp_path, {"quadratic_damping": {"yaw": 1.25}}))
     assert program.values()[program.index("quadratic_damping", "yaw")] == 1.25
-    assert program.values()[program.index("outboards", "half_spacing")] == 0.5
+    assert program.values()[program.index("port", "y")] == -0.5
 
 
 def test_commands_that_are_not_given_are_zero(tmp_path: Path) -> None:
@@ -135,11 +151,19 @@ def test_commands_that_are_not_given_are_zero(tmp_path: Path) -> None:
         program.command_array({"steer": 0.1})
 
 
-def test_freedoms_that_no_kernel_has_are_refused(tmp_path: Path) -> None:
-    text = boats.PLANAR.replace('"yaw"]', '"roll"]')
-    boat = vessel.load(str(boats.written(tmp_path, "test_boat", text)))
-    with pytest.raises(BadInput, match="allowed are surge, sway, yaw, with or without roll, or roll alone"):
-        _ = Program(boat).module
+@pytest.mark.parametrize("freedoms", [("surge", "sway"), ("sway", "roll"), ("surge", "heave", "pitch"), ("yaw",)])
+def test_any_freedoms_feel_their_part_of_the_same_law(tmp_path: Path, freedoms: tuple[str, ...]) -> None:
+    text = boats.PLANAR.replace('["surge", "sway", "yaw"]', str(list(freedoms))).replace(
+        "body = { ", f"body = {{ {PITCH}"
+    )
+    program = Program(vessel.load(str(boats.written(tmp_path, "test_boat", text))))
+    rates = {"surge": 0.3, "sway": -0.2, "yaw": 0.1, "heave": 0.2, "roll": 0.4, "pitch": -0.3}
+    moving = {a: rates.get(a, 0.0) if a in freedoms else 0.0 for a in AXES}
+    m = motion(**{symbol: moving[a] for symbol, a in zip("uvwpqr", AXES, strict=True)})
+    wanted = sum(np.array(e.wrench(m)) for e in program.effects if isinstance(e, AddedMass | LinearDamping))
+    seen = forces(program, [*(0.0 for _ in freedoms), *(moving[a] for a in AXES if a in freedoms)])
+    assert seen == pytest.approx([wanted[AXES.index(a)] for a in AXES if a in freedoms])
+    assert np.any(seen)
 
 
 def test_an_unwritable_cache_folder_falls_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -153,25 +177,113 @@ def test_an_unwritable_cache_folder_falls_back(tmp_path: Path, monkeypatch: pyte
     assert str(Program(boat).module.__file__).startswith(str(tmp_path / "boatsim-"))
 
 
-def test_programs_not_used_for_90_days_are_removed_when_a_new_one_is_composed(tmp_path, monkeypatch):
+def test_programs_not_used_for_90_days_are_removed_when_a_new_one_is_composed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
-    compiled = tmp_path / "cache" / "__pycache__"
-    compiled.mkdir(parents=True)
     used = time.time() - 91 * 86400.0
     for name, age in (("program_old", used), ("program_recent", time.time() - 89 * 86400.0)):
-        source = tmp_path / "cache" / f"{name}.py"
-        for file in (source, compiled / f"{name}.forces-1.py311.nbi", compiled / f"{name}.forces-1.py311.1.nbc"):
-            file.write_text("")
-        os.utime(source, (age, age))
+        folder = tmp_path / "cache" / name
+        folder.mkdir(parents=True)
+        (folder / "__init__.py").write_text("")
+        os.utime(folder, (age, age))
     program = Program(boats_own_roller(tmp_path))
     stamp = program.module.__name__.removeprefix("boatsim_program_")
-    left = {file.stem.split(".")[0] for file in (tmp_path / "cache").rglob("*.*")}
+    left = {folder.name for folder in (tmp_path / "cache").iterdir()}
     assert left == {"program_recent", f"program_{stamp}"}
-    source = tmp_path / "cache" / f"program_{stamp}.py"
-    os.utime(source, (used, used))
-    assert Program(program.vessel).module is program.module and source.stat().st_mtime > used + 86400.0
+    folder = tmp_path / "cache" / f"program_{stamp}"
+    os.utime(folder, (used, used))
+    assert Program(program.vessel).module is program.module and folder.stat().st_mtime > used + 86400.0
 
 
 def boats_own_roller(folder: Path) -> vessel.Vessel:
     """A vessel whose program no other test composes."""
     return vessel.load(str(boats.written(folder, "roller", boats.ROLL + '[[effect]]\nuse = "wind"\n')))
+
+
+# A program's name covers all that its laws can reach: tried on a copy of the package
+
+
+STAMP = """
+import sys
+from boatsim.physics import cache, vessel
+from boatsim.physics.program import Program
+
+cache._imported = lambda path, name: name  # the name alone: nothing is compiled
+print(*(Program(vessel.load(place)).module for place in sys.argv[1:]))
+"""
+EDITS = [  # a file, what of it is changed into what, whether a spring in roll, and waves, can feel it
+    ("particulars.py", ("GRAVITY = 9.81", "GRAVITY = 19.62"), (True, True)),
+    ("chance.py", ("9007199254740992.0", "9007199254740993.0"), (False, True)),
+    ("kernel/run.py", ("LONG = 1e4", "LONG = 2e4"), (True, True)),
+    ("kernel/compiling.py", ("\n", "\n\n"), (True, True)),
+    ("kinds/force.py", ('ADD = "; "', 'ADD = ";  "'), (True, True)),
+    ("signals.py", ("\n", "\n\n"), (True, True)),
+    ("effects/irregular_sea.py", ("LOWEST = 0.45", "LOWEST = 0.5"), (False, True)),
+    ("effects/righting_arm.py", ("return wrench(K=-", "return wrench(K=-2.0 * "), (True, False)),
+    ("effects/tether.py", ("SOFT = 0.02", "SOFT = 0.03"), (False, False)),
+]
+
+
+@pytest.fixture(scope="module")
+def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the package, a boat with a spring and one in waves, and the names of their programs."""
+    folder = tmp_path_factory.mktemp("copy")
+    shutil.copytree(content.root() / "boatsim", folder / "boatsim", ignore=shutil.ignore_patterns("__pycache__"))
+    boats.written(folder, "sprung", boats.ROLL)
+    waves = boats.ROLL[: boats.ROLL.index("[[effect]]")].replace('["roll"]', '["sway", "roll", "yaw"]')
+    boats.written(folder, "tossed", f'{waves}[[effect]]\nuse = "irregular_sea"\n')
+    (folder / "before").write_text(" ".join(names_in(folder)))
+    return folder
+
+
+def names_in(folder: Path) -> list[str]:
+    """Names of the programs of both boats, by a fresh process on the package in a folder."""
+    places = [str(folder / name) for name in ("sprung", "tossed")]
+    environment = os.environ | {"PYTHONPATH": str(folder), "BOATSIM_CACHE": str(folder / "cache")}
+    done = subprocess.run(
+        [sys.executable, "-c", STAMP, *places], cwd=folder, env=environment, capture_output=True, text=True, check=True
+    )
+    return done.stdout.split()
+
+
+@pytest.mark.parametrize(("file", "change", "felt"), EDITS, ids=[file for file, _, _ in EDITS])
+def test_a_program_has_another_name_when_anything_its_laws_reach_is_edited(
+    copied: Path, file: str, change: tuple[str, str], felt: tuple[bool, bool]
+) -> None:
+    before, source = (copied / "before").read_text().split(), copied / "boatsim" / "physics" / file
+    text = source.read_text()
+    assert change[0] in text and len(set(before)) == 2
+    try:
+        source.write_text(text.replace(*change, 1))
+        after = names_in(copied)
+    finally:
+        source.write_text(text)
+    assert tuple(a != b for a, b in zip(before, after, strict=True)) == felt
+
+
+def test_what_a_file_imports_by_dots_is_reached_too(copied: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    physics = copied / "boatsim" / "physics"
+    monkeypatch.setattr(cache, "PACKAGE", copied / "boatsim")
+    effect = physics / "effects" / "by_dots.py"
+    effect.write_text("from .thruster import at_mount\nfrom ..chance import drawn\nfrom .. import particulars\n")
+    reached = cache.reach(effect)
+    assert {physics / n for n in ("effects/thruster.py", "chance.py", "particulars.py", "signals.py")} <= reached
+    assert physics / "effects" / "tether.py" not in reached
+
+
+def test_an_edited_constant_gives_its_new_force(tmp_path: Path, copied: Path) -> None:
+    """GRAVITY goes into the law at compile time: what was compiled before must not answer."""
+    source, found = copied / "boatsim" / "physics" / "particulars.py", {}
+    text = source.read_text()
+    place = boats.written(tmp_path, "weighty", boats.ROLL + '[[effect]]\nuse = "weight"\n')
+    (place / "weight.py").write_text(
+        SPRING.replace("Spring", "Weight").replace("-3.0", "-particulars.GRAVITY").replace(IMPORT, GRAVITY)
+    )
+    try:
+        for gravity in (9.81, 19.62):
+            source.write_text(text.replace("GRAVITY = 9.81", f"GRAVITY = {gravity}"))
+            found[gravity] = moment(place, {"PYTHONPATH": str(copied), "BOATSIM_CACHE": str(tmp_path / "cache")})
+    finally:
+        source.write_text(text)
+    assert found == {g: pytest.approx(-0.1 * (2.0 + g)) for g in (9.81, 19.62)}

@@ -50,6 +50,8 @@ def test_balance_holds_a_speed_in_proportion_to_the_propellers_rate() -> None:
     balance = ApproachBalance(damping=90.0, speed=1.2, shaft_rate=10.0)
     assert balance.wrench(motion(u=0.9), signals(ApproachBalance, shaft=7.5)) == pytest.approx(Wrench())
     assert balance.wrench(motion(u=1.0), signals(ApproachBalance, shaft=10.0)).X == pytest.approx(18.0)
+    stronger = replace(balance, gain=1.1)
+    assert stronger.wrench(motion(u=0.99), signals(ApproachBalance, shaft=7.5)) == pytest.approx(Wrench(), abs=1e-12)
 
 
 def test_speed_scaled_hull_and_rudder_are_the_nondimensional_form() -> None:

@@ -1,16 +1,21 @@
 """Vessel files: loads and settings laid over them, and one clear line for whatever is wrong in them."""
 
+import re
 from pathlib import Path
 from typing import Any
 
 import boats
 import pytest
 
+from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import absent
+from boatsim.diagnose.problem import check_taken_up
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.thruster import Thruster
+
+COMMANDS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
 
 
 def of(text: str, tmp_path: Path, **more: Any) -> vessel.Vessel:
@@ -36,6 +41,34 @@ def test_suspects_of_a_vessel_can_be_put_on_it(name: str) -> None:
         kind = content.load_class("effect", str(table["use"]), boat.path)
         found = absent(kind, boat.diagnosis.facts, {k: v for k, v in table.items() if k != "use"})
         vessel.check_bindings(vessel.added(boat, found), name)
+
+
+@pytest.mark.parametrize("name", content.names("vessel"))
+def test_every_uncertainty_that_a_vessel_states_is_one_of_its_coefficients(name: str) -> None:
+    boat = vessel.load(name)
+    check_taken_up(boat, {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}, name)
+
+
+def test_an_uncertainty_that_nothing_takes_up_is_one_line(tmp_path: Path) -> None:
+    boat = of(boats.PLANAR, tmp_path)
+    check_taken_up(boat, {"damping": 0.1, "thrust": 0.1}, "here")
+    for kind, hint in (("restoring", ""), ("thurst", "; did you mean 'thrust'")):
+        line = f"here: coefficient_uncertainty.{kind} = 0.1, but test_boat has no coefficient of {kind}{hint}; "
+        with pytest.raises(BadInput, match=f"^{line}allowed are damping, thrust$"):
+            check_taken_up(boat, {"damping": 0.1, kind: 0.1}, "here")
+
+
+@pytest.mark.parametrize("where", ["vessel", "notes"])
+def test_a_diagnosis_refuses_an_uncertainty_that_nothing_takes_up(tmp_path: Path, where: str) -> None:
+    stated = "coefficient_uncertainty = { restoring = 0.1 }\n"
+    place = boats.written(tmp_path, "test_boat", boats.PLANAR + (f"[diagnosis]\n{stated}" if where == "vessel" else ""))
+    (tmp_path / "recording.toml").write_text(stated if where == "notes" else "")
+    for name in ("one", "two"):
+        rows = [f"{0.1 * i:.1f},{0.01 * i:g},0,0,0.1,0.1,0,0" for i in range(40)]
+        (tmp_path / f"{name}.csv").write_text("\n".join(["t_s,x_m,y_m,psi_rad," + ",".join(COMMANDS), *rows]))
+    label = "test_boat/vessel.toml: diagnosis: " if where == "vessel" else r"one\.csv by its recording\.toml: "
+    with pytest.raises(BadInput, match=f"{label}coefficient_uncertainty.restoring = 0.1, but test_boat has no"):
+        analysis.diagnose([tmp_path / "one.csv"], [tmp_path / "two.csv"], str(place))
 
 
 def test_a_load_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:
@@ -109,6 +142,60 @@ def test_a_mistake_in_a_vessel_file_is_one_line(tmp_path: Path, change: tuple[st
     with pytest.raises(BadInput, match=message) as refused:
         of(boats.PLANAR.replace(*change, 1), tmp_path)
     assert "\n" not in str(refused.value)
+
+
+PORT = 'on = { thrust = "thrust_port_N", angle = "steer_port_rad" }'
+BINDINGS = [
+    (
+        PORT.replace("angle", "angel"),
+        "effect port: on 'angel' does not exist; did you mean 'angle'? (there are: angle, thrust)",
+    ),
+    (
+        PORT.replace("port_N", "prot_N"),
+        "effect port: on.thrust channel 'thrust_prot_N' does not exist; did you mean 'thrust_port_N'",
+    ),
+    (
+        'on = { angle = "steer_port_rad" }',
+        "effect port: on.thrust is missing: the channel of its thrust, ahead positive; there are: thrust_port_N, ",
+    ),
+    ('on = "thrust_port_N"', "port: on = 'thrust_port_N'; allowed is a table of thrust, angle"),
+    ("on = { thrust = true }", "port: on = {'thrust': True}; allowed is a table of thrust, angle"),
+    ("on = { thrust = nan }", "port: on = {'thrust': nan}; allowed is a table of thrust, angle"),
+]
+MORE = [
+    ('use = "thruster"\nname = "port"\non = { thrust = 1.0 }', "effect port is there 2 times; give each a name of"),
+    ('use = "current"', "effect current is there 2 times; give each a name of its own"),
+    (
+        'use = "weak_reverse"\non = "thrust_prot_N"',
+        "effect weak_reverse: channel 'thrust_prot_N' does not exist; did you mean 'thrust_port_N'",
+    ),
+    (
+        'use = "weak_reverse"\non = { thrust = "thrust_port_N" }',
+        "weak_reverse: on = {'thrust': 'thrust_port_N'}; allowed is a name or a list of names",
+    ),
+    (
+        'use = "pwm_thrust"\non = "thrust_port_N"\nfed_by = ["steer_port_rad", "steer_starboard_rad"]',
+        "effect pwm_thrust: fed_by names 2 channels, on 1; each needs one",
+    ),
+    ('use = "pwm_thrust"\non = "thrust_port_N"\nfed_by = "pwm"', "effect pwm_thrust: channel 'pwm' does not exist"),
+    ('use = "prop_walk"\non = "prot"', "effect prop_walk: thruster 'prot' does not exist; did you mean 'port'"),
+    ('use = "steering_drag"', "effect steering_drag needs a vessel with rudder"),
+]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        *((boats.PLANAR.replace(PORT, wrong, 1), message) for wrong, message in BINDINGS),
+        *((boats.PLANAR.replace("[loads", f"[[effect]]\n{table}\n\n[loads", 1), message) for table, message in MORE),
+    ],
+    ids=[message[:40] for _, message in BINDINGS + MORE],
+)
+def test_a_bad_binding_is_one_line(tmp_path: Path, text: str, message: str) -> None:
+    assert PORT in boats.PLANAR
+    with pytest.raises(BadInput, match=re.escape(message)) as refused:
+        of(text, tmp_path)
+    assert str(refused.value).startswith("test_boat/vessel.toml: ") and "\n" not in str(refused.value)
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,6 @@ from boatsim.simulate import scenario
 from boatsim.simulate.cases import content
 from boatsim.simulate.film import Film, FilmMeasure
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.twin import body_rates
 
 TESTS = ("sway_1", "sway_2", "sway_3", "sway_4", "yaw_1", "yaw_2", "yaw_3", "yaw_4")
 WINDY = ("yaw_2", "yaw_4")  # T18
@@ -95,7 +94,7 @@ class Bench:
                 place = (knob.applied(camera.marks[knob.name][0], x), camera.marks[knob.name][1])
                 camera = replace(camera, marks={**camera.marks, knob.name: place})
             elif knob.effect == "body":
-                body[2] = knob.applied(body[2], x)
+                body[-1] = knob.applied(body[-1], x)  # yaw inertia
             else:
                 at = self.program.index(knob.effect, knob.name)
                 p[at] = knob.applied(p[at], x)
@@ -129,9 +128,9 @@ class Bench:
     def _play(self, p: Array, body: Array, commands: Array) -> tuple[Array, Array]:
         """Times (N,) and states (N, 6) in earth axes of a run with given commands."""
         code, on, y, step = self.program.module, self.program.switches(), np.zeros(6), self.scenario.file.step
-        memory, act, out = np.zeros(self.program.memory_size), np.zeros(code.HELD), np.zeros((len(commands) + 1, 6))
+        memory, out = np.zeros(self.program.memory_size), np.zeros((len(commands) + 1, 6))
         start = self.program.command_array(self.scenario.controller.initial_commands())
-        code.settle(start, memory, p, on, act)
+        code.settle(start, memory, p, on, np.zeros(self.program.held_size))
         code.rollout(0.0, y, commands, memory, step, 1, body, p, on, np.zeros(3), out)
         return np.asarray(step * np.arange(len(out)), float), np.asarray(out, float)
 
@@ -144,14 +143,14 @@ class Bench:
         controller.reset()
         period = round(controller.period / file.step)
         memory, act, on, none = (
-            np.zeros(self.program.memory_size), np.zeros(code.HELD), self.program.switches(), np.zeros(3)
+            np.zeros(self.program.memory_size), np.zeros(self.program.held_size), self.program.switches(), np.zeros(3)
         )  # fmt: skip
         code.settle(self.program.command_array(controller.initial_commands()), memory, p, on, act)
         y, out, pull = np.zeros(6), np.zeros((period + 1, 6)), (0.0, 0.0)
         parts, t = [np.zeros((1, 6))], 0.0
         while t < file.duration - 1e-9 and not _over(file.until, y):
             x, east, psi, *_ = y.tolist()
-            u, v, r = body_rates(y)[3:].tolist()
+            u, v, r = self.program.body_rates(y[None])[0, 3:].tolist()
             sense: Sense = sensors.feel(t, (x, east, psi), (u, v, r), pull, rng)
             row = self.program.command_array(controller.step(sense, told.goal_at(t)))
             commands = np.tile(row, (period, 1))
@@ -179,8 +178,8 @@ def _links(program: Program) -> list[tuple[int, int]]:
     """Positions of parameters that are those of another effect: (copy, source)."""
     found, there = [], {e.name for e in program.effects}
     for effect in program.effects:
-        for name, about in type(effect).params().items():
-            owner, _, key = about.follows.partition(".")
+        for name in effect.filled:
+            owner, _, key = type(effect).params()[name].follows.removesuffix("?").partition(".")
             if owner in there:
                 found.append((program.index(effect.name, name), program.index(owner, key)))
     return found

@@ -32,14 +32,6 @@ def ball_share(square: float, along: float, radius: float, tolerance: float) -> 
     return along * excess / square
 
 
-def project_ball(theta: Sequence[float], rate: Sequence[float], radius: float, tolerance: float) -> list[float]:
-    """Projection operator: the rate, slowed down outwards so that theta never leaves the ball of this radius."""
-    square = sum(t * t for t in theta)
-    along = sum(t * y for t, y in zip(theta, rate, strict=True))
-    share = ball_share(square, along, radius, tolerance)
-    return [y - share * t for t, y in zip(theta, rate, strict=True)]
-
-
 def project_interval(value: float, rate: float, low: float, high: float, tolerance: float) -> float:
     """Projection of one number on [low, high]: the ball about the middle, so that both bounds are kept."""
     off = value - 0.5 * (low + high)
@@ -67,28 +59,6 @@ class Gradient:
     def step(self, regressor: float, error: float, dt: float) -> float:
         """Follow the rate over dt [s]; cut at the bounds, which a step too long for the gain would jump over."""
         self.value = min(max(self.value + dt * self.rate(regressor, error), self.low), self.high)
-        return self.value
-
-
-@dataclass
-class GradientVector:
-    """Estimate of a vector of unknowns by the gradient law, kept inside a ball about zero."""
-
-    value: list[float]
-    radius: float
-    gain: float
-    tolerance: float = 0.1
-
-    def rate(self, regressor: Sequence[float], error: float) -> list[float]:
-        """Time derivative of the estimate [1/s]."""
-        wanted = [-x * error for x in regressor]
-        return [self.gain * y for y in project_ball(self.value, wanted, self.radius, self.tolerance)]
-
-    def step(self, regressor: Sequence[float], error: float, dt: float) -> list[float]:
-        """Follow the rate over dt [s]; drawn back onto the ball, which a step too long for the gain would leave."""
-        moved = [t + dt * y for t, y in zip(self.value, self.rate(regressor, error), strict=True)]
-        size = sum(t * t for t in moved) ** 0.5
-        self.value = [t * min(1.0, self.radius / size) for t in moved] if size > 0.0 else moved
         return self.value
 
 
@@ -129,29 +99,6 @@ class PiecewiseConstant(Predictor):
     def adapt(self, measured: float) -> float:
         """Choose sig so that over one period it takes away what is left of the prediction error; returns sig."""
         self.sig = -(self.xh - measured) * self.decay / self.gain
-        return self.sig
-
-
-class PiecewiseConstantMatrix:
-    """The same for a state vector: xh' = Am xh + B (drive + sig), B square so that nothing unknown is left out."""
-
-    def __init__(self, am: ArrayLike, b: ArrayLike, period: float) -> None:
-        """Am (n, n) [1/s] invertible, B (n, n) invertible: the real inputs first, then the unmatched directions."""
-        a = np.asarray(am, dtype=float)
-        self.decay = matrix_exp(a * period)
-        self.gain = np.linalg.solve(a, self.decay - np.eye(len(a))) @ np.asarray(b, dtype=float)
-        self.back: Array = np.linalg.solve(self.gain, self.decay)
-        self.xh: Array = np.zeros(len(a))
-        self.sig: Array = np.zeros(len(a))
-
-    def predict(self, drive: ArrayLike) -> Array:
-        """Carry the prediction over one period in which `drive` (n,) was applied; returns the new prediction (n,)."""
-        self.xh = self.decay @ self.xh + self.gain @ (np.asarray(drive, dtype=float) + self.sig)
-        return self.xh
-
-    def adapt(self, measured: ArrayLike) -> Array:
-        """Choose sig (n,) so that over one period it takes away what is left of the prediction error; returns sig."""
-        self.sig = -self.back @ (self.xh - np.asarray(measured, dtype=float))
         return self.sig
 
 
@@ -228,17 +175,6 @@ def unfiltered(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
     n = len(a)
     whole = np.block([[a, -column], [np.zeros((1, n)), np.array([[-bandwidth]])]])
     return LinearSystem(whole, np.vstack([column, [[bandwidth]]]), np.eye(n, n + 1))
-
-
-def reference_system(am: ArrayLike, b: ArrayLike, theta: ArrayLike, bandwidth: float) -> LinearSystem:
-    """The loop with every unknown known: x' = Am x + b (u + theta'x), u = C(s)(r - theta'x), from r to (x, u).
-
-    Am (n, n) [1/s], b (n,), theta (n,), bandwidth [rad/s]: what the adaptive loop tends to as its gain grows.
-    """
-    a, column = np.asarray(am, dtype=float), np.asarray(b, dtype=float).reshape(-1, 1)
-    row, n = np.asarray(theta, dtype=float).reshape(1, -1), len(a)
-    whole = np.block([[a + column @ row, column], [-bandwidth * row, np.array([[-bandwidth]])]])
-    return LinearSystem(whole, np.vstack([np.zeros((n, 1)), [[bandwidth]]]), np.eye(n + 1))
 
 
 def step_response(system: LinearSystem, dt: float, steps: int) -> Array:

@@ -15,7 +15,7 @@ from boatsim.diagnose.locate import hull_forces
 from boatsim.diagnose.log.position_frame import in_one_frame
 from boatsim.diagnose.log.steering_sense import steered
 from boatsim.diagnose.next import experiment
-from boatsim.diagnose.problem import Problem
+from boatsim.diagnose.problem import Problem, check_taken_up
 from boatsim.diagnose.report import show
 from boatsim.diagnose.report.answer import compose, meanings
 from boatsim.diagnose.report.findings import Findings, Missing
@@ -162,6 +162,9 @@ def diagnose_recordings(
     stated = stated_noise(boat, fitted[0])
     laid = [track(r, programs[r.path], stated) for r in (*fitted, *unseen)]
     uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}
+    check_taken_up(boat, uncertainty, f"{boat.file.parent.name}/{boat.file.name}: diagnosis")
+    for r in (*fitted, *unseen):
+        check_taken_up(boats[r.path], r.notes.coefficient_uncertainty, f"{r.path or r.name} by its recording.toml")
     uncertainty |= fitted[0].notes.coefficient_uncertainty
     problem = Problem(laid[: len(fitted)], nominal_levels(boat, fitted[0]), uncertainty)
     candidates = tried(problem.program.suspects, without)

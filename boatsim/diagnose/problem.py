@@ -1,13 +1,15 @@
 """What is to be fitted: recordings on one program, the coefficients and suspects that are free, and a fit of them."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import NamedTuple
 
 import numpy as np
 
 from boatsim.diagnose.filter import BODY, Levels, Track
+from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Effect, Release, Unsteady
 from boatsim.physics.vessel import Vessel
 
@@ -78,6 +80,19 @@ def scale_of(unit: str, vessel: Vessel) -> float:
             powers += sign * int(power or 1) * np.array(SYMBOLS[symbol])
     length = vessel.length / LENGTH
     return float((vessel.body.mass / MASS) ** powers[0] * length ** (powers[1] + 0.5 * powers[2]))
+
+
+def check_taken_up(vessel: Vessel, stated: Mapping[str, float], where: str) -> None:
+    """Every stated uncertainty is one of coefficients that the vessel has. Raises BadInput."""
+    params = [p for e in vessel.effects for p in type(e).params().values() if p.axis in ("", *vessel.freedoms)]
+    kinds = sorted({p.calibrates for p in params} - {""})
+    for kind, sd in stated.items():
+        if kind not in kinds:
+            near = get_close_matches(kind, kinds, n=1, cutoff=0.5)
+            raise BadInput(
+                f"{where}: coefficient_uncertainty.{kind} = {sd:g}, but {vessel.name} has no coefficient of {kind}"
+                f"{f'; did you mean {near[0]!r}' if near else ''}; allowed are {', '.join(kinds) or 'none'}"
+            )
 
 
 class _Acts(NamedTuple):

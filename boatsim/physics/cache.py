@@ -25,9 +25,15 @@ import numba
 from boatsim.errors import BadInput
 from boatsim.physics.kinds.effect import Effect
 
-KERNEL = Path(__file__).parent / "kernel"
+PACKAGE = Path(__file__).parents[1]
+KERNEL = PACKAGE / "physics" / "kernel"
 WRITTEN = ("laws.py", "motion.py")  # generated in place of the kernel's files of these names
-LEFT_OUT = ("algebra.py", "compiling.py", "equations.py")  # write or compile programs, and are no part of one
+LEFT_OUT = (
+    "algebra.py",
+    "compiling.py",
+    "equations.py",
+    "source.py",
+)  # write or compile programs, and are no part of one
 EXPORTS = '''"""A vessel's program, composed by boatsim; not meant to be edited."""
 
 from .callback import *
@@ -58,10 +64,12 @@ def module(written: dict[str, str], classes: Iterable[type[Effect]]) -> ModuleTy
 
 def stamp_of(files: dict[str, str], classes: Iterable[type[Effect]]) -> str:
     """Name of a composition: its text, all that its laws can reach, and what compiles it."""
-    digest = hashlib.sha256()
+    kinds, digest = sorted(classes, key=lambda kind: (kind.__module__, kind.__qualname__)), hashlib.sha256()
     for name, text in sorted(files.items()):
         digest.update(f"{name}\n{text}".encode())
-    sources = {getsourcefile(kind) for kind in classes} | {str(KERNEL / "compiling.py")}
+    for kind in kinds:
+        digest.update(f"{kind.__module__}\n".encode())  # tells a user's own file from what it was before an edit
+    sources = {getsourcefile(kind) for kind in kinds} | {str(KERNEL / "compiling.py")}
     for path in sorted({file for source in sources if source for file in reach(Path(source))}):
         digest.update(content(path))
     digest.update(f"{numba.__version__} {sys.version}".encode())
@@ -91,17 +99,25 @@ def _imports(path: Path) -> frozenset[Path]:
     found = set()
     for node in ast.walk(ast.parse(content(path))):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        if isinstance(node, ast.ImportFrom) and node.module:
-            names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        if isinstance(node, ast.ImportFrom):
+            module = ".".join([*_above(path, node.level), *([node.module] if node.module else [])])
+            names = [module, *(f"{module}.{alias.name}" for alias in node.names)]
         for name in names:
             if name.partition(".")[0] == "boatsim" and (file := _file_of(name)) is not None:
                 found.add(file)
     return frozenset(found)
 
 
+def _above(path: Path, level: int) -> tuple[str, ...]:
+    """The package that a relative import of so many dots starts from; nothing for an absolute one, or a user's file."""
+    if not level or not path.is_relative_to(PACKAGE):
+        return ()
+    return path.parents[level - 1].relative_to(PACKAGE.parent).parts
+
+
 def _file_of(name: str) -> Path | None:
     """File of one of our modules; None for what is a name inside one."""
-    below = Path(__file__).parents[1].joinpath(*name.split(".")[1:])
+    below = PACKAGE.joinpath(*name.split(".")[1:])
     return next((p for p in (below.with_suffix(".py"), below / "__init__.py") if p.is_file()), None)
 
 

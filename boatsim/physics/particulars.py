@@ -10,8 +10,6 @@ from boatsim.errors import BadInput
 
 GRAVITY = 9.81  # [m/s^2] of all formulas here, as in Martin 1993
 SEA_WATER = 1025.0  # [kg/m^3]
-FOOT = 0.3048  # [m] exactly, by definition
-LONG_TON = 1016.047  # [kg] 2240 lb
 
 
 class Spheroid(NamedTuple):
@@ -75,20 +73,6 @@ def rudder_slope(area: float, aspect: float, inflow: float, density: float = SEA
 def hull_share(block: float) -> float:
     """a_H: force that a deflected rudder raises on the hull before it, per force on the blade (Inoue et al. 1981)."""
     return 0.627 * block - 0.153
-
-
-def roll_ratio_at_rest(
-    length: float, beam: float, mass: float, bilge: float, amplitude: float, keels: float = 0.0, shape: float = 1.0
-) -> float:
-    """Roll damping per critical without headway, of a round bilge.
-
-    The formula, as C. R. Martin, UBC 1993, Appendix IV quotes it, is in feet and long tons; arguments are SI. `bilge`
-    is the distance from waterline at the centre to the turn of the bilge, `amplitude` that of the roll, `keels` the
-    area of both bilge keels, `shape` = sqrt(their length / bilge).
-    """
-    L, B, d, tons = length / FOOT, beam / FOOT, bilge / FOOT, mass / LONG_TON
-    area = 0.0024 * L * B * sqrt(d) + keels / FOOT**2 * shape
-    return 0.55 * area * d * d * sqrt(d) * sqrt(amplitude) / (tons * B * B)
 
 
 def roll_ratio_by_speed(length: float, beam: float, block: float, metacentric_height: float, speed: float) -> float:

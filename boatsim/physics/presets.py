@@ -1,5 +1,6 @@
 """Presets: several entries of the library over one law."""
 
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from types import new_class
@@ -25,7 +26,8 @@ def preset(
     those that make the entry what it is. The rest stays open to a file, with `otherwise` as its other nominal values.
     """
     types: dict[str, type] = {}
-    namespace: dict[str, Any] = {**about, "__doc__": about["words"], "__module__": law.__module__}
+    module = sys._getframe(1).f_globals["__name__"]  # the file that a program is composed from, maybe a user's own
+    namespace: dict[str, Any] = {**about, "__doc__": about["words"], "__module__": module}
     namespace["__annotations__"] = types
     for key, known in law.params().items():
         nominal = next(f.default for f in fields(law) if f.name == key)

@@ -12,7 +12,7 @@ from boatsim.physics import cache
 from boatsim.physics import vessel as vessels
 from boatsim.physics.commands import taken_row
 from boatsim.physics.compose import Composition
-from boatsim.physics.kernel.equations import written
+from boatsim.physics.kernel.source import written
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import Release
 from boatsim.physics.signals import AXES, Array

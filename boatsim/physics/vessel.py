@@ -161,11 +161,15 @@ class Vessel:
         return effect.on if isinstance(effect.on, Mapping) else {}
 
     def bound(self, effect: Effect) -> dict[str, str | float]:
-        """What each role of an effect is bound to: as stated, else the vessel's only channel in that role."""
+        """What each role of an effect is bound to: as stated; if nothing is, the vessel's only channel in the role.
+
+        A role that may be left out stays unbound: a fixed thruster does not turn with the only rudder.
+        """
         found = dict(self.stated(effect))
-        for role in type(effect).roles:
+        needed = [role for role, about in type(effect).roles.items() if about.fixed is None and not self.stated(effect)]
+        for role in needed:
             there = [n for n in self.actuators if self.roles[n] == role]
-            if role not in found and len(there) == 1:
+            if len(there) == 1:
                 found[role] = there[0]
         return found
 

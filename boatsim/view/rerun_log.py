@@ -18,7 +18,7 @@ from typing import Any, Self
 import numpy as np
 import rerun as rr
 
-from boatsim.physics.base import Array
+from boatsim.physics.signals import POSE, Array
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
 from boatsim.view import blueprint
@@ -324,8 +324,10 @@ def _mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
 def _move(stream: rr.RecordingStream, rows: Recording, scene: Scene, boat: str) -> None:
     """Pose of the hull and angles of the outboards; a boat that only rolls stays at the origin."""
     zero = np.zeros(len(rows))
-    x, y, psi, phi = (rows.signals.get(name, zero) for name in ("x_m", "y_m", "psi_rad", "phi_rad"))
-    place = rr.Transform3D.columns(translation=_flat(x, y), quaternion=_attitude(psi, phi))
+    x, y, z, phi, theta, psi = (rows.signals.get(name, zero) for name in POSE)
+    points = _flat(x, y)
+    points[:, 2] -= z  # z is down
+    place = rr.Transform3D.columns(translation=points, quaternion=_attitude(psi, phi, theta))
     stream.send_columns(f"{WORLD}/{boat}", _when(rows.t), place)
     for thruster in scene.thrusters:
         if (steer := rows.signals.get(thruster.steer)) is not None:
@@ -334,10 +336,18 @@ def _move(stream: rr.RecordingStream, rows: Recording, scene: Scene, boat: str) 
             stream.send_columns(f"{WORLD}/{boat}/{OUTBOARD}{thruster.name}", _when(rows.t), turned)
 
 
-def _attitude(psi: Array, phi: Array) -> Array:
-    """(N, 4) quaternions x, y, z, w of heading (clockwise) after roll (starboard down) for the picture's axes."""
-    c, s, cr, sr = np.cos(psi / 2), -np.sin(psi / 2), np.cos(phi / 2), np.sin(phi / 2)
-    return np.column_stack([c * sr, s * sr, s * cr, c * cr])
+def _attitude(psi: Array, phi: Array, theta: Array | float = 0.0) -> Array:
+    """(N, 4) quaternions x, y, z, w of heading (clockwise), pitch (bow up) and roll, for the picture's z-up axes."""
+    cz, sz, cx, sx = np.cos(psi / 2), -np.sin(psi / 2), np.cos(phi / 2), np.sin(phi / 2)
+    cy, sy = np.cos(theta / 2), -np.sin(theta / 2)
+    return np.column_stack(
+        [
+            cz * cy * sx - sz * sy * cx,
+            cz * sy * cx + sz * cy * sx,
+            sz * cy * cx - cz * sy * sx,
+            cz * cy * cx + sz * sy * sx,
+        ]
+    )
 
 
 def _log_arrows(stream: rr.RecordingStream, rows: Recording, scene: Scene) -> None:

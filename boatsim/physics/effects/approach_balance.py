@@ -10,8 +10,8 @@ from boatsim.physics.base import Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """X = -damping (u - speed n / shaft_rate): at a shaft rate n the hull settles at the speed in proportion to it."""
-    return wrench(X=-q.damping * (m.ur - q.speed * s.shaft / q.shaft_rate))
+    """X = -damping (u - gain speed n / shaft_rate): at a shaft rate n the hull settles at a speed in proportion."""
+    return wrench(X=-q.damping * (m.ur - q.gain * q.speed * s.shaft / q.shaft_rate))
 
 
 @dataclass(frozen=True)
@@ -29,3 +29,4 @@ class ApproachBalance(Force):
     )
     speed: float = param(1.0, low=0.01, high=50.0, unit="m/s", words="approach speed, U0")
     shaft_rate: float = param(1.0, low=0.01, high=1e3, unit="1/s", words="propeller's rate at that speed, n0")
+    gain: float = param(1.0, low=0.1, high=5.0, unit="", words="speed held per stated one", calibrates="thrust")

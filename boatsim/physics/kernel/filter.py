@@ -239,6 +239,49 @@ def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int) ->
     return float(1.0 / sqrt(variance))
 
 
+@lean
+def begin(z0: Array, P0: Array, n: int, s: Swell, z: Array, P: Array) -> None:
+    """State and covariance of the first row, the swell anywhere in its cycle."""
+    for a in range(CALM):
+        z[a] = z0[a]
+    copy_square(P0, P, CALM)
+    if n > CALM:
+        for j in range(NQ):
+            P[CALM + 2 * j, CALM + 2 * j] = s[FREE[j]] ** 2
+            P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[FREE[j]]) ** 2
+
+
+@lean
+def take(
+    error: float, row: Array, noise: float, full: bool, outliers: Array, z: Array, P: Array, Ph: Array, n: int,
+    gain: Array, scale: Array, white: Array,
+) -> float:  # fmt: skip
+    """Correct z by one measurement, and P if `full`; returns what it adds to the log likelihood.
+
+    Of `outliers`, `scale` and `white` the first entry belongs to the measurement's channel.
+    """
+    likelihood = 0.0
+    if full:
+        scale[0] = weigh(P, row, noise, gain, Ph, n)
+        likelihood += log(scale[0])
+        far = abs(error) * scale[0] > GATE and outliers[0] < IN_A_ROW
+        outliers[0] = outliers[0] + 1.0 if far else 0.0
+        if far:
+            share = GATE / (abs(error) * scale[0])
+            likelihood += GATE * GATE * log(share)
+            scale[0] *= share
+            for a in range(n):
+                gain[a] *= share * share
+    white[0] = error * scale[0]
+    for a in range(n):
+        z[a] += gain[a] * error
+    if full:
+        for a in range(n):
+            for b in range(n):
+                P[a, b] -= gain[a] * Ph[b]
+    return float(likelihood - 0.5 * white[0] ** 2)
+
+
 @compiled
 def kalman(
     times: Array, measured: Array, codes: Any, commands: Array, max_step: float, body: Array, p: Array, on: Any,
@@ -257,14 +300,8 @@ def kalman(
     s, lateness = swell(p, on), late(p, on)
     n = NZ if s.frequency > 0.0 else CALM
     z, P = np.zeros(NZ), np.zeros((NZ, NZ))
-    for a in range(CALM):
-        z[a] = z0[a]
-    copy_square(P0, P, CALM)
+    begin(z0, P0, n, s, z, P)
     undistorted(z, p, on)
-    if n > CALM:
-        for j in range(NQ):
-            P[CALM + 2 * j, CALM + 2 * j] = s[FREE[j]] ** 2
-            P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[FREE[j]]) ** 2
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
     y, force, Ph = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
     f11, f12, f21, f22, mean1, mean2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -312,25 +349,9 @@ def kalman(
                 scale[i, c] = white[i, c] = 0.0
                 continue
             error = measured[i, c] - observe(z, codes[c], row, p, on)
-            if full:
-                scale[i, c] = weigh(P, row, noise[c], gains[i, c], Ph, n)
-                likelihood += log(scale[i, c])
-                far = abs(error) * scale[i, c] > GATE and outliers[c] < IN_A_ROW
-                outliers[c] = outliers[c] + 1.0 if far else 0.0
-                if far:
-                    share = GATE / (abs(error) * scale[i, c])
-                    likelihood += GATE * GATE * log(share)
-                    scale[i, c] *= share
-                    for a in range(n):
-                        gains[i, c, a] *= share * share
-            white[i, c] = error * scale[i, c]
-            likelihood -= 0.5 * white[i, c] ** 2
-            for a in range(n):
-                z[a] += gains[i, c, a] * error
-            if full:
-                for a in range(n):
-                    for b in range(n):
-                        P[a, b] -= gains[i, c, a] * Ph[b]
+            likelihood += take(
+                error, row, noise[c], full, outliers[c:], z, P, Ph, n, gains[i, c], scale[i, c:], white[i, c:]
+            )
         if keep:
             copy(z, means[i])
             copy_square(P, covariances[i], NZ)

@@ -4,7 +4,7 @@ from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from math import cos, sin
+from math import cos, isfinite, sin
 from operator import attrgetter
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
@@ -54,7 +54,8 @@ class Effect(Checked):
         if isinstance(on, str):
             on = (on,)
         if isinstance(on, Mapping):
-            good = wants_table and all(isinstance(c, str | float | int) for c in on.values())
+            numbers = [c for c in on.values() if not isinstance(c, str)]
+            good = wants_table and all(type(c) in (int, float) and isfinite(c) for c in numbers)
         else:
             good = isinstance(on, list | tuple) and all(isinstance(c, str) for c in on) and not (wants_table and on)
         if not good:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from boatsim.physics.kinds.effect import Composed, Effect, Kind, Part, Station
+from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 from boatsim.physics.signals import Wrench
 
 COMPONENTS = Wrench._fields
@@ -44,8 +44,3 @@ class Force(Kind):
         """The force at one motion, its roles at these signals; what it rides on gives it signals and values instead."""
         own = (type(self).signals(**signals),) if type(self).roles and not given else ()
         return Wrench(*type(self).law(m, self.values(), *given, *own))
-
-
-def is_force(effect: Effect) -> bool:
-    """Whether an effect pushes the hull."""
-    return isinstance(effect, Force)

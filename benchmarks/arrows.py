@@ -1,0 +1,200 @@
+"""Which of our modules imports which, read from their text; docs/arrows.svg is the picture of it.
+
+python -m benchmarks.arrows           draw docs/arrows.svg
+python -m benchmarks.arrows --check   whether it is up to date; exit 1 if it is not
+
+A shelf (effects, kinds, measures, readers: one idea a file, found by name) counts as one module, so that a further file
+on it, which imports what its neighbours do, leaves the picture as it is.
+"""
+
+import argparse
+import ast
+import sys
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+from boatsim.physics.cache import KERNEL, WRITTEN
+from boatsim.physics.content import PACKAGES
+
+HOME = Path(__file__).parents[1]
+OUT = HOME / "docs" / "arrows.svg"
+LAYERS = (  # a module may import from its own folder and from those in the lines above it
+    "__init__ errors files",
+    "physics",
+    "recordings control",
+    "simulate",
+    "measures",
+    "view",
+    "diagnose",
+    "cli __main__",
+)
+ABOUT = {  # what the picture says of each folder
+    "physics": "what a boat is",
+    "recordings": "what was logged",
+    "control": "blocks of controllers",
+    "simulate": "what a run is",
+    "measures": "norms of a run",
+    "view": "runs in rerun",
+    "diagnose": "what was left out",
+    "cli": "commands",
+}
+DYNAMIC = ("import_module", "__import__", "spec_from_file_location", "exec_module", "run_path", "run_module")
+OURS = {  # "physics.effects.fan_wind" -> its file; "physics.effects" is the package itself
+    ".".join(path.relative_to(HOME / "boatsim").with_suffix("").parts).removesuffix(".__init__"): path
+    for path in sorted((HOME / "boatsim").rglob("*.py"))
+}
+
+# What modules import ------------------------------------------------------------------------------------------------
+
+
+@cache
+def imported(path: Path) -> frozenset[str]:
+    """Full names of all a file imports, inside functions and by `import_module("name")` too. Raises ValueError."""
+    names = set[str]()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level:
+            if path.parent != KERNEL:
+                raise ValueError(f"{path}:{node.lineno}: write the full name, so that it can be seen where it points")
+            names.add("boatsim.physics.kernel" + ("" if f"{node.module}.py" in WRITTEN else f".{node.module}"))
+        elif isinstance(node, ast.ImportFrom):
+            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+        elif (name := _by_name(node)) is not None:
+            names.add(name)
+    return frozenset(names)
+
+
+def _by_name(node: ast.AST) -> str | None:
+    """What a call imports by its name, "" where only a run would tell; None if it imports nothing so."""
+    if not isinstance(node, ast.Call) or ast.unparse(node.func).split(".")[-1] not in DYNAMIC:
+        return None
+    first = node.args[0] if node.args else None
+    return first.value if isinstance(first, ast.Constant) and isinstance(first.value, str) else ""
+
+
+def own(path: Path) -> set[str]:
+    """Our modules among them: boatsim.physics.effects.fan_wind.law is `physics.effects.fan_wind`."""
+    names = [name.split(".")[1:] for name in imported(path) if name.split(".")[0] == "boatsim"]
+    parts = [[".".join(name[:n]) for n in range(len(name), 0, -1)] for name in names]
+    return {next((part for part in longest_first if part in OURS), "__init__") for longest_first in parts}
+
+
+def level(name: str) -> int:
+    """Layer of a module, from the left. Raises ValueError."""
+    first = name.split(".")[0]
+    found = next((i for i, names in enumerate(LAYERS) if first in names.split()), None)
+    if found is None:
+        raise ValueError(f"boatsim/{first} stands in no layer: add it to LAYERS in benchmarks/arrows.py")
+    return found
+
+
+def on_shelf(name: str) -> str:
+    """A module's name, that of its shelf for one that stands on one."""
+    return next((shelf for shelf in PACKAGES.values() if name.startswith(f"{shelf}.")), name)
+
+
+def counts() -> Counter[tuple[str, str]]:
+    """Imports from folder to folder (importer, imported)."""
+    modules = {(on_shelf(name), on_shelf(other)) for name, path in OURS.items() for other in own(path)}
+    pairs = ((a.partition(".")[0], b.partition(".")[0]) for a, b in modules)
+    return Counter((a, b) for a, b in pairs if a != b)
+
+
+# The picture --------------------------------------------------------------------------------------------------------
+
+WIDE, HIGH, GAP, EDGE = 132, 46, 14, 12  # [px] a box, between two, around all
+LANE, FIRST = 27, 40  # [px] from lane to lane, from the boxes to the first
+TAP, TAPS = 15, 44  # [px] between the lines that leave a box, and where in it they begin
+COLOURS = ("#3b7dc4", "#a06c14", "#9659bd", "#1c8a7a", "#c04d4d", "#648729", "#7074dc", "#768290")  # of a folder
+STYLE = (
+    "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"
+    ".name{font-size:17px;font-weight:600}.about{font-size:11.5px}.count{font-size:12px;font-weight:600}"
+    ".note{font-size:13px;text-anchor:start;fill:#59636e}path{fill:none;stroke-width:2}"
+    "@media(prefers-color-scheme:dark){.note{fill:#a8b1bb}}"
+)
+
+
+def picture(found: Mapping[tuple[str, str], int]) -> str:
+    """The folders from left to right, a lane below for each that is imported, a line down to it from each importer."""
+    folders = [name for names in LAYERS[1:] for name in names.split() if name in ABOUT]
+    lanes = [b for b in reversed(folders) if any((a, b) in found for a in folders)]
+    width = 2 * EDGE + len(folders) * (WIDE + GAP) - GAP
+    height = EDGE + HIGH + FIRST + LANE * len(lanes) + 34
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">',
+            "<title>Imports between the folders of boatsim</title>",
+            f"<style>{STYLE}</style>",
+            *(line for depth, lane in enumerate(lanes) for line in _lane(lane, depth, lanes, folders, found)),
+            *(line for i, name in enumerate(folders) for line in _box(name, i)),
+            *_notes(found, height),
+            "</svg>",
+            "",
+        ]
+    )
+
+
+def _left(i: int) -> int:
+    """Left edge of a box."""
+    return EDGE + i * (WIDE + GAP)
+
+
+def _box(name: str, i: int) -> Iterator[str]:
+    """A folder, and what it is."""
+    middle = _left(i) + WIDE // 2
+    yield f'<rect x="{_left(i)}" y="{EDGE}" width="{WIDE}" height="{HIGH}" rx="7" fill="{COLOURS[i]}"/>'
+    yield f'<text class="name" x="{middle}" y="{EDGE + 20}">{name}</text>'
+    yield f'<text class="about" x="{middle}" y="{EDGE + 37}">{escape(ABOUT[name])}</text>'
+
+
+def _lane(
+    lane: str, depth: int, lanes: list[str], folders: list[str], found: Mapping[tuple[str, str], int]
+) -> Iterator[str]:
+    """The way of all imports of one folder: from each importer down, left, and up to it."""
+    place, bottom = folders.index(lane), EDGE + HIGH
+    y, x, colour = bottom + FIRST + depth * LANE, _left(place) + 20, COLOURS[place]
+    taps = [
+        (_left(i) + _tap(a, depth, lanes, found), found[a, lane]) for i, a in enumerate(folders) if (a, lane) in found
+    ]
+    far = max(at for at, _ in taps)
+    yield f'<path stroke="{colour}" d="M{far} {y}H{x}V{bottom + 7}"/>'
+    yield f'<path style="fill:{colour}" d="M{x - 6} {bottom + 11}L{x} {bottom}L{x + 6} {bottom + 11}z"/>'
+    for at, number in taps:
+        yield f'<path stroke="{colour}" d="M{at} {bottom}V{y}"/>'
+        yield f'<rect x="{at - 11}" y="{y - 8}" width="22" height="16" rx="8" fill="{colour}"/>'
+        yield f'<text class="count" x="{at}" y="{y + 4}">{number}</text>'
+
+
+def _tap(importer: str, depth: int, lanes: list[str], found: Mapping[tuple[str, str], int]) -> int:
+    """Where in a box its line to a lane begins: the deeper the lane, the further right, so that they do not cross."""
+    return TAPS + TAP * sum((importer, lane) in found for lane in lanes[:depth])
+
+
+def _notes(found: Mapping[tuple[str, str], int], height: int) -> Iterator[str]:
+    """What the arrows mean, and those that are not drawn."""
+    ground = sum(n for (a, b), n in found.items() if b in LAYERS[0].split() and a in ABOUT)
+    text = (
+        "Data go from left to right. An arrow goes from the folder that imports to the one imported, with the number "
+        f"of imports. Not drawn: {ground} of errors.py and files.py."
+    )
+    yield f'<text class="note" x="{EDGE}" y="{height - 12}">{escape(text)}</text>'
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """0 drawn or up to date, 1 out of date."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.arrows", description="A picture of our imports.")
+    parser.add_argument("--check", action="store_true", help="only say whether docs/arrows.svg is up to date")
+    text = picture(counts())
+    if not parser.parse_args(arguments).check:
+        OUT.write_text(text, encoding="utf-8")
+    same = OUT.is_file() and OUT.read_text(encoding="utf-8") == text
+    print("docs/arrows.svg is up to date" if same else "docs/arrows.svg is out of date: python -m benchmarks.arrows")
+    return int(not same)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,214 @@
+"""The README's figures are those that its commands print today, figure by figure.
+
+Commands with an output below them run as they are printed. Tables of benchmarks are compared with what the benchmark
+prints; those that need recordings beside the repository are skipped without them, those of many minutes run only with
+BOATSIM_README_LONG=1 in the environment.
+"""
+
+import contextlib
+import importlib
+import io
+import os
+import re
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from benchmarks import trials
+from benchmarks.real import common
+from boatsim.cli import app
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?")
+BLOCK = re.compile(r"```sh\n((?:(?!```).)*)\n```\n\n```\n((?:(?!```).)*)\n```", re.DOTALL)  # commands and their output
+LONG = os.environ.get("BOATSIM_README_LONG") == "1"
+
+
+def numbers(text: str) -> list[str]:
+    """Figures of a text as they are printed."""
+    return NUMBER.findall(text)
+
+
+def same(shown: str, printed: str) -> bool:
+    """Whether two figures agree to one unit of the last digit shown, and half of one of the other's."""
+    units = [10.0 ** -len(text.partition(".")[2]) for text in (shown, printed)]
+    return abs(float(shown) - float(printed)) <= 1.01 * units[0] + (0.5 * units[1] if units[1] > units[0] else 0.0)
+
+
+def compare(row: str, shown: Sequence[str], printed: Sequence[str]) -> None:
+    """Fails with the row and the figures in it that differ."""
+    assert len(shown) == len(printed), f"{row}: the README has {shown}, printed is {printed}"
+    wrong = [f"{a} is {b}" for a, b in zip(shown, printed, strict=True) if not same(a, b)]
+    assert not wrong, f"{row}: {'; '.join(wrong)}"
+
+
+# ---- commands with their output below them
+
+
+def sessions() -> list[tuple[list[list[str]], list[str]]]:
+    """Commands of the tool in a block, and the lines that the README shows below it."""
+    found = []
+    for block, shown in BLOCK.findall(README):
+        commands = [c.split("boatsim ", 1)[1] for c in block.split("&&") if "boatsim " in c]
+        found.append(([[w for x in shlex.split(c) for w in braces(x)] for c in commands], shown.splitlines()))
+    return found
+
+
+def braces(word: str) -> list[str]:
+    """A word as the shell expands its first braces."""
+    inner = re.search(r"\{(.*?)\}", word)
+    return [word.replace(inner[0], part) for part in inner[1].split(",")] if inner else [word]
+
+
+def pattern(line: str) -> str:
+    """A line without its figures and without the white space between its words."""
+    return " ".join(NUMBER.sub("#", line).split())
+
+
+@pytest.mark.parametrize("number", range(len(sessions())))
+def test_a_command_prints_what_is_shown_below_it(number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    commands, shown = sessions()[number]
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "tests").symlink_to(ROOT / "tests")
+    printed: list[str] = []
+    for words in commands:
+        done = CliRunner().invoke(app, words)
+        assert done.exit_code in (0, 1), done.output  # 1: a bar is missed
+        printed += done.output.splitlines()
+    at = 0
+    for line in (line for line in shown if re.search(r"\w", line)):
+        rest = [i for i in range(at, len(printed)) if pattern(printed[i]) == pattern(line)]
+        assert rest, f"not printed: {line}\nprinted:\n" + "\n".join(printed[at:])
+        compare(line, numbers(line), numbers(printed[rest[0]]))
+        at = rest[0] + 1
+
+
+def test_both_commands_of_the_front_page_are_looked_at() -> None:
+    assert [[words[0] for words in commands] for commands, _ in sessions()] == [["run", "diagnose"], ["diagnose"]]
+
+
+# ---- tables of benchmarks
+
+
+@dataclass(frozen=True)
+class Row:
+    """Where a benchmark prints a row of the README: the table's title, its row, and the columns of the figures."""
+
+    benchmark: str
+    judged_on: str  # as the README's second column begins
+    title: str
+    label: str
+    columns: tuple[int, ...]  # among the row's figures: recalibrated, patched, ratio
+    long: bool = False
+
+
+ROLL, HSVA, MARIN, LAKE, THESIS = (
+    "kvlcc2_roll_decay", "kvlcc2_hsva_zigzag", "kvlcc2_marin_free", "blueboat_lake", "thesis_tables",
+)  # fmt: skip
+REAL = (
+    Row(ROLL, "every second 20 s window", "split", "windows", (1, 2, 3)),
+    Row(ROLL, "middle third", "split", "middle third", (1, 2, 3)),
+    Row(HSVA, "unseen 15/5 and 20/5", "fitted on eight runs", "heading [deg]", (1, 2, 3)),
+    Row(HSVA, "position", "fitted on eight runs", "position [m]", (1, 2, 3)),
+    Row(MARIN, "35 deg turning circle", "fitted on", "yaw rate [deg/s]", (1, 2, 3)),
+    Row(MARIN, "speed", "fitted on", "speed [m/s]", (1, 2, 3)),
+    Row(LAKE, "each of 12 runs", "each run left out", "all", (0, 1, 2), long=True),
+    Row(LAKE, "dead reckoning", "each run left out", "all", (3, 4, 5), long=True),
+    Row(THESIS, "published norms", "J, the rms", "all", (2, 3, 4), long=True),
+)
+
+
+def table_below(heading: str) -> Iterator[list[str]]:
+    """Cells of the rows of the first table below a heading of the README."""
+    lines = README.split(heading, 1)[1].splitlines()
+    begin = next(i for i, line in enumerate(lines) if line.startswith("| --- |"))
+    for line in lines[begin + 1 :]:
+        if not line.startswith("|"):
+            return
+        yield [cell.strip() for cell in line.strip("|").split(" | ")]
+
+
+@cache
+def printed_by(benchmark: str) -> list[str]:
+    """Lines that a benchmark's command prints."""
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        importlib.import_module(f"benchmarks.real.{benchmark}").main()
+    return said.getvalue().splitlines()
+
+
+def in_table(lines: Sequence[str], title: str, label: str) -> list[str]:
+    """Figures of a printed table's row."""
+    begin = next(i for i, line in enumerate(lines) if line.startswith(title))
+    row = next(line for line in lines[begin:] if line.strip().startswith(label + "  "))
+    return numbers(row.replace(label, "", 1))
+
+
+@pytest.mark.parametrize("row", REAL, ids=lambda row: f"{row.benchmark}-{row.judged_on}")
+def test_a_row_about_real_recordings_is_what_its_benchmark_prints(
+    row: Row, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if row.long and not LONG:
+        pytest.skip("takes many minutes; BOATSIM_README_LONG=1 asks for it")
+    if row.benchmark not in (ROLL, THESIS) and not (common.RECORDINGS / row.benchmark).is_dir():
+        pytest.skip("needs recordings beside the repository")
+    (cells,) = (c for c in with_names("**On real recordings**") if c[0] == row.benchmark and row.judged_on in c[1])
+    monkeypatch.chdir(tmp_path)
+    found = in_table(printed_by(row.benchmark), row.title, row.label)
+    shown = [numbers(cell)[0] for cell in cells[2:5]]
+    compare(f"{row.benchmark}, {cells[1]}", shown, [found[i] for i in row.columns])
+
+
+def with_names(heading: str) -> Iterator[list[str]]:
+    """Rows of a table in which an empty first cell means the one above."""
+    name = ""
+    for cells in table_below(heading):
+        if found := re.search(r"`(\w+)`", cells[0]):
+            name = found[1]
+        yield [name, *cells[1:]]
+
+
+def test_every_row_about_real_recordings_is_compared() -> None:
+    rows = list(with_names("**On real recordings**"))
+    assert len(rows) == len(REAL)
+    for cells in rows:
+        assert any(cells[0] == row.benchmark and cells[1].startswith(row.judged_on) for row in REAL), cells
+
+
+TRIALS = {  # as a row of the README begins -> rows of the benchmark that give its figures
+    "false alarms": ["false alarms"],
+    "visible single effects": ["visible single effects"],
+    "of these concealed": ["of these concealed"],
+    "visible pairs": ["visible pairs"],
+    "wrong names": ["wrong names"],
+    "visible unknown causes": ["visible unknown cause flagged, pilot"],
+    "known cause": ["known cause"],
+    "skill on unseen runs": ["held-out skill"],
+    "true parameters": ["true parameters", "median error"],
+    "unknowns made": ["flagged, pilot", "flagged, concealed"],
+}
+
+
+@pytest.mark.skipif(not LONG or not trials.SHARED.is_dir(), reason="many minutes; needs trials beside the repository")
+def test_the_table_of_the_trials_is_what_the_benchmark_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["trials", "--unknowns", "--jobs", "1", "--out", str(tmp_path)])
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        trials.main()
+    lines = [line.strip() for line in said.getvalue().splitlines()]
+    for cells in table_below("**On boats with concealed effects**"):
+        (labels,) = (found for begin, found in TRIALS.items() if cells[0].startswith(begin))
+        printed = []
+        for label in labels:
+            line = next(line for line in lines if line.startswith(label))
+            printed += numbers(re.sub(r"\(.*?\)| of \d+|2 sd|^.*?  +", "", line).replace("/", " "))
+        compare(cells[0], numbers(cells[1]), printed)
