@@ -41,8 +41,9 @@ class Channel(Kind):
 
     x is the signal so far over the step dt [s] that begins now; side -1 port, +1 starboard, 0 middle of what it
     drives; source the raw command of `fed_by` for it; memory[at:at + slots] this actuator's own memory.
-    `pause(x, memory, at, values)`, where there is one, says in how many s the signal will jump or bend while its
-    command x is held (a delayed command arrives, a ramp ends): no step reaches beyond.
+    `pause(x, memory, at, values)`, where there is one, says for how many s the three points of a `Course` tell the
+    signal while its command x is held: until it jumps or bends (a delayed command arrives, a ramp ends), or over one
+    lag (`followed`). No step reaches beyond.
     """
 
     parts: ClassVar = (ACTUATE, PAUSE)
