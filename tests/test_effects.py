@@ -24,7 +24,6 @@ from boatsim.physics.base import (
     Flow,
     Force,
     Inertia,
-    Measurement,
     Motion,
     Reaction,
     Release,
@@ -33,6 +32,7 @@ from boatsim.physics.base import (
     mean_of,
     motion,
 )
+from boatsim.physics.compose import kinds
 from boatsim.physics.effects.added_mass import AddedMass, ShallowWater
 from boatsim.physics.effects.cross_flow_drag import CrossFlowDrag
 from boatsim.physics.effects.current import Current
@@ -63,7 +63,7 @@ SUSPECTS = [n for n, e in SHELF.items() if any(p.fit for p in e.params().values(
 # sign: name it here when an effect brings a new one, with its effect where others mean something else by it. Pairs
 # named port and starboard change places.
 TO_STARBOARD = {
-    "thruster.y",
+    "thruster.y", "propeller.y",
     "toward", "east", "list", "side_force_per_thrust", "thrust_imbalance.fraction", "Y_0", "Y_0u", "Y_0uu", "N_0",
     "N_0u", "N_0uu", "steering_offset.middle", "steering_offset.gain", "steering_asymmetry.gain",
 }  # fmt: skip
@@ -299,7 +299,7 @@ def test_an_effect_says_what_it_is(name: str) -> None:
     assert kind.words and kind.shown_by and not kind.words.endswith(".")
     assert kind.kind in ("physics", "measurement")
     assert inspect.getdoc(sys.modules[kind.__module__]) and "__doc__" in vars(kind) and kind.__doc__
-    assert issubclass(kind, Force | Reaction | Inertia | Flow | Channel | Measurement | Release)
+    assert issubclass(kind, (*kinds(), Release))
 
 
 @pytest.mark.parametrize("name", SHELF)

@@ -10,12 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from boatsim.simulate.free_body import FreeBody, Solid, angles, rotation
-from boatsim.simulate.pontoon_boat import PontoonBoat, otter, strips
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from boatsim.errors import BadPhysics
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Force, Wrench, motion
 from boatsim.simulate import scenario
@@ -227,173 +224,43 @@ def test_mariner_sails_as_by_an_independent_integrator(rudder: float) -> None:
     assert found == pytest.approx(sailed(mariner, start, rudder, 300.0), rel=1e-6)
 
 
+def overshoots(helm: float) -> list[float]:
+    """Three of a zig-zag at one angle [deg], its rudder of 5 deg/s reversed at the very instant of the heading."""
+    angle, rate, found = radians(helm), radians(5.0), []
+    s = np.array([0.0, 0.0, 0.0, MARINER_U0, 0.0, 0.0, 0.0])  # with the rudder as its last
+
+    def sail(turning: float, until: float, **events: Any) -> Any:
+        def slopes(t: float, y: Array) -> Array:
+            return np.append(mariner(y[:6], y[6]), turning)
+
+        return solve_ivp(slopes, (0.0, until), s, "DOP853", rtol=1e-10, atol=1e-10, **events)
+
+    def turned(t: float, y: Array) -> float:
+        return float(y[5])
+
+    s = sail(0.0, 10.0).y[:, -1]
+    for side in (1.0, -1.0, 1.0, -1.0):
+
+        def reached(t: float, y: Array, side: float = side) -> float:
+            return side * y[2] - angle
+
+        reached.terminal = True  # type: ignore[attr-defined]
+        s = sail(side * rate, (angle - side * s[6]) / rate).y[:, -1]
+        leg = sail(0.0, 400.0, events=(turned, reached))
+        found += [degrees(-side * peak[2] - angle) for peak in leg.y_events[0][:1]]  # none on the first leg
+        s = leg.y[:, -1]
+    return found
+
+
+@pytest.mark.parametrize("helm", [10, 20])
+def test_mariner_swings_in_a_zigzag_as_by_an_independent_integrator(helm: int) -> None:
+    found = norms(run(scenario.load(f"mariner/zigzag_{helm}")))
+    ours = [found[f"{which}_overshoot"].value for which in ("first", "second", "third")]
+    assert ours == pytest.approx(overshoots(helm), abs=1e-3)
+
+
 @pytest.mark.parametrize("name", ["turning_circle_35", "zigzag_10", "zigzag_20", "pull_out_20"])
 def test_mariner_does_as_the_toolbox(name: str) -> None:
     found = norms(run(scenario.load(f"mariner/{name}")))
     assert sum(norm.ok is True for norm in found.values()) >= 4
     assert all(norm.ok is not False for norm in found.values()), found
-
-
-# Otter in six freedoms (Fossen's toolbox)
-
-# order u v w p q r, about the origin midships [kg, kg m, kg m^2]
-OTTER_MASS = np.diag([60.28152101, 137.5, 110.0, 14.517184, 29.15, 39.325])
-for (i, j), value in {(0, 4): -11.0, (1, 3): 11.0, (1, 5): 11.0, (2, 4): -11.0, (3, 5): 2.2}.items():
-    OTTER_MASS[i, j] = OTTER_MASS[j, i] = value
-OTTER_ADDED = np.diag([5.28152101, 82.5, 55.0, 2.052864, 11.0, 23.375])
-OTTER_DAMPING = np.array([77.55443235, 137.5, 546.48048913, 50.02366181, 218.18785613, 39.325])
-OTTER_DRAUGHT = 0.134146341463  # [m]
-TURN = {  # after 20 s, port 80, starboard 60 rad/s: printed to eight decimals
-    "velocity": (1.40535943, -0.09073613, -0.00011745, -0.00001268, -0.00041727, 0.17057993),
-    "pose": (0.23809611, 16.65627828, -0.00001107, -0.00244617, 0.00007436, 3.24853616),
-}
-
-
-def skew(a: Array) -> Array:
-    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
-
-
-def coriolis_matrix(M: Array, nu: Array) -> Array:
-    """Fossen 2021, eq. 3.46."""
-    a = M @ nu
-    return np.block([[np.zeros((3, 3)), -skew(a[:3])], [-skew(a[:3]), -skew(a[3:])]])
-
-
-def restoring() -> Array:
-    """Hydrostatics of the two pontoons, moved from the centre of flotation to the origin."""
-    rho_g, b, length, c, V, T = 1025 * 9.81, 0.25, 2.0, 0.75, 55 / 1025, OTTER_DRAUGHT
-    plane = c * length * b
-    across = 2 / 12 * length * b**3 * 6 * c**3 / ((1 + c) * (1 + 2 * c)) + 2 * plane * 0.395**2
-    along = 0.8 * 2 / 12 * b * length**3
-    KB, KG = (5 * T / 2 - V / (2 * length * b)) / 3, T + 0.2
-    stiffness = [0, 0, rho_g * 2 * plane, rho_g * V * (KB + across / V - KG), rho_g * V * (KB + along / V - KG), 0]
-    H = np.eye(6)
-    H[:3, 3:] = skew(np.array([-0.2, 0.0, 0.0])).T
-    return np.asarray(H.T @ np.diag(stiffness) @ H)
-
-
-def cross_flow(v: float, r: float) -> tuple[float, float]:
-    """The integrals in closed form: of w = v + x r the antiderivatives are |w|^3 / 3 and |w| w^3 / 4."""
-    if abs(r) < 1e-4:  # where the differences below lose their digits
-        points = [-v / r] if r and abs(v / r) < 1.0 else None
-        one, two = (
-            quad(lambda x, k=k: abs(v + x * r) * (v + x * r) * x**k, -1, 1, points=points, epsabs=1e-15)[0]
-            for k in (0, 1)
-        )
-        return float(one), float(two)
-    ends = (v - r, v + r)
-    cube, fourth = (
-        (abs(ends[1]) ** 3 - abs(ends[0]) ** 3) / 3,
-        (ends[1] ** 3 * abs(ends[1]) - ends[0] ** 3 * abs(ends[0])) / 4,
-    )
-    return cube / r, (fourth - v * cube) / r**2
-
-
-def otter_rates(t: float, s: Array, G: Array) -> Array:
-    eta, nu, n = s[:6], s[6:12], s[12:]
-    port, starboard = 0.01108 * n * np.abs(n)
-    tau = np.array([port + starboard, 0, 0, 0, 0, 0.395 * (port - starboard)]) - OTTER_DAMPING * nu - G @ eta
-    tau[5] -= 10 * abs(nu[5]) * OTTER_DAMPING[5] * nu[5]
-    k = 0.5 * 1025 * OTTER_DRAUGHT * 0.847030
-    Y, N = cross_flow(nu[1], nu[5])
-    Z, M = cross_flow(nu[2], -nu[4])
-    tau -= k * np.array([0, Y, Z, 0, -M, N])
-    rigid = OTTER_MASS - OTTER_ADDED
-    tau -= (coriolis_matrix(rigid, nu) + coriolis_matrix(OTTER_ADDED, nu)) @ nu
-    phi, theta, psi = eta[3:]
-    W = np.array(
-        [
-            [1, sin(phi) * sin(theta) / cos(theta), cos(phi) * sin(theta) / cos(theta)],
-            [0, cos(phi), -sin(phi)],
-            [0, sin(phi) / cos(theta), cos(phi) / cos(theta)],
-        ]
-    )
-    about_z = np.array([[cos(psi), -sin(psi), 0], [sin(psi), cos(psi), 0], [0, 0, 1]])
-    about_y = np.array([[cos(theta), 0, sin(theta)], [0, 1, 0], [-sin(theta), 0, cos(theta)]])
-    about_x = np.array([[1, 0, 0], [0, cos(phi), -sin(phi)], [0, sin(phi), cos(phi)]])
-    place = about_z @ about_y @ about_x @ nu[:3]
-    return np.concatenate([place, W @ nu[3:], np.linalg.solve(OTTER_MASS, tau), (np.array([80.0, 60.0]) - n) / 0.1])
-
-
-def with_stations(stations: int) -> PontoonBoat:
-    boat = otter()
-    return boat.model_copy(update={"water": boat.water.model_copy(update={"stations": stations})})
-
-
-def test_otter_has_the_published_mass_matrix_and_draught() -> None:
-    boat, c = otter(), skew(np.array([0.2, 0.0, -0.2]))
-    rigid = np.block(
-        [[55.0 * np.eye(3), -55.0 * c], [55.0 * c, np.diag(boat.inertia) - 55.0 * c @ c]]
-    )  # about the origin
-    assert rigid + np.diag(boat.water.added_mass) == pytest.approx(OTTER_MASS, abs=1e-8)
-    assert boat.draught == pytest.approx(0.134146, abs=5e-7)
-    assert boat.stiffness() == pytest.approx(restoring(), rel=1e-9, abs=1e-9)
-
-
-def test_otter_turns_as_published() -> None:
-    body = with_stations(21).launched(80.0, 60.0)
-    body.advance(1000)
-    assert body.velocity == pytest.approx(np.array(TURN["velocity"]), rel=1e-4, abs=5e-9)  # half of the last digit
-    pose = body.pose
-    assert pose[5] == pytest.approx(TURN["pose"][5] - 2 * pi, rel=1e-4)
-    assert pose[:5] == pytest.approx(np.array(TURN["pose"][:5]), rel=1e-4, abs=5e-9)
-
-
-def test_otter_goes_straight_as_published() -> None:
-    body = otter().launched(60.0, 60.0)
-    body.advance(2000)
-    assert body.velocity[0] == pytest.approx(1.02864527, rel=1e-8)
-    assert body.pose[0] == pytest.approx(40.19200, abs=5e-6)
-
-
-def test_otter_turns_as_by_an_independent_integrator_with_the_exact_integral() -> None:
-    body = with_stations(0).launched(80.0, 60.0)
-    body.advance(1000)
-    found = solve_ivp(otter_rates, (0, 20), np.zeros(14), "DOP853", args=(restoring(),), rtol=1e-9, atol=1e-11).y[:, -1]
-    assert body.velocity == pytest.approx(found[6:12], rel=1e-6, abs=1e-9)
-    wanted = found[:6] - [0, 0, 0, 0, 0, 2 * pi]
-    assert body.pose == pytest.approx(wanted, rel=1e-5, abs=1e-9)
-
-
-@pytest.mark.parametrize(("v", "r"), [(0.3, 0.2), (-0.1, 0.4), (0.2, -0.5), (0.2, 0.0)])
-def test_strips_of_a_pontoon(v: float, r: float) -> None:
-    assert strips(v, r, 1.0, 0) == pytest.approx(cross_flow(v, r), rel=1e-9, abs=1e-12)
-    assert strips(v, r, 1.0, 20001) == pytest.approx(cross_flow(v, r), rel=1e-6, abs=1e-8)
-
-
-# A body free in six ways, nothing acting on it: energy and momentum last, whatever its added mass
-
-
-def test_a_free_body_keeps_energy_and_momentum() -> None:
-    root = np.random.default_rng(5).normal(size=(6, 6))
-    added, centre, inertia = root @ root.T, np.array([0.1, -0.05, 0.2]), np.array([2.0, 3.0, 4.0])
-    solid = Solid(6.0, centre, inertia, added)
-    c = skew(centre)
-    M = added + np.block([[6.0 * np.eye(3), -6.0 * c], [6.0 * c, np.diag(inertia) - 6.0 * c @ c]])
-    body = FreeBody(solid, lambda t, pose, nu: np.zeros(6), step=2e-3)
-    pose, nu = np.array([0.3, -0.2, 0.1, 0.2, -0.3, 1.0]), np.array([0.5, 0.2, -0.3, 0.6, -0.4, 0.8])
-    body.put(pose, nu)
-    assert body.pose == pytest.approx(pose) and body.velocity == pytest.approx(nu)
-
-    def kept() -> Array:
-        nu, turn = body.velocity, rotation(body.pose[3:])
-        linear = turn @ (M @ nu)[:3]
-        angular = turn @ (M @ nu)[3:] + np.cross(body.pose[:3], linear)
-        return np.array([0.5 * nu @ M @ nu, *linear, *angular])
-
-    before = kept()
-    body.advance(2000)
-    assert np.abs(body.velocity - nu).max() > 0.1
-    assert kept() == pytest.approx(before, rel=1e-5, abs=1e-5)
-
-
-def test_angles_of_a_rotation() -> None:
-    euler = np.array([0.4, -0.7, 2.5])
-    assert angles(rotation(euler)) == pytest.approx(euler)
-    assert degrees(angles(np.eye(3)).max()) == 0.0
-
-
-def test_a_free_body_must_not_have_its_mass_centre_at_its_origin() -> None:
-    solid: Any = Solid(1.0, np.zeros(3), np.ones(3), np.eye(6))
-    with pytest.raises(BadPhysics, match="mass centre must not be its origin"):
-        FreeBody(solid, lambda t, pose, nu: np.zeros(6))

@@ -335,6 +335,13 @@ def test_roll_decay_of_a_vessel_shows_its_damping() -> None:
     assert found["period"] == pytest.approx(2 * pi / sqrt(822.3 / 135.4 * (1 - zeta**2)), rel=1e-4)
 
 
+def test_a_hull_that_also_turns_is_heeled_before_it_is_released() -> None:
+    """Eastward Ho's roll is linear: 2 pi / sqrt(m g GM / I) = 7.14 s; sway and yaw add a little."""
+    made = scenario_of("roll_decay", "eastward_ho", angle=5.0)
+    assert made.file.duration == pytest.approx(12 * 7.14, rel=0.02)
+    assert norms(run(made))["period"].value == pytest.approx(7.14, rel=0.005)
+
+
 def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
     table = handled(vessel.load("trial_boat"))
     assert table.ahead == {"thrust_port_N": 0.5, "thrust_starboard_N": 0.5}

@@ -4,6 +4,7 @@ The equations here are body-axes matrices (Fossen 2021) integrated by scipy; the
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from math import exp, pi
 from pathlib import Path
@@ -15,7 +16,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from boatsim.physics.base import Array, motion
-from boatsim.physics.effects.cross_flow_drag import WATER_DENSITY, CrossFlowDrag
+from boatsim.physics.effects.cross_flow_drag import FRESH_WATER, CrossFlowDrag
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.twin import Twin
 
@@ -168,7 +169,7 @@ def test_straight_coast(run: Runner, effect: str, law: Callable[[float], float])
 # Cross-flow drag by strips
 
 HULL = CrossFlowDrag(section_drag_coefficient=0.7, length=1.2, draught=0.06)
-DRAG = 0.5 * WATER_DENSITY * 0.7 * 0.06  # [kg/m^2]
+DRAG = 0.5 * FRESH_WATER * 0.7 * 0.06  # [kg/m^2]
 
 
 def strips(v: float, r: float, centre: float = 0.0) -> tuple[float, float]:
@@ -204,3 +205,9 @@ def test_cross_flow_in_sway_and_yaw_together(v: float, r: float, centre: float) 
     hull = CrossFlowDrag(section_drag_coefficient=0.7, length=1.2, draught=0.06, centre=centre)
     force = hull.wrench(motion(v=v, r=r))
     assert (force.Y, force.N) == pytest.approx(strips(v, r, centre), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize(("v", "r"), [(0.3, 0.2), (-0.1, 0.4), (0.2, -0.5), (0.2, 0.0)])
+def test_cross_flow_by_many_stations_comes_to_the_integral(v: float, r: float) -> None:
+    force = replace(HULL, stations=1000.0).wrench(motion(v=v, r=r))
+    assert (force.Y, force.N) == pytest.approx(strips(v, r), rel=3e-6, abs=1e-12)

@@ -199,6 +199,49 @@ def test_same_seed_same_run_other_seed_other_run() -> None:
     assert one.camera["psi_rad"].tobytes() != other.camera["psi_rad"].tobytes()
 
 
+LOG_OF_THE_MOTORS = """
+from boatsim.simulate.sensing import Sensor
+
+class MotorLog(Sensor):
+    words = "what the motors push with"
+    columns = {"port": "thrust_port_N"}
+
+    def read(self, engine, rng):
+        return {"port": engine.actuators["thrust_port_N"]}
+"""
+LISTENER = """
+from boatsim.control.base import Controller
+
+class Listener(Controller):
+    goals = ("x",)
+
+    def step(self, sense, goal):
+        return {"thrust_starboard_N": sense.more["port"] + 100.0 * (sense.p - sense.more["p"]), "thrust_port_N": 0.25}
+"""
+
+
+def test_a_sensor_is_one_file_whose_readings_reach_the_controller_and_the_log(tmp_path: Path) -> None:
+    (tmp_path / "motor_log.py").write_text(LOG_OF_THE_MOTORS)
+    (tmp_path / "listener.py").write_text(LISTENER)
+    told = tmp_path / "heard.toml"
+    told.write_text(
+        'vessel = "joystick_boat"\nduration = 1.0\ncontroller = { use = "listener" }\n'
+        'sensor = [{ use = "inclinometer" }, { use = "motor_log.py" }]\n'
+    )
+    log = run(scenario.load(str(told)), 1).recording
+    assert 0.0 < log["sensed_thrust_port_N"][-1] == pytest.approx(log["thrust_starboard_N"][-1])
+    assert len(set(log["sensed_phi_rad"].tolist())) > 1
+
+
+def test_a_further_sensor_changes_nothing_of_what_the_others_read() -> None:
+    plain, more = (
+        run(scenario.load(shipped("sway_1"), s), 3).recording for s in ({}, {"sensor": [{"use": "inclinometer"}]})
+    )
+    for name in ("sensed_psi_rad", "sensed_ax_mps2", "psi_rad"):
+        assert plain[name].tobytes() == more[name].tobytes()
+    assert "sensed_phi_rad" in more.signals and "sensed_phi_rad" not in plain.signals
+
+
 # Mistakes in files ------------------------------------------------------------------------------------------------
 
 MISTAKES = [
@@ -213,6 +256,8 @@ MISTAKES = [
     ({"controller": {"use": "l1_joystick", "pol": 2.0}}, r"setting 'pol' .*did you mean 'pole'"),
     ({"controller": {"use": "l1_joystick", "pole": 99.0}}, r"pole = 99 1/s; allowed 0\.1 to 10 1/s"),
     ({"sensors": {"speed": 0.01}}, r"\[sensors\] .*setting 'speed' .*did you mean 'speed_sd'"),
+    ({"sensor": [{"use": "inclinometr"}]}, r"sensor 'inclinometr' .*did you mean 'inclinometer'"),
+    ({"sensor": [{"use": "inclinometer"}] * 2}, r"\[\[sensor\]\] inclinometer: phi is read by another sensor"),
     ({"camera": {"mark_sd": 9.0}}, r"\[camera\] .*mark_sd = 9 m; allowed 0 to 0\.1 m"),
     ({"goal": [{"sway": 0.07}]}, r"\[\[goal\]\] key 'sway' .*did you mean 'sway_mps'"),
     ({"goal": [{"from": 3.0}, {"from": 1.0}]}, r"times in ascending order"),

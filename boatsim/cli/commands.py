@@ -144,7 +144,8 @@ def manoeuvre(
 @guarded
 def list_(
     kind: Annotated[
-        Literal["vessels", "controllers", "effects", "measures", "scenarios"] | None, typer.Argument(help="Only these.")
+        Literal["vessels", "controllers", "effects", "sensors", "measures", "scenarios"] | None,
+        typer.Argument(help="Only these."),
     ] = None,
 ) -> None:
     """List vessels, controllers, effects, measures and scenarios, a line each."""

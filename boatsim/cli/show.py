@@ -73,7 +73,7 @@ def _met(ok: bool | None) -> str:
 
 def listing(only: str | None) -> list[str]:
     """Lines of `boatsim list`: a heading for each kind, then name and a line about each."""
-    kinds = [only] if only else ["vessels", "controllers", "effects", "measures", "scenarios"]
+    kinds = [only] if only else ["vessels", "controllers", "effects", "sensors", "measures", "scenarios"]
     lines: list[str] = []
     for kind in kinds:
         names = content.names(kind.removesuffix("s"))

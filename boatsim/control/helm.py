@@ -56,9 +56,7 @@ class Helm(Controller):
         """
         if isnan(phi):
             if self.needs_roll():
-                raise BadInput(
-                    f"{type(self).__name__}: roll_reduction needs a roll sensor; [sensors] ideal = true has it"
-                )
+                raise BadInput(f"{type(self).__name__}: roll_reduction needs [[sensor]] use = 'inclinometer'")
             phi = 0.0
         if not self.psi:
             self.psi, self.phi = [wrap(psi)] * 3, [phi] * 3

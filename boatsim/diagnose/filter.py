@@ -302,8 +302,8 @@ def nominal_levels(vessel: Vessel, recording: Recording) -> Levels:
     for axis, rms in zip(axes, force.tolist(), strict=True):
         if not 0 < rms < HUGE:
             raise BadInput(
-                f"{_called(recording)} on {vessel.name}: ambient force in {axis} = {rms:g}; allowed is more than 0, "
-                f"at most {HUGE:g}"
+                f"{_called(recording)} on {vessel.name}: diagnosis.ambient.{axis} = {rms:g}, the unmodelled force that "
+                f"is tolerated; state it in the vessel's file: allowed is more than 0, at most {HUGE:g}"
             )
     if not 0 < time_constant < HUGE:
         raise BadInput(

@@ -18,6 +18,7 @@ PACKAGES = {  # kinds that are modules of ours, one a file
     "kind": "physics.kinds",
     "effect": "physics.effects",
     "measure": "measures",
+    "sensor": "simulate.sensors",
     "reader": "recordings.readers",
 }
 ENTRY = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE)  # of the shelf of effects

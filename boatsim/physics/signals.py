@@ -190,8 +190,8 @@ class Course(NamedTuple):
 
 @njit(inline="always")
 def course(begin: float, mean: float, end: float) -> Course:
-    """The course of a signal with this mean over the step."""
-    return Course(begin, 1.5 * mean - 0.25 * (begin + end), end)
+    """The course of a signal with this mean over the step; one that stands still stands still to the last bit."""
+    return Course(begin, mean + 0.25 * ((mean - begin) + (mean - end)), end)
 
 
 BRIEF = 0.02  # [s] the shortest step that a lag asks for: in so short a one its mean counts, not its course
@@ -205,5 +205,5 @@ def followed(lag: float) -> float:
 
 @njit(inline="always")
 def mean_of(x: Course) -> float:
-    """Mean over the step."""
-    return (x.begin + 4.0 * x.middle + x.end) / 6.0
+    """Mean over the step; that of a signal that stands still is the signal, to the last bit."""
+    return x.begin + (4.0 * (x.middle - x.begin) + (x.end - x.begin)) / 6.0

@@ -20,6 +20,7 @@ from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.sensing import sensed
 from boatsim.simulate.world import Tank
 
 SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
@@ -76,8 +77,10 @@ class Runner:
         vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
         self.engine = Engine(vessel, tank, file.step)
         self._marks = [f"camera_{mark}_{axis}_m" for mark in scenario.camera.marks for axis in "xy"]
-        self._imu, self._shaking = (np.random.default_rng(s) for s in np.random.SeedSequence(self.seed).spawn(2))
+        seeds = np.random.SeedSequence(self.seed).spawn(2 + len(scenario.aboard))
+        self._imu, self._shaking, *self._noise = (np.random.default_rng(s) for s in seeds)
         self._signals = signals_of(vessel.freedoms)
+        self._read = {name: column for sensor in scenario.aboard for name, column in type(sensor).columns.items()}
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
         self._actuators = vessel.actuators
         self._winds = [e for e in vessel.effects if isinstance(e, Force) and type(e).of_air]
@@ -142,8 +145,8 @@ class Runner:
         return [
             "t_s", *(s.column for s in self._signals), *self._sent_channels,
             *(f"sent_{n}" for n in self._sent_channels), *(f"actual_{n}" for n in self._actuators),
-            *(f"sensed_{n}" for n in SENSED), *self._marks, *(f"camera_{n}" for n in SEEN), *force,
-            *(wind if self._winds else ()), "contacts", *(f"estimate_{n}" for n in limits), *references,
+            *(f"sensed_{n}" for n in (*SENSED, *self._read.values())), *self._marks, *(f"camera_{n}" for n in SEEN),
+            *force, *(wind if self._winds else ()), "contacts", *(f"estimate_{n}" for n in limits), *references,
         ]  # fmt: skip
 
     def _components(self) -> list[str]:
@@ -188,13 +191,14 @@ class Runner:
     def _ask(self) -> None:
         """Sensors and controller, now."""
         state = self._state
-        self._sense = self.scenario.sensors.feel(
+        usual = self.scenario.sensors.feel(
             state.t, (state.x, state.y, state.psi), (state.u, state.v, state.r), self.engine.acceleration(), self._imu,
             (state.phi, state.p),
         )  # fmt: skip
+        sense = self._sense = sensed(usual, self.scenario.aboard, self.engine, self._noise)
         with self._asked() as controller:
-            self._send(controller.step(self._sense, self.scenario.goal_at(state.t)), self.engine.command)
-            self._early = state.t + controller.early(self._sense)
+            self._send(controller.step(sense, self.scenario.goal_at(state.t)), self.engine.command)
+            self._early = state.t + controller.early(sense)
 
     def _send(self, commands: dict[str, float], to: Callable[[dict[str, float]], None]) -> None:
         """Commands on their way; kept as they are sent, for the log."""
@@ -257,6 +261,7 @@ class Runner:
                 *(self._sent[n] for n in self._sent_channels),
                 *engine.actuators.values(),
                 *(getattr(sense, f) for f in FIELDS),
+                *(sense.more[n] for n in self._read),
                 *((*frames[-1].marks, *frames[-1][1:4]) if frames else [nan] * (len(self._marks) + len(SEEN))),
                 *(f for f, there in zip(engine.wrench(), axes, strict=True) if there),
                 *(f for f, there in zip(self._wind(s), axes, strict=True) if there and self._winds),

@@ -1,7 +1,7 @@
 """A scenario is a file: which vessel, where, steered by what, towards what, for how long, and how it is judged."""
 
 from bisect import bisect_right
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sin
@@ -21,7 +21,7 @@ from boatsim.simulate.camera import Camera, camera_over
 from boatsim.simulate.cases import Place, content
 from boatsim.simulate.film import FilmMeasure
 from boatsim.simulate.measure import Measure
-from boatsim.simulate.sensors import Sensors
+from boatsim.simulate.sensing import Sensor, Sensors
 
 T = TypeVar("T")
 End = Annotated[float, Field(allow_inf_nan=True)]  # of a band; it may be open
@@ -117,6 +117,7 @@ class ScenarioFile(Table):
     until: UntilTable = UntilTable()
     controller: dict[str, Any]
     sensors: dict[str, Any] = {}
+    sensor: list[dict[str, Any]] = []  # beside the usual ones
     camera: dict[str, Any] = {}
     goal: list[dict[str, float | CourseTable]] = []
     set: dict[str, dict[str, Any]] = {}
@@ -139,6 +140,7 @@ class Scenario:
     sensors: Sensors
     camera: Camera
     measure: Measure | None = None
+    aboard: tuple[Sensor, ...] = ()  # beside the usual ones
 
     @cached_property
     def _begins(self) -> list[float]:
@@ -180,6 +182,7 @@ def from_table(raw: dict[str, Any], place: Place) -> Scenario:
         vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent)
         controller = _made("controller", file.controller, path.parent)
         sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
+        aboard = _aboard(file.sensor, path.parent)
         camera = _settings("camera", lambda: camera_over(vessel, file.camera))
         measure = _measure(file.measure, path.parent)
         _check_goals(file, vessel, controller)
@@ -187,15 +190,26 @@ def from_table(raw: dict[str, Any], place: Place) -> Scenario:
         _check_norms(file, camera, measure)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
-    return Scenario(place.name, file, vessel, controller, sensors, camera, measure)
+    return Scenario(place.name, file, vessel, controller, sensors, camera, measure, aboard)
 
 
 def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
-    """The controller of a [controller] table."""
+    """The controller, measure or sensor of a table."""
     if not isinstance(table.get("use"), str):
         raise BadInput(f"[{kind}] needs use = its name")
     found = load_class(kind, table["use"], folder)
     return found.from_settings({k: v for k, v in table.items() if k != "use"})
+
+
+def _aboard(tables: Sequence[Mapping[str, Any]], folder: Path) -> tuple[Sensor, ...]:
+    """The sensors of the [[sensor]] tables, no two of which read the same."""
+    aboard: list[Sensor] = []
+    for table in tables:
+        made: Sensor = _made("sensor", table, folder)
+        if twice := [n for other in aboard for n in type(other).columns if n in type(made).columns]:
+            raise BadInput(f"[[sensor]] {table['use']}: {twice[0]} is read by another sensor already")
+        aboard.append(made)
+    return tuple(aboard)
 
 
 def _measure(given: str | Mapping[str, Any] | None, folder: Path) -> Measure | None:

@@ -19,9 +19,10 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
         memory[at] = x.end
         return x
     y, goal = memory[at], mean_of(x)
-    turning = min(abs(goal - y) / q.rate, dt)  # [s]
+    needed = abs(goal - y) / q.rate  # [s]
+    turning = min(needed, dt)
     turned = q.rate * turning if goal > y else -q.rate * turning
-    memory[at] = goal if turning < dt else y + turned
+    memory[at] = goal if needed <= dt else y + turned
     return course(y, y + turned - 0.5 * turned * turning / dt, memory[at])
 
 

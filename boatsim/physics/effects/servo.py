@@ -22,8 +22,10 @@ def ramp(gap: float, q: Any) -> float:
 def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
     """Towards the limited command at the largest rate, then as a first-order lag: exact for a held command."""
     y = memory[at]
-    gap = min(max(mean_of(x), -q.range), q.range) - y
-    turning = min(ramp(gap, q), dt)
+    goal = min(max(mean_of(x), -q.range), q.range)
+    gap = goal - y
+    needed = ramp(gap, q)
+    turning = min(needed, dt)
     turned = q.rate * turning if gap > 0.0 else -q.rate * turning
     rest, left = gap - turned, dt - turning
     area = 0.5 * turned * turning + turned * left  # [rad s] by which the angle is beyond y
@@ -31,7 +33,9 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
         decay = exp(-left / q.lag)
         area += rest * (left - q.lag * (1.0 - decay))
         rest *= decay
-    memory[at] = y + gap - rest
+    elif needed <= dt:
+        rest = 0.0  # there, to the last bit: a ramp that is left over would ask for a step of its own
+    memory[at] = goal - rest
     return course(y, y + area / dt, memory[at])
 
 

@@ -1,12 +1,18 @@
-"""What a boat carries to feel its own motion: inertial unit, and where it has them speed log and position fix."""
+"""What a boat carries to feel its own motion: inertial unit, and where it has them speed log and position fix.
 
-from dataclasses import dataclass
+Any further sensor is a file of `boatsim/simulate/sensors/`.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from math import nan
+from typing import ClassVar
 
 import numpy as np
 
 from boatsim.control.base import Sense
 from boatsim.physics.base import Checked, param
+from boatsim.simulate.engine import Engine
 
 
 @dataclass(frozen=True)
@@ -45,3 +51,29 @@ class Sensors(Checked):
             x=pose[0] + self.position_sd * n[5] if fix else nan,
             y=pose[1] + self.position_sd * n[6] if fix else nan,
         )
+
+
+@dataclass(frozen=True)
+class Sensor(Checked):
+    """Base of further sensors: `[[sensor]]` with `use = "inclinometer"` in a scenario puts one aboard.
+
+    What it reads under the name of a field of `Sense` fills that field; any other name is found in `sense.more`.
+    """
+
+    words: ClassVar[str] = ""  # one line for `boatsim list`
+    columns: ClassVar[Mapping[str, str]] = {}  # what it reads -> its column in the log, with the unit, after `sensed_`
+
+    def read(self, engine: Engine, rng: np.random.Generator) -> Mapping[str, float]:
+        """One sample of everything in `columns` from the boat as it is."""
+        raise NotImplementedError
+
+
+def sensed(base: Sense, aboard: Sequence[Sensor], engine: Engine, rngs: Sequence[np.random.Generator]) -> Sense:
+    """What the usual sensors say, with what the further ones read; each has randomness of its own."""
+    usual = {f.name for f in fields(Sense)} - {"more"}
+    read: dict[str, float] = {}
+    for sensor, rng in zip(aboard, rngs, strict=True):
+        read |= sensor.read(engine, rng)
+    if not read:
+        return base
+    return replace(base, **{n: x for n, x in read.items() if n in usual}, more=read)

@@ -1,0 +1,62 @@
+"""Actuators between two commands: where their signals bend no step reaches, and one that has arrived asks for none."""
+
+from math import inf
+from typing import Any
+
+import numpy as np
+import pytest
+
+from boatsim.physics.base import Channel, Course, course, mean_of
+from boatsim.physics.effects.command_delay import CommandDelay
+from boatsim.physics.effects.rate_limit import RateLimit
+from boatsim.physics.effects.servo import Servo
+
+STEP = 0.1  # [s]
+SETTLED = 0.5  # [s] after which each of these has arrived
+EFFECTS = [
+    RateLimit(rate=8.0), Servo(rate=8.0, lag=0.0), Servo(rate=8.0, lag=0.06), CommandDelay(delay=0.23),
+]  # fmt: skip
+
+
+def parts(effect: Any, command: float, memory: Any, seconds: float) -> list[float]:
+    """Lengths of the steps that it asks for while a command is held; `memory` is its own."""
+    lengths, q = [], effect.values()
+    for _ in range(round(seconds / STEP)):
+        left = STEP
+        while left > 1e-9:
+            dt = min(left, max(type(effect).pause.py_func(command, memory, 0, q), 1e-6))
+            lengths.append(dt)
+            type(effect).channel.py_func(Course(command, command, command), 0.0, 0.0, memory, 0, dt, q)
+            left -= dt
+            assert len(lengths) < 100, f"{effect.name} halts at {memory[:4]} under {command!r}"
+    return lengths
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=lambda e: f"{e.name}_{getattr(e, 'lag', '')}")
+def test_an_actuator_that_has_arrived_asks_for_no_shorter_step(effect: Channel) -> None:
+    """Whatever the command: a last bit by which it were short of it would be a ramp for ever."""
+    memory = np.zeros(type(effect).slots)
+    for command in np.random.default_rng(1).uniform(-0.785, 0.785, 300).tolist():
+        moving = parts(effect, command, memory, SETTLED)
+        assert len(moving) <= round(SETTLED / STEP) + 3  # a bend or two, and what a step leaves over
+        assert parts(effect, command, memory, 5 * STEP) == [STEP] * 5
+
+
+@pytest.mark.parametrize("effect", EFFECTS[:2], ids=lambda e: e.name)
+def test_a_ramp_ends_on_its_command_to_the_last_bit(effect: Channel) -> None:
+    memory = np.zeros(type(effect).slots)
+    for command in np.random.default_rng(2).uniform(-0.785, 0.785, 300).tolist():
+        parts(effect, command, memory, SETTLED)
+        assert memory[0] == command
+        assert type(effect).pause.py_func(command, memory, 0, effect.values()) == inf  # type: ignore[attr-defined]
+
+
+def test_a_signal_that_stands_still_is_its_own_mean_to_the_last_bit() -> None:
+    for x in [0.174533, *np.random.default_rng(3).uniform(-300.0, 300.0, 1000).tolist()]:
+        assert mean_of.py_func(Course(x, x, x)) == x
+        assert course.py_func(x, x, x) == (x, x, x)
+
+
+def test_the_mean_of_a_course_is_the_one_it_was_made_with() -> None:
+    for begin, mean, end in np.random.default_rng(4).uniform(-3.0, 3.0, (100, 3)).tolist():
+        assert mean_of.py_func(course.py_func(begin, mean, end)) == pytest.approx(mean, abs=1e-14)
