@@ -12,7 +12,8 @@ from scipy.stats import multivariate_normal
 
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnose import analysis
-from boatsim.diagnose.filter import Levels, segments, track
+from boatsim.diagnose.analysis import suspects_of
+from boatsim.diagnose.filter import Levels, nominal_levels, segments, track
 from boatsim.diagnose.problem import scale_of
 from boatsim.diagnose.report import show
 from boatsim.diagnose.report.answer import key_of
@@ -23,6 +24,7 @@ from boatsim.physics.program import Program
 from boatsim.recordings import table as recording
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario
+from boatsim.simulate.engine import Engine
 from boatsim.view.outputs import run_into
 
 DATA = Path(__file__).parent / "data"
@@ -113,6 +115,56 @@ def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
     assert found[0] - found[-1] > 5.0
     # half the way, half the difference: over a step it would stay what it is
     assert np.abs(np.diff(found)).max() < 0.6 * np.abs(np.diff(found[::2])).max()
+
+
+@pytest.fixture(scope="module")
+def joystick():
+    """Servos lag by 60 ms, motors fed by PWM by 150 ms; a delay is suspected; a rate limit that limits nothing."""
+    boat = vessel.load("joystick_boat", extra=[{"use": "rate_limit", "on": ["thrust_port_N"]}])
+    return Program(boat, suspects_of(boat, ["command_delay"]))
+
+
+def driven(boat: vessel.Vessel) -> Recording:
+    """40 s at 6 Hz of random steps every half second, by MuJoCo at 6.7 ms, with the noise of its camera."""
+    rng, rate, n = np.random.default_rng(1), 6, 240
+    raw = {c: np.repeat(rng.uniform(-150.0, 150.0, n // 3), 3) for c in ("pwm_port", "pwm_starboard")}
+    raw |= {c: np.repeat(rng.uniform(-0.7, 0.7, n // 3), 3) for c in ("steer_port_rad", "steer_starboard_rad")}
+    engine, poses = Engine(boat, step=1 / rate / 25), []
+    engine.reset(commands={c: values[0] for c, values in raw.items()})
+    for i in range(n):
+        poses.append((engine.state.x, engine.state.y, engine.state.psi))
+        engine.command({c: values[i] for c, values in raw.items()})
+        engine.advance(25)
+    pose = np.array(poses) + rng.standard_normal((n, 3)) * [0.002, 0.002, 0.0094]
+    return Recording("driven", np.arange(n) / rate, dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | raw)
+
+
+def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely_splits_it(joystick):
+    recording = driven(joystick.vessel)
+    laid, levels = track(recording, joystick), nominal_levels(joystick.vessel, recording)
+    nothing, delayed = joystick.switches(), joystick.switches(["command_delay"])
+    split = laid.values.copy()
+    split[joystick.index("command_delay", "delay")] = 1e-5
+    by_step = []
+    for step in (laid.step, laid.step / 2, 1e-3):
+        laid.step = step
+        by_step.append(laid.likelihood(laid.values, nothing, levels))
+        assert laid.likelihood(split, delayed, levels) == pytest.approx(by_step[-1], abs=0.02)
+    assert by_step == pytest.approx([by_step[-1]] * 3, abs=0.02)  # nats; 240 rows
+
+
+def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystick):
+    code, values, on = joystick.module, joystick.values(), joystick.switches(["command_delay"])
+    values[joystick.index("command_delay", "delay")] = 1e-5
+    values[joystick.index("thrust_lag", "time_constant")], values[joystick.index("rate_limit", "rate")] = 0.0, 2.0
+    memory, act = np.zeros(joystick.memory_size), np.zeros(joystick.held_size)
+    full, none = (joystick.command_array({"pwm_port": pwm}) for pwm in (150.0, 0.0))
+    code.settle(full, memory, values, on, act)  # 0.617 N
+    assert code.until_bend(full, memory, 1.0, values, on) == pytest.approx(0.06)  # of the servos
+    code.actuate_in_place(none, memory, 0.2, values, on, act)  # 0.4 N at 2 N/s
+    assert code.until_bend(none, memory, 1.0, values, on) == pytest.approx(0.06)
+    code.actuate_in_place(none, memory, 0.1, values, on, act)  # 0.017 N are left
+    assert code.until_bend(none, memory, 1.0, values, on) == pytest.approx(0.017 / 2.0, abs=1e-5)
 
 
 def test_free_runs_start_every_horizon_and_leave_a_shorter_rest_out():

@@ -29,6 +29,7 @@ from boatsim.physics.signals import (
     Swell,
     Wrench,
     course,
+    followed,
     mass,
     mean_of,
     wrench,
@@ -37,7 +38,7 @@ from boatsim.physics.signals import (
 __all__ = [
     "AXES", "UNSET", "Array", "Change", "Channel", "Checked", "Course", "Effect", "Flow", "Force", "Inertia", "Mass",
     "Measurement", "Motion", "Param", "Reaction", "Release", "Role", "Shown", "Swell", "Unsteady", "Wrench", "course",
-    "factor", "mass", "mean_of", "motion", "number", "param", "preset", "shift", "snake_case", "wrench",
+    "factor", "followed", "mass", "mean_of", "motion", "number", "param", "preset", "shift", "snake_case", "wrench",
 ]  # fmt: skip
 
 

@@ -152,7 +152,7 @@ class Composition:
         body, busy = list(part.begin), False
         for station in part.stations(self):
             body += station.begin
-            for i, effect in enumerate(self.effects):
+            for i, effect in sorted(enumerate(self.effects), key=lambda e: type(e[1]).stage):
                 lines = [
                     line
                     for kind in everything

@@ -194,6 +194,15 @@ def course(begin: float, mean: float, end: float) -> Course:
     return Course(begin, mean + 0.25 * ((mean - begin) + (mean - end)), end)
 
 
+BRIEF = 0.02  # [s] the shortest step that a lag asks for: in so short a one its mean counts, not its course
+
+
+@njit(inline="always")
+def followed(lag: float) -> float:
+    """How far a step may reach while a signal follows with a lag [s]: three points tell its course over one lag."""
+    return max(lag, BRIEF) if lag > 0.0 else np.inf
+
+
 @njit(inline="always")
 def mean_of(x: Course) -> float:
     """Mean over the step; that of a signal that stands still is the signal, to the last bit."""

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, mean_of, param
+from boatsim.physics.kinds.channel import DELAYS
 
 SAME = 1e-9  # [s] instants this close are one
 HISTORY = 80  # commands remembered of each actuator: one every 20 ms for the longest delay
@@ -72,6 +73,7 @@ class CommandDelay(Channel):
     shown_by: ClassVar[str] = "quick steps of thrust and steering"
     acts_on: ClassVar[str] = ""  # every actuator
     slots: ClassVar[int] = 1 + 2 * HISTORY
+    stage: ClassVar[int] = DELAYS
     channel: ClassVar = channel
     pause: ClassVar = pause
     starts: ClassVar = ({"delay": 0.1},)

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, param, preset
+from boatsim.physics.kinds.channel import MAPS
 
 
 @njit(inline="always")
@@ -26,6 +27,7 @@ class DriveMap(Channel):
     words: ClassVar[str] = "the drive follows its raw command by a curve"
     shown_by: ClassVar[str] = "a staircase of raw commands"
     acts_on: ClassVar[str] = "thrust"
+    stage: ClassVar[int] = MAPS
     channel: ClassVar = channel
 
     at_span: float = param(

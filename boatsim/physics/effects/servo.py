@@ -1,12 +1,12 @@
 """Servo: a steering machine with a range, a rate limit and a lag."""
 
 from dataclasses import dataclass
-from math import exp, inf, pi
+from math import exp, pi
 from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, course, mean_of, param
+from boatsim.physics.base import Array, Channel, Course, course, followed, mean_of, param
 
 NONE = 1e-4  # [s] a shorter lag is none
 
@@ -41,9 +41,9 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
 
 @njit(inline="always")
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """Until the ramp ends."""
+    """Until the ramp ends, then as far as the lag's course is followed."""
     left = ramp(min(max(x, -q.range), q.range) - memory[at], q)
-    return left if left > 0.0 else inf
+    return left if left > 0.0 else followed(q.lag if q.lag >= NONE else 0.0)
 
 
 @dataclass(frozen=True)

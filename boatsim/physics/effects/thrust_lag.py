@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, course, param
+from boatsim.physics.base import Array, Channel, Course, course, followed, param
 
 NONE = 1e-4  # [s] a shorter lag is none
 
@@ -30,6 +30,12 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
     return course(y, f + 0.5 * g + d / 3.0 + (y - f) * (1.0 - decay) / quick, memory[at])
 
 
+@njit(inline="always")
+def pause(x: float, memory: Array, at: int, q: Any) -> float:
+    """As far as its course is followed."""
+    return followed(q.time_constant if q.time_constant >= NONE else 0.0)
+
+
 @dataclass(frozen=True)
 class ThrustLag(Channel):
     """First-order lag of the thrust behind its command."""
@@ -39,6 +45,7 @@ class ThrustLag(Channel):
     acts_on: ClassVar[str] = "thrust"
     slots: ClassVar[int] = 1
     channel: ClassVar = channel
+    pause: ClassVar = pause
 
     time_constant: float = param(
         0.15, low=0.0, high=60.0, unit="s", words="time to 63 % of a step", fit=True, spread=0.6

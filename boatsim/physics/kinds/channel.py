@@ -31,6 +31,8 @@ def pausing(program: Composed) -> Sequence[Station]:
     return [Station((f"x = commands[{program.commands.index(name)}]",), (), name) for name in program.actuators]
 
 
+MAPS = -2  # stage of what makes a signal out of a raw command, at once
+DELAYS = -1  # stage of what shifts a command in time: what follows sees it arrive, and it sees commands alone
 ACTUATE = Part("actuate", "commands, memory, dt, p, on, act, held", ("pass",), "", stations=actuators)
 PAUSE = Part("pause", "commands, memory, p, on", ("left = np.inf",), "left", stations=pausing)
 
@@ -41,8 +43,9 @@ class Channel(Kind):
 
     x is the signal so far over the step dt [s] that begins now; side -1 port, +1 starboard, 0 middle of what it
     drives; source the raw command of `fed_by` for it; memory[at:at + slots] this actuator's own memory.
-    `pause(x, memory, at, values)`, where there is one, says in how many s the signal will jump or bend while its
-    command x is held (a delayed command arrives, a ramp ends): no step reaches beyond.
+    `pause(x, memory, at, values)`, where there is one, says for how many s the three points of a `Course` tell the
+    signal while its command x is held: until it jumps or bends (a delayed command arrives, a ramp ends), or over one
+    lag (`followed`). No step reaches beyond.
     """
 
     parts: ClassVar = (ACTUATE, PAUSE)
@@ -66,10 +69,12 @@ class Channel(Kind):
             return
         at = f"np.int64({program.memory(number, station.channel)})"  # plain integers count as types
         site = program.sites(number)[0]
+        source = program.source(number, station.channel)
+        raw = f"commands[{program.commands.index(source)}]" if source else "0.0"
+        side = str(program.side(station.channel))
         if part is ACTUATE:
-            source = program.source(number, station.channel)
-            raw = f"commands[{program.commands.index(source)}]" if source else "0.0"
-            side = str(program.side(station.channel))
             yield f"x = {site.call('channel', 'x', side, raw, 'memory', at, 'dt')}"
+        if part is PAUSE and type(effect).stage == MAPS:
+            yield f"x = {site.call('channel', 'Course(x, x, x)', side, raw, 'memory', at, '1.0')}.end"
         if part is PAUSE and type(effect).pause is not None:
             yield f"left = min(left, {site.call('pause', 'x', 'memory', at)})"

@@ -34,6 +34,7 @@ class Effect(Checked):
     facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # fact in a recording's notes -> the parameters it states
     starts: ClassVar[tuple[Mapping[str, float], ...]] = ()  # where a fit starts; empty: a tenth of each spread
     roles: ClassVar[Mapping[str, Role]] = {}  # signals its law takes as its third argument, each with a channel
+    stage: ClassVar[int] = 0  # those of a lower one come first in the program; else the order is that of the files
     rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
 
     filled: frozenset[str] = field(  # parameters by `completed`, which nobody stated
