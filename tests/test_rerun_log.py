@@ -1,6 +1,7 @@
 """Logs of runs: read back they are the recording, however they ended, and they open laid out."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,9 +12,10 @@ from boatsim.recordings.readers.rrd import last_time
 from boatsim.recordings.table import Recording, read, write_csv
 from boatsim.view import blueprint, rerun_log
 from boatsim.view.rerun_log import RunLog, log_overlay, norms_table
-from boatsim.view.scene import plain_scene, scene_from
+from boatsim.view.scene import Thruster, plain_scene, scene_from
 
-SCENE = plain_scene(1.2, 0.3, (1.5, 3.0, 0.0, 0.0))
+PORT = Thruster("port", -0.5, -0.19, "actual_thrust_port_N", "actual_steer_port_rad")
+SCENE = replace(plain_scene(1.2, 0.3, (1.5, 3.0, 0.0, 0.0)), thrusters=(PORT,))
 
 
 def circle(seconds: float = 10.0) -> Recording:
