@@ -204,7 +204,7 @@ def test_course_is_a_goal_and_north_is_no_wall(make: Callable[..., Any]) -> None
 @pytest.mark.parametrize("kind", [Sliding, MinimumVariance, Predictive, PolePlacement])
 def test_roll_reduction_without_a_roll_sensor_is_refused(kind: Any) -> None:
     assert fed(kind(), lambda k: 0.1, lambda k: nan, 3)  # a course keeper needs none
-    with pytest.raises(BadInput, match="roll sensor"):
+    with pytest.raises(BadInput, match="inclinometer"):
         fed(kind(roll_reduction=True), lambda k: 0.1, lambda k: nan, 1)
 
 
