@@ -6,10 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from boatsim.physics import vessel
 from boatsim.physics.base import Channel, Course, course, mean_of
 from boatsim.physics.effects.command_delay import CommandDelay
 from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.servo import Servo
+from boatsim.simulate.engine import Engine
 
 STEP = 0.1  # [s]
 SETTLED = 0.5  # [s] after which each of these has arrived
@@ -60,3 +62,19 @@ def test_a_signal_that_stands_still_is_its_own_mean_to_the_last_bit() -> None:
 def test_the_mean_of_a_course_is_the_one_it_was_made_with() -> None:
     for begin, mean, end in np.random.default_rng(4).uniform(-3.0, 3.0, (100, 3)).tolist():
         assert mean_of.py_func(course.py_func(begin, mean, end)) == pytest.approx(mean, abs=1e-14)
+
+
+def test_a_rate_limit_behind_a_lag_does_not_halt_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It ends no ramp while what it follows still moves: parts of a step that only ever halve would be thousands."""
+    boat = vessel.load("joystick_boat", extra=[{"use": "steering_rate_limit", "rate": 0.5}])
+    engine, parts, until_bend = Engine(boat, step=0.02), [], Engine(boat).code.until_bend
+
+    def counted(*given: Any) -> float:
+        parts.append(until_bend(*given))
+        return float(parts[-1])
+
+    monkeypatch.setattr(engine.code, "until_bend", counted)
+    engine.command({"steer_port_rad": 0.2})
+    engine.advance(100)
+    assert len(parts) <= 8 * 100
+    assert engine.actuators["steer_port_rad"] == pytest.approx(0.2, abs=1e-6)

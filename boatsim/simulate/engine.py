@@ -111,10 +111,12 @@ class Engine:
 
     def _advance(self, left: float) -> None:
         """One step of `left` s, cut where an actuator's signal jumps or bends."""
+        least = self.code.SHORTEST
         while left > 1e-9:
             dt = left
             if self.code.HAS_PAUSE:
-                dt = self.code.until_bend(self._commands, self._memory, left, self._values, self._on)
+                dt = self.code.until_bend(self._commands, self._memory, left, least, self._values, self._on)
+                least *= self.code.GROWS
             self.model.opt.timestep = dt
             self.code.actuate_in_place(self._commands, self._memory, dt, self._values, self._on, self._act)
             self._held[:-2] = self._act

@@ -28,7 +28,7 @@ from .motion import (
     slopes,
     step_in_place,
 )
-from .run import actuate_in_place, settle, until_bend
+from .run import GROWS, SHORTEST, actuate_in_place, settle, until_bend
 
 NY = 2 * NQ
 CALM = 3 * NQ
@@ -53,11 +53,13 @@ def predict(
     """
     h = times[i] - times[i - 1]
     longest = h / max(1, int(np.ceil(h / max_step - 1e-9)))
-    begin, done = times[i - 1] - lateness, 0.0
+    begin, done, least = times[i - 1] - lateness, 0.0, SHORTEST
     while h - done > 1e-9:
         while row + 1 < len(times) and times[row + 1] <= begin + done + 1e-9:
             row += 1
-        dt = until_bend(commands[row], memory, min(longest, h - done), p, on)
+        left = min(longest, h - done)
+        dt = until_bend(commands[row], memory, left, least, p, on)
+        least = GROWS * least if dt < left else SHORTEST
         if row + 1 < len(times):
             dt = min(dt, times[row + 1] - begin - done)
         actuate_in_place(commands[row], memory, dt, p, on, act)

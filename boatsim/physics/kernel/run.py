@@ -12,6 +12,7 @@ from .laws import HAS_PAUSE, HELD, actuate, pause
 from .motion import NQ, K, step_in_place
 
 SHORTEST = 1e-6  # [s] of a step; within one, a signal that jumps counts with its mean
+GROWS = 8.0  # by which each part of a step may be shorter less: a signal that follows a lag bends without end
 LONG = 1e4  # [s] longer than any actuator takes
 ENOUGH = 1e-9  # [s] a step is done
 
@@ -32,10 +33,10 @@ def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> Non
 
 
 @lean
-def until_bend(commands: Array, memory: Array, left: float, p: Array, on: Any) -> float:
-    """Length of the next step: no further than `left`, nor than where an actuator's signal jumps or bends."""
+def until_bend(commands: Array, memory: Array, left: float, least: float, p: Array, on: Any) -> float:
+    """Length of the next step: no further than `left`, nor, beyond `least`, than where a signal jumps or bends."""
     if HAS_PAUSE:
-        return min(left, max(pause(commands, memory, p, on), SHORTEST))
+        return min(left, max(pause(commands, memory, p, on), least))
     return left
 
 
@@ -50,9 +51,9 @@ def rollout(
     out[0] = y
     for i in range(commands.shape[0]):
         for j in range(substeps):
-            t, left = t0 + (i * substeps + j) * dt, dt
+            t, left, least = t0 + (i * substeps + j) * dt, dt, SHORTEST
             while left > ENOUGH:
-                part = until_bend(commands[i], memory, left, p, on)
+                part, least = until_bend(commands[i], memory, left, least, p, on), GROWS * least
                 actuate_in_place(commands[i], memory, part, p, on, act)
                 step_in_place(t, y, part, act, p, on, k, extra)
                 t, left = t + part, left - part
