@@ -39,6 +39,7 @@ from boatsim.physics.effects.current import Current
 from boatsim.physics.effects.damping import CubicDamping, DampingError, LinearDamping, QuadraticDamping
 from boatsim.physics.effects.drive_map import PwmThrust
 from boatsim.physics.effects.fan_wind import AIR_DENSITY, FanWind
+from boatsim.physics.effects.rate_limit import SteeringRateLimit
 from boatsim.physics.effects.righting_arm import RightingArm, RightingArmStiffening
 from boatsim.physics.effects.servo import Servo
 from boatsim.physics.effects.steering_offset import SteeringOffset
@@ -578,6 +579,16 @@ def test_servo_turns_at_its_rate_until_the_lag_takes_over() -> None:
 def test_servo_lag_alone_is_the_first_order_response() -> None:
     angles = positions(Servo(range=1.0, rate=1e3, lag=0.06), [0.5] * 20, 0.01)
     assert angles == pytest.approx(0.5 * (1.0 - np.exp(-0.01 * np.arange(21) / 0.06)), abs=1e-12)
+
+
+@pytest.mark.parametrize("limit", [SteeringRateLimit(rate=0.3), Servo(range=0.8, rate=0.3, lag=0.0)], ids=repr)
+def test_what_has_reached_its_command_asks_for_no_shorter_step(limit: Any) -> None:
+    for x in np.random.default_rng(0).uniform(-0.8, 0.8, 1000).tolist():
+        assert mean_of(Course(x, x, x)) == x
+        memory, values = np.zeros(1), limit.values()
+        for _ in range(2):  # the ramp in one step, then a rest
+            type(limit).channel(Course(x, x, x), 0.0, 0.0, memory, 0, 10.0, values)
+        assert type(limit).pause(x, memory, 0, values) == np.inf
 
 
 def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float]:
