@@ -111,7 +111,7 @@ def played(plan: Plan) -> tuple[Array, Array]:
 def recorded(name: str, boat: Boat, start: Array, commands: Array, rng: np.random.Generator) -> Recording:
     """What the camera sees of a boat under commands, with ambient force."""
     code, y, out = program().module, start.copy(), np.zeros((2, 6))
-    memory, act = np.zeros(program().memory_size), np.zeros(program().module.HELD)
+    memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
     code.settle(commands[0], memory, boat.values, boat.on, act)
     about = program().vessel.diagnosis
     rms = np.array([about.ambient[axis] for axis in axes_of(program().vessel)])
