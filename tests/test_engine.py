@@ -91,7 +91,7 @@ def test_engine_and_twin_agree_over_20_s_of_random_commands(name: str, loads: tu
     engine = sailed(Engine(boat), rows, 5)
     twin = Twin(boat).rollout(pose_and_rates(boat, START), rows, 0.1)
     assert engine.shape == twin.shape == (201, 2 * len(boat.freedoms))
-    assert np.ptp(engine, axis=0).min() > 0.01  # it did move
+    assert np.ptp(engine, axis=0).min() > 1e-3  # it did move, heave by some mm at least
     assert engine == pytest.approx(twin, rel=1e-10, abs=1e-10)
 
 

@@ -310,6 +310,8 @@ def test_json_has_the_fields_and_names_that_were_agreed(measure: str, pose: Call
         "controller": "l1_joystick",
         "seed": 0,
         "complete": True,
+        "steps": 0,
+        "saturated_steps": {},
     }
     assert tuple(content["norms"]) == tuple(type(run.scenario.measure).units)
     for norm in content["norms"].values():

@@ -210,4 +210,5 @@ def test_cross_flow_in_sway_and_yaw_together(v: float, r: float, centre: float) 
 @pytest.mark.parametrize(("v", "r"), [(0.3, 0.2), (-0.1, 0.4), (0.2, -0.5), (0.2, 0.0)])
 def test_cross_flow_by_many_stations_comes_to_the_integral(v: float, r: float) -> None:
     force = replace(HULL, stations=1000.0).wrench(motion(v=v, r=r))
-    assert (force.Y, force.N) == pytest.approx(strips(v, r), rel=3e-6, abs=1e-12)
+    # the law bends where the flow turns, inside a station: a few squares of a station's share of the length
+    assert (force.Y, force.N) == pytest.approx(strips(v, r), rel=5e-6, abs=1e-12)
