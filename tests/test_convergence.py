@@ -21,13 +21,13 @@ START = {"jet_ski": 15.0}  # [m/s] planing; others as their [manoeuvring] table 
 RANGE = {"throttle": (4.2, 7.0)}
 
 
-@cache
 def tried(name: str) -> Any:
     """The Otter misses both: 5.5e-5 m at 20 ms, orders 3.94, 3.83, 2.35; cause not found yet."""
     missed = pytest.mark.xfail(reason="5.5e-5 m at 20 ms, orders 3.94, 3.83, 2.35", strict=True)
     return pytest.param(name, marks=missed) if name == "otter" else name
 
 
+@cache
 def paths(name: str) -> dict[float, Array]:
     """States by step, over the same commands."""
     boat = vessel.load(name)
