@@ -157,7 +157,7 @@ def in_table(lines: Sequence[str], title: str, label: str) -> list[str]:
 def test_a_row_about_real_recordings_is_what_its_benchmark_prints(
     row: Row, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    if row.long and not LONG:
+    if (row.long or row.benchmark == "kvlcc2_marin_free") and not LONG:
         pytest.skip("takes many minutes; BOATSIM_README_LONG=1 asks for it")
     if row.benchmark not in (ROLL, THESIS) and not (common.RECORDINGS / row.benchmark).is_dir():
         pytest.skip("needs recordings beside the repository")
