@@ -119,8 +119,8 @@ REAL = (
     Row(ROLL, "middle third", "split", "middle third", (1, 2, 3)),
     Row(HSVA, "unseen 15/5 and 20/5", "fitted on eight runs", "heading [deg]", (1, 2, 3)),
     Row(HSVA, "position", "fitted on eight runs", "position [m]", (1, 2, 3)),
-    Row(MARIN, "35 deg turning circle", "fitted on", "yaw rate [deg/s]", (1, 2, 3)),
-    Row(MARIN, "speed", "fitted on", "speed [m/s]", (1, 2, 3)),
+    Row(MARIN, "35 deg turning circle", "fitted on", "yaw rate [deg/s]", (1, 2, 3), long=True),
+    Row(MARIN, "speed", "fitted on", "speed [m/s]", (1, 2, 3), long=True),
     Row(LAKE, "each of 12 runs", "each run left out", "all", (0, 1, 2), long=True),
     Row(LAKE, "dead reckoning", "each run left out", "all", (3, 4, 5), long=True),
     Row(THESIS, "published norms", "J, the rms", "all", (2, 3, 4), long=True),
@@ -157,7 +157,7 @@ def in_table(lines: Sequence[str], title: str, label: str) -> list[str]:
 def test_a_row_about_real_recordings_is_what_its_benchmark_prints(
     row: Row, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    if (row.long or row.benchmark == "kvlcc2_marin_free") and not LONG:
+    if row.long and not LONG:
         pytest.skip("takes many minutes; BOATSIM_README_LONG=1 asks for it")
     if row.benchmark not in (ROLL, THESIS) and not (common.RECORDINGS / row.benchmark).is_dir():
         pytest.skip("needs recordings beside the repository")
