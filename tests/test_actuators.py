@@ -11,6 +11,7 @@ from boatsim.physics.base import Channel, Course, course, mean_of
 from boatsim.physics.effects.command_delay import CommandDelay
 from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.servo import Servo
+from boatsim.physics.program import Program
 from boatsim.simulate.engine import Engine
 
 STEP = 0.1  # [s]
@@ -36,12 +37,13 @@ def parts(effect: Any, command: float, memory: Any, seconds: float) -> list[floa
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=lambda e: f"{e.name}_{getattr(e, 'lag', '')}")
 def test_an_actuator_that_has_arrived_asks_for_no_shorter_step(effect: Channel) -> None:
-    """Whatever the command: a last bit by which it were short of it would be a ramp for ever."""
-    memory = np.zeros(type(effect).slots)
+    """Whatever the command: a last bit by which it were short of it would be a ramp for ever. A lag is followed."""
+    memory, lag = np.zeros(type(effect).slots), getattr(effect, "lag", 0.0)
+    settled = [lag, STEP - lag] if lag else [STEP]
     for command in np.random.default_rng(1).uniform(-0.785, 0.785, 300).tolist():
         moving = parts(effect, command, memory, SETTLED)
-        assert len(moving) <= round(SETTLED / STEP) + 3  # a bend or two, and what a step leaves over
-        assert parts(effect, command, memory, 5 * STEP) == [STEP] * 5
+        assert len(moving) <= len(settled) * round(SETTLED / STEP) + 3  # a bend or two, and what a step leaves over
+        assert parts(effect, command, memory, 5 * STEP) == pytest.approx(settled * 5)
 
 
 @pytest.mark.parametrize("effect", EFFECTS[:2], ids=lambda e: e.name)
@@ -78,3 +80,25 @@ def test_a_rate_limit_behind_a_lag_does_not_halt_the_run(monkeypatch: pytest.Mon
     engine.advance(100)
     assert len(parts) <= 8 * 100
     assert engine.actuators["steer_port_rad"] == pytest.approx(0.2, abs=1e-6)
+
+
+@pytest.mark.parametrize("delay", [0.03, 0.105, 0.13, 0.17, 0.4301])
+def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: float) -> None:
+    """A ramp and a delay in one channel, three channels that change at different times: no arrival is stepped over."""
+    program = Program(vessel.load("jet_ski", ["low_speed"]), suspects=(CommandDelay(),))
+    values, on = program.values(), program.switches(["command_delay"])
+    values[program.index("command_delay", "delay")] = delay
+    rng, rows = np.random.default_rng(5), 100
+    held = {"throttle": np.ones(rows), "jet_rad": np.repeat(rng.uniform(-0.2, 0.2, rows // 5), 5)}
+    held["elevator_rad"] = np.repeat(rng.uniform(0.0, 0.9, rows // 4), 4)
+    commands, ends = np.column_stack([held[c] for c in program.vessel.commands]), []
+    code = program.module
+    for substeps in (1, 20):
+        memory, path = np.zeros(program.memory_size), np.zeros((rows + 1, 2 * code.NQ))
+        code.settle(commands[0], memory, values, on, np.zeros(3 * program.held_size))
+        code.rollout(
+            0.0, np.zeros(2 * code.NQ), commands, memory, STEP / substeps, substeps, np.array(program.body), values,
+            on, np.zeros(code.NQ), path,
+        )  # fmt: skip
+        ends.append(path[-1, : code.NQ])
+    assert ends[0] == pytest.approx(ends[1], abs=1e-4)  # [m], [rad]; an arrival missed by 10 ms moves it by 0.01

@@ -63,7 +63,7 @@ def sails_as_in_still_water(boat: Vessel) -> None:
     wanted = twin.rollout(start, rows, HELD, still)
     (begin,) = carried(twin.program, start[None], t[:1])
     found = twin.rollout(begin, rows, HELD, moving)
-    assert np.ptp(wanted, axis=0).min() > 1e-3  # it did move
+    assert np.ptp(wanted, axis=0).min() > 1e-5  # it did move, in heave by less than a millimetre
     assert carried(twin.program, found, t, -1.0) == pytest.approx(wanted, rel=0.0, abs=TOLERANCE)
 
 

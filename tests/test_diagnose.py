@@ -160,11 +160,11 @@ def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystic
     memory, act = np.zeros(joystick.memory_size), np.zeros(joystick.held_size)
     full, none = (joystick.command_array({"pwm_port": pwm}) for pwm in (150.0, 0.0))
     code.settle(full, memory, values, on, act)  # 0.617 N
-    assert code.until_bend(full, memory, 1.0, values, on) == pytest.approx(0.06)  # of the servos
+    assert code.until_bend(full, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(0.06)  # of the servos
     code.actuate_in_place(none, memory, 0.2, values, on, act)  # 0.4 N at 2 N/s
-    assert code.until_bend(none, memory, 1.0, values, on) == pytest.approx(0.06)
+    assert code.until_bend(none, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(0.06)
     code.actuate_in_place(none, memory, 0.1, values, on, act)  # 0.017 N are left
-    assert code.until_bend(none, memory, 1.0, values, on) == pytest.approx(0.017 / 2.0, abs=1e-5)
+    assert code.until_bend(none, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(0.017 / 2.0, abs=1e-5)
 
 
 def test_free_runs_start_every_horizon_and_leave_a_shorter_rest_out():

@@ -70,6 +70,7 @@ class Engine:
         self._commands = np.zeros(len(vessel.commands))
         self._memory = np.zeros(self.program.memory_size)
         self._act = np.zeros(self.program.held_size)
+        self._mean = np.zeros(len(vessel.actuators))  # of each actuator over the last step
         self._held = self.data.userdata[-self.program.held_size - 2 :]
         self.callback = self._choose(callback, size)
         self.reset()
@@ -89,6 +90,7 @@ class Engine:
     def settle(self) -> None:
         """Let the actuators reach their commands at once."""
         self.code.settle(self._commands, self._memory, self._values, self._on, self._act)
+        self._mean[:] = self._mean_of_part()
         self._write_userdata()
 
     def command(self, commands: Mapping[str, float]) -> None:
@@ -111,18 +113,25 @@ class Engine:
 
     def _advance(self, left: float) -> None:
         """One step of `left` s, cut where an actuator's signal jumps or bends."""
-        least = self.code.SHORTEST
+        least, before, whole = self.code.SHORTEST, 0.0, left
+        self._mean[:] = 0.0
         while left > 1e-9:
             dt = left
             if self.code.HAS_PAUSE:
                 dt = self.code.until_bend(self._commands, self._memory, left, least, self._values, self._on)
-                least *= self.code.GROWS
+                least, before = self.code.least_after(dt, before, least), dt
             self.model.opt.timestep = dt
             self.code.actuate_in_place(self._commands, self._memory, dt, self._values, self._on, self._act)
             self._held[:-2] = self._act
             self._held[-2:] = self.data.time, 1.0 / dt
             mujoco.mj_step(self.model, self.data)
+            self._mean += self._mean_of_part() * (dt / whole)
             left -= dt
+
+    def _mean_of_part(self) -> Array:
+        """(A,) mean of each actuator over what was stepped last."""
+        begin, middle, end = self._act.reshape(3, -1)[:, : len(self._mean)]
+        return np.asarray((begin + 4.0 * middle + end) / 6.0)
 
     def coast(self, steps: int) -> None:
         """Many steps inside MuJoCo's own loop with the actuators as they are: what benchmarks measure."""
@@ -142,8 +151,7 @@ class Engine:
     @property
     def actuators(self) -> dict[str, float]:
         """Mean of each actuator over the last step."""
-        begin, middle, end = self._act.reshape(3, -1)
-        return dict(zip(self.vessel.actuators, ((begin + 4.0 * middle + end) / 6.0).tolist(), strict=False))
+        return dict(zip(self.vessel.actuators, self._mean.tolist(), strict=True))
 
     @property
     def contacts(self) -> int:

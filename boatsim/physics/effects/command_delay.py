@@ -38,6 +38,8 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
         held = memory[at + 1 + 2 * i]
         older = age + memory[at + 2 + 2 * i]
         part = min(older, q.delay + dt) - max(age, q.delay)
+        if part >= dt - SAME:  # one command all the while: passed on to the last bit
+            return Course(held, held, held)
         if part > 0.0:
             total += part * held
             left -= part
@@ -47,6 +49,20 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
         i = i - 1 if i > 0 else HISTORY - 1
     mean = (total + left * held) / dt
     return Course(mean, mean, mean)
+
+
+@njit
+def passes(x: float, memory: Array, at: int, q: Any) -> float:
+    """The command that arrives now."""
+    if q.delay <= 0.0:
+        return x
+    i, age = int(memory[at]), 0.0
+    for _ in range(HISTORY):
+        age += memory[at + 2 + 2 * i]
+        if age >= q.delay - SAME:
+            break
+        i = i - 1 if i > 0 else HISTORY - 1
+    return float(memory[at + 1 + 2 * i])
 
 
 @njit
@@ -76,6 +92,7 @@ class CommandDelay(Channel):
     stage: ClassVar[int] = DELAYS
     channel: ClassVar = channel
     pause: ClassVar = pause
+    passes: ClassVar = passes
     starts: ClassVar = ({"delay": 0.1},)
 
     delay: float = param(0.0, low=0.0, high=1.6, unit="s", words="command to effect", fit=True, spread=0.5)

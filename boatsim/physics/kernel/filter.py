@@ -28,7 +28,7 @@ from .motion import (
     slopes,
     step_in_place,
 )
-from .run import GROWS, SHORTEST, actuate_in_place, settle, until_bend
+from .run import SHORTEST, actuate_in_place, least_after, settle, until_bend
 
 NY = 2 * NQ
 CALM = 3 * NQ
@@ -53,13 +53,13 @@ def predict(
     """
     h = times[i] - times[i - 1]
     longest = h / max(1, int(np.ceil(h / max_step - 1e-9)))
-    begin, done, least = times[i - 1] - lateness, 0.0, SHORTEST
+    begin, done, least, before = times[i - 1] - lateness, 0.0, SHORTEST, 0.0
     while h - done > 1e-9:
         while row + 1 < len(times) and times[row + 1] <= begin + done + 1e-9:
             row += 1
         left = min(longest, h - done)
         dt = until_bend(commands[row], memory, left, least, p, on)
-        least = GROWS * least if dt < left else SHORTEST
+        least, before = least_after(dt, before, least), dt
         if row + 1 < len(times):
             dt = min(dt, times[row + 1] - begin - done)
         actuate_in_place(commands[row], memory, dt, p, on, act)

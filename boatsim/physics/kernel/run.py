@@ -12,7 +12,7 @@ from .laws import HAS_PAUSE, HELD, actuate, pause
 from .motion import NQ, K, step_in_place
 
 SHORTEST = 1e-6  # [s] of a step; within one, a signal that jumps counts with its mean
-GROWS = 8.0  # by which each part of a step may be shorter less: a signal that follows a lag bends without end
+GROWS = 8.0  # by which parts of a step that only ever shrink may be shorter less: a ramp behind a lag ends without end
 LONG = 1e4  # [s] longer than any actuator takes
 ENOUGH = 1e-9  # [s] a step is done
 
@@ -40,6 +40,12 @@ def until_bend(commands: Array, memory: Array, left: float, least: float, p: Arr
     return left
 
 
+@lean
+def least_after(part: float, before: float, least: float) -> float:
+    """The least length of the next part of a step, after this one and the one before."""
+    return GROWS * least if part <= least or part < before else SHORTEST
+
+
 @compiled
 def rollout(
     t0: float, y: Array, commands: Array, memory: Array, dt: float, substeps: int, body: Array, p: Array, on: Any,
@@ -51,9 +57,10 @@ def rollout(
     out[0] = y
     for i in range(commands.shape[0]):
         for j in range(substeps):
-            t, left, least = t0 + (i * substeps + j) * dt, dt, SHORTEST
+            t, left, least, before = t0 + (i * substeps + j) * dt, dt, SHORTEST, 0.0
             while left > ENOUGH:
-                part, least = until_bend(commands[i], memory, left, least, p, on), GROWS * least
+                part = until_bend(commands[i], memory, left, least, p, on)
+                least, before = least_after(part, before, least), part
                 actuate_in_place(commands[i], memory, part, p, on, act)
                 step_in_place(t, y, part, act, p, on, k, extra)
                 t, left = t + part, left - part

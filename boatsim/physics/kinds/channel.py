@@ -33,6 +33,7 @@ def pausing(program: Composed) -> Sequence[Station]:
 
 MAPS = -2  # stage of what makes a signal out of a raw command, at once
 DELAYS = -1  # stage of what shifts a command in time: what follows sees it arrive, and it sees commands alone
+INSTANT = "1e-9"  # [s] of a signal that is asked for as it is now
 ACTUATE = Part("actuate", "commands, memory, dt, p, on, act, held", ("pass",), "", stations=actuators)
 PAUSE = Part("pause", "commands, memory, p, on", ("left = np.inf",), "left", stations=pausing)
 
@@ -44,15 +45,17 @@ class Channel(Kind):
     x is the signal so far over the step dt [s] that begins now; side -1 port, +1 starboard, 0 middle of what it
     drives; source the raw command of `fed_by` for it; memory[at:at + slots] this actuator's own memory.
     `pause(x, memory, at, values)`, where there is one, says for how many s the three points of a `Course` tell the
-    signal while its command x is held: until it jumps or bends (a delayed command arrives, a ramp ends), or over one
-    lag (`followed`). No step reaches beyond.
+    signal while x, what reaches it now, stands still: until it jumps or bends (a delayed command arrives, a ramp
+    ends), or over one lag (`followed`). No step reaches beyond. `passes(x, memory, at, values)` is what it passes on
+    now; without it the law is asked, and its memory put back.
     """
 
     parts: ClassVar = (ACTUATE, PAUSE)
-    laws: ClassVar[tuple[str, ...]] = ("channel", "pause")
+    laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes")
     acts_on: ClassVar[str] = "thrust"  # role of the signals it acts on where `on` names none; "": every actuator
     slots: ClassVar[int] = 0
     pause: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
+    passes: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
     channel: ClassVar[Callable[[Course, float, float, Array, int, float, Any], Course]]
 
     fed_by: Sequence[str] = field(default=(), kw_only=True)  # commands that feed the channels in `on`, one for each
@@ -74,7 +77,13 @@ class Channel(Kind):
         side = str(program.side(station.channel))
         if part is ACTUATE:
             yield f"x = {site.call('channel', 'x', side, raw, 'memory', at, 'dt')}"
-        if part is PAUSE and type(effect).stage == MAPS:
-            yield f"x = {site.call('channel', 'Course(x, x, x)', side, raw, 'memory', at, '1.0')}.end"
-        if part is PAUSE and type(effect).pause is not None:
-            yield f"left = min(left, {site.call('pause', 'x', 'memory', at)})"
+        if part is PAUSE:
+            if type(effect).pause is not None:
+                yield f"left = min(left, {site.call('pause', 'x', 'memory', at)})"
+            if type(effect).passes is not None:
+                yield f"x = {site.call('passes', 'x', 'memory', at)}"
+                return
+            slots = [f"memory[{at} + {i}]" for i in range(type(effect).slots)]
+            yield from (f"kept{i} = {slot}" for i, slot in enumerate(slots))
+            yield f"x = {site.call('channel', 'Course(x, x, x)', side, raw, 'memory', at, INSTANT)}.begin"
+            yield from (f"{slot} = kept{i}" for i, slot in enumerate(slots))
