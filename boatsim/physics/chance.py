@@ -35,14 +35,15 @@ def line(place: float, damping: float) -> tuple[float, float]:
 
 
 @njit
-def noise(t: float, frequency: float, damping: float, realisation: float, channel: int, count: int) -> float:
+def noise(t: float, frequency: float, damping: float, realisation: float, channel: float, count: float) -> float:
     """White noise through s / (s^2 + 2 z w0 s + w0^2) with unit variance, as a sum of `count` cosines.
 
-    One cosine by lot from each of as many equal parts of the line; channels are independent of each other.
+    One cosine by lot from each of as many equal parts of the line; channels are independent of each other. Whole
+    numbers as floats: numba would compile it anew for every integer that is written out.
     """
     total = 0.0
-    for k in range(count):
-        first = 2 * (channel * count + k)
+    for k in range(int(count)):
+        first = 2 * (int(channel) * int(count) + k)
         w, weight = line((k + drawn(realisation, first)) / count - 0.5, damping)
         total += sqrt(weight) * cos(frequency * w * t + 2.0 * pi * drawn(realisation, first + 1))
     return total * sqrt(2.0 / count)

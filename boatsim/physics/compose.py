@@ -64,6 +64,15 @@ class Composition:
         """Where a channel effect's memory of an actuator begins."""
         return self._memory[number, actuator]
 
+    def behind(self, number: int) -> Sequence[int]:
+        """The effects that come after one in the program."""
+        return self._order[self._order.index(number) + 1 :]
+
+    @cached_property
+    def _order(self) -> list[int]:
+        """Effects by stage, else as they stand."""
+        return sorted(range(len(self.effects)), key=lambda i: type(self.effects[i]).stage)
+
     @cached_property
     def memory_size(self) -> int:
         """Floats that all channels together remember."""
@@ -152,7 +161,8 @@ class Composition:
         body, busy = list(part.begin), False
         for station in part.stations(self):
             body += station.begin
-            for i, effect in sorted(enumerate(self.effects), key=lambda e: type(e[1]).stage):
+            for i in self._order:
+                effect = self.effects[i]
                 lines = [
                     line
                     for kind in everything

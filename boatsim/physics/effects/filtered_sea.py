@@ -13,13 +13,13 @@ from boatsim.physics.chance import course, noise
 def law(m: Any, q: Any) -> Wrench:
     """Channels that nothing pushes cost nothing."""
     Y = K = N = 0.0
-    w, z, number, count = q.frequency, q.damping, q.realisation, int(q.components)
+    w, z, number, count = q.frequency, q.damping, q.realisation, q.components
     if q.sway > 0.0:
-        Y = q.sway * noise(m.t, w, z, number, 0, count)
+        Y = q.sway * noise(m.t, w, z, number, 0.0, count)
     if q.roll > 0.0:
-        K = q.roll * noise(m.t, w, z, number, 1, count)
+        K = q.roll * noise(m.t, w, z, number, 1.0, count)
     if q.yaw > 0.0:
-        N = q.yaw * noise(m.t, w, z, number, 2, count)
+        N = q.yaw * noise(m.t, w, z, number, 2.0, count)
     return wrench(Y=Y, K=K + q.arm * Y, N=N)
 
 

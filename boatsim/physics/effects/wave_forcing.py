@@ -8,8 +8,8 @@ from numba import njit
 from boatsim.physics.base import Swell, Unsteady, Wrench, param, wrench
 from boatsim.physics.chance import course, noise
 
-WAVES = 64  # components of the realisation on each axis
-SURGE, SWAY, ROLL, YAW = 100, 101, 102, 103  # channels of the noise, beyond those of other effects
+WAVES = 64.0  # components of the realisation on each axis
+SURGE, SWAY, ROLL, YAW = 100.0, 101.0, 102.0, 103.0  # channels of the noise, beyond those of other effects
 
 
 @njit

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from boatsim.physics.kernel.compiling import merged
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 from boatsim.physics.signals import Array, Course
 
@@ -51,18 +52,24 @@ class Channel(Kind):
     """
 
     parts: ClassVar = (ACTUATE, PAUSE)
-    laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes")
+    laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes", "asked")
     acts_on: ClassVar[str] = "thrust"  # role of the signals it acts on where `on` names none; "": every actuator
     slots: ClassVar[int] = 0
     pause: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
     passes: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
     channel: ClassVar[Callable[[Course, float, float, Array, int, float, Any], Course]]
+    asked: ClassVar[Callable[[Course, float, float, Array, int, float, Any], Course]]  # the same, quick to compile
 
     fed_by: Sequence[str] = field(default=(), kw_only=True)  # commands that feed the channels in `on`, one for each
 
     def __post_init__(self) -> None:
         super().__post_init__()
         object.__setattr__(self, "fed_by", (self.fed_by,) if isinstance(self.fed_by, str) else tuple(self.fed_by))
+
+    def __init_subclass__(cls, **given: Any) -> None:
+        super().__init_subclass__(**given)
+        if "channel" in vars(cls):
+            cls.asked = merged(cls.channel.py_func)  # type: ignore[attr-defined]
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
@@ -80,10 +87,20 @@ class Channel(Kind):
         if part is PAUSE:
             if type(effect).pause is not None:
                 yield f"left = min(left, {site.call('pause', 'x', 'memory', at)})"
+            if not any(_asks(program, i, station.channel) for i in program.behind(number)):
+                return
             if type(effect).passes is not None:
                 yield f"x = {site.call('passes', 'x', 'memory', at)}"
                 return
             slots = [f"memory[{at} + {i}]" for i in range(type(effect).slots)]
             yield from (f"kept{i} = {slot}" for i, slot in enumerate(slots))
-            yield f"x = {site.call('channel', 'Course(x, x, x)', side, raw, 'memory', at, INSTANT)}.begin"
+            yield f"x = {site.call('asked', 'Course(x, x, x)', side, raw, 'memory', at, INSTANT)}.begin"
             yield from (f"{slot} = kept{i}" for i, slot in enumerate(slots))
+
+
+def _asks(program: Composed, number: int, actuator: str) -> bool:
+    """Whether an effect of the program is a channel with a `pause` on an actuator."""
+    effect = program.effects[number]
+    if not isinstance(effect, Channel) or type(effect).pause is None:
+        return False
+    return actuator in program.targets(number)

@@ -192,6 +192,9 @@ class Composed(Protocol):
     def memory(self, number: int, actuator: str) -> int:
         """Where a channel effect's memory of an actuator begins."""
 
+    def behind(self, number: int) -> Sequence[int]:
+        """The effects that come after one in the program."""
+
 
 def once(program: Composed) -> Sequence[Station]:
     """One station: the body of a plain sum."""
