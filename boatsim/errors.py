@@ -19,7 +19,7 @@ class BadPhysics(BoatsimError):
 def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:
     """Line for a name that does not exist: the nearest valid one, then all of them."""
     names = sorted(allowed)
-    ends = {name.rpartition("/")[2]: name for name in reversed(names)}  # sway_1 stands for joystick_boat/sway_1 too
+    ends = {name.rpartition("/")[2]: name for name in reversed(names)}  # a case stands for vessel/case too
     near = get_close_matches(found, names, n=1, cutoff=0.5) or get_close_matches(found, ends, n=1, cutoff=0.5)
     near = [ends.get(n, n) for n in near]
     hint = f"; did you mean {near[0]!r}?" if near else ""

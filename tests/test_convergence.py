@@ -1,7 +1,6 @@
 """Under changing commands the integration keeps its fourth order, whatever lags and rates the actuators have."""
 
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,12 +18,6 @@ ROWS = 50  # 20 s of commands drawn by lot
 BENDS = {"kvlcc2_mmg": "the wake and the flow at the rudder differ by the side the water comes from"}
 START = {"jet_ski": 15.0}  # [m/s] planing; others as their [manoeuvring] table says, or from rest
 RANGE = {"throttle": (4.2, 7.0)}
-
-
-def tried(name: str) -> Any:
-    """The Otter misses both: 5.5e-5 m at 20 ms, orders 3.94, 3.83, 2.35; cause not found yet."""
-    missed = pytest.mark.xfail(reason="5.5e-5 m at 20 ms, orders 3.94, 3.83, 2.35", strict=True)
-    return pytest.param(name, marks=missed) if name == "otter" else name
 
 
 @cache
@@ -52,12 +45,12 @@ def errors(name: str) -> Array:
     return np.array([np.abs(found[step] - found[FINE])[:, :n].max() for step in STEPS])
 
 
-@pytest.mark.parametrize("name", [tried(n) for n in content.names("vessel")])
+@pytest.mark.parametrize("name", content.names("vessel"))
 def test_twenty_milliseconds_are_exact_to_a_hundredth_of_a_millimetre(name: str) -> None:
     assert errors(name)[STEPS.index(0.02)] < 1e-5
 
 
-@pytest.mark.parametrize("name", [tried(n) for n in content.names("vessel") if n not in BENDS])
+@pytest.mark.parametrize("name", [n for n in content.names("vessel") if n not in BENDS])
 def test_halving_the_step_divides_the_error_by_sixteen(name: str) -> None:
     found = errors(name)
     size = max(1.0, float(np.abs(paths(name)[FINE]).max()))

@@ -313,7 +313,7 @@ def refuse(self, name, *a, **k):
     load(self, name, *a, **k)
 ctypes.CDLL.__init__ = refuse
 from boatsim.simulate import env
-boat = env.load()
+boat = env.load("joystick_boat/sway_1")
 boat.reset()
 print(boat.step(boat.action_spec().generate_value()).mid())
 """

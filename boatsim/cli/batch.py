@@ -106,7 +106,7 @@ def plan(names: Sequence[str], out: Path | None, seed: int | None, live: bool) -
 
 
 def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
-    """DIR for one scenario, DIR/joystick_boat/sway_1 for each of several; out/joystick_boat/sway_1 without a DIR."""
+    """DIR for one scenario, DIR/vessel/case for each of several; out/vessel/case without a DIR."""
     if out and len(names) == 1:
         return [out]
     if len(set(names)) < len(names):

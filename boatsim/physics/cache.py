@@ -28,12 +28,8 @@ from boatsim.physics.kinds.effect import Effect
 PACKAGE = Path(__file__).parents[1]
 KERNEL = PACKAGE / "physics" / "kernel"
 WRITTEN = ("laws.py", "motion.py")  # generated in place of the kernel's files of these names
-LEFT_OUT = (
-    "algebra.py",
-    "compiling.py",
-    "equations.py",
-    "source.py",
-)  # write or compile programs, and are no part of one
+SHARED = ("compiling.py", "correction.py", "matrices.py")  # imported by every program, and compiled once for all
+LEFT_OUT = ("algebra.py", "equations.py", "source.py", *SHARED)  # the first three write programs
 EXPORTS = '''"""A vessel's program, composed by boatsim; not meant to be edited."""
 
 from .callback import *
@@ -69,7 +65,7 @@ def stamp_of(files: dict[str, str], classes: Iterable[type[Effect]]) -> str:
         digest.update(f"{name}\n{text}".encode())
     for kind in kinds:
         digest.update(f"{kind.__module__}\n".encode())  # tells a user's own file from what it was before an edit
-    sources = {getsourcefile(kind) for kind in kinds} | {str(KERNEL / "compiling.py")}
+    sources = {getsourcefile(kind) for kind in kinds} | {str(KERNEL / name) for name in SHARED}
     for path in sorted({file for source in sources if source for file in reach(Path(source))}):
         digest.update(content(path))
     digest.update(f"{numba.__version__} {sys.version}".encode())

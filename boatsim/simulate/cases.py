@@ -37,7 +37,7 @@ class Place:
 
     @property
     def name(self) -> str:
-        """joystick_boat/sway_1 for shipped scenarios, the case or the file's stem for a user's own."""
+        """vessel/case for shipped scenarios, the case or the file's stem for a user's own."""
         own, folder = self.case or self.path.stem, root() / "scenarios"
         inside = self.path.is_relative_to(folder)
         return str(self.path.parent.relative_to(folder) / own) if inside else own

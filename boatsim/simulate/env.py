@@ -185,7 +185,7 @@ class BoatTask(control.Task):
 
 
 def load(
-    scenario: str | Scenario = "joystick_boat/sway_1",
+    scenario: str | Scenario,
     *,
     seed: int | None = None,
     scatter: float = 0.0,

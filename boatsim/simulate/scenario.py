@@ -165,7 +165,7 @@ class Scenario:
 
 
 def load(name: str, overrides: Mapping[str, Any] | None = None) -> Scenario:
-    """A scenario by name ("joystick_boat/sway_1") or path ("my.toml", "my.toml:case").
+    """A scenario by name ("vessel/case") or path ("my.toml", "my.toml:case").
 
     `overrides` replace top-level keys, for tests and studies.
     Raises BadInput, one line naming file, key, value found, what is allowed and the nearest valid name.

@@ -8,6 +8,7 @@ from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, course, mean_of, param, preset
 
+SAME = 1e-9  # of a ramp: what is left of it before zero is nothing
 NEVER = 1e6  # [1/s] nothing is that quick: the command is followed at once
 INSTANT = 2.0  # [rad/s] 115 deg/s; a steering that turns faster follows its command at once
 
@@ -28,9 +29,12 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
 
 @njit(inline="always")
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """Until the ramp ends."""
-    gap = abs(x - memory[at])
-    return gap / q.rate if gap > 0.0 and q.rate < q.instant else inf
+    """Until the ramp ends, and no further than until it passes zero, where laws of thrust bend."""
+    y = memory[at]
+    gap = abs(x - y)
+    if gap == 0.0 or q.rate >= q.instant:
+        return inf
+    return (abs(y) if x * y < 0.0 and abs(y) > SAME * gap else gap) / q.rate
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Thrust lag: motor and propeller take time to follow the command."""
 
 from dataclasses import dataclass
-from math import exp
+from math import exp, inf, log
 from typing import Any, ClassVar
 
 from numba import njit
@@ -9,6 +9,7 @@ from numba import njit
 from boatsim.physics.base import Array, Channel, Course, course, followed, param
 
 NONE = 1e-4  # [s] a shorter lag is none
+SAME = 1e-9  # of a command: what is left of the other way round is nothing
 
 
 @njit(inline="always")
@@ -32,8 +33,12 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
 
 @njit(inline="always")
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """As far as its course is followed."""
-    return followed(q.time_constant if q.time_constant >= NONE else 0.0)
+    """As far as its course is followed, and no further than until the thrust reverses, where laws of thrust bend."""
+    if q.time_constant < NONE:
+        return inf
+    y = memory[at]
+    reverses = q.time_constant * log((x - y) / x) if x * y < 0.0 and abs(y) > SAME * abs(x) else inf
+    return min(followed(q.time_constant), reverses)
 
 
 @dataclass(frozen=True)

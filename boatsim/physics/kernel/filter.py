@@ -5,12 +5,14 @@ an oscillating force and its rate per axis. Measured channels are coded: 0 .. NQ
 body-axes rate. Measurements are taken one at a time, so any of them may be missing (nan).
 """
 
-from math import cos, exp, log, sin, sqrt
+from math import cos, exp, sin, sqrt
 from typing import Any
 
 import numpy as np
 
 from boatsim.physics.kernel.compiling import compiled, lean
+from boatsim.physics.kernel.correction import take
+from boatsim.physics.kernel.matrices import carry, copy, copy_square, exponential, multiply, solve
 from boatsim.physics.signals import Array, Swell
 
 from .inertia import constants
@@ -30,14 +32,9 @@ from .motion import (
 )
 from .run import SHORTEST, actuate_in_place, least_after, settle, until_bend
 
-NY = 2 * NQ
-CALM = 3 * NQ
-NZ = CALM + (2 * NQ if HAS_SWELL else 0)
-# [sd] a measurement further off is taken for an outlier: its pull falls with its distance, its penalty grows with the
-# logarithm (as of a Cauchy distribution), neither with a jump at which a fit would get stuck
-GATE = 5.0
-IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has lost track and must follow
-SMALLEST = 2.0**-40  # share of a sample over which a transition begins; a hull stiffer than that has gone wild
+# not plain integers: those count as types, and what is called with several would be compiled for each
+NY, CALM = np.int64(2 * NQ), np.int64(3 * NQ)
+NZ = np.int64(CALM + (2 * NQ if HAS_SWELL else 0))
 INVERT = 10  # rounds of the inversion of what the instruments show, which is never far from the truth
 
 
@@ -80,27 +77,7 @@ def transition(
         A[i, NQ + i] = 1.0
     slopes(t, z, act, p, on, k, force, A[NQ:NY])
     force_slopes(z, k, A, NQ, NY)
-    # exp(A h) to third order of so small a part of h that it converges for a stiff hull too, then squared up again;
-    # only the rows of the rates and, above them, their own integrals are not trivial
-    part, stiffest = h, 0.0
-    for i in range(NQ, NY):
-        stiffest = max(stiffest, abs(A[i, i]))
-    while part * stiffest > 1.0 and part > SMALLEST * h:
-        part *= 0.5
-    for i in range(NY):
-        for j in range(CALM):
-            A[i, j] *= part
-    n = np.int64(CALM)
-    multiply(A, A, B, n)
-    multiply(B, A, F, n)
-    for i in range(CALM):
-        for j in range(CALM):
-            F[i, j] = A[i, j] + 0.5 * B[i, j] + F[i, j] / 6.0
-        F[i, i] += 1.0
-    while part < 0.75 * h:
-        multiply(F, F, B, n)
-        copy_square(B, F, n)
-        part *= 2.0
+    exponential(A, h, F, B, CALM)
 
 
 @lean
@@ -150,46 +127,6 @@ def diffuse(h: float, n: int, sigma: Array, tau: float, s: Swell, P: Array) -> N
 
 
 @lean
-def copy(source: Array, out: Array) -> None:
-    """Fill a vector from the beginning of another. Assigning slices would take numba seconds to compile."""
-    for i in range(len(out)):
-        out[i] = source[i]
-
-
-@lean
-def copy_square(source: Array, out: Array, n: int) -> None:
-    """Fill the first n rows and columns of a matrix from those of another."""
-    for i in range(n):
-        for j in range(n):
-            out[i, j] = source[i, j]
-
-
-@lean
-def multiply(A: Array, B: Array, out: Array, n: int) -> None:
-    """Out = A B for the filter's small matrices, most of A's rows zero: faster here than a library call."""
-    for i in range(n):
-        for j in range(n):
-            out[i, j] = 0.0
-        for k in range(n):
-            x = A[i, k]
-            if x != 0.0:
-                for j in range(n):
-                    out[i, j] += x * B[k, j]
-
-
-@lean
-def carry(F: Array, P: Array, work: Array, n: int) -> None:
-    """P = F P F', symmetric, in place."""
-    multiply(F, P, work, n)
-    for i in range(n):
-        for j in range(i + 1):
-            x = 0.0
-            for k in range(n):
-                x += work[i, k] * F[j, k]
-            P[i, j] = P[j, i] = x
-
-
-@lean
 def shows(y: Array, code: int, p: Array, on: Any) -> float:
     """What the recording shows of one channel in a state y (2 NQ,)."""
     return float(shown(moved(y), p, on)[SHOWS[code]])
@@ -225,23 +162,6 @@ def undistorted(z: Array, p: Array, on: Any) -> None:
 
 
 @lean
-def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int) -> float:
-    """Gain (n,) of one measurement and P row' (n,), in place; returns the inverse sd of its prediction error."""
-    variance = noise
-    for a in range(n):
-        Ph[a] = 0.0
-    for b in range(NY):
-        if row[b] != 0.0:
-            for a in range(n):
-                Ph[a] += P[a, b] * row[b]
-    for b in range(NY):
-        variance += row[b] * Ph[b]
-    for a in range(n):
-        gain[a] = Ph[a] / variance
-    return float(1.0 / sqrt(variance))
-
-
-@lean
 def begin(z0: Array, P0: Array, n: int, s: Swell, z: Array, P: Array) -> None:
     """State and covariance of the first row, the swell anywhere in its cycle."""
     for a in range(CALM):
@@ -254,34 +174,41 @@ def begin(z0: Array, P0: Array, n: int, s: Swell, z: Array, P: Array) -> None:
 
 
 @lean
-def take(
-    error: float, row: Array, noise: float, full: bool, outliers: Array, z: Array, P: Array, Ph: Array, n: int,
-    gain: Array, scale: Array, white: Array,
-) -> float:  # fmt: skip
-    """Correct z by one measurement, and P if `full`; returns what it adds to the log likelihood.
+def felt(z: Array, h: float, s: Swell, n: int, y: Array, force: Array) -> None:
+    """The motion y (2 NQ,) in a state, and the mean of its latent forces over the next h seconds."""
+    copy(z, y)
+    for a in range(NQ):
+        force[a] = z[NY + a]
+    if n > CALM:
+        _, _, _, _, mean1, mean2 = oscillation(h, s)
+        for a in range(NQ):
+            force[a] += mean1 * z[CALM + 2 * a] + mean2 * z[CALM + 2 * a + 1]
 
-    Of `outliers`, `scale` and `white` the first entry belongs to the measurement's channel.
-    """
-    likelihood = 0.0
-    if full:
-        scale[0] = weigh(P, row, noise, gain, Ph, n)
-        likelihood += log(scale[0])
-        far = abs(error) * scale[0] > GATE and outliers[0] < IN_A_ROW
-        outliers[0] = outliers[0] + 1.0 if far else 0.0
-        if far:
-            share = GATE / (abs(error) * scale[0])
-            likelihood += GATE * GATE * log(share)
-            scale[0] *= share
-            for a in range(n):
-                gain[a] *= share * share
-    white[0] = error * scale[0]
-    for a in range(n):
-        z[a] += gain[a] * error
-    if full:
-        for a in range(n):
-            for b in range(n):
-                P[a, b] -= gain[a] * Ph[b]
-    return float(likelihood - 0.5 * white[0] ** 2)
+
+@lean
+def spread(
+    F: Array, h: float, tau: float, s: Swell, n: int, sigma: Array, P: Array, work: Array,
+) -> None:  # fmt: skip
+    """Carry P over h; F comes as the transition of motion and lasting forces, and leaves with that of all forces."""
+    for a in range(NY, CALM):
+        F[a, a] = exp(-h / tau)
+    if n > CALM:
+        add_swell(h, s, F)
+    carry(F, P, work, n)
+    diffuse(h, n, sigma, tau, s, P)
+
+
+@lean
+def arrived(y: Array, h: float, tau: float, s: Swell, n: int, z: Array) -> None:
+    """The state h later, its motion now y: lasting forces decay, the swell goes on in its cycle."""
+    for a in range(NY):
+        z[a] = y[a]
+    for a in range(NY, CALM):
+        z[a] *= exp(-h / tau)
+    if n > CALM:
+        f11, f12, f21, f22, _, _ = oscillation(h, s)
+        for a in range(CALM, n, 2):
+            z[a], z[a + 1] = f11 * z[a] + f12 * z[a + 1], f21 * z[a] + f22 * z[a + 1]
 
 
 @compiled
@@ -306,7 +233,6 @@ def kalman(
     undistorted(z, p, on)
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
     y, force, Ph = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
-    f11, f12, f21, f22, mean1, mean2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     likelihood, outliers = 0.0, np.zeros(measured.shape[1])
     held = np.int64(0)  # a plain 0 would have `predict` compiled twice
     if keep:
@@ -315,15 +241,7 @@ def kalman(
         copy_square(P, covariances[0], NZ)
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
-        decay = exp(-h / tau)
-        for a in range(NY):
-            y[a] = z[a]
-        for a in range(NQ):
-            force[a] = z[NY + a]
-        if n > CALM:
-            f11, f12, f21, f22, mean1, mean2 = oscillation(h, s)
-            for a in range(NQ):
-                force[a] += mean1 * z[CALM + 2 * a] + mean2 * z[CALM + 2 * a + 1]
+        felt(z, h, s, n, y, force)
         held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, force, act)
         if full:  # linearised about the state before, with the actuators of this interval
             if fresh:
@@ -331,18 +249,8 @@ def kalman(
                 copy_square(F, linear[i], CALM)
             else:
                 copy_square(linear[i], F, CALM)
-            for a in range(NY, CALM):
-                F[a, a] = decay
-            if n > CALM:
-                add_swell(h, s, F)
-            carry(F, P, work2, n)
-            diffuse(h, n, sigma, tau, s, P)
-        for a in range(NY):
-            z[a] = y[a]
-        for a in range(NY, CALM):
-            z[a] *= decay
-        for a in range(CALM, n, 2):
-            z[a], z[a + 1] = f11 * z[a] + f12 * z[a + 1], f21 * z[a] + f22 * z[a + 1]
+            spread(F, h, tau, s, n, sigma, P, work2)
+        arrived(y, h, tau, s, n, z)
         if keep:
             copy(z, predicted[i])
             copy_square(F, transitions[i], NZ)
@@ -352,7 +260,7 @@ def kalman(
                 continue
             error = measured[i, c] - observe(z, codes[c], row, p, on)
             likelihood += take(
-                error, row, noise[c], full, outliers[c:], z, P, Ph, n, gains[i, c], scale[i, c:], white[i, c:]
+                error, row, noise[c], full, outliers[c:], z, P, Ph, n, NY, gains[i, c], scale[i, c:], white[i, c:]
             )
         if keep:
             copy(z, means[i])
@@ -390,27 +298,6 @@ def smooth(
             for k in range(n):
                 means[i, j] += G[j, k] * off[k]
                 covariances[i, j, k] += ahead[j, k]
-
-
-@lean
-def solve(A: Array, B: Array, n: int) -> None:
-    """B = A^-1 B in place for a symmetric positive definite A (n, n), which is overwritten by its Cholesky factor."""
-    for j in range(n):
-        for k in range(j):
-            for i in range(j, n):
-                A[i, j] -= A[i, k] * A[j, k]
-        root = sqrt(max(A[j, j], 1e-300))
-        for i in range(j, n):
-            A[i, j] /= root
-    for c in range(n):
-        for i in range(n):
-            for k in range(i):
-                B[i, c] -= A[i, k] * B[k, c]
-            B[i, c] /= A[i, i]
-        for i in range(n - 1, -1, -1):
-            for k in range(i + 1, n):
-                B[i, c] -= A[k, i] * B[k, c]
-            B[i, c] /= A[i, i]
 
 
 @compiled

@@ -1,0 +1,95 @@
+"""Small dense matrices inside compiled code, in place; compiled once for all vessels, which differ in the size n."""
+
+from math import sqrt
+
+from boatsim.physics.kernel.compiling import lean
+from boatsim.physics.signals import Array
+
+SMALLEST = 2.0**-40  # share of a step over which an exponential begins; a matrix stiffer than that has gone wild
+
+
+@lean
+def copy(source: Array, out: Array) -> None:
+    """Fill a vector from the beginning of another. Assigning slices would take numba seconds to compile."""
+    for i in range(len(out)):
+        out[i] = source[i]
+
+
+@lean
+def copy_square(source: Array, out: Array, n: int) -> None:
+    """Fill the first n rows and columns of a matrix from those of another."""
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = source[i, j]
+
+
+@lean
+def multiply(A: Array, B: Array, out: Array, n: int) -> None:
+    """Out = A B, most of A's rows zero: faster here than a library call."""
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = 0.0
+        for k in range(n):
+            x = A[i, k]
+            if x != 0.0:
+                for j in range(n):
+                    out[i, j] += x * B[k, j]
+
+
+@lean
+def carry(F: Array, P: Array, work: Array, n: int) -> None:
+    """P = F P F', symmetric, in place."""
+    multiply(F, P, work, n)
+    for i in range(n):
+        for j in range(i + 1):
+            x = 0.0
+            for k in range(n):
+                x += work[i, k] * F[j, k]
+            P[i, j] = P[j, i] = x
+
+
+@lean
+def exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
+    """F = exp(A h); A and B are overwritten.
+
+    To third order of so small a part of h that it converges for a stiff hull too, then squared up again.
+    """
+    part, stiffest = h, 0.0
+    for i in range(n):
+        stiffest = max(stiffest, abs(A[i, i]))
+    while part * stiffest > 1.0 and part > SMALLEST * h:
+        part *= 0.5
+    for i in range(n):
+        for j in range(n):
+            A[i, j] *= part
+    multiply(A, A, B, n)
+    multiply(B, A, F, n)
+    for i in range(n):
+        for j in range(n):
+            F[i, j] = A[i, j] + 0.5 * B[i, j] + F[i, j] / 6.0
+        F[i, i] += 1.0
+    while part < 0.75 * h:
+        multiply(F, F, B, n)
+        copy_square(B, F, n)
+        part *= 2.0
+
+
+@lean
+def solve(A: Array, B: Array, n: int) -> None:
+    """B = A^-1 B in place for a symmetric positive definite A (n, n), which is overwritten by its Cholesky factor."""
+    for j in range(n):
+        for k in range(j):
+            for i in range(j, n):
+                A[i, j] -= A[i, k] * A[j, k]
+        root = sqrt(max(A[j, j], 1e-300))
+        for i in range(j, n):
+            A[i, j] /= root
+    for c in range(n):
+        for i in range(n):
+            for k in range(i):
+                B[i, c] -= A[i, k] * B[k, c]
+            B[i, c] /= A[i, i]
+        for i in range(n - 1, -1, -1):
+            for k in range(i + 1, n):
+                B[i, c] -= A[k, i] * B[k, c]
+            B[i, c] /= A[i, i]
