@@ -143,7 +143,7 @@ class Composition:
         yield "import numpy as np"
         yield ""
         yield "from boatsim.physics.compose import classes_of"
-        yield "from boatsim.physics.kernel.compiling import inlined, merged"
+        yield "from boatsim.physics.kernel.compiling import inlined, merged, shared"
         yield "from boatsim.physics.signals import Course, Swell, Wrench"
         yield ""
         yield f"E = classes_of({[address(type(e)) for e in self.effects]!r})"
@@ -154,7 +154,7 @@ class Composition:
                 yield f"S{i} = E[{i}].signals_type()"
             for law in dict.fromkeys(law for kind in type(effect).__mro__ for law in getattr(kind, "laws", ())):
                 if f"{law}{i}" in used:
-                    yield f"{law}{i} = E[{i}].{law}"
+                    yield f"{law}{i} = shared(E[{i}].{law})"
 
     def _body(self, part: Part, everything: Sequence[type[Kind]]) -> tuple[list[str], bool]:
         """Lines of a part, and whether any effect adds to it."""

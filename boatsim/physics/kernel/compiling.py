@@ -1,5 +1,8 @@
 """The ways in which numba compiles a vessel's program; all divide as IEEE does instead of raising errors."""
 
+from functools import cache
+from typing import Any
+
 from numba import njit
 
 # Called by people or from several functions, kept on disk.
@@ -11,3 +14,9 @@ lean = njit(error_model="numpy", cache=True, _nrt=False)
 inlined = njit(error_model="numpy", inline="always")
 # A large part of many functions: analysed once, and inlined by LLVM, which takes out of loops what does not change.
 merged = njit(error_model="numpy", forceinline=True, _nrt=False)
+
+
+@cache
+def shared(law: Any) -> Any:
+    """An effect's law for programs to call: analysed once in a process however many call it, and inlined by LLVM."""
+    return merged(law.py_func)

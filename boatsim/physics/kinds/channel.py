@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from boatsim.physics.kernel.compiling import merged
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 from boatsim.physics.signals import Array, Course
 
@@ -52,24 +51,18 @@ class Channel(Kind):
     """
 
     parts: ClassVar = (ACTUATE, PAUSE)
-    laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes", "asked")
+    laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes")
     acts_on: ClassVar[str] = "thrust"  # role of the signals it acts on where `on` names none; "": every actuator
     slots: ClassVar[int] = 0
     pause: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
     passes: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
     channel: ClassVar[Callable[[Course, float, float, Array, int, float, Any], Course]]
-    asked: ClassVar[Callable[[Course, float, float, Array, int, float, Any], Course]]  # the same, quick to compile
 
     fed_by: Sequence[str] = field(default=(), kw_only=True)  # commands that feed the channels in `on`, one for each
 
     def __post_init__(self) -> None:
         super().__post_init__()
         object.__setattr__(self, "fed_by", (self.fed_by,) if isinstance(self.fed_by, str) else tuple(self.fed_by))
-
-    def __init_subclass__(cls, **given: Any) -> None:
-        super().__init_subclass__(**given)
-        if "channel" in vars(cls):
-            cls.asked = merged(cls.channel.py_func)  # type: ignore[attr-defined]
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
@@ -94,7 +87,7 @@ class Channel(Kind):
                 return
             slots = [f"memory[{at} + {i}]" for i in range(type(effect).slots)]
             yield from (f"kept{i} = {slot}" for i, slot in enumerate(slots))
-            yield f"x = {site.call('asked', 'Course(x, x, x)', side, raw, 'memory', at, INSTANT)}.begin"
+            yield f"x = {site.call('channel', 'Course(x, x, x)', side, raw, 'memory', at, INSTANT)}.begin"
             yield from (f"{slot} = kept{i}" for i, slot in enumerate(slots))
 
 
