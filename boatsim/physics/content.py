@@ -145,7 +145,7 @@ def module_of(kind: str, name: str) -> ModuleType:
     return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{name}")
 
 
-def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
+def load_class(kind: str, name: str, beside: Path | None = None) -> type[Any]:
     """The class of an effect, measure or controller: CamelCase of its file's name. Raises BadInput where not found."""
     if kind in PACKAGES and name in names(kind):
         module = module_of(kind, name)
@@ -160,16 +160,16 @@ def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
         shipped = path.parent == root() / KINDS["controller"]
         name = path.stem
         module = module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path)
-    found = getattr(module, camel_case(name), None)
+    found: type[Any] | None = getattr(module, camel_case(name), None)
     if found is None:
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
     return found
 
 
-def address(effect: Any) -> str:
+def address(effect: type) -> str:
     """What an effect class is found by from anywhere: its name if it is on the shelf, else the path of its file."""
     if effect.__module__.startswith("boatsim.physics.effects."):
-        return str(effect.idea())
+        return snake_case(effect.__name__)
     return str(Path(sys.modules[effect.__module__].__file__ or "").resolve())
 
 
