@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import read_toml
+from boatsim.files import read_toml, tables
 
 PACKAGES = {  # kinds that are modules of ours, one a file
     "kind": "physics.kinds",
@@ -101,7 +101,7 @@ def _scenarios() -> dict[str, Path]:
 @cache
 def _cases(path: Path, _stamp: int) -> tuple[str, ...]:
     """Names of the cases in a scenario file, as long as it is the same file."""
-    return tuple(str(case.get("name")) for case in read_toml(path).get("case", []))
+    return tuple(str(case.get("name")) for case in tables(read_toml(path).get("case")))
 
 
 def module_at(path: Path, name: str) -> ModuleType:
