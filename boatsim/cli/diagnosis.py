@@ -5,7 +5,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Notes, Recording, write_csv
 from boatsim.simulate import scenario as scenarios
 from boatsim.view.outputs import filling
+
+if TYPE_CHECKING:
+    from boatsim.view.scene import Scene
 
 FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
 
@@ -118,7 +121,7 @@ def overlay(found: Diagnosis, path: Path) -> None:
         rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
 
 
-def _water_around(boat: Vessel, path: Recording | None = None) -> Any:
+def _water_around(boat: Vessel, path: Recording | None = None) -> "Scene":
     """Scene of a boat in open water that reaches one and a half boat lengths beyond where it went."""
     from boatsim.simulate import world
     from boatsim.view.scene import scene_from
@@ -223,7 +226,7 @@ def _of_scenario(recording: Recording, name: str) -> dict[str, Array]:
     return {n: np.interp(recording.t, log.t, log.signals[n], right=np.nan) for n in shared}
 
 
-def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Any], path: Path) -> None:
+def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Array], path: Path) -> None:
     from boatsim.view import rerun_log
 
     measured = Recording("recording", recording.t, {n: recording.signals[n] for n in simulated})
