@@ -17,6 +17,7 @@ from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import page as report
 from boatsim.diagnose.report import patch, show
+from boatsim.diagnose.report.entries import Family
 from boatsim.diagnose.report.findings import FreeRun
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.files import replacing
@@ -85,11 +86,12 @@ def summary(found: Diagnosis) -> list[str]:
         lines += [f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()]
     fit = answer["fit"]
     lines.append(f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):")
-    for key, unit, scale in (
-        ("position_rms_m", "m", 1.0), ("heading_rms_rad", "deg", 57.29578), ("roll_rms_rad", "deg", 57.29578),
-    ):  # fmt: skip
-        if fit.get(key):
-            cells = ", ".join(f"{m} {fit[key][m] * scale:.4g}" for m in show.MODELS)
+    families: dict[Family, tuple[str, float]] = {
+        "position_rms_m": ("m", 1.0), "heading_rms_rad": ("deg", 57.29578), "roll_rms_rad": ("deg", 57.29578),
+    }  # fmt: skip
+    for key, (unit, scale) in families.items():
+        if rms := fit.get(key):
+            cells = ", ".join(f"{m} {rms[m] * scale:.4g}" for m in show.MODELS)
             lines.append(f"  {key.split('_')[0]} rms [{unit}]: {cells}")
     if wanted := answer["next_experiment"]:
         names, nats = ", ".join(wanted["separates"]), wanted["expected_gain_nats"]
