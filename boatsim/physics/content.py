@@ -160,7 +160,7 @@ def load_class(kind: str, name: str, beside: Path | None = None) -> type[Any]:
         shipped = path.parent == root() / KINDS["controller"]
         name = path.stem
         module = module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path)
-    found: type[Any] | None = getattr(module, camel_case(name), None)
+    found: type | None = getattr(module, camel_case(name), None)
     if found is None:
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
     return found
