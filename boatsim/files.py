@@ -2,14 +2,18 @@
 
 import os
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from datetime import date, time
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeAlias, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from boatsim.errors import BadInput, unknown_name
+
+# What TOML and JSON say, as tomllib and json read it; a point in time is a date
+Value: TypeAlias = "None | str | bool | int | float | date | time | Sequence[Value] | Mapping[str, Value]"
 
 
 class Table(BaseModel):
@@ -21,7 +25,7 @@ class Table(BaseModel):
 T = TypeVar("T", bound=Table)
 
 
-def read_toml(path: Path) -> dict[str, Any]:
+def read_toml(path: Path) -> dict[str, Value]:
     """Raw content; raises BadInput with the parser's own line and column."""
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
@@ -31,12 +35,17 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise BadInput(f"{path.name}: not a TOML file ({error})".replace("\n", " ")) from None
 
 
-def checked(model: type[T], data: dict[str, Any], file: str) -> T:
+def checked(model: type[T], data: Mapping[str, object], file: str) -> T:
     """`data` as `model`; raises BadInput naming file, key, value found, what is allowed and the nearest valid key."""
     try:
         return model.model_validate(data)
     except ValidationError as error:
         raise BadInput(f"{file}: {_line(model, error)}") from None
+
+
+def tables(value: object) -> list[dict[str, Value]]:
+    """The tables of what may be a list of them: [[effect]], [[case]]."""
+    return [table for table in value if isinstance(table, dict)] if isinstance(value, list) else []
 
 
 def _line(model: type[BaseModel], error: ValidationError) -> str:

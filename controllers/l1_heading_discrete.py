@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, exp, nan, radians
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from boatsim.control.adaptive import DiscreteFilter, SampledChannel, held
+from boatsim.control.adaptive import Complex, DiscreteFilter, SampledChannel, held
 from boatsim.control.base import Controller, Estimate, Sense, clip, wrap
 from boatsim.physics.base import param
 
@@ -122,7 +122,7 @@ class L1HeadingDiscrete(Controller):
         share = [cos(2.0 * beta) for beta in (before, 0.5 * (before + self._elevator), self._elevator)]
         return self.jet_gain * share[1] if min(map(abs, share)) >= self.least_share else 0.0
 
-    def _law(self, z: Any) -> tuple[Any, Any]:
+    def _law(self, z: Complex) -> tuple[Complex, Complex]:
         """What the controller answers to heading and yaw rate; eq. 18, 19 give r_hat = (f22 r + g2 u) / z."""
         h = self.filter().at(z) if self.wave_filter else 1.0
         c = self.low_pass().at(z) if self.adaptive else 0.0

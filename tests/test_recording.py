@@ -292,6 +292,12 @@ def test_a_bad_recording_toml_gets_one_line(tmp_path, text, said):
     assert said in str(caught.value) and "\n" not in str(caught.value)
 
 
+def test_the_one_axis_of_an_ambient_force_needs_no_list(tmp_path):
+    path = file(tmp_path, HEADER + "".join(lines()))
+    file(tmp_path, "ambient = {axes = 'yaw', force_rms = [0.5]}", "recording.toml")
+    assert read(path).notes.ambient == {"axes": ["yaw"], "force_rms": [0.5]}
+
+
 CELL = st.one_of(
     st.floats().map(repr), st.integers().map(str), st.text(max_size=6), st.sampled_from(["", "nan", "1e999"])
 )

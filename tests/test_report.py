@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from boatsim.diagnose.report import page as report
+from boatsim.diagnose.report.entries import Answer, IntervalEntry
 from boatsim.diagnose.report.figures import closer, thinned, ticks
 from boatsim.diagnose.report.findings import Findings, FreeRun, Missing
 from boatsim.diagnose.report.sections import sections_of
@@ -31,6 +32,26 @@ MODELS = ("nominal", "recalibrated", "patched")
 
 def planar() -> Findings:
     """A twin-motor boat whose propellers are weak astern, with a look-alike."""
+    missing, intervals = planar_missing()
+    answer = planar_answer(intervals)
+    answer["sentence"] = report.sentence(answer)
+    words = {
+        "weak_reverse": "the propellers push less astern than commanded",
+        "prop_walk": "a propeller pushes sideways as well, mostly astern",
+        "thrust_gain_error": "all thrust is stronger or weaker than stated by one factor",
+        "wind": "a steady wind pushes the hull in one direction of the world",
+        "weak_reverse.astern_factor": "astern thrust per commanded thrust",
+    }
+    return Findings(
+        answer, "trial_boat", ("run_1", "run_2"), ("run_3",), "the last run, run_3", tuple(missing), planar_runs(),
+        ("The boat never went astern for longer than 6 s.",),
+        {"linear_damping.surge": (1.034, 0.021), "thrust": (0.987, 0.018)},
+        (("Runs", ["run", "seconds"], [["run_1", "80.0"], ["run_2", "80.0"]]),), words,
+    )  # fmt: skip
+
+
+def planar_missing() -> tuple[list[Missing], list[IntervalEntry]]:
+    """Missing force of two runs, most of it while the thrust is astern, and where surge and yaw are flagged."""
     rng = np.random.default_rng(1)
     t = np.arange(0.0, 80.0, 1 / 6)
     astern = np.sin(0.35 * t) > 0.2
@@ -48,7 +69,12 @@ def planar() -> Findings:
                 {"run": run, "from_s": float(t[a]), "to_s": float(t[b - 1]), "axis": axis}
                 for a, b in zip(edges[::2], edges[1::2], strict=True)
             ]
-    answer = {
+    return missing, intervals
+
+
+def planar_answer(intervals: list[IntervalEntry]) -> Answer:
+    """Its diagnosis.json, without the sentence."""
+    return {
         "verdict": "ambiguous", "sentence": "", "seconds": 1.37, "version": "0.1.0",
         "effects": [{
             "name": "weak_reverse", "kind": "physics", "probability": 0.873, "gain_nats": 63.4,
@@ -83,20 +109,6 @@ def planar() -> Findings:
                             "separates": ["weak_reverse", "prop_walk"], "expected_gain_nats": 9.63},
         "patch": "patched.toml",
     }  # fmt: skip
-    answer["sentence"] = report.sentence(answer)
-    words = {
-        "weak_reverse": "the propellers push less astern than commanded",
-        "prop_walk": "a propeller pushes sideways as well, mostly astern",
-        "thrust_gain_error": "all thrust is stronger or weaker than stated by one factor",
-        "wind": "a steady wind pushes the hull in one direction of the world",
-        "weak_reverse.astern_factor": "astern thrust per commanded thrust",
-    }
-    return Findings(
-        answer, "trial_boat", ("run_1", "run_2"), ("run_3",), "the last run, run_3", tuple(missing), planar_runs(),
-        ("The boat never went astern for longer than 6 s.",),
-        {"linear_damping.surge": (1.034, 0.021), "thrust": (0.987, 0.018)},
-        (("Runs", ["run", "seconds"], [["run_1", "80.0"], ["run_2", "80.0"]]),), words,
-    )  # fmt: skip
 
 
 def planar_runs() -> tuple[FreeRun, ...]:

@@ -203,6 +203,7 @@ def test_a_bad_binding_is_one_line(tmp_path: Path, text: str, message: str) -> N
     [
         ({"loads": ["ladden"]}, r"test_boat/vessel\.toml: load 'ladden' does not exist; did you mean 'laden'"),
         ({"settings": {"curent": {}}}, "table to change 'curent' does not exist; did you mean 'current'"),
+        ({"settings": {"current": 1.0}}, "test_boat/vessel.toml: current = 1.0; allowed is a table of its values"),
         ({"settings": {"current": {"nort": 1.0}}}, "Current: setting 'nort' does not exist; did you mean 'north'"),
         ({"settings": {"current": {"north": 9.0}}}, r"Current\.north = 9 m/s; allowed -5 to 5 m/s"),
         ({"settings": {"body": {"mas": 9.0}}}, r"key in \[body\] 'mas' does not exist; did you mean 'mass'"),

@@ -1,20 +1,22 @@
 """Runs scenarios one after another or in processes of their own, with a progress bar and one exit code for all."""
 
 import signal
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
+from multiprocessing.sharedctypes import SynchronizedArray
+from multiprocessing.synchronize import Event
 from pathlib import Path
-from typing import Any
 
 from boatsim.cli import show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput
 from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.cases import meant
+from boatsim.simulate.norms import RunEntry
 from boatsim.simulate.scenario import Scenario
 
 POLL = 0.1  # [s] between two looks at the processes
@@ -39,7 +41,7 @@ class Outcome:
     """What became of a task."""
 
     task: Task
-    content: dict[str, Any] | None = None  # of norms.json; None: there are no files
+    content: RunEntry | None = None  # of norms.json; None: there are no files
     error: str | None = None
 
     @property
@@ -84,7 +86,7 @@ def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
     return Exit.MET if content["complete"] else Exit.INTERRUPTED
 
 
-def warn_of_limits(content: Mapping[str, Any]) -> None:
+def warn_of_limits(content: RunEntry) -> None:
     """One line if a channel was sent more than it takes."""
     if found := content["saturated_steps"]:
         where = ", ".join(f"{name} in {count}" for name, count in found.items())
@@ -154,7 +156,9 @@ def _in_processes(tasks: Sequence[Task], jobs: int, report: Report) -> list[Outc
                 stop.set()
 
 
-def _watch(futures: Sequence[Future[Outcome]], tasks: Sequence[Task], reached: Any, report: Report) -> None:
+def _watch(
+    futures: Sequence[Future[Outcome]], tasks: Sequence[Task], reached: "SynchronizedArray[float]", report: Report
+) -> None:
     """Report until all are done."""
     waiting = True
     while waiting:
@@ -170,7 +174,7 @@ def _result(task: Task, future: Future[Outcome]) -> Outcome:
         return Outcome(task, error=f"{task.name}: its process was killed (out of memory?)")
 
 
-def _begin(stop: Any, reached: Any) -> None:
+def _begin(stop: Event, reached: "SynchronizedArray[float]") -> None:
     """First thing in a new process: what it shares with the one that watches."""
     global _stop, _reached
     _stop, _reached = stop, reached
@@ -187,8 +191,8 @@ def _work(number: int, task: Task) -> Outcome:
     return Outcome(task) if _stop.is_set() else carry_out(task, progress)
 
 
-_stop: Any = None
-_reached: Any = None
+_stop: Event
+_reached: "SynchronizedArray[float]"
 
 
 @contextmanager

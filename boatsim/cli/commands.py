@@ -19,11 +19,13 @@ UsageError: Any = typer.BadParameter.__base__  # of all mistakes on the command 
 class OneLine(TyperGroup):
     """The program as a whole: a mistake on its command line is one line too, and no arguments ask for help."""
 
-    def main(self, args: Sequence[str] | None = None, *_: Any, **options: Any) -> NoReturn:
+    def main(
+        self, args: Sequence[str] | None = None, prog_name: str | None = None, *_: object, **__: object
+    ) -> NoReturn:
         """Run the program and leave with its exit code."""
         given = list(sys.argv[1:] if args is None else args)
         try:
-            code = super().main(given or ["--help"], **{**options, "standalone_mode": False})
+            code = super().main(given or ["--help"], prog_name, standalone_mode=False)
         except UsageError as error:
             asked = error.ctx.command_path if error.ctx else "boatsim"
             complain(f"{' '.join(error.format_message().split()).rstrip('.')}; see {asked} --help")
@@ -227,6 +229,6 @@ def _loads(given: list[str] | None) -> list[str]:
     return [name.strip() for text in given or [] for name in text.split(",") if name.strip()]
 
 
-def main() -> Any:
+def main() -> None:
     """Entry point of the program; leaves with its exit code."""
-    return app()
+    app()

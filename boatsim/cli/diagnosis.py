@@ -5,7 +5,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import page as report
 from boatsim.diagnose.report import patch, show
+from boatsim.diagnose.report.entries import Family
 from boatsim.diagnose.report.findings import FreeRun
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.files import replacing
@@ -25,6 +26,9 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Notes, Recording, write_csv
 from boatsim.simulate import scenario as scenarios
 from boatsim.view.outputs import filling
+
+if TYPE_CHECKING:
+    from boatsim.view.scene import Scene
 
 FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
 
@@ -82,11 +86,12 @@ def summary(found: Diagnosis) -> list[str]:
         lines += [f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()]
     fit = answer["fit"]
     lines.append(f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):")
-    for key, unit, scale in (
-        ("position_rms_m", "m", 1.0), ("heading_rms_rad", "deg", 57.29578), ("roll_rms_rad", "deg", 57.29578),
-    ):  # fmt: skip
-        if fit.get(key):
-            cells = ", ".join(f"{m} {fit[key][m] * scale:.4g}" for m in show.MODELS)
+    families: dict[Family, tuple[str, float]] = {
+        "position_rms_m": ("m", 1.0), "heading_rms_rad": ("deg", 57.29578), "roll_rms_rad": ("deg", 57.29578),
+    }  # fmt: skip
+    for key, (unit, scale) in families.items():
+        if rms := fit.get(key):
+            cells = ", ".join(f"{m} {rms[m] * scale:.4g}" for m in show.MODELS)
             lines.append(f"  {key.split('_')[0]} rms [{unit}]: {cells}")
     if wanted := answer["next_experiment"]:
         names, nats = ", ".join(wanted["separates"]), wanted["expected_gain_nats"]
@@ -118,7 +123,7 @@ def overlay(found: Diagnosis, path: Path) -> None:
         rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
 
 
-def _water_around(boat: Vessel, path: Recording | None = None) -> Any:
+def _water_around(boat: Vessel, path: Recording | None = None) -> "Scene":
     """Scene of a boat in open water that reaches one and a half boat lengths beyond where it went."""
     from boatsim.simulate import world
     from boatsim.view.scene import scene_from
@@ -223,7 +228,7 @@ def _of_scenario(recording: Recording, name: str) -> dict[str, Array]:
     return {n: np.interp(recording.t, log.t, log.signals[n], right=np.nan) for n in shared}
 
 
-def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Any], path: Path) -> None:
+def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Array], path: Path) -> None:
     from boatsim.view import rerun_log
 
     measured = Recording("recording", recording.t, {n: recording.signals[n] for n in simulated})

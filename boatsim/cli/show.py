@@ -4,11 +4,14 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from boatsim.files import read_toml
 from boatsim.physics import content
 from boatsim.simulate import cases
+
+if TYPE_CHECKING:
+    from boatsim.simulate.norms import NormEntry, RunEntry
 
 
 @contextmanager
@@ -25,7 +28,7 @@ def progress(tasks: Sequence[tuple[str, float]]) -> Iterator[Callable[[int, floa
         yield lambda number, t: bars.update(rows[number], completed=t)
 
 
-def norms(found: dict[str, Any], folder: Path) -> None:
+def norms(found: "RunEntry", folder: Path) -> None:
     """Table norm, value, published, whether it is the same, guard, met, from the content of norms.json."""
     from rich.console import Console
     from rich.table import Table
@@ -45,7 +48,7 @@ def norms(found: dict[str, Any], folder: Path) -> None:
         table.add_column(heading, no_wrap=True)
     for name, norm in found["norms"].items():
         published = "" if norm["published"] is None else f"{norm['published']:.4g}"
-        verdict = short.get(norm["verdict"], "")
+        verdict = short.get(norm["verdict"] or "", "")
         table.add_row(name, _value(norm), published, verdict, _guard(norm["guard"]), _met(norm["ok"]))
     console = Console()
     if found["norms"]:
@@ -55,7 +58,7 @@ def norms(found: dict[str, Any], folder: Path) -> None:
     console.print(Text(f"written to {folder}"), soft_wrap=True)
 
 
-def _value(norm: dict[str, Any]) -> str:
+def _value(norm: "NormEntry") -> str:
     value = norm["value"]
     return "not reached" if value is None or not isfinite(value) else f"{value:.4g} {norm['unit']}".rstrip()
 

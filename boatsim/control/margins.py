@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from math import degrees
-from typing import Any
 
 from boatsim.control.adaptive import LoopChannel, SampledChannel, l1_condition, loop_margins
 from boatsim.errors import BadInput
@@ -26,7 +25,7 @@ class Row:
     stable: bool
 
 
-def table(controller: Any) -> list[Row]:
+def table(controller: object) -> list[Row]:
     """Rows of a controller (an object with `loop_channels`), three input gains for each channel. Raises BadInput."""
     describe = getattr(controller, "loop_channels", None)
     if describe is None:

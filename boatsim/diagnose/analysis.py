@@ -4,7 +4,6 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -72,13 +71,15 @@ def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple
     return in_one_frame(steered(read(path, found.limits(), found.columns).used(), found)), found
 
 
-def suspects_of(vessel: Vessel, library: Sequence[str], facts: Mapping[str, Any] | None = None) -> tuple[Effect, ...]:
+def suspects_of(
+    vessel: Vessel, library: Sequence[str], facts: Mapping[str, object] | None = None
+) -> tuple[Effect, ...]:
     """Entries there are: the vessel's list and --library, less what the vessel already has.
 
     One that needs a fact nobody states (where walls are) is left out; `facts` are a recording's. The vessel's own list
     may name files beside it, --library files from the working directory. Raises BadInput.
     """
-    known = {**vessel.diagnosis.facts, **(facts or {})}
+    known: dict[str, object] = {**vessel.diagnosis.facts, **(facts or {})}
     found: dict[str, Effect] = {}
     for entry, folder in [*((s, vessel.path) for s in vessel.diagnosis.suspects), *((n, Path()) for n in library)]:
         table = {"use": entry} if isinstance(entry, str) else entry
@@ -114,11 +115,11 @@ def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
 
 
 def absent(
-    kind: type[Effect], facts: Mapping[str, Any] | None = None, given: Mapping[str, Any] | None = None
+    kind: type[Effect], facts: Mapping[str, object] | None = None, given: Mapping[str, object] | None = None
 ) -> Effect:
     """An entry at the values at which it does nothing, with what stated facts and its own table say of it."""
     named = ((names, (facts or {})[fact]) for fact, names in kind.facts.items() if fact in (facts or {}))
-    told = {n: float(x) for names, values in named for n, x in zip(names, values, strict=True)}
+    told = {n: float(x) for names, values in named for n, x in zip(names, np.array(values, dtype=float), strict=True)}
     return kind.from_settings(told | {n: p.absent for n, p in kind.params().items() if p.fit} | dict(given or {}))
 
 

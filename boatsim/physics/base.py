@@ -9,7 +9,7 @@ from math import cos, sin
 
 from boatsim.physics.content import snake_case
 from boatsim.physics.kinds.channel import Channel
-from boatsim.physics.kinds.effect import Effect, Role
+from boatsim.physics.kinds.effect import Boat, Effect, Role
 from boatsim.physics.kinds.flow import Flow
 from boatsim.physics.kinds.force import Force
 from boatsim.physics.kinds.inertia import Inertia
@@ -36,9 +36,10 @@ from boatsim.physics.signals import (
 )
 
 __all__ = [
-    "AXES", "UNSET", "Array", "Change", "Channel", "Checked", "Course", "Effect", "Flow", "Force", "Inertia", "Mass",
-    "Measurement", "Motion", "Param", "Reaction", "Release", "Role", "Shown", "Swell", "Unsteady", "Wrench", "course",
-    "factor", "followed", "mass", "mean_of", "motion", "number", "param", "preset", "shift", "snake_case", "wrench",
+    "AXES", "UNSET", "Array", "Boat", "Change", "Channel", "Checked", "Course", "Effect", "Flow", "Force", "Inertia",
+    "Mass", "Measurement", "Motion", "Param", "Reaction", "Release", "Role", "Shown", "Swell", "Unsteady", "Wrench",
+    "course", "factor", "followed", "mass", "mean_of", "motion", "number", "param", "preset", "shift", "snake_case",
+    "wrench",
 ]  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import read_toml
+from boatsim.files import read_toml, tables
 
 PACKAGES = {  # kinds that are modules of ours, one a file
     "kind": "physics.kinds",
@@ -101,7 +101,7 @@ def _scenarios() -> dict[str, Path]:
 @cache
 def _cases(path: Path, _stamp: int) -> tuple[str, ...]:
     """Names of the cases in a scenario file, as long as it is the same file."""
-    return tuple(str(case.get("name")) for case in read_toml(path).get("case", []))
+    return tuple(str(case.get("name")) for case in tables(read_toml(path).get("case")))
 
 
 def module_at(path: Path, name: str) -> ModuleType:
@@ -145,7 +145,7 @@ def module_of(kind: str, name: str) -> ModuleType:
     return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{name}")
 
 
-def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
+def load_class(kind: str, name: str, beside: Path | None = None) -> type[Any]:
     """The class of an effect, measure or controller: CamelCase of its file's name. Raises BadInput where not found."""
     if kind in PACKAGES and name in names(kind):
         module = module_of(kind, name)
@@ -160,16 +160,16 @@ def load_class(kind: str, name: str, beside: Path | None = None) -> Any:
         shipped = path.parent == root() / KINDS["controller"]
         name = path.stem
         module = module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path)
-    found = getattr(module, camel_case(name), None)
+    found: type | None = getattr(module, camel_case(name), None)
     if found is None:
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
     return found
 
 
-def address(effect: Any) -> str:
+def address(effect: type) -> str:
     """What an effect class is found by from anywhere: its name if it is on the shelf, else the path of its file."""
     if effect.__module__.startswith("boatsim.physics.effects."):
-        return str(effect.idea())
+        return snake_case(effect.__name__)
     return str(Path(sys.modules[effect.__module__].__file__ or "").resolve())
 
 

@@ -3,10 +3,11 @@
 import math
 from collections.abc import Mapping
 from dataclasses import field, fields
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self, TypeVar
 
 from boatsim.errors import BadInput, unknown_name
 
+N = TypeVar("N", bound=float)  # int or float
 UNSET = math.nan  # a parameter that nobody stated: filled in on a vessel by `follows` or `Effect.rules`, else 0
 
 
@@ -28,7 +29,7 @@ class Param(NamedTuple):
 
 
 def param(
-    nominal: float,
+    nominal: N,
     *,
     low: float,
     high: float,
@@ -42,7 +43,7 @@ def param(
     follows: str = "",
     releases: tuple[str, ...] = (),
     how: str = "sets",
-) -> Any:
+) -> N:
     """Dataclass field of a checked number; `nominal` may be UNSET.
 
     `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter.
@@ -51,7 +52,9 @@ def param(
     return field(default=nominal, metadata={"param": about})
 
 
-def factor(*releases: str, words: str, spread: float = 0.4, axis: str = "", low: float = 0.1, high: float = 5.0) -> Any:
+def factor(
+    *releases: str, words: str, spread: float = 0.4, axis: str = "", low: float = 0.1, high: float = 5.0
+) -> float:
     """Field of a `Release`: numbers of the vessel that may be off by one factor."""
     return param(
         1.0, low=low, high=high, unit="", words=words, fit=True, spread=spread, axis=axis, absent=1.0,
@@ -59,7 +62,7 @@ def factor(*releases: str, words: str, spread: float = 0.4, axis: str = "", low:
     )  # fmt: skip
 
 
-def shift(*releases: str, words: str, unit: str, spread: float, low: float, high: float, axis: str = "") -> Any:
+def shift(*releases: str, words: str, unit: str, spread: float, low: float, high: float, axis: str = "") -> float:
     """Field of a `Release`: numbers of the vessel that may be off by one addend."""
     return param(
         0.0, low=low, high=high, unit=unit, words=words, fit=True, spread=spread, axis=axis, releases=releases,
@@ -69,7 +72,7 @@ def shift(*releases: str, words: str, unit: str, spread: float, low: float, high
 
 def number(
     *releases: str, words: str, unit: str, spread: float, low: float, high: float, absent: float, axis: str = ""
-) -> Any:
+) -> float:
     """Field of a `Release`: a number of the vessel that is not what is stated, but this; `absent` is the stated one."""
     return param(
         absent, low=low, high=high, unit=unit, words=words, fit=True, spread=spread, axis=axis, absent=absent,
@@ -86,7 +89,7 @@ class Checked:
         return {f.name: f.metadata["param"] for f in fields(cls) if "param" in f.metadata}  # type: ignore[arg-type]
 
     @classmethod
-    def from_settings(cls, settings: Mapping[str, Any]) -> Self:
+    def from_settings(cls, settings: Mapping[str, object]) -> Self:
         """Build from a file's table; raises BadInput with the nearest valid name for a setting that does not exist."""
         names = [f.name for f in fields(cls) if f.init and "ours" not in f.metadata]  # type: ignore[arg-type]
         for key in settings:

@@ -4,16 +4,17 @@ Numba knows no defaults of named tuples, and a small compiled function in their 
 call. A constructor is therefore made known to numba by its signature alone.
 """
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
 
+from llvmlite import ir
 from numba import types
 from numba.core import utils
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.core.base import BaseContext
+from numba.core.typing.templates import AbstractTemplate, Signature, infer_global, signature
 from numba.extending import lower_builtin
 
 
-def known_to_numba(constructor: Callable[..., Any], record: type) -> None:
+def known_to_numba(constructor: Callable[..., object], record: type) -> None:
     """Compile calls of a Python function that fills the fields of a named tuple of floats, each 0 or 1 by default."""
     python = utils.pysignature(constructor)
     defaults = {name: float(about.default) for name, about in python.parameters.items()}
@@ -21,7 +22,7 @@ def known_to_numba(constructor: Callable[..., Any], record: type) -> None:
     class Constructor(AbstractTemplate):
         """Typing of one call: what is left out is its default."""
 
-        def generic(self, args: Any, kws: Any) -> Any:
+        def generic(self, args: Sequence[types.Type], kws: Mapping[str, types.Type]) -> Signature:
             given = python.bind(*args, **kws).arguments
             full = [given.get(name, types.Omitted(value)) for name, value in defaults.items()]
             made = types.BaseTuple.from_types([types.float64] * len(full), record)
@@ -30,7 +31,7 @@ def known_to_numba(constructor: Callable[..., Any], record: type) -> None:
     infer_global(constructor)(Constructor)
 
     @lower_builtin(constructor, types.VarArg(types.Any))
-    def build(context: Any, builder: Any, call: Any, args: Any) -> Any:
+    def build(context: BaseContext, builder: ir.IRBuilder, call: Signature, args: Sequence[ir.Value]) -> ir.Value:
         items = [
             context.get_constant(types.float64, float(kind.value))
             if isinstance(kind, types.Omitted)

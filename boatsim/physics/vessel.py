@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field, PositiveFloat
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import Table, checked, read_toml
+from boatsim.files import Table, checked, read_toml, tables
 from boatsim.physics.content import find, load_class
 from boatsim.physics.kernel.equations import tilts
 from boatsim.physics.kinds.channel import Channel
@@ -46,7 +46,7 @@ class CommandChannel(Table):
 class DiagnosisTable(Table):
     """What a diagnosis may assume of this vessel before it has seen data."""
 
-    suspects: list[str | dict[str, Any]] = []  # names, or tables with use, on and a name as in [[effect]]
+    suspects: list[str | dict[str, object]] = []  # names, or tables with use, on and a name as in [[effect]]
     ambient: dict[
         Freedom, PositiveFloat
     ] = {}  # tolerated unmodelled force per axis (surge, sway, roll, yaw), rms [N, N m]
@@ -87,8 +87,8 @@ class VesselFile(Table):
     marks: dict[str, tuple[float, float]] = {}  # [m] ahead and to starboard of the CG: what a camera above follows
     channels: dict[str, CommandChannel] = {}
     columns: dict[str, str] = {}  # our name -> the column of this vessel's recordings, "-" in front flips the sign
-    effect: list[dict[str, Any]] = []
-    loads: dict[str, dict[str, Any]] = {}
+    effect: list[dict[str, object]] = []
+    loads: dict[str, dict[str, object]] = {}
     diagnosis: DiagnosisTable = DiagnosisTable()
     manoeuvring: ManoeuvringTable = ManoeuvringTable()
 
@@ -213,8 +213,8 @@ class Vessel:
 def load(
     name: str,
     loads: Sequence[str] = (),
-    settings: Mapping[str, Mapping[str, Any]] | None = None,
-    extra: Sequence[Mapping[str, Any]] = (),
+    settings: Mapping[str, Mapping[str, object]] | None = None,
+    extra: Sequence[Mapping[str, object]] = (),
     beside: Path | None = None,
 ) -> Vessel:
     """A vessel by name or path, in the given loads, with `settings` of its own effects and `extra` effects on top.
@@ -224,7 +224,7 @@ def load(
     path = find("vessel", name, beside)
     called = path.parent.name if path.name == "vessel.toml" else path.stem
     label = f"{path.parent.name}/{path.name}"
-    raw = read_toml(path)
+    raw: Mapping[str, object] = read_toml(path)
     known = checked(VesselFile, raw, label).loads
     for one in loads:
         if one not in known:
@@ -268,7 +268,7 @@ def _check_channels(channels: Mapping[str, CommandChannel], label: str) -> None:
             raise BadInput(f"{label}: channels.{name}: {what}; allowed {c.low:g} to {c.high:g}")
 
 
-def _called(table: Mapping[str, Any]) -> str:
+def _called(table: Mapping[str, object]) -> str:
     """Name of the instance that an [[effect]] table makes."""
     return str(table.get("name", table.get("use")))
 
@@ -321,7 +321,9 @@ def _base(name: str, path: Path, label: str) -> Path:
         raise BadInput(f"{label}: based_on: {error}") from None
 
 
-def with_effects(vessel: Vessel, tables: Sequence[Mapping[str, Any]], folder: Path, label: str | None = None) -> Vessel:
+def with_effects(
+    vessel: Vessel, tables: Sequence[Mapping[str, object]], folder: Path, label: str | None = None
+) -> Vessel:
     """The vessel with the effects of [[effect]] tables of a file added, each completed by those before it."""
     for table in tables:
         vessel = added(vessel, effect_from(table, label or vessel.name, folder))
@@ -358,20 +360,21 @@ def _changed(vessel: Vessel, change: Change, value: float) -> Vessel:
     return replace(vessel, effects=tuple(effects))
 
 
-def effect_from(table: Mapping[str, Any], file: str, folder: Path) -> Effect:
+def effect_from(table: Mapping[str, object], file: str, folder: Path) -> Effect:
     """An effect from its [[effect]] table; raises BadInput naming the file."""
-    if not isinstance(table.get("use"), str):
+    use = table.get("use")
+    if not isinstance(use, str):
         raise BadInput(f"{file}: an [[effect]] needs use = its name")
     try:
-        kind: type[Effect] = load_class("effect", table["use"], folder)
+        kind: type[Effect] = load_class("effect", use, folder)
         return kind.from_settings({k: v for k, v in table.items() if k != "use"})
     except BadInput as error:
         raise BadInput(f"{file}: {error}") from None
 
 
-def _check_apart(loads: Sequence[str], known: Mapping[str, Mapping[str, Any]], label: str) -> None:
+def _check_apart(loads: Sequence[str], known: Mapping[str, Mapping[str, object]], label: str) -> None:
     """Two loads that change the same value contradict each other: which one counts must not depend on their order."""
-    changed: dict[str, tuple[str, Any]] = {}
+    changed: dict[str, tuple[str, object]] = {}
     for one in dict.fromkeys(loads):
         for key, value in _flat(known[one]).items():
             other, before = changed.setdefault(key, (one, value))
@@ -381,28 +384,31 @@ def _check_apart(loads: Sequence[str], known: Mapping[str, Mapping[str, Any]], l
                 )
 
 
-def _flat(table: Mapping[str, Any]) -> dict[str, Any]:
+def _flat(table: Mapping[str, object]) -> dict[str, object]:
     """`length` and `body.mass` of a load's tables, with their values."""
     inner = {k: v for k, v in table.items() if isinstance(v, Mapping)}
     flat = {k: v for k, v in table.items() if k not in inner}
     return flat | {f"{k}.{name}": v for k, values in inner.items() for name, v in values.items()}
 
 
-def overlaid(raw: dict[str, Any], load_table: Mapping[str, Any], label: str) -> dict[str, Any]:
+def overlaid(raw: Mapping[str, object], load_table: Mapping[str, object], label: str) -> dict[str, object]:
     """A vessel file with a load's tables laid over it: top-level numbers, body, geometry, and effects by name."""
     out = dict(raw)
-    effects = [dict(t) for t in raw.get("effect", [])]
+    effects = [dict(t) for t in tables(raw.get("effect"))]
     for key, value in load_table.items():
         mine = next((t for t in effects if _called(t) == key), None)
         if mine is not None:
+            if not isinstance(value, Mapping):
+                raise BadInput(f"{label}: {key} = {value!r}; allowed is a table of its values")
             mine.update(value)
         elif isinstance(value, dict) and key in ("body", "geometry", "manoeuvring", "diagnosis"):
-            out[key] = {**raw.get(key, {}), **value}
+            own = raw.get(key)
+            out[key] = {**own, **value} if isinstance(own, Mapping) else value
         elif key in ("length", "beam", "draught"):
             out[key] = value
         else:
-            tables = ("body", "geometry", "manoeuvring", "diagnosis", "length", "beam", "draught")
-            names = [*(_called(t) for t in effects), *tables]
+            own_tables = ("body", "geometry", "manoeuvring", "diagnosis", "length", "beam", "draught")
+            names = [*(_called(t) for t in effects), *own_tables]
             raise BadInput(unknown_name(f"{label}: table to change", key, names))
     out["effect"] = effects
     return out

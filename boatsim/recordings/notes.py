@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 from boatsim.errors import BadInput, unknown_name
+from boatsim.files import Value
 from boatsim.physics.signals import AXES
 
 NOISE = ("position_sd_m", "heading_sd_rad", "yaw_rate_sd_radps", "roll_sd_rad", "roll_rate_sd_radps")
@@ -32,19 +33,29 @@ def unit_of(name: str) -> str:
     return UNITS.get(ending, "") if separator else ""
 
 
+class Ambient(TypedDict, total=False):
+    """What [ambient] states of the force that no model explains."""
+
+    axes: list[str]
+    force_rms: float | list[float] | dict[str, float]  # [N, N m] by axis, or of those in `axes` in turn
+    time_constant_s: float
+
+
 @dataclass(frozen=True)
 class Notes:
     """What is known about a recording besides its columns; empty where nobody wrote a `recording.toml`."""
 
     vessel: str | None = None
     load: tuple[str, ...] = ()
-    settings: dict[str, dict[str, float]] = field(default_factory=dict)  # [set.<effect>]: the vessel's own, this run
+    settings: Mapping[str, Mapping[str, object]] = field(
+        default_factory=dict
+    )  # [set.<effect>]: the vessel's own, this run
     use: tuple[float, float] | None = None  # [s] the part of the recording that counts
     scale: float | None = None  # full scale length / model length
     noise: dict[str, float] = field(default_factory=dict)  # names in NOISE, one standard deviation
-    ambient: dict[str, Any] = field(default_factory=dict)  # axes, force_rms per axis, time_constant_s
+    ambient: Ambient = field(default_factory=Ambient)
     coefficient_uncertainty: dict[str, float] = field(default_factory=dict)  # relative, one standard deviation
-    facts: dict[str, Any] = field(default_factory=dict)  # forward_speed_mps, walls_m, fan position, free text
+    facts: Mapping[str, Value] = field(default_factory=dict)  # forward_speed_mps, walls_m, fan position, free text
 
 
 @dataclass(frozen=True)
@@ -67,7 +78,7 @@ def notes_for(recording: Path) -> NotesFile:
 
 def _parse(file: Path, stem: str) -> NotesFile:
     try:
-        table = tomllib.loads(file.read_bytes().decode("utf-8-sig"))
+        table: dict[str, Value] = tomllib.loads(file.read_bytes().decode("utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError, RecursionError) as error:
         raise BadInput(f"{file}: can not be read as TOML ({' '.join(str(error).split())})") from error
     runs = _Reader(file, table).table("runs")
@@ -75,23 +86,34 @@ def _parse(file: Path, stem: str) -> NotesFile:
     return _Reader(file, merged).notes()
 
 
-def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+def _merge(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Value]:
     """A run's own entries over those of all runs, table by table."""
-    both = {k for k in base.keys() & over.keys() if isinstance(base[k], dict) and isinstance(over[k], dict)}
-    return {**base, **over, **{k: _merge(base[k], over[k]) for k in both}}
+    both = {**base, **over}
+    for key, value in over.items():
+        lower = base.get(key)
+        if isinstance(lower, dict) and isinstance(value, dict):
+            both[key] = _merge(lower, value)
+    return both
+
+
+def _numbers(value: Value) -> list[float]:
+    """The numbers of a list; none where it is no list, or holds anything else."""
+    listed = value if isinstance(value, list) else []
+    found = [x for x in listed if isinstance(x, int | float) and not isinstance(x, bool)]
+    return found if len(found) == len(listed) else []
 
 
 class _Reader:
     """Checked look-ups in one table; each refusal is a line with file, key, value found and what is allowed."""
 
-    def __init__(self, file: Path, table: Mapping[str, Any], prefix: str = "") -> None:
+    def __init__(self, file: Path, table: Mapping[str, Value], prefix: str = "") -> None:
         self.file, self.content, self.prefix = file, table, prefix
 
     def bad(self, key: str, allowed: str) -> BadInput:
         found = " ".join(repr(self.content[key])[:60].split())
         return BadInput(f"{self.file}: {self.prefix}{key} = {found}; allowed is {allowed}")
 
-    def table(self, key: str) -> dict[str, Any]:
+    def table(self, key: str) -> dict[str, Value]:
         value = self.content.get(key, {})
         if not isinstance(value, dict):
             raise self.bad(key, "a table")
@@ -102,14 +124,15 @@ class _Reader:
 
     def text(self, key: str) -> str | None:
         value = self.content.get(key)
-        if value is not None and not (isinstance(value, str) and value):
-            raise self.bad(key, "a text in quotation marks")
-        return value
+        if value is None or (isinstance(value, str) and value):
+            return value
+        raise self.bad(key, "a text in quotation marks")
 
     def texts(self, key: str) -> tuple[str, ...]:
         value = self.content.get(key, [])
-        found = [value] if isinstance(value, str) else value
-        if not isinstance(found, list) or not all(isinstance(text, str) for text in found):
+        given = [value] if isinstance(value, str) else value
+        found = [text for text in given if isinstance(text, str)] if isinstance(given, list) else []
+        if not isinstance(given, list) or len(found) < len(given):
             raise self.bad(key, "a text or a list of texts")
         return tuple(found)
 
@@ -125,9 +148,8 @@ class _Reader:
     def use(self) -> tuple[float, float] | None:
         if "use" not in self.content:
             return None
-        ends = self.content["use"]
-        numeric = isinstance(ends, list) and [type(end) in (int, float) for end in ends] == [True, True]
-        if not numeric or not ends[0] < ends[1]:
+        ends = _numbers(self.content["use"])
+        if len(ends) != 2 or not ends[0] < ends[1]:
             raise self.bad("use", "[from_s, to_s], two numbers of which the second is larger")
         return float(ends[0]), float(ends[1])
 
@@ -135,25 +157,32 @@ class _Reader:
         inner = self.inner("columns")
         return {name: column for name in inner.content if (column := inner.text(name)) is not None}
 
-    def ambient(self) -> dict[str, Any]:
-        inner = self.inner("ambient")
-        axes = inner.texts("axes")
-        for axis in axes:
+    def ambient(self) -> Ambient:
+        inner, found = self.inner("ambient"), Ambient()
+        if "axes" in inner.content:
+            found["axes"] = list(inner.texts("axes"))
+        for axis in found.get("axes", ()):
             if axis not in AXES:
                 raise BadInput(f"{self.file}: {unknown_name('ambient.axes: axis', axis, AXES)}")
         if "time_constant_s" in inner.content:
-            inner.number("time_constant_s", low=0.0)
-        rms = inner.content.get("force_rms", [])
-        each = dict(enumerate(rms)) if isinstance(rms, list) else rms if isinstance(rms, dict) else {0: rms}
-        for value in each.values():
-            if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= HUGE:
-                raise inner.bad("force_rms", "a number of at least 0 for each axis")
-        return inner.content  # type: ignore[return-value]
+            found["time_constant_s"] = inner.number("time_constant_s", low=0.0)
+        if "force_rms" in inner.content:
+            found["force_rms"] = inner.sizes("force_rms")
+        return found
 
-    def facts(self) -> dict[str, Any]:
-        walls = self.content.get("walls_m", [-1.0, 1.0, -1.0, 1.0])
-        numeric = isinstance(walls, list) and [type(x) in (int, float) for x in walls] == [True] * 4
-        if not numeric or not (-HUGE <= walls[0] < walls[1] <= HUGE and -HUGE <= walls[2] < walls[3] <= HUGE):
+    def sizes(self, key: str) -> float | list[float] | dict[str, float]:
+        value = self.content[key]
+        given = list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else [value]
+        found = [x for x in given if isinstance(x, int | float) and not isinstance(x, bool) and 0 <= x <= HUGE]
+        if len(found) < len(given):
+            raise self.bad(key, "a number of at least 0 for each axis")
+        if isinstance(value, dict):
+            return dict(zip(value, found, strict=True))
+        return found if isinstance(value, list) else found[0]
+
+    def facts(self) -> dict[str, Value]:
+        walls = _numbers(self.content.get("walls_m", [-1.0, 1.0, -1.0, 1.0]))
+        if len(walls) != 4 or not (-HUGE <= walls[0] < walls[1] <= HUGE and -HUGE <= walls[2] < walls[3] <= HUGE):
             raise self.bad("walls_m", "[x_low, x_high, y_low, y_high], four numbers, each low below its high")
         return dict(self.content)
 
@@ -169,7 +198,7 @@ class _Reader:
             use=self.use(),
             scale=self.number("scale", low=1e-9) if "scale" in self.content else None,
             noise={k: v for k, v in self.inner("noise").numbers(low=0.0).items() if k in NOISE},
-            ambient={k: v for k, v in self.ambient().items() if k in AMBIENT},
+            ambient=self.ambient(),
             coefficient_uncertainty=self.inner("coefficient_uncertainty").numbers(low=0.0),
             facts=_Reader(self.file, {**facts, **self.table("facts")}, f"{self.prefix}facts.").facts(),
         )

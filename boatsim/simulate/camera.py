@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -93,7 +93,7 @@ class Camera(Checked):
             number += 1
 
 
-def camera_over(vessel: Vessel, settings: Mapping[str, Any]) -> Camera:
+def camera_over(vessel: Vessel, settings: Mapping[str, object]) -> Camera:
     """The camera of a [camera] table over a vessel, whose marks the table may move or add to.
 
     Where neither file names a mark they are half a length ahead and astern of the CG. Raises BadInput.

@@ -14,10 +14,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import read_toml
+from boatsim.files import Value, read_toml, tables
 from boatsim.physics.content import find, names, root
 
 NAME = re.compile(r"[\w.+-]+")
@@ -43,7 +42,7 @@ class Place:
         return str(self.path.parent.relative_to(folder) / own) if inside else own
 
 
-def content(given: str) -> tuple[dict[str, Any], Place]:
+def content(given: str) -> tuple[dict[str, Value], Place]:
     """All that a scenario says, by its name or path, and where it stands. Raises BadInput."""
     place = located(given)
     return _told(place, ()), place
@@ -73,10 +72,11 @@ def meant(given: str) -> list[str]:
 def cases(path: Path) -> list[str]:
     """Names of a file's cases; none if it is one scenario. Raises BadInput for one without a name, or a name twice."""
     given = read_toml(path).get("case", [])
-    if not isinstance(given, list) or not all(isinstance(case, dict) for case in given):
+    there = tables(given)
+    if not isinstance(given, list) or len(there) < len(given):
         raise BadInput(f"{path.name}: case = {given!r}; allowed are [[case]] tables")
     found: list[str] = []
-    for number, case in enumerate(given, 1):
+    for number, case in enumerate(there, 1):
         name = case.get("name")
         if not isinstance(name, str) or not NAME.fullmatch(name):
             raise BadInput(f"{path.name}: [[case]] {number}: name = {name!r}; allowed are letters, digits and _ . + -")
@@ -104,32 +104,33 @@ def located(given: str, beside: Path | None = None) -> Place:
     return Place(path, own)
 
 
-def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+def merged(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Value]:
     """One table on top of another."""
     out = dict(base)
     for key, value in over.items():
         mine = out.get(key)
-        joined = isinstance(mine, dict) and isinstance(value, dict) and "use" not in value
-        out[key] = merged(mine, value) if joined else value  # type: ignore[arg-type]
+        if isinstance(mine, dict) and isinstance(value, dict) and "use" not in value:
+            value = merged(mine, value)
+        out[key] = value
     return out
 
 
-def _told(place: Place, above: Sequence[Place]) -> dict[str, Any]:
+def _told(place: Place, above: Sequence[Place]) -> dict[str, Value]:
     """Content of a place with that of its base beneath; `above` are those that build on it."""
     if place in above:
         way = " -> ".join(p.case or p.path.name for p in [*above[above.index(place) :], place])
         raise BadInput(f"{above[0].label}: base leads back to where it came from: {way}")
-    file = _at_home(read_toml(place.path), place.path.parent)
-    own: dict[str, Any] = next((case for case in file.pop("case", []) if case["name"] == place.case), {})
+    file = {key: _at_home(value, place.path.parent, key) for key, value in read_toml(place.path).items()}
+    own: dict[str, Value] = next((case for case in tables(file.pop("case", [])) if case["name"] == place.case), {})
     layers = [own] if "base" in own else [file, own]
     given = layers[0].get("base")
-    said: dict[str, Any] = {} if given is None else _told(_base(given, place), [*above, place])
+    said: dict[str, Value] = {} if given is None else _told(_base(given, place), [*above, place])
     for layer in layers:
         said = merged(said, {k: v for k, v in layer.items() if k not in ("base", "name")})
     return said
 
 
-def _base(given: Any, place: Place) -> Place:
+def _base(given: Value, place: Place) -> Place:
     """Where a base stands: a case beside the one that names it, or a scenario of another file."""
     try:
         if not isinstance(given, str):
@@ -144,7 +145,7 @@ def _base(given: Any, place: Place) -> Place:
         raise BadInput(f"{place.label}: base: {error}") from None
 
 
-def _at_home(value: Any, folder: Path, key: str = "") -> Any:
+def _at_home(value: Value, folder: Path, key: str = "") -> Value:
     """Content of a file with the paths in it, of vessels and of what is to `use`, made to start at its folder."""
     if isinstance(value, dict):
         return {k: _at_home(v, folder, k) for k, v in value.items()}

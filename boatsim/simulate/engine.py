@@ -7,7 +7,8 @@ and in `add_to_mujoco` of the equations for the compiled step; nowhere else.
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from math import isfinite
-from typing import Any, NamedTuple
+from types import ModuleType
+from typing import NamedTuple, TypedDict, Unpack
 
 import mujoco
 import numpy as np
@@ -41,11 +42,25 @@ class State(NamedTuple):
     r: float = 0.0  # [rad/s]
 
 
+class Look(TypedDict, total=False):
+    """What `world.build` may be told of the model beside its vessel and tank."""
+
+    show: bool
+    wall_solref: tuple[float, float] | None
+    friction: float
+
+
 class Engine:
     """One vessel in one tank. `command` sets what is sent to the actuators, `advance` steps."""
 
     def __init__(
-        self, vessel: Vessel, tank: Tank | None = None, step: float = 0.02, *, callback: str = "native", **look: Any
+        self,
+        vessel: Vessel,
+        tank: Tank | None = None,
+        step: float = 0.02,
+        *,
+        callback: str = "native",
+        **look: Unpack[Look],
     ) -> None:
         """Build the model; `look` goes to `world.build`. Raises BadPhysics for a model that can not be stepped.
 
@@ -175,7 +190,7 @@ class Engine:
     def _write_userdata(self) -> None:
         self.data.userdata[:] = np.concatenate([self._values, self._k, self._act, [self.data.time, 1.0 / self.step]])
 
-    def _choose(self, wanted: str, size: int) -> Any:
+    def _choose(self, wanted: str, size: int) -> object:
         """The native callback if it gives the numbers of the Python one, which is in any case there."""
         plain = python_callback(self.code, size)
         if wanted == "python":
@@ -187,7 +202,7 @@ class Engine:
             return plain
         return fast.ctypes if self._agree(fast.ctypes, plain) else plain
 
-    def _agree(self, fast: Any, plain: Callable[..., None]) -> bool:
+    def _agree(self, fast: object, plain: object) -> bool:
         """Whether both callbacks give the same acceleration at a state in which every term counts."""
         self._act[:] = np.linspace(0.3, 0.7, len(self._act))
         self._write_userdata()
@@ -200,10 +215,10 @@ class Engine:
         return bool(np.allclose(found[0], found[1], rtol=SAME, atol=SAME * np.abs(found[1]).max()))
 
 
-def python_callback(code: Any, size: int) -> Callable[[Any, Any], None]:
+def python_callback(code: ModuleType, size: int) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
     """The callback in Python: the same compiled laws, called through the interpreter."""
 
-    def passive(model: Any, data: Any) -> None:
+    def passive(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         if model.nuserdata == size:
             code.passive_in_place(data.time, data.qpos, data.qvel, data.userdata, data.qfrc_passive, data.M)
             mujoco.mj_factorM(model, data)
@@ -218,7 +233,7 @@ class installed:  # noqa: N801  # a context manager; as a class it costs a tenth
     error of ours.
     """
 
-    def __init__(self, callback: Any) -> None:
+    def __init__(self, callback: object) -> None:
         """`callback` is a Python function or a pointer to a compiled one."""
         self.callback = callback
 

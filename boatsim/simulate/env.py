@@ -9,10 +9,10 @@ from collections import OrderedDict
 from collections.abc import Callable
 from importlib import import_module
 from math import cos, sin
-from typing import Any
 
 import mujoco
 import numpy as np
+from numpy.typing import ArrayLike
 
 from boatsim.control.allocation import STICK
 from boatsim.errors import BadInput, BadPhysics
@@ -85,7 +85,7 @@ class BoatPhysics(Physics):
         self.engine.reset()
         self.forward()
 
-    def set_control(self, control: Any) -> None:
+    def set_control(self, control: ArrayLike) -> None:
         """Send commands (C,), in the vessel's order; they act within their ranges. Raises BadInput for others."""
         values, names = np.asarray(control, dtype=float), self.engine.vessel.commands
         if values.shape != (len(names),) or not np.isfinite(values).all():
@@ -101,12 +101,12 @@ class BoatPhysics(Physics):
         restore, arguments = self.__reduce__()
         return restore(*arguments)
 
-    def __reduce__(self) -> tuple[Callable[..., "BoatPhysics"], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[Callable[..., "BoatPhysics"], tuple[object, ...]]:
         """Compiled callbacks do not pickle: what goes on the way is the vessel, the tank and the state."""
         e = self.engine
         return _restored, (e.vessel, e.tank, e.step, self.get_state(WHOLE_STATE), self.get_state())
 
-    def _reload_from_model(self, model: Any) -> None:
+    def _reload_from_model(self, model: object) -> None:
         raise BadPhysics("another model needs another engine: load the environment anew")
 
     def _physics_state_items(self) -> list[Array]:
@@ -156,7 +156,7 @@ class BoatTask(control.Task):
         state = State(**{**start.motion(), **scattered})
         physics.engine.reset(state, {**self.scenario.controller.initial_commands(), **start.commands})
 
-    def before_step(self, action: Any, physics: BoatPhysics) -> None:
+    def before_step(self, action: ArrayLike, physics: BoatPhysics) -> None:
         """Send the action to the actuators, which follow with their lags and limits."""
         physics.set_control(action)
 

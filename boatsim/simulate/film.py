@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, param
@@ -85,7 +85,7 @@ def noise(frames: int, camera: Camera) -> Array:
     return np.random.default_rng(0).standard_normal((DRAWS, frames, 2 * len(camera.marks)))
 
 
-def first(reached: Any, least: int = 0) -> int | None:
+def first(reached: NDArray[np.bool_], least: int = 0) -> int | None:
     """Number of the first frame at which it is so, at least `least`; None if there is none."""
     if not reached.any() or len(reached) <= least:
         return None

@@ -8,14 +8,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import degrees, inf, log10, pi, radians
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
+from boatsim.files import Value
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
-from boatsim.physics.signals import signals_of
+from boatsim.physics.signals import Array, signals_of
 from boatsim.physics.vessel import ManoeuvringTable, Vessel
 from boatsim.simulate import imo, scenario
 from boatsim.simulate.cases import Place
@@ -53,7 +53,7 @@ def scenario_of(
     usual = ANGLES[manoeuvre] if angle is None else angle
     if usual == 0.0 and manoeuvre != "crash_stop":
         raise BadInput(f"angle = 0 deg; a {manoeuvre} needs another, usual are {ANGLES[manoeuvre]:g} deg")
-    raw = {
+    raw: dict[str, Value] = {
         "about": f"{manoeuvre.replace('_', ' ')} of {vessel.name}",
         "vessel": vessel_address(vessel.file),
         "load": list(loads),
@@ -165,14 +165,15 @@ def _half(vessel: Vessel) -> int:
     return len(vessel.freedoms)
 
 
-def _state(vessel: Vessel, speed: float, commands: Mapping[str, float], lengths: float) -> Any:
+def _state(vessel: Vessel, speed: float, commands: Mapping[str, float], lengths: float) -> Array:
     """State after so many lengths' time at a speed, begun straight ahead."""
     step = _step(vessel, speed)
     twin = Twin(vessel, step)
     start = [0.0] * (2 * _half(vessel))
     start[_half(vessel)] = speed
     rows = np.tile(twin.program.command_array(commands), (round(lengths * vessel.length / speed / step), 1))
-    return twin.rollout(start, rows, step)[-1]
+    last: Array = twin.rollout(start, rows, step)[-1]
+    return last
 
 
 def _step(vessel: Vessel, speed: float) -> float:
@@ -186,13 +187,13 @@ def _rounded(seconds: float) -> float:
     return float(max(m for m in (1.0, 2.0, 5.0) if m * power <= seconds * (1 + 1e-9)) * power)
 
 
-def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float, reverses: float) -> dict[str, Any]:
+def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float, reverses: float) -> dict[str, Value]:
     """Tables of a manoeuvre that begins with an approach at a speed; a zig-zag reverses at a heading [deg]."""
     table, unit, step = vessel.manoeuvring, vessel.length / speed, _step(vessel, speed)
     execute, hold = (step * round(lengths * unit / step) for lengths in (BEFORE, HOLD))
     helm, heading = {"angle": radians(angle)}, {"heading": radians(reverses)}
     place = {"execute": execute, "length": vessel.length}
-    own: dict[str, tuple[dict[str, Any], dict[str, Any], float]] = {  # controller, measure, longest time
+    own: dict[str, tuple[Mapping[str, Value], Mapping[str, Value], float]] = {  # controller, measure, longest time
         "turning_circle": (helm, place, LONGEST * unit),
         "zigzag": (helm | heading, place | heading, LONGEST * unit),
         "pull_out": (helm | {"hold": hold}, {}, execute + 4 * hold),
@@ -200,23 +201,23 @@ def _under_way(manoeuvre: str, vessel: Vessel, angle: float, speed: float, rever
         "crash_stop": ({"astern": table.astern}, place, LONGEST * unit),
     }
     controller, measure, duration = own[manoeuvre]
-    handling = {"period": step, "execute": execute, "ahead": table.ahead, "steer": table.steer}
+    handling: dict[str, Value] = {"period": step, "execute": execute, "ahead": table.ahead, "steer": table.steer}
     as_usual = manoeuvre != "zigzag" or reverses == abs(angle)  # the limits are those of 10/10 and 20/20
     bars = imo.limits(manoeuvre, angle, vessel.length, speed) if as_usual else {}
-    until = {"until": {"turned": ROUND}} if manoeuvre == "turning_circle" else {}
-    return until | {
+    return {
         "duration": min(duration, 86400.0),
         "step": step,
         "log": _rounded(unit / ROWS),
         "start": {"u": speed},
-        "controller": {"use": manoeuvre} | handling | controller,
+        "controller": {"use": manoeuvre, **handling, **controller},
         "camera": {"rate": min(max(1.0 / _rounded(unit / ROWS), 0.1), 6.0)},
-        "measure": {"use": manoeuvre} | measure,
+        "measure": {"use": manoeuvre, **measure},
         "norms": {name: {"guard": [0.0, high]} for name, high in bars.items()},
+        "until": {"turned": ROUND} if manoeuvre == "turning_circle" else {},
     }
 
 
-def _released(vessel: Vessel, angle: float) -> dict[str, Any]:
+def _released(vessel: Vessel, angle: float) -> dict[str, Value]:
     """Tables of a roll decay from a heel [deg]."""
     if "roll" not in vessel.freedoms:
         raise BadInput(f"{vessel.name} does not roll; its freedoms are {', '.join(vessel.freedoms)}")

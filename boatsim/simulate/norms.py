@@ -1,9 +1,9 @@
 """Judges a run: the norms of its measure and the checks of its signals, beside the values they are held against."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import isfinite, sqrt
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -15,6 +15,32 @@ from boatsim.simulate.run import Run
 from boatsim.simulate.scenario import CheckTable, NormTable
 
 REPRODUCED, MISSED, UNSTATED = "reproduced", "not reproduced", "no tolerance stated"
+
+
+class NormEntry(TypedDict):
+    """One norm in norms.json: a `Norm` with its verdict."""
+
+    value: float | None
+    unit: str
+    published: float | None
+    tolerance: float | None
+    guard: list[float | None] | None  # low, high; an open end is null
+    ok: bool | None
+    at_reported: float | None
+    noise_floor: float | None
+    verdict: str | None
+
+
+class RunEntry(TypedDict):
+    """Content of norms.json."""
+
+    scenario: str
+    controller: str
+    seed: int
+    complete: bool
+    steps: int
+    saturated_steps: Mapping[str, int]  # by channel: more was sent than it takes
+    norms: dict[str, NormEntry]
 
 
 @dataclass(frozen=True)
@@ -40,10 +66,19 @@ class Norm:
         close = self.value is not None and within(self.value, self.published, self.tolerance)
         return REPRODUCED if close else MISSED
 
-    def to_json(self) -> dict[str, Any]:
-        """Its entry in norms.json; an open end of a guard is null."""
-        guard = None if self.guard is None else [end if isfinite(end) else None for end in self.guard]
-        return asdict(self) | {"verdict": self.verdict, "guard": guard}
+    def to_json(self) -> NormEntry:
+        """Its entry in norms.json."""
+        return {
+            "value": self.value,
+            "unit": self.unit,
+            "published": self.published,
+            "tolerance": self.tolerance,
+            "guard": None if self.guard is None else [end if isfinite(end) else None for end in self.guard],
+            "ok": self.ok,
+            "at_reported": self.at_reported,
+            "noise_floor": self.noise_floor,
+            "verdict": self.verdict,
+        }
 
 
 def within(value: float, published: float, tolerance: float) -> bool:
@@ -66,15 +101,15 @@ def norms(run: Run) -> dict[str, Norm]:
     return found | {f"{c.signal}_{c.norm}": _checked(run.recording, c) for c in run.scenario.file.check}
 
 
-def to_json(run: Run, norms: Mapping[str, Norm]) -> dict[str, Any]:
+def to_json(run: Run, norms: Mapping[str, Norm]) -> RunEntry:
     """Content of norms.json."""
     return {
         "scenario": run.scenario.name,
-        "controller": run.scenario.file.controller["use"],
+        "controller": str(run.scenario.file.controller["use"]),
         "seed": run.seed,
         "complete": run.complete,
         "steps": run.steps,
-        "saturated_steps": run.saturated,  # by channel: more was sent than it takes
+        "saturated_steps": run.saturated,
         "norms": {name: norm.to_json() for name, norm in norms.items()},
     }
 

@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from inspect import getsourcefile
 from math import inf, nan
-from typing import Any
 
 import numpy as np
 
@@ -282,7 +281,7 @@ class Runner:
         """Force of the air (X, Y, Z, K, M, N) in body axes [N, N m]."""
         total = [0.0] * len(AXES)
         for effect in self._winds:
-            law: Any = type(effect).law.py_func  # type: ignore[attr-defined]  # one call needs no compiling
+            law = type(effect).law.py_func  # type: ignore[attr-defined]  # one call needs no compiling
             w = law(motion(**s._asdict()), effect.values())
             total = [a + b for a, b in zip(total, w, strict=True)]
         return total

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import pi, sin
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self, TypeVar
+from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import Field, model_validator
 
@@ -24,6 +24,7 @@ from boatsim.simulate.measure import Measure
 from boatsim.simulate.sensing import Sensor, Sensors
 
 T = TypeVar("T")
+M = TypeVar("M", Controller, Measure, Sensor)
 End = Annotated[float, Field(allow_inf_nan=True)]  # of a band; it may be open
 
 
@@ -115,14 +116,14 @@ class ScenarioFile(Table):
     tank: TankTable | None = None
     start: StartTable = StartTable()
     until: UntilTable = UntilTable()
-    controller: dict[str, Any]
-    sensors: dict[str, Any] = {}
-    sensor: list[dict[str, Any]] = []  # beside the usual ones
-    camera: dict[str, Any] = {}
+    controller: dict[str, object]
+    sensors: dict[str, object] = {}
+    sensor: list[dict[str, object]] = []  # beside the usual ones
+    camera: dict[str, object] = {}
     goal: list[dict[str, float | CourseTable]] = []
-    set: dict[str, dict[str, Any]] = {}
-    effect: list[dict[str, Any]] = []
-    measure: str | dict[str, Any] | None = None
+    set: dict[str, dict[str, object]] = {}
+    effect: list[dict[str, object]] = []
+    measure: str | dict[str, object] | None = None
     log: float = Field(default=0.0, ge=0)  # [s] between rows of the log; 0: every step
     norms: dict[str, NormTable] = {}
     noise_widens_guards: bool = False
@@ -164,7 +165,7 @@ class Scenario:
         return {**held, **{k: c.at(t - self._begins[at]) for k, c in courses.items()}} if courses else held
 
 
-def load(name: str, overrides: Mapping[str, Any] | None = None) -> Scenario:
+def load(name: str, overrides: Mapping[str, object] | None = None) -> Scenario:
     """A scenario by name ("vessel/case") or path ("my.toml", "my.toml:case").
 
     `overrides` replace top-level keys, for tests and studies.
@@ -174,13 +175,13 @@ def load(name: str, overrides: Mapping[str, Any] | None = None) -> Scenario:
     return from_table({**said, **(overrides or {})}, place)
 
 
-def from_table(raw: dict[str, Any], place: Place) -> Scenario:
+def from_table(raw: Mapping[str, object], place: Place) -> Scenario:
     """A scenario from what it says; `place` names it and is where relative paths start."""
     label, path = place.label, place.path
     file = checked(ScenarioFile, raw, label)
     try:
         vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent)
-        controller = _made("controller", file.controller, path.parent)
+        controller = _made(Controller, file.controller, path.parent)
         sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
         aboard = _aboard(file.sensor, path.parent)
         camera = _settings("camera", lambda: camera_over(vessel, file.camera))
@@ -193,34 +194,34 @@ def from_table(raw: dict[str, Any], place: Place) -> Scenario:
     return Scenario(place.name, file, vessel, controller, sensors, camera, measure, aboard)
 
 
-def _made(kind: str, table: Mapping[str, Any], folder: Path) -> Any:
+def _made(base: type[M], table: Mapping[str, object], folder: Path) -> M:
     """The controller, measure or sensor of a table."""
-    if not isinstance(table.get("use"), str):
+    kind, use = base.__name__.lower(), table.get("use")
+    if not isinstance(use, str):
         raise BadInput(f"[{kind}] needs use = its name")
-    found = load_class(kind, table["use"], folder)
+    found: type[M] = load_class(kind, use, folder)
     return found.from_settings({k: v for k, v in table.items() if k != "use"})
 
 
-def _aboard(tables: Sequence[Mapping[str, Any]], folder: Path) -> tuple[Sensor, ...]:
+def _aboard(tables: Sequence[Mapping[str, object]], folder: Path) -> tuple[Sensor, ...]:
     """The sensors of the [[sensor]] tables, no two of which read the same."""
     aboard: list[Sensor] = []
     for table in tables:
-        made: Sensor = _made("sensor", table, folder)
+        made = _made(Sensor, table, folder)
         if twice := [n for other in aboard for n in type(other).columns if n in type(made).columns]:
             raise BadInput(f"[[sensor]] {table['use']}: {twice[0]} is read by another sensor already")
         aboard.append(made)
     return tuple(aboard)
 
 
-def _measure(given: str | Mapping[str, Any] | None, folder: Path) -> Measure | None:
+def _measure(given: str | Mapping[str, object] | None, folder: Path) -> Measure | None:
     """The measure on the log that a scenario asks for."""
     if given is None:
         return None
     table = {"use": given} if isinstance(given, str) else given
     if isinstance(use := table.get("use"), str) and use not in names("measure") and not use.endswith(".py"):
         raise BadInput(unknown_name("measure", use, names("measure")))
-    made: Measure = _made("measure", table, folder)
-    return made
+    return _made(Measure, table, folder)
 
 
 def _begin(goal: Mapping[str, float | CourseTable]) -> float:

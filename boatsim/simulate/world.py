@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TypeAlias
 
 import mujoco
 import numpy as np
@@ -14,6 +14,7 @@ from boatsim.physics.content import root
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 
+Model: TypeAlias = mujoco.MjModel  # for those who must not import mujoco
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
 DRAWN = math.hypot(0.75, 1.5)  # [m] from the middle to a corner of the tank in tank.xml
@@ -139,7 +140,7 @@ def looking_at(eye: Array, target: Array) -> Array:
     return np.concatenate([right, np.cross(right, forward)])
 
 
-def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> Any:
+def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> mujoco.MjsBody:
     """Attach the vessel's hull with its body origin at the CG, at its length and draught, motors and marks in place."""
     drawing, (length, draught) = read_drawing(Path(vessel.path) / vessel.hull, vessel)
     stretch = vessel.length / length
@@ -194,7 +195,7 @@ def place_fittings(
             drawing.delete(ballast)
 
 
-def set_inertia(hull: Any, vessel: Vessel) -> None:
+def set_inertia(hull: mujoco.MjsBody, vessel: Vessel) -> None:
     """Mass and inertia of the vessel file, at the CG.
 
     The inertial frame is turned half round about x, which changes no number: MuJoCo keeps only the diagonal of the
@@ -215,7 +216,7 @@ def origin_height(vessel: Vessel) -> float:
     return 0.0 if above_keel is None else above_keel - vessel.draught
 
 
-def add_joints(hull: Any, vessel: Vessel) -> None:
+def add_joints(hull: mujoco.MjsBody, vessel: Vessel) -> None:
     """One joint for each freedom; the axes of roll and pitch run through the origin of motion."""
     for freedom, (name, kind, axis) in JOINTS.items():
         if freedom in vessel.freedoms:

@@ -8,14 +8,18 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from boatsim.errors import BadInput
 from boatsim.physics.content import vessel_address
 from boatsim.recordings.table import write_csv
 from boatsim.simulate import norms as judged
+from boatsim.simulate.norms import RunEntry
 from boatsim.simulate.run import Run, Runner
 from boatsim.simulate.scenario import Scenario
+
+if TYPE_CHECKING:
+    from boatsim.view.rerun_log import RunLog
 
 CAMERA = "camera"  # stem of the file a diagnosis reads
 
@@ -26,7 +30,7 @@ def run_into(
     seed: int | None = None,
     live: bool = False,
     progress: Callable[[float], None] | None = None,
-) -> dict[str, Any]:
+) -> RunEntry:
     """Run a scenario, logging to rerun as it goes, and put its files into `folder`; returns what norms.json says.
 
     An interruption ends the run, and what was logged is kept. Raises BadInput, BadPhysics or OSError, and then
@@ -44,7 +48,7 @@ def run_into(
     return content
 
 
-def write(run: Run, content: Mapping[str, Any], folder: Path) -> None:
+def write(run: Run, content: RunEntry, folder: Path) -> None:
     """The files of a run but its rerun log; `content` is that of norms.json."""
     write_csv(run.recording, folder / "recording.csv")
     if "yaw" in run.scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
@@ -64,7 +68,7 @@ def notes_toml(run: Run) -> str:
     return "\n".join(lines + _table("facts", facts)) + "\n"
 
 
-def _table(name: str, values: Mapping[str, Any]) -> list[str]:
+def _table(name: str, values: Mapping[str, object]) -> list[str]:
     return ["", f"[{name}]", *(f"{_key(k)} = {_value(v)}" for k, v in values.items())]
 
 
@@ -72,12 +76,12 @@ def _key(name: str) -> str:
     return name if name.replace("_", "a").replace("-", "a").isalnum() and name.isascii() else _value(name)
 
 
-def _value(value: Any) -> str:
+def _value(value: object) -> str:
     """A text, number, truth value or list of them, which TOML writes as JSON does."""
     return json.dumps(value, ensure_ascii=False)
 
 
-def _log(path: Path, runner: Runner, live: bool) -> Any:
+def _log(path: Path, runner: Runner, live: bool) -> "RunLog":
     """The rerun log of a run about to start."""
     from boatsim.view.rerun_log import RunLog
     from boatsim.view.scene import scene_from

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Self, TypedDict
 
 import numpy as np
 import rerun as rr
@@ -21,6 +21,7 @@ import rerun as rr
 from boatsim.physics.signals import POSE, Array
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate.norms import NormEntry
 from boatsim.view import blueprint
 from boatsim.view.blueprint import WORLD
 from boatsim.view.scene import OUTBOARD, Scene, Solid
@@ -49,6 +50,14 @@ BOATS = {  # as in the report; told apart by colour-blind readers too, on dark p
 PARTING = 1e-9  # [s] between the end of one stretch, a gap, and the begin of the next at the same time
 
 
+class Flagged(TypedDict):
+    """An interval of diagnosis.json in which the missing force of an axis is flagged."""
+
+    axis: str
+    from_s: float
+    to_s: float
+
+
 class RunLog:
     """A run's log: `chunk` takes new rows while it runs, `finish` the norms; leaving the `with` block keeps all of it.
 
@@ -74,7 +83,7 @@ class RunLog:
         if self.live or sum(map(len, self._waiting)) >= BUFFER:
             self._write()
 
-    def finish(self, norms: Mapping[str, Mapping[str, Any]]) -> None:
+    def finish(self, norms: Mapping[str, NormEntry]) -> None:
         """Add the table of norms: name -> value, unit, published, verdict, guard [low, high], ok."""
         self._write()
         if self._heard:
@@ -115,7 +124,7 @@ def log_overlay(
     path: Path | str,
     boats: Mapping[str, Sequence[Recording]],
     missing: Recording | None,
-    intervals: Sequence[Mapping[str, Any]],
+    intervals: Sequence[Flagged],
     scene: Scene,
 ) -> None:
     """diagnosis.rrd: all boats in one scene on one time line, the missing force per axis with its band.
@@ -154,7 +163,7 @@ def log_overlay(
     _end(stream)
 
 
-def norms_table(norms: Mapping[str, Mapping[str, Any]]) -> str:
+def norms_table(norms: Mapping[str, NormEntry]) -> str:
     """Markdown table norm, value, published, verdict on it, guard, met."""
     lines = ["| norm | value | published | verdict | guard | met |", "|:---|---:|---:|:---|:---:|:---:|"]
     for name, norm in norms.items():
@@ -173,7 +182,7 @@ def _short(value: float | None) -> str:
 
 def _open(stream: rr.RecordingStream, path: Path | str | None, live: bool) -> bool:
     """Point a stream at its file, a viewer, or both; False if there is neither."""
-    sinks: list[Any] = []
+    sinks: list[rr.FileSink | rr.GrpcSink] = []
     if path is not None:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         sinks.append(rr.FileSink(str(path)))
@@ -420,7 +429,7 @@ def _log_camera(stream: rr.RecordingStream, rows: Recording) -> None:
         stream.send_columns(entity, _when(rows.t[fresh]), points)
 
 
-def _flagged(missing: Recording, intervals: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+def _flagged(missing: Recording, intervals: Sequence[Flagged]) -> dict[str, Array]:
     """The missing force where it was flagged, nan elsewhere, as signals of their own."""
     found: dict[str, Array] = {}
     for name, axis in blueprint.MISSING.items():

@@ -5,7 +5,7 @@ Axes are those of the picture: z up, x forward, y to port; SNAME (x, y, psi) app
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from boatsim.physics.base import Array
 
 if TYPE_CHECKING:
     from boatsim.physics.vessel import Vessel
+    from boatsim.simulate.world import Model, Tank
 
 Triangles = NDArray[np.uint32]
 SEEN = (0, 1, 2)  # MuJoCo geom groups that its viewers draw; touching shapes are in group 3
@@ -64,8 +65,8 @@ class Scene:
         return np.asarray(points[np.append(corners, corners[0])], dtype=float)
 
 
-def scene_from(model: Any, vessel: "Vessel", tank: Any) -> Scene:
-    """The scene of a compiled model: `model` is its MjModel, `tank` the world.Tank (length, width, centre)."""
+def scene_from(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
+    """The scene of a compiled model in its tank."""
     thrust = [c.high for n, c in vessel.commands.items() if vessel.roles.get(n) == "thrust"]
     return Scene(
         vessel.name,
@@ -106,7 +107,7 @@ def _thrusters(vessel: "Vessel") -> Iterator[Thruster]:
             yield Thruster(effect.name, x, y, f"actual_{on['thrust']}", f"actual_{on.get('angle')}")
 
 
-def _solids(model: Any) -> Iterator[Solid]:
+def _solids(model: "Model") -> Iterator[Solid]:
     """Every drawn shape, in the axes of its part."""
     for geom in range(model.ngeom):
         if model.geom_group[geom] not in SEEN:
@@ -122,7 +123,7 @@ def _solids(model: Any) -> Iterator[Solid]:
             yield Solid(part, model.geom(geom).name or f"shape_{geom}", placed, triangles, (r, g, b, a))
 
 
-def _in_part(model: Any, body: int, vertices: Array) -> tuple[str, Array]:
+def _in_part(model: "Model", body: int, vertices: Array) -> tuple[str, Array]:
     """Name of the part a body belongs to and the vertices in that part's axes."""
     while body:
         name = model.body(body).name
@@ -141,7 +142,7 @@ def _turned(quaternion: Array, vertices: Array) -> Array:
     return turned
 
 
-def _shape(model: Any, geom: int) -> tuple[Array, Triangles] | None:
+def _shape(model: "Model", geom: int) -> tuple[Array, Triangles] | None:
     kind, size = int(model.geom_type[geom]), model.geom_size[geom]
     if kind == MESH:
         mesh = int(model.geom_dataid[geom])

@@ -17,6 +17,7 @@ from boatsim.diagnose.levels import fit_time_constant
 from boatsim.diagnose.locate.hull_forces import coefficient_forces
 from boatsim.diagnose.locate.smoothing import averaged_rows, running_average, variance_of_average
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.report.entries import StrengthEntry
 from boatsim.physics.signals import COMPONENTS, Array
 
 BAND = 2.0  # [sd] zero outside this band counts as missing
@@ -122,7 +123,7 @@ def _stretches(t: Array, outside: NDArray[np.bool_], bridge: float) -> list[tupl
     return out
 
 
-def strength(problem: Problem, forces: Sequence[Force]) -> dict[str, dict[str, float | str]]:
+def strength(problem: Problem, forces: Sequence[Force]) -> dict[str, StrengthEntry]:
     """Rms of the missing force per axis over all runs, with the rms of its standard deviation."""
     mean = np.concatenate([f.mean for f in forces])
     sd = np.concatenate([f.sd for f in forces])

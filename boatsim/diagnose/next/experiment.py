@@ -10,7 +10,6 @@ it may take for a stronger ambient force, which leaves much less of a large gain
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from boatsim.diagnose.filter import Track
 from boatsim.diagnose.next.course import Course, laid, walls
 from boatsim.diagnose.next.manoeuvres import menu
 from boatsim.diagnose.problem import Fit, Problem, scale_of
+from boatsim.diagnose.report.entries import NextEntry
 from boatsim.diagnose.search.rank import ALIKE, Ranking
 from boatsim.physics.base import Array
 from boatsim.physics.content import vessel_address
@@ -92,7 +92,7 @@ def question(ranking: Ranking) -> tuple[Fit, dict[str, Fit]]:
     return winner, {**alike, "nothing": ranking.best}
 
 
-def entry(plan: Plan | None, scenario: str) -> dict[str, Any]:
+def entry(plan: Plan | None, scenario: str) -> NextEntry:
     """What diagnosis.json says of a plan; empty without one."""
     if plan is None:
         return {}

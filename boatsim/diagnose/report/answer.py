@@ -1,7 +1,6 @@
 """The answer file of a diagnosis: verdict, effects with their parameters, where, limits, fit."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -12,6 +11,15 @@ from boatsim.diagnose.locate.regions import regions
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import show
 from boatsim.diagnose.report import words as report_words
+from boatsim.diagnose.report.entries import (
+    Acting,
+    Answer,
+    CandidateEntry,
+    EffectEntry,
+    FitEntry,
+    NextEntry,
+    ParameterEntry,
+)
 from boatsim.diagnose.report.findings import FreeRun
 from boatsim.diagnose.search.rank import Named, Ranking
 from boatsim.physics.base import Effect
@@ -28,15 +36,13 @@ def compose(
     stretches: Sequence[FreeRun],
     held_out: Sequence[str],
     horizon: float,
-    wanted: Mapping[str, Any],
-) -> dict[str, Any]:
+    wanted: NextEntry,
+) -> Answer:
     """diagnosis.json as a dictionary, without the seconds; `wanted` is what it says of the next experiment."""
     effects = [_effect(problem, ranking.best, n) for n in ranking.named]
     verdict = "ambiguous" if any(e["tied_with"] for e in effects) else "named" if effects else "nothing_missing"
     verdict = "unknown" if ranking.unknown else verdict
-    found = show.errors(stretches)
-    none: dict[str, float] = {}
-    answer: dict[str, Any] = {
+    answer: Answer = {
         "verdict": verdict,
         "sentence": "",
         "seconds": 0.0,
@@ -47,17 +53,17 @@ def compose(
         "upper_limits": {name: _limits(problem, fitted, name) for name, fitted in ranking.last.items()},
         "where": {
             "axes": locate.strength(problem, forces),
-            "intervals": [vars(i) for i in locate.intervals(problem, forces)],
-            "region": [vars(r) for r in regions(problem, ranking.recalibrated)],
+            "intervals": [
+                {"run": i.run, "from_s": i.from_s, "to_s": i.to_s, "axis": i.axis}
+                for i in locate.intervals(problem, forces)
+            ],
+            "region": [
+                {"variable": r.variable, "statement": r.statement, "p_value": r.p_value}
+                for r in regions(problem, ranking.recalibrated)
+            ],
         },
-        "fit": {
-            "horizon_s": horizon,
-            "held_out": list(held_out),
-            "position_rms_m": found.get("position_rms_m", none),
-            "heading_rms_rad": found.get("heading_rms_rad", none),
-            **({"roll_rms_rad": found["roll_rms_rad"]} if "roll_rms_rad" in found else {}),
-        },
-        "next_experiment": dict(wanted),
+        "fit": _fit(stretches, held_out, horizon),
+        "next_experiment": wanted,
         "patch": "patched.toml",
     }
     answer["sentence"] = report_words.sentence(answer, meanings(problem.program.suspects))
@@ -77,12 +83,27 @@ def key_of(name: str, unit: str) -> str:
     return f"{name}_{suffix}" if suffix else name
 
 
-def _effect(problem: Problem, best: Fit, named: Named) -> dict[str, Any]:
+def _fit(stretches: Sequence[FreeRun], held_out: Sequence[str], horizon: float) -> FitEntry:
+    """Errors of the free runs; that in roll only where it was recorded."""
+    found = show.errors(stretches)
+    fit: FitEntry = {
+        "horizon_s": horizon,
+        "held_out": list(held_out),
+        "position_rms_m": found.get("position_rms_m", {}),
+        "heading_rms_rad": found.get("heading_rms_rad", {}),
+    }
+    if "roll_rms_rad" in found:
+        fit["roll_rms_rad"] = found["roll_rms_rad"]
+    return fit
+
+
+def _effect(problem: Problem, best: Fit, named: Named) -> EffectEntry:
     effect = next(e for e in problem.program.suspects if e.name == named.name)
     kind = type(effect)
+    acting: Acting = {"on": list(effect.on)} if effect.on else {}
     return {
         "name": named.name,
-        **({"on": list(effect.on)} if effect.on else {}),
+        **acting,
         "kind": kind.kind,
         "probability": round(named.probability, 4),
         "gain_nats": round(named.gain, 2),
@@ -96,7 +117,7 @@ def _effect(problem: Problem, best: Fit, named: Named) -> dict[str, Any]:
     }
 
 
-def _parameter(best: Fit, effect: Effect, name: str) -> dict[str, Any]:
+def _parameter(best: Fit, effect: Effect, name: str) -> ParameterEntry:
     """Value, sd and unit of a fitted parameter; angles within half a turn."""
     kind = type(effect)
     about = kind.params()[name]
@@ -109,7 +130,7 @@ def _parameter(best: Fit, effect: Effect, name: str) -> dict[str, Any]:
     return {"value": wrap(value) if about.unit == "rad" else value, "sd": sd, "unit": about.unit}
 
 
-def _candidates(ranking: Ranking) -> list[dict[str, Any]]:
+def _candidates(ranking: Ranking) -> list[CandidateEntry]:
     """Every entry tried alone, best first, with its probability against the others and against nothing."""
     names = sorted(ranking.first, key=lambda n: -ranking.first[n])
     gains = np.array([0.0, *(ranking.first[n] for n in names)])

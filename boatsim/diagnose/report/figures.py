@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnose.report.entries import IntervalEntry
 from boatsim.diagnose.report.findings import FreeRun, Missing
 from boatsim.diagnose.report.words import handy, number
 from boatsim.physics.base import Array
@@ -150,7 +150,7 @@ def limits(values: Sequence[Array], zero: bool = True) -> tuple[float, float]:
     return (low - air if low < 0.0 or not zero else low), high + air
 
 
-Intervals = Sequence[Mapping[str, Any]]  # as in the answer: run, axis, from_s, to_s
+Intervals = Sequence[IntervalEntry]
 
 
 def missing_figures(runs: Sequence[Missing], intervals: Intervals, shared: Sequence[Missing]) -> list[str]:

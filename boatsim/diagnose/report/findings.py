@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
+from boatsim.diagnose.report.entries import Answer
 from boatsim.physics.base import Array
 
 MODELS = ("recorded", "nominal", "recalibrated", "patched")  # what a free run compares
@@ -35,7 +35,7 @@ class Missing:
 class Findings:
     """A whole diagnosis, as the report shows it."""
 
-    answer: dict[str, Any]  # exactly what diagnosis.json holds
+    answer: Answer  # exactly what diagnosis.json holds
     vessel: str
     runs: tuple[str, ...]  # what was fitted
     held_out: tuple[str, ...]  # what was kept unseen

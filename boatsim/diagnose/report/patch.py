@@ -4,10 +4,9 @@ import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import tomlkit
-from tomlkit.items import InlineTable
+from tomlkit.items import InlineTable, Table
 
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.files import replacing
@@ -25,7 +24,7 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
     base = tomlkit.parse(text).get("based_on")
     if not base:
         text = f'based_on = ""  # its folder holds the hull\n{text}'
-    document: Any = tomlkit.parse(text)
+    document = tomlkit.parse(text)
     document["based_on"] = tomlkit.item(_based_on(vessel, base, path))
     document["based_on"].comment("its folder holds the hull")
     document.setdefault("effect", tomlkit.aot())
@@ -67,7 +66,7 @@ def _address(kind: type[Effect], vessel: Vessel) -> str:
     return os.path.relpath(name, vessel.path) if name.endswith(".py") else name
 
 
-def _release(document: Any, vessel: Vessel, release: Release, values: Mapping[str, float]) -> None:
+def _release(document: tomlkit.TOMLDocument, vessel: Vessel, release: Release, values: Mapping[str, float]) -> None:
     """Write the numbers that a release found to be off."""
     for change in release.changes(vessel):
         if change.parameter in values:
@@ -75,7 +74,7 @@ def _release(document: Any, vessel: Vessel, release: Release, values: Mapping[st
             _alter(document, vessel, change, x, f"{release.name}, {change.parameter} = {x:.4g}")
 
 
-def _alter(document: Any, vessel: Vessel, change: Change, x: float, why: str) -> None:
+def _alter(document: tomlkit.TOMLDocument, vessel: Vessel, change: Change, x: float, why: str) -> None:
     """Change a number wherever the file states it: in the vessel's own table, and in those of loads."""
     if change.owner == "body":
         own, nominal = document["body"], getattr(vessel.body, change.key)
@@ -89,7 +88,7 @@ def _alter(document: Any, vessel: Vessel, change: Change, x: float, why: str) ->
         _state(own, change.key, change.of(float(own.get(change.key, nominal)), x), why)
 
 
-def _hold(document: Any, problem: Problem, vessel: Vessel, found: Fit) -> None:
+def _hold(document: tomlkit.TOMLDocument, problem: Problem, vessel: Vessel, found: Fit) -> None:
     """State what the file's own rules would now fill in otherwise than the fitted boat had it."""
     values = problem.values(problem.tracks[0], found.free, found.theta)
     raw = document.unwrap()
@@ -105,7 +104,7 @@ def _hold(document: Any, problem: Problem, vessel: Vessel, found: Fit) -> None:
         boat = added(boat, effect.having(off))
 
 
-def _state(table: Any, name: str, value: float, why: str) -> None:
+def _state(table: Table | InlineTable, name: str, value: float, why: str) -> None:
     """Put a number into a table with a comment, which an inline table has no room for; reasons add up."""
     before = table[name].trivia.comment.removeprefix("# ") if name in table else ""
     table[name] = tomlkit.item(_rounded(value))
@@ -113,7 +112,7 @@ def _state(table: Any, name: str, value: float, why: str) -> None:
         table[name].comment(f"{before}; {why}" if before else why)
 
 
-def _effect_table(name: str, settings: Mapping[str, float]) -> Any:
+def _effect_table(name: str, settings: Mapping[str, float]) -> Table:
     table = tomlkit.table()
     table["use"] = name
     table["use"].comment("found by the diagnosis")

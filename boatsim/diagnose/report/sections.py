@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
-from typing import Any
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from boatsim.diagnose.next.experiment import WORTH
 from boatsim.diagnose.report import figures
 from boatsim.diagnose.report.answer import SHAPE
 from boatsim.diagnose.report.blocks import Block, Figures, Heading, Items, Section, Table, Text, without_empty
+from boatsim.diagnose.report.entries import EffectEntry, Family
 from boatsim.diagnose.report.findings import Findings, FreeRun, Missing
 from boatsim.diagnose.report.words import (
     UNTRIED,
@@ -35,7 +35,7 @@ from boatsim.diagnose.search.rank import ALIKE, UNKNOWN, UNKNOWN_FACTOR
 PICTURES = 6  # runs whose missing force is drawn; the strongest ones
 UNSEEN_PICTURES = 3  # unseen runs that are drawn
 RANKED = 8  # entries of the ranking, and of the limits, that are seen without asking for the rest
-FAMILIES = {  # key of `fit` -> what it is the error of, unit, signal of a free run
+FAMILIES: dict[Family, tuple[str, str, str]] = {  # key of `fit` -> what it is the error of, unit, signal of a free run
     "position_rms_m": ("position", "m", "position"),
     "heading_rms_rad": ("heading", "rad", "psi_rad"),
     "roll_rms_rad": ("roll", "rad", "phi_rad"),
@@ -152,7 +152,7 @@ def _beside(words: str) -> str:
     return said(words) + ("" if words == said(words) else ", not physics")
 
 
-def _values(f: Findings, effect: dict[str, Any]) -> list[list[str]]:
+def _values(f: Findings, effect: EffectEntry) -> list[list[str]]:
     rows = []
     for key, p in effect["parameters"].items():
         name, text = shown(key, p["value"], p["unit"], p["sd"])
@@ -161,7 +161,7 @@ def _values(f: Findings, effect: dict[str, Any]) -> list[list[str]]:
     return rows
 
 
-def _about_deviations(effect: dict[str, Any]) -> str:
+def _about_deviations(effect: EffectEntry) -> str:
     """What is behind the deviations that are printed."""
     turned = any(p["unit"] == "rad" for p in effect["parameters"].values())
     direction = f" ({math.degrees(SHAPE):.1f}° of a direction)" if turned else ""
@@ -195,7 +195,7 @@ def _where(f: Findings) -> Iterator[Block]:
                 "they are not enough for a verdict: no entry explains them clearly better, and a cause outside the "
                 f"library would gain {nats(f.answer['unknown']['gain_nats'])} nats (said from {UNKNOWN:g} on)."
             )
-        rows = [[i["run"], i["axis"], *(f"{i[k]:.1f}" for k in ("from_s", "to_s"))] for i in where["intervals"]]
+        rows = [[i["run"], i["axis"], f"{i['from_s']:.1f}", f"{i['to_s']:.1f}"] for i in where["intervals"]]
         header = ["run", "axis", "from [s]", "to [s]"]
         yield Table(f"All {len(rows)} flagged intervals", header, rows, (1,), folded=True)
 

@@ -3,8 +3,8 @@
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
+from boatsim.diagnose.report.entries import Answer, EffectEntry
 from boatsim.recordings.notes import unit_of
 
 DEGREE = 180.0 / math.pi
@@ -167,7 +167,7 @@ def said(words: str) -> str:
     return words.removesuffix(" (not physics)")
 
 
-def parameters(effect: Mapping[str, Any], words: Mapping[str, str]) -> str:
+def parameters(effect: EffectEntry, words: Mapping[str, str]) -> str:
     """The fitted numbers of an effect in a row: astern factor 0.694 ± 0.012; the first few, none that may be zero."""
     found = []
     for key, p in effect["parameters"].items():
@@ -179,7 +179,7 @@ def parameters(effect: Mapping[str, Any], words: Mapping[str, str]) -> str:
     return ", ".join(found[:MOST])
 
 
-def sentence(answer: Mapping[str, Any], words: Mapping[str, str] | None = None) -> str:
+def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
     """The verdict of a diagnosis in one sentence, made of the words of the effects it names.
 
     `words` is what parameters mean, by "effect.parameter".
@@ -207,26 +207,26 @@ def sentence(answer: Mapping[str, Any], words: Mapping[str, str] | None = None) 
     return f"{capital('; '.join(parts))}."
 
 
-def tried(answer: Mapping[str, Any]) -> bool:
+def tried(answer: Answer) -> bool:
     """Whether there was any entry to explain the recordings with."""
     return bool(answer["candidates"])
 
 
-def _untried(answer: Mapping[str, Any]) -> str:
+def _untried(answer: Answer) -> str:
     """What can be said all the same: whether more force is left than the vessel file tolerates."""
     if answer["verdict"] == "unknown":
         return f"something is missing{_sizes(answer)}, and {UNTRIED}"
     return f"no more force is missing than the vessel file tolerates, but {UNTRIED}"
 
 
-def _sizes(answer: Mapping[str, Any]) -> str:
+def _sizes(answer: Answer) -> str:
     """How large what is missing is, per axis; in brackets."""
     axes = answer["where"]["axes"]
     sizes = [f"{quantity(a['rms'], a['unit'], digits=2)} rms in {axis}" for axis, a in axes.items()]
     return f" ({listed(sizes)})" if sizes else ""
 
 
-def _clause(effect: Mapping[str, Any], words: Mapping[str, str]) -> str:
+def _clause(effect: EffectEntry, words: Mapping[str, str]) -> str:
     numbers = parameters(effect, words)
     return said(effect["words"]) + (f" ({numbers})" if numbers else "")
 

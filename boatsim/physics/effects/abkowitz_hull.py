@@ -42,12 +42,12 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     return wrench(X=q.mass * (along - m.vr * m.r), Y=q.mass * (across + m.ur * m.r), N=q.yaw_inertia * turning)
 
 
-def derivative(name: str) -> Any:
+def derivative(name: str) -> float:
     """A nondimensional derivative."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=f"{name}', nondimensional")
 
 
-def inertia(words: str) -> Any:
+def inertia(words: str) -> float:
     """An entry of the nondimensional inertia."""
     return param(1.0, low=-10.0, high=10.0, unit="", words=words)
 

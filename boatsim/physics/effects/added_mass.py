@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Force, Inertia, Mass, Release, Wrench, factor, mass, param, shift, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Inertia, Mass, Release, Wrench, factor, mass, param, shift, wrench
 
 
 @njit(inline="always")
@@ -83,7 +83,7 @@ class AddedMass(Inertia, Force):
     spheroid: float = param(0.0, low=0.0, high=1.0, unit="", words="1: surge, sway, yaw and roll by the hull's size")
     roll_share: float = param(0.2, low=0.0, high=2.0, unit="", words="roll inertia per the body's, if by size")
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """Values by the vessel's size, where they are wanted."""
         if not self.spheroid:
             return {}

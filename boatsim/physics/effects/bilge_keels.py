@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 FLAT_PLATE = 2.4  # drag coefficient at a large swing (Ikeda)
 SMALL_SWING = 22.5  # grows with breadth per swing: 22.5 / pi breadth / (arm amplitude)
@@ -46,13 +46,13 @@ class BilgeKeels(Force):
     frequency: float = param(UNSET, low=0.0, high=50.0, unit="rad/s", words="of roll; if not given, the vessel's own")
     density: float = param(particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water")
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """What is not given, from the vessel's size, righting arm and inertia."""
         arm = 0.8 * hypot(0.5 * vessel.beam, vessel.draught)
         return {"length": 0.3 * vessel.length, "arm": arm, "frequency": _frequency(vessel)}
 
 
-def _frequency(vessel: Any) -> float:
+def _frequency(vessel: Boat) -> float:
     """Undamped frequency of roll [rad/s], 0 for a vessel that has no righting arm."""
     stiffness = getattr(vessel.effect("righting_arm"), "stiffness", 0.0)
     return sqrt(stiffness / (vessel.body.roll_inertia + getattr(vessel.effect("added_mass"), "roll", 0.0)))

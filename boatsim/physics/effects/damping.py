@@ -38,12 +38,12 @@ def law(m: Any, q: Any) -> Wrench:
     )
 
 
-def exponent(axis: str) -> Any:
+def exponent(axis: str) -> float:
     """The power of the speed of one axis."""
     return param(1.0, low=1.0, high=3.0, unit="", words=f"power of the speed in {axis}; 1: linear", axis=axis)
 
 
-def equal(axis: str, unit: str) -> Any:
+def equal(axis: str, unit: str) -> float:
     """The speed at which a power law is as strong as the linear one of the same coefficient."""
     return param(1.0, low=0.01, high=20.0, unit=unit, words="speed at which the power does not count", axis=axis)
 
@@ -143,14 +143,14 @@ class LateralCentreShift(Release):
     )
 
 
-def another_power(axis: str) -> Any:
+def another_power(axis: str) -> float:
     """The power of the speed in one axis."""
     return number(
         f"linear_damping.{axis}_exponent", words=axis, unit="", spread=0.5, low=1.0, high=3.0, absent=1.0, axis=axis
     )
 
 
-def agreement(axis: str, unit: str) -> Any:
+def agreement(axis: str, unit: str) -> float:
     """The speed at which both laws agree."""
     return number(
         f"linear_damping.{axis}_equal", words="both laws agree", unit=unit, spread=0.5, low=0.01, high=20.0,

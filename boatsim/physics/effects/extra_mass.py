@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Force, Inertia, Mass, Release, Wrench, mass, param, shift, wrench
+from boatsim.physics.base import Boat, Force, Inertia, Mass, Release, Wrench, mass, param, shift, wrench
 
 
 @njit(inline="always")
@@ -53,7 +53,7 @@ class Payload(Release):
         low=-1e9, high=1e9,
     )  # fmt: skip
 
-    def weights(self, vessel: Any) -> dict[str, float]:
+    def weights(self, vessel: Boat) -> dict[str, float]:
         """The hull's radii of gyration stay."""
         body = vessel.body
         return {f"body.{name}": getattr(body, name) / body.mass for name in ("roll_inertia", "yaw_inertia")}

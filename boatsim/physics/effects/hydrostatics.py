@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 from boatsim.physics.particulars import GRAVITY
 
 
@@ -36,6 +36,6 @@ class Hydrostatics(Force):
     mass: float = param(UNSET, low=0.0, high=1e12, unit="kg", words="the boat's", follows="vessel.body.mass")
     displacement: float = param(UNSET, low=0.0, high=1e12, unit="kg", words="mass it floats with at z = 0")
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """The hull floats as drawn with the mass that its file states."""
         return {"displacement": vessel.body.mass}

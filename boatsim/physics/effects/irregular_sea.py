@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 from boatsim.physics.chance import course, drawn
 
 LOWEST = 0.45  # of the modal frequency: below it lies less than 1e-13 of the energy
@@ -132,7 +132,7 @@ class IrregularSea(Force):
         follows="linear_hull.arm?",
     )
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """The depth of buoyancy, 0.4 of the draught."""
         return {"centre_depth": 0.4 * self.draught}
 

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 
 @njit(inline="always")
@@ -52,18 +52,19 @@ class LinearHull(Force):
     arm: float = param(UNSET, low=-100.0, high=100.0, unit="m", words="roll moment per force that accelerates in sway")
     mass: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="the vessel's own", follows="vessel.body.mass")
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """Derivatives and levers of the vessel's size, speed and added mass. Raises BadInput without that."""
-        L, T, water = vessel.length, vessel.draught, self.needed(vessel, "added_mass")
+        L, T = vessel.length, vessel.draught
+        m_x, m_y, sway_below = (self.followed(f"added_mass.{key}", vessel) for key in ("surge", "sway", "sway_below"))
         d = particulars.derivatives(L, vessel.beam, T, self.trim, self.block)
         q, x = 0.5 * self.density * L * T * self.speed, -self.ahead  # x: midship seen from the mass centre
         below = self.above_keel - 0.5 * T
         return {
             "sway": -q * d.sway_by_sway,
-            "sway_by_yaw": -q * L * d.sway_by_yaw + water.surge * self.speed,  # m_x V: Coriolis force of the water
+            "sway_by_yaw": -q * L * d.sway_by_yaw + m_x * self.speed,  # m_x V: Coriolis force of the water
             "yaw_by_sway": -q * (L * d.yaw_by_sway + d.sway_by_sway * x),
             "yaw": -q * L * (L * d.yaw_by_yaw + d.sway_by_yaw * x),
             "yaw_by_heel": q * L * self.speed * self.heel_to_yaw,
             "below": below,
-            "arm": 0.0 if water.sway_below else below * water.sway / (vessel.body.mass + water.sway),
+            "arm": 0.0 if sway_below else below * m_y / (vessel.body.mass + m_y),
         }

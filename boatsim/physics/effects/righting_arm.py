@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Force, Release, Wrench, factor, param, shift, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Release, Wrench, factor, param, shift, wrench
 
 
 @njit(inline="always")
@@ -37,7 +37,7 @@ class RightingArm(Force):
     list: float = param(0.0, low=-0.5, high=0.5, unit="rad", words="heel at rest", axis="roll")
     metacentric_height: float = param(0.0, low=0.0, high=50.0, unit="m", words="GM, from which the stiffness follows")
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """The stiffness of the vessel's weight at the given GM."""
         return {"stiffness": vessel.body.mass * particulars.GRAVITY * self.metacentric_height}
 

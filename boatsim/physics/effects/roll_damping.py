@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 
 @njit(inline="always")
@@ -32,18 +32,19 @@ class RollDamping(Force):
         UNSET, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM", follows="righting_arm.stiffness"
     )
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """The coefficient of the vessel's own stiffness, inertia, form and speed. Raises BadInput."""
-        inertia = vessel.body.roll_inertia + _water(vessel.effect("added_mass"))
+        inertia = vessel.body.roll_inertia + self._water(vessel)
         ratio = self.at_rest + (self._with_headway(vessel, self.stiffness) if self.round_bilge else 0.0)
         return {"roll": 2.0 * ratio * sqrt(self.stiffness * inertia)}
 
-    def _with_headway(self, vessel: Any, stiffness: float) -> float:
+    def _with_headway(self, vessel: Boat, stiffness: float) -> float:
         """Share of the critical damping that headway adds."""
-        hull, height = self.needed(vessel, "linear_hull"), stiffness / (vessel.body.mass * particulars.GRAVITY)
-        return particulars.roll_ratio_by_speed(vessel.length, vessel.beam, hull.block, height, hull.speed)
+        block, speed = (self.followed(f"linear_hull.{key}", vessel) for key in ("block", "speed"))
+        height = stiffness / (vessel.body.mass * particulars.GRAVITY)
+        return particulars.roll_ratio_by_speed(vessel.length, vessel.beam, block, height, speed)
 
-
-def _water(added_mass: Any) -> float:
-    """Roll inertia of the water about the origin."""
-    return 0.0 if added_mass is None else float(added_mass.roll + added_mass.sway * added_mass.sway_below**2)
+    def _water(self, vessel: Boat) -> float:
+        """Roll inertia of the water about the origin."""
+        roll, sway, below = (self.followed(f"added_mass.{key}?", vessel) for key in ("roll", "sway", "sway_below"))
+        return roll + sway * below**2

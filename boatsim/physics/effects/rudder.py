@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Force, Release, Role, Wrench, number, param, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Release, Role, Wrench, number, param, wrench
 
 NEVER = 0.5 * pi  # [rad] no rudder turns further
 
@@ -46,14 +46,14 @@ class Rudder(Force):
     at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="place ahead of the mass centre")
     below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="place below the mass centre")
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """The coefficients of a blade, where one is given. Raises BadInput on a vessel without linear_hull."""
         if not self.area:
             return {}
-        hull = self.needed(vessel, "linear_hull")
-        slope = particulars.rudder_slope(self.area, self.aspect, self.inflow, hull.density)
-        sway = -(1.0 + particulars.hull_share(hull.block)) * slope
-        return {"sway": sway, "yaw": self.at * sway, "roll": (hull.arm - self.below) * sway}
+        density, block, arm = (self.followed(f"linear_hull.{key}", vessel) for key in ("density", "block", "arm"))
+        slope = particulars.rudder_slope(self.area, self.aspect, self.inflow, density)
+        sway = -(1.0 + particulars.hull_share(block)) * slope
+        return {"sway": sway, "yaw": self.at * sway, "roll": (arm - self.below) * sway}
 
 
 @dataclass(frozen=True)

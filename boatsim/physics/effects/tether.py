@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 SOFT = 0.02  # [m] over which the line goes from slack to taut; a wider one can not follow a short stiff line
 NEAR = 0.05  # [m] keeps the direction of the pull defined at the anchor
@@ -63,6 +63,6 @@ class Tether(Force):
         UNSET, low=-500.0, high=500.0, unit="m", words="made fast this far ahead; if not given, at the stern"
     )
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """The stern is half a length behind."""
         return {"at": -0.5 * vessel.length}

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
+from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 REACH = 0.5  # [boat lengths] over which what a wall does falls to 37 %
 
@@ -58,6 +58,6 @@ class WallEffect(Force):
     sway: float = param(UNSET, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.sway")
     yaw: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """The reach by the boat's length."""
         return {"reach": REACH * vessel.length}

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 
 from numba import njit
 
-from boatsim.physics.base import UNSET, Swell, Unsteady, Wrench, param, wrench
+from boatsim.physics.base import UNSET, Boat, Swell, Unsteady, Wrench, param, wrench
 from boatsim.physics.chance import course, drawn, line
 
 WAVES = 64  # components of the realisation
@@ -62,10 +62,10 @@ class YawRateWaves(Unsteady):
     drag: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
     realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still")
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: Boat) -> dict[str, float]:
         """The vessel's inertia in yaw, its water's included."""
-        water = vessel.effect("added_mass")
-        return {"inertia": vessel.body.yaw_inertia + (water.yaw + water.sway * water.sway_at**2 if water else 0.0)}
+        yaw, sway, at = (self.followed(f"added_mass.{key}?", vessel) for key in ("yaw", "sway", "sway_at"))
+        return {"inertia": vessel.body.yaw_inertia + (yaw + sway * at**2)}
 
     def seeded(self, seed: int) -> Self:
         """Another course for each seed, unless the water is still."""

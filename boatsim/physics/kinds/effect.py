@@ -71,26 +71,26 @@ class Effect(Checked):
 
     @classmethod
     @cache
-    def values_type(cls) -> Any:
+    def values_type(cls) -> Callable[..., tuple[float, ...]]:
         """NamedTuple type of the parameters, as the compiled law receives them."""
         return namedtuple(f"{cls.__name__}Values", list(cls.params()))
 
     @classmethod
     @cache
-    def signals_type(cls) -> Any:
+    def signals_type(cls) -> Callable[..., tuple[float, ...]]:
         """NamedTuple type of the signals of its roles, with cosine and sine of those that are angles."""
         angles = [f"{part}_{n}" for n, role in cls.roles.items() if role.unit == "rad" for part in ("cos", "sin")]
         return namedtuple(f"{cls.__name__}Signals", [*cls.roles, *angles])
 
     @classmethod
-    def signals(cls, **given: float) -> Any:
+    def signals(cls, **given: float) -> tuple[float, ...]:
         """Signals of its roles as the law's third argument; one not given is as if nothing were bound to it, or 0."""
         held = {name: role.fixed or 0.0 for name, role in cls.roles.items()} | given
         angles = [name for name, role in cls.roles.items() if role.unit == "rad"]
         parts = {f"{part}_{n}": of(held[n]) for n in angles for part, of in (("cos", cos), ("sin", sin))}
         return cls.signals_type()(**held, **parts)
 
-    def values(self) -> Any:
+    def values(self) -> tuple[float, ...]:
         """The parameters as the law's second argument."""
         given = ((self.stated(n), getattr(self, n)) for n in type(self).params())
         return type(self).values_type()(*(float(x) if there else 0.0 for there, x in given))
@@ -103,7 +103,7 @@ class Effect(Checked):
         """The effect with other values of some parameters."""
         return replace(self, **values)
 
-    def completed(self, vessel: Any) -> Self:
+    def completed(self, vessel: "Boat") -> Self:
         """The effect with what nobody stated filled in: what `follows` the vessel, then what `rules` give, else 0.
 
         What a file states wins. Raises BadInput where the vessel lacks what the effect builds on.
@@ -111,7 +111,7 @@ class Effect(Checked):
         own = self
         for name, about in type(self).params().items():
             if about.follows and not self.stated(name):
-                own = own.having({name: self._followed(about.follows, vessel)})
+                own = own.having({name: self.followed(about.follows, vessel)})
         ruled = {n: x for n, x in own.rules(vessel).items() if not own.stated(n)} if own._left() else {}
         own = own.having(ruled)
         for fact, names in type(self).facts.items():
@@ -120,7 +120,7 @@ class Effect(Checked):
                 raise BadInput(f"{vessel.name}: {self.name} needs {missing}: {where}")
         return replace(own.having(dict.fromkeys(own._left(), 0.0)), filled=frozenset(self._left()) | self.filled)
 
-    def rules(self, vessel: Any) -> dict[str, float]:
+    def rules(self, vessel: "Boat") -> dict[str, float]:
         """Parameters by a rule of the effect's own, for those that nobody states; what follows is filled in before."""
         return {}
 
@@ -128,7 +128,7 @@ class Effect(Checked):
         """Parameters without a value."""
         return [n for n in type(self).params() if not self.stated(n)]
 
-    def _followed(self, source: str, vessel: Any) -> float:
+    def followed(self, source: str, vessel: "Boat") -> float:
         """The value of the vessel, or of one of its effects, that a parameter follows. Raises BadInput."""
         owner, _, key = source.removesuffix("?").partition(".")
         if owner == "vessel":
@@ -137,7 +137,7 @@ class Effect(Checked):
             return 0.0
         return float(getattr(self.needed(vessel, owner), key))
 
-    def needed(self, vessel: Any, owner: str) -> Any:
+    def needed(self, vessel: "Boat", owner: str) -> "Effect":
         """The vessel's effect that this one builds on. Raises BadInput where it has none."""
         own = vessel.effect(owner)
         if own is None:
@@ -147,6 +147,44 @@ class Effect(Checked):
     def seeded(self, seed: int) -> Self:
         """The effect with its random course, if it has one, drawn from a scenario's seed."""
         return self
+
+
+class Rigid(Protocol):
+    """What an effect may ask of the rigid body of its vessel."""
+
+    mass: float  # [kg]
+    roll_inertia: float  # [kg m^2]
+    yaw_inertia: float  # [kg m^2]
+
+
+class Boat(Protocol):
+    """What an effect may ask of the vessel it is on."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def length(self) -> float:
+        """Length [m]."""
+
+    @property
+    def beam(self) -> float:
+        """Beam [m]."""
+
+    @property
+    def draught(self) -> float:
+        """Draught [m]."""
+
+    @property
+    def body(self) -> Rigid:
+        """The rigid body."""
+
+    def effect(self, name: str) -> Effect | None:
+        """Its own effect of that name, or the only one of that idea."""
+
+    def known_as(self, name: str) -> list[str]:
+        """Names of its own effects that a word means."""
 
 
 class Site(NamedTuple):

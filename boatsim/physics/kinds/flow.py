@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 
@@ -15,7 +15,7 @@ class Flow(Kind):
 
     parts: ClassVar = (FLOW,)
     laws: ClassVar[tuple[str, ...]] = ("flow",)
-    flow: ClassVar[Callable[[Any], tuple[float, float]]]
+    flow: ClassVar[Callable[..., tuple[float, float]]]
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
-from boatsim.physics.signals import Wrench
+from boatsim.physics.signals import Motion, Wrench
 
 COMPONENTS = Wrench._fields
 ADD = "; ".join(f"{c} += f.{c}" for c in COMPONENTS)
@@ -40,7 +40,7 @@ class Force(Kind):
                 yield f"f = {site.call('law', 'm')}"
                 yield ADD
 
-    def wrench(self, m: Any, *given: Any, **signals: float) -> Wrench:
+    def wrench(self, m: Motion, *given: tuple[float, ...], **signals: float) -> Wrench:
         """The force at one motion, its roles at these signals; what it rides on gives it signals and values instead."""
         own = (type(self).signals(**signals),) if type(self).roles and not given else ()
         return Wrench(*type(self).law(m, self.values(), *given, *own))

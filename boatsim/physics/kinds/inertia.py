@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 from boatsim.physics.signals import MASS_ENTRIES, Array, Mass
@@ -20,7 +20,7 @@ class Inertia(Kind):
     parts: ClassVar = (INERTIAS,)
     laws: ClassVar[tuple[str, ...]] = ("inertia",)
     moves_with: ClassVar[str] = "water"
-    inertia: ClassVar[Callable[[Any], Mass]]
+    inertia: ClassVar[Callable[..., Mass]]
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 from boatsim.physics.signals import Shown
@@ -23,13 +23,16 @@ class Measurement(Kind):
     kind: ClassVar[str] = "measurement"
     parts: ClassVar = (SHOWN, DISTORTED, LATE)
     laws: ClassVar = ("shown", "late")
-    shown: ClassVar[Callable[[Shown, Any], Shown] | None] = None
-    late: ClassVar[Callable[[Any], float] | None] = None
+    shown: ClassVar[Callable[..., Shown] | None] = None
+    late: ClassVar[Callable[..., float] | None] = None
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
         """Change what is shown, say that it is changed, add up how late it comes."""
-        kind: Any = type(program.effects[number])
+        effect = program.effects[number]
+        if not isinstance(effect, Measurement):
+            return
+        kind = type(effect)
         for site in program.sites(number):
             if part is SHOWN and kind.shown is not None:
                 yield f"m = {site.call('shown', 'm')}"

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 from boatsim.physics.kinds.force import ADD, COMPONENTS, WRENCH
@@ -19,7 +19,7 @@ class Reaction(Kind):
     """
 
     laws: ClassVar[tuple[str, ...]] = ("reaction",)
-    reaction: ClassVar[Callable[[Any, Wrench, Any], Wrench]]
+    reaction: ClassVar[Callable[..., Wrench]]
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:

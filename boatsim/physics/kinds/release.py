@@ -1,9 +1,9 @@
 """Release: the suspicion that stated numbers of a vessel are off."""
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
-from boatsim.physics.kinds.effect import Effect
+from boatsim.physics.kinds.effect import Boat, Effect
 
 
 class Change(NamedTuple):
@@ -30,7 +30,7 @@ class Release(Effect):
     file it changes them at once, in a diagnosis they are fitted, in a patched file they are written.
     """
 
-    def changes(self, vessel: Any) -> list[Change]:
+    def changes(self, vessel: Boat) -> list[Change]:
         """What it does to the numbers that the vessel has."""
         found, weights = [], self.weights(vessel)
         for name, about in type(self).params().items():
@@ -40,11 +40,11 @@ class Release(Effect):
                 found += [Change(name, one, key, about.how, weights.get(place, 1.0)) for one in instances]
         return found
 
-    def weights(self, vessel: Any) -> dict[str, float]:
+    def weights(self, vessel: Boat) -> dict[str, float]:
         """What a number is shifted by per shift of the parameter; 1 where it is not said."""
         return {}
 
-    def completed(self, vessel: Any) -> Self:
+    def completed(self, vessel: Boat) -> Self:
         """Raises BadInput where the vessel has none of the numbers."""
         if not self.changes(vessel):
             places = (p for about in type(self).params().values() for p in about.releases)

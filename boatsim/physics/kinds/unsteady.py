@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from boatsim.physics.kinds.effect import Composed, Part, Station
 from boatsim.physics.kinds.force import Force
@@ -21,7 +21,7 @@ class Unsteady(Force):
 
     parts: ClassVar = (SWELL,)
     laws: ClassVar[tuple[str, ...]] = ("law", "swell")
-    swell: ClassVar[Callable[[Any], Swell]]
+    swell: ClassVar[Callable[..., Swell]]
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:

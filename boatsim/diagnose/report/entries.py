@@ -1,0 +1,115 @@
+"""What diagnosis.json holds, table by table."""
+
+from typing import Literal, NotRequired, TypedDict
+
+Family = Literal["position_rms_m", "heading_rms_rad", "roll_rms_rad"]  # of signals whose error on unseen data is told
+
+
+class ParameterEntry(TypedDict):
+    """A fitted parameter of an effect that was found."""
+
+    value: float
+    sd: float
+    unit: str
+
+
+class Acting(TypedDict, total=False):
+    """What an effect acts on, where its table says so."""
+
+    on: list[str]
+
+
+class EffectEntry(Acting):
+    """An effect that was found."""
+
+    name: str
+    kind: str  # "physics" or "measurement"
+    probability: float
+    gain_nats: float
+    words: str
+    tied_with: list[str]  # look-alikes
+    parameters: dict[str, ParameterEntry]  # by name with unit
+
+
+class UnknownEntry(TypedDict):
+    """Whether something is missing that no entry of the library explains."""
+
+    flag: bool
+    gain_nats: float
+
+
+class CandidateEntry(TypedDict):
+    """An entry of the library, tried alone."""
+
+    name: str
+    gain_nats: float
+    probability: float
+
+
+class StrengthEntry(TypedDict):
+    """The missing force of one axis over all runs."""
+
+    rms: float
+    sd: float
+    unit: str
+
+
+class IntervalEntry(TypedDict):
+    """A stretch of a run in which the force of an axis is missing."""
+
+    run: str
+    from_s: float
+    to_s: float
+    axis: str
+
+
+class RegionEntry(TypedDict):
+    """A state region in which a force is missing."""
+
+    variable: str
+    statement: str
+    p_value: float
+
+
+class WhereEntry(TypedDict):
+    """Where what is missing shows."""
+
+    axes: dict[str, StrengthEntry]
+    intervals: list[IntervalEntry]
+    region: list[RegionEntry]
+
+
+class FitEntry(TypedDict):
+    """Rms error on unseen data by model, for each family of signals."""
+
+    horizon_s: float
+    held_out: list[str]
+    position_rms_m: dict[str, float]
+    heading_rms_rad: dict[str, float]
+    roll_rms_rad: NotRequired[dict[str, float]]
+
+
+class NextEntry(TypedDict, total=False):
+    """What to record next; empty where no manoeuvre would tell more."""
+
+    manoeuvre: str
+    scenario: str
+    separates: list[str]
+    expected_gain_nats: float
+
+
+class Answer(TypedDict):
+    """The whole of diagnosis.json."""
+
+    verdict: str  # "named", "ambiguous", "unknown" or "nothing_missing"
+    sentence: str
+    seconds: float
+    version: str
+    effects: list[EffectEntry]
+    unknown: UnknownEntry
+    candidates: list[CandidateEntry]
+    upper_limits: dict[str, dict[str, float]]
+    where: WhereEntry
+    fit: FitEntry
+    next_experiment: NextEntry
+    patch: str
