@@ -13,7 +13,7 @@ from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import patch
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
-from boatsim.physics.base import Array
+from boatsim.physics.base import Array, Release
 from boatsim.physics.content import load_class
 from boatsim.physics.effects.linear_hull import LinearHull
 from boatsim.physics.program import Program
@@ -25,7 +25,8 @@ OFF = 0.1  # relative, of every coefficient that a diagnosis recalibrates
 
 def problem_of(boat: Vessel) -> Problem:
     """A made-up run of a vessel, to fit nothing with: commands in steps, no measurements."""
-    program, _ = composed(boat)
+    releases = tuple(e for e in composed(boat)[0].suspects if isinstance(e, Release))
+    program = Program(boat, releases)  # a law that does not act would only be compiled for nothing
     rng = np.random.default_rng(7)
     low, high = (np.array([getattr(c, a) for c in boat.commands.values()]) for a in ("low", "high"))
     commands = np.zeros((ROWS, 1))

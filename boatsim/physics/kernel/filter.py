@@ -76,7 +76,7 @@ def transition(
     for i in range(NQ):
         A[i, NQ + i] = 1.0
     slopes(t, z, act, p, on, k, force, A[NQ:NY])
-    force_slopes(z, k, A, NQ, NY)
+    force_slopes(z, k, A, np.int64(NQ), NY)
     exponential(A, h, F, B, CALM)
 
 

@@ -5,6 +5,8 @@ State s = (joint coordinates, their rates) of the freedoms there are, NQ each; k
 
 from typing import Any
 
+import numpy as np
+
 from boatsim.physics.signals import Array, Shown
 
 NQ = 0  # positions; the state has twice as many
@@ -30,7 +32,7 @@ def slopes(t: float, s: Array, act: Array, p: Array, on: Any, k: Array, extra: A
     """Derivatives of the joint accelerations by the state, one-sided, to out (NQ, 2 NQ)."""
 
 
-def force_slopes(s: Array, k: Array, A: Array, row: int, column: int) -> None:
+def force_slopes(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) -> None:
     """Derivatives of the joint accelerations by a body force over the freedoms, to A[row:, column:]."""
 
 
