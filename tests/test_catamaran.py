@@ -65,13 +65,6 @@ def test_particulars_are_those_of_table_1_with_a_mean_submerged_depth_of_45_mm()
     assert water.yaw == pytest.approx((0.1 * m * W**2 + 1000 * pi * D**2 * L**3) / 24, rel=1e-4)
 
 
-@pytest.mark.parametrize("name", SHIPPED)
-def test_every_scenario_lies_within_its_bars(name: str) -> None:
-    found = norms(sailed(name.removeprefix("catamaran/")))
-    assert any(norm.ok is not None for norm in found.values())
-    assert {n: norm.value for n, norm in found.items() if norm.ok is False} == {}
-
-
 def test_table_3_is_met_to_its_last_digit_in_all_ten_cells() -> None:
     found = {a: values(f"speed_{a}") for a in TABLE_III}
     assert {a: (round(f["time"] or 0, 1), round(f["distance"] or 0, 1)) for a, f in found.items()} == TABLE_III
@@ -165,6 +158,7 @@ def test_without_thrust_and_disturbance_the_energy_only_falls() -> None:
     assert np.all(np.diff(energy) < 0.0) and energy[-1] < 1e-3 * energy[0]
 
 
+@pytest.mark.slow
 def test_boat_replays_a_recording_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The disturbance goes with the recording, in its notes."""
     run_into(tmp_path / "run", scenario.load("catamaran/disturbance_5"))

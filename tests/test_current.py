@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from alike import few
 
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array
@@ -67,7 +68,7 @@ def sails_as_in_still_water(boat: Vessel) -> None:
     assert carried(twin.program, found, t, -1.0) == pytest.approx(wanted, rel=0.0, abs=TOLERANCE)
 
 
-@pytest.mark.parametrize(("name", "loads"), CASES)
+@pytest.mark.parametrize(("name", "loads"), few(CASES))
 def test_a_vessel_in_a_uniform_current_sails_as_in_still_water(name: str, loads: list[str]) -> None:
     sails_as_in_still_water(in_flow(name, loads))
 

@@ -250,6 +250,7 @@ def test_two_effects_are_named_with_their_values_and_the_patched_boat_follows_un
     assert rms["patched"] < 0.006 < 0.2 * rms["recalibrated"]  # 3 mm camera noise and that of the smoothed start
 
 
+@pytest.mark.slow
 def test_patched_file_gives_the_fitted_motion_back(folder):
     runs = written(folder, *(recorded(f"both_{i}", 10 + i, astern=0.7, wind=(0.12, 0.8)) for i in range(2)))
     found = analysis.diagnose(runs[:1], runs[1:], "trial_boat")
@@ -317,6 +318,7 @@ def thesis(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_reverse_thrust_taken_for_ideal_is_found_in_the_thesis_own_tests(thesis):
     runs = [thesis / n / "camera.csv" for n in ("sway_1", "yaw_1")]
     unseen = [thesis / n / "camera.csv" for n in ("sway_3", "yaw_3")]
@@ -397,6 +399,7 @@ def test_own_preset_of_a_shipped_law_is_found_by_its_own_file(tmp_path):
     assert address(load_class("effect", str(file))) == str(file.resolve())
 
 
+@pytest.mark.slow
 def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder, tmp_path, capsys):
     text = (vessel.load("kvlcc2_roll").file).read_text()
     mine = tmp_path / "mine"

@@ -242,6 +242,7 @@ def test_pwm_takes_the_place_of_the_thrust_it_feeds():
     assert set(manoeuvres.commanded(boat)) == {"pwm_port", "pwm_starboard", "steer_port_rad", "steer_starboard_rad"}
 
 
+@pytest.mark.slow
 def test_hull_without_commands_is_released_at_another_angle(tmp_path):
     boat = vessel.load(str(written(tmp_path, "test_roller", ROLL)))
     suspects = tuple(absent(k).completed(boat) for k in kinds("righting_arm_stiffening", "cubic_damping"))
@@ -263,6 +264,7 @@ def kinds(*names: str) -> list:
     return [load_class("effect", n) for n in names]
 
 
+@pytest.mark.slow
 def test_zig_zag_of_a_ship_changes_over_where_its_heading_is_expected_to_be(tmp_path):
     text = PLANAR.replace("low = -100.0", "low = 0.0").replace("x = 0.0\nhalf", "x = -0.5\nhalf")
     boat = vessel.load(str(written(tmp_path, "test_ship", text)))

@@ -33,8 +33,10 @@ def by_speed(name: str) -> Any:
 
 
 @pytest.mark.parametrize("name", [by_speed(name) for name in TRACKED])
-def test_norms_are_what_they_were(name: str) -> None:
-    lines = drifts(name, kept(name), values(found(name)[0]))
+def test_norms_are_what_they_were_and_lie_within_their_bars(name: str) -> None:
+    norms = found(name)[0]
+    assert {n: (norm.value, norm.guard) for n, norm in norms.items() if norm.ok is False} == {}
+    lines = drifts(name, kept(name), values(norms))
     assert not lines, "\n".join([*lines, 'if this is wanted: python -m benchmarks.golden --update --reason "..."'])
 
 

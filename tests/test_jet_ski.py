@@ -205,13 +205,6 @@ def test_l1_norm_condition_of_the_cruise_control() -> None:
 NAMES = [name for name in names("scenario") if name.startswith("jet_ski/")]
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if "delay" not in n])
-def test_scenarios_lie_within_their_bars(name: str) -> None:
-    found = norms(run(scenario.load(name), 0))
-    assert any(norm.ok for norm in found.values())
-    assert [n for n, norm in found.items() if norm.ok is False] == []
-
-
 def test_staircase_first_four_steps_are_alike_and_the_last_saturates() -> None:
     found = norms(run(scenario.load("jet_ski/staircase"), 0))
     times = [float(found[f"time_95_{i}"].value or 0.0) for i in range(1, 6)]
@@ -219,6 +212,7 @@ def test_staircase_first_four_steps_are_alike_and_the_last_saturates() -> None:
     assert times[4] > 1.3 * np.mean(times[:4]) and float(found["end_error"].value or 0.0) < 0.01
 
 
+@pytest.mark.slow
 def test_a_control_step_ten_times_finer_changes_no_time_of_the_staircase() -> None:
     found = []
     for period in (0.002, 0.0005):

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import few
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnose import analysis
@@ -193,15 +194,18 @@ def test_inertia_and_coriolis_force_are_newtons_law_of_each_part(effect: Any, mo
 
 @pytest.mark.parametrize(
     ("real", "wanted"),
-    [
-        (
-            Real(play=0.15, munk=0.6),
-            {"steering_backlash": {"width_rad": 0.15}, "added_mass_coriolis": {"fraction": 0.6}},
-        ),
-        (Real(late=0.25), {"command_delay": {"delay_s": 0.25}}),
-        (Real(cargo=(1.2, 0.25)), {"extra_mass": {"mass_kg": 1.2, "x_m": 0.25}}),
-        (Real(line=(0.3, 0.8, 1.5, -1.0)), {"tether": {"north_m": 1.5, "east_m": -1.0}}),
-    ],
+    few(
+        [
+            (
+                Real(play=0.15, munk=0.6),
+                {"steering_backlash": {"width_rad": 0.15}, "added_mass_coriolis": {"fraction": 0.6}},
+            ),
+            (Real(late=0.25), {"command_delay": {"delay_s": 0.25}}),
+            (Real(cargo=(1.2, 0.25)), {"extra_mass": {"mass_kg": 1.2, "x_m": 0.25}}),
+            (Real(line=(0.3, 0.8, 1.5, -1.0)), {"tether": {"north_m": 1.5, "east_m": -1.0}}),
+        ],
+        1,
+    ),
     ids=lambda case: "" if isinstance(case, Real) else "+".join(case),
 )
 def test_concealed_effects_are_named_with_their_values(tmp_path: Path, real: Real, wanted: dict[str, Any]) -> None:

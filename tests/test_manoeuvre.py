@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import few
 from scipy.optimize import brentq
 from typer.testing import CliRunner
 
@@ -272,7 +273,7 @@ def test_limits_stand_beside_the_manoeuvres_they_are_for(
 STEERED = [name for name in content.names("vessel") if "yaw" in vessel.load(name).freedoms]
 
 
-@pytest.mark.parametrize("name", STEERED)
+@pytest.mark.parametrize("name", few(STEERED))
 def test_every_vessel_that_can_turn_does_a_short_zigzag_and_a_turning_circle(name: str) -> None:
     zigzag, turn = scenario_of("zigzag", name, angle=10.0), scenario_of("turning_circle", name)
     boat, unit = zigzag.vessel, zigzag.vessel.length / zigzag.file.start.u

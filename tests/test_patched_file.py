@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from alike import few
 
 from boatsim.diagnose.analysis import composed
 from boatsim.diagnose.filter import MAX_STEP, Levels, Track, axes_of, body_of
@@ -64,7 +65,7 @@ def recalibrated(problem: Problem, by: float) -> Fit:
     )
 
 
-@pytest.mark.parametrize("name", content.names("vessel"))
+@pytest.mark.parametrize("name", few(content.names("vessel")))
 def test_replay_of_the_patched_file_is_the_free_run_in_memory(name: str, tmp_path: Path) -> None:
     boat = vessel.load(name)
     problem = problem_of(boat)

@@ -66,6 +66,7 @@ def boatsim(*arguments: Any) -> Any:
     return CliRunner().invoke(app, [str(a) for a in arguments], catch_exceptions=False)
 
 
+@pytest.mark.slow
 def test_a_diagnosis_of_a_boat_with_a_plain_hull_leaves_all_its_files(tmp_path: Path) -> None:
     place = drawn(tmp_path, HULLS["box_of_the_default_group"])
     run, out = coasting(tmp_path), tmp_path / "out"

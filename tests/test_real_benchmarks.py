@@ -55,6 +55,7 @@ def test_commands_of_a_turn_can_be_played_to_another_boat() -> None:
     assert {n: played[n] for n in fitted} == pytest.approx({n: closed[n] for n in fitted}, rel=0.15)
 
 
+@pytest.mark.slow
 def test_an_effect_that_made_the_norms_is_found_in_them() -> None:
     tables = thesis.Tables(tests=("sway_1", "sway_3"))
     knobs = thesis.knobs_of(("weak_reverse",))

@@ -316,6 +316,7 @@ def test_a_replay_uses_a_recording_or_says_why_not(content: bytes, command: str,
     obeys(folder / "out", ("run.csv",), command, folder / "run.csv", "--vessel", "kvlcc2_roll", *short)
 
 
+@pytest.mark.slow
 @few
 @given(content=recordings(cruise()))
 def test_a_recording_with_commands_is_used_or_the_line_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
@@ -363,6 +364,7 @@ ROLLER = (root() / "models" / "kvlcc2_roll" / "vessel.toml").read_text(encoding=
 HULL = (root() / "models" / "kvlcc2_roll" / "hull.xml").read_bytes()
 
 
+@pytest.mark.slow
 @quick
 @given(content=tomls(ROLLER, "[body]", ("suspects", "use")))
 def test_a_vessel_file_is_used_or_the_line_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
@@ -376,6 +378,7 @@ PATCHED = 'based_on = "kvlcc2_roll"\n' + ROLLER.replace(
 )
 
 
+@pytest.mark.slow
 @quick
 @given(content=tomls(PATCHED, "[body]", ("suspects", "use")))
 def test_a_patched_file_is_used_or_the_line_says_why_not(content: bytes, place: Callable[..., Path]) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
+from alike import slow
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnose import analysis
@@ -285,7 +286,7 @@ def check(answer: dict[str, Any], wanted: dict[str, dict[str, float]]) -> None:
                 "speed_scaled_steering": {"hull_sway": 1.0, "rudder_sway": 0.8, "rudder_yaw": 0.8},
             },
         ),
-        (Real(rate=0.06), {"steering_rate_limit": {"rate_radps": 0.06}}),
+        slow((Real(rate=0.06), {"steering_rate_limit": {"rate_radps": 0.06}})),
     ],
     ids=lambda case: "" if isinstance(case, Real) else "+".join(case) or "nothing",
 )
@@ -372,7 +373,7 @@ def slipping(a: float, u: float) -> float:
 @pytest.mark.parametrize(
     ("change", "wanted"),
     [
-        (lagging, {"planing_lag": {"full_speed_mps": 28.0, "least": 0.2}}),
+        slow((lagging, {"planing_lag": {"full_speed_mps": 28.0, "least": 0.2}})),
         (slipping, {"thrust_loss_with_speed": {"loss_spm": 0.015}}),
     ],
 )

@@ -9,6 +9,7 @@ import answers
 import boats
 import numpy as np
 import pytest
+from alike import slow
 from scipy.integrate import solve_ivp
 
 from boatsim.physics import vessel
@@ -214,8 +215,8 @@ def recorded(real: Real, seed: int) -> Recording:
     ("astern", "name"),
     [
         ({"screw": 0.7}, "weak_screw"),
-        ({"pod": 0.8}, "weak_pod"),
-        (dict.fromkeys(THRUSTERS, 0.85), "weak_all"),
+        slow(({"pod": 0.8}, "weak_pod")),
+        slow((dict.fromkeys(THRUSTERS, 0.85), "weak_all")),
         ({}, ""),
     ],
     ids=lambda case: case if isinstance(case, str) else "",
