@@ -135,6 +135,10 @@ def test_what_the_vessel_is_asked_for() -> None:
         ),
         (('use = "current"', "north = 0.1"), r"an \[\[effect\]\] needs use = its name"),
         (("length = 1.0", "length ="), "not a TOML file .*line 5"),
+        (
+            ("beam = 0.4\n", "beam = 0.4\ndiagnosis.facts.walls_m = [1.0, 2.0]\n"),
+            r"diagnosis\.facts.*walls_m = \[1\.0, 2\.0\]; allowed is \[x_low, x_high, y_low, y_high\]",
+        ),
     ],
 )
 def test_a_mistake_in_a_vessel_file_is_one_line(tmp_path: Path, change: tuple[str, str], message: str) -> None:
@@ -142,6 +146,13 @@ def test_a_mistake_in_a_vessel_file_is_one_line(tmp_path: Path, change: tuple[st
     with pytest.raises(BadInput, match=message) as refused:
         of(boats.PLANAR.replace(*change, 1), tmp_path)
     assert "\n" not in str(refused.value)
+
+
+def test_a_class_that_is_no_effect_is_one_line(tmp_path: Path) -> None:
+    boats.written(tmp_path, "test_boat", boats.PLANAR.replace('use = "current"', 'use = "plain.py"'))
+    (tmp_path / "test_boat" / "plain.py").write_text("class Plain:\n    pass\n")
+    with pytest.raises(BadInput, match=r"plain\.py: class Plain is no effect; it must derive from one's base class"):
+        vessel.load(str(tmp_path / "test_boat" / "vessel.toml"))
 
 
 PORT = 'on = { thrust = "thrust_port_N", angle = "steer_port_rad" }'

@@ -294,7 +294,13 @@ def nominal_levels(vessel: Vessel, recording: Recording) -> Levels:
     axes = axes_of(vessel)
     given = recording.notes.ambient.get("force_rms", {})
     if not isinstance(given, Mapping):
-        given = dict(zip(recording.notes.ambient.get("axes", axes), np.atleast_1d(given).tolist(), strict=False))
+        named = recording.notes.ambient.get("axes", axes)
+        if len(named) != len(given):
+            raise BadInput(
+                f"{_called(recording)}: ambient.force_rms = {given}; allowed are {len(named)} numbers, of "
+                f"{', '.join(named)} in turn"
+            )
+        given = dict(zip(named, given, strict=True))
     ambient = {str(a): rms for a, rms in vessel.diagnosis.ambient.items()}
     force = np.array([float(given.get(a, ambient.get(a, 0.0))) for a in axes])
     time_constant = float(recording.notes.ambient.get("time_constant_s", usual_time_constant(vessel)))

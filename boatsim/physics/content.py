@@ -160,9 +160,13 @@ def load_class(kind: str, name: str, beside: Path | None = None) -> type[Any]:
         shipped = path.parent == root() / KINDS["controller"]
         name = path.stem
         module = module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path)
-    found: type | None = getattr(module, camel_case(name), None)
-    if found is None:
+    found = getattr(module, camel_case(name), None)
+    if not isinstance(found, type):
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
+    if not hasattr(found, "from_settings"):  # which each base of these classes has
+        raise BadInput(
+            f"{module.__file__}: class {camel_case(name)} is no {kind}; it must derive from one's base class"
+        )
     return found
 
 

@@ -6,11 +6,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, PositiveFloat
+from pydantic import Field, PositiveFloat, field_validator
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, checked, read_toml, tables
 from boatsim.physics.content import find, load_class
+from boatsim.physics.facts import wrong
 from boatsim.physics.kernel.equations import tilts
 from boatsim.physics.kinds.channel import Channel
 from boatsim.physics.kinds.effect import Effect
@@ -58,6 +59,13 @@ class DiagnosisTable(Table):
     ] = {}  # relative sd: damping, thrust, restoring
     noise: dict[str, PositiveFloat] = {}  # by family; sensor noise where a recording states none
     facts: dict[str, float | str | bool | list[float]] = {}  # what holds where a recording states nothing else: walls_m
+
+    @field_validator("facts")
+    @classmethod
+    def _readable(cls, facts: dict[str, object]) -> dict[str, object]:
+        if found := wrong(facts):
+            raise ValueError(f"{found[0]} = {facts[found[0]]!r}; allowed is {found[1]}")
+        return facts
 
 
 class ManoeuvringTable(Table):

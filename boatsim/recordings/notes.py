@@ -10,6 +10,7 @@ from typing import TypedDict
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Value
+from boatsim.physics.facts import wrong
 from boatsim.physics.signals import AXES
 
 NOISE = ("position_sd_m", "heading_sd_rad", "yaw_rate_sd_radps", "roll_sd_rad", "roll_rate_sd_radps")
@@ -37,7 +38,7 @@ class Ambient(TypedDict, total=False):
     """What [ambient] states of the force that no model explains."""
 
     axes: list[str]
-    force_rms: float | list[float] | dict[str, float]  # [N, N m] by axis, or of those in `axes` in turn
+    force_rms: list[float] | dict[str, float]  # [N, N m] by axis, or of those in `axes` in turn
     time_constant_s: float
 
 
@@ -100,7 +101,7 @@ def _numbers(value: Value) -> list[float]:
     """The numbers of a list; none where it is no list, or holds anything else."""
     listed = value if isinstance(value, list) else []
     found = [x for x in listed if isinstance(x, int | float) and not isinstance(x, bool)]
-    return found if len(found) == len(listed) else []
+    return found if len(found) == len(listed) and all(abs(x) <= HUGE for x in found) else []
 
 
 class _Reader:
@@ -170,7 +171,8 @@ class _Reader:
             found["force_rms"] = inner.sizes("force_rms")
         return found
 
-    def sizes(self, key: str) -> float | list[float] | dict[str, float]:
+    def sizes(self, key: str) -> list[float] | dict[str, float]:
+        """Numbers by axis, or in turn."""
         value = self.content[key]
         given = list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else [value]
         found = [x for x in given if isinstance(x, int | float) and not isinstance(x, bool) and 0 <= x <= HUGE]
@@ -178,12 +180,11 @@ class _Reader:
             raise self.bad(key, "a number of at least 0 for each axis")
         if isinstance(value, dict):
             return dict(zip(value, found, strict=True))
-        return found if isinstance(value, list) else found[0]
+        return found
 
     def facts(self) -> dict[str, Value]:
-        walls = _numbers(self.content.get("walls_m", [-1.0, 1.0, -1.0, 1.0]))
-        if len(walls) != 4 or not (-HUGE <= walls[0] < walls[1] <= HUGE and -HUGE <= walls[2] < walls[3] <= HUGE):
-            raise self.bad("walls_m", "[x_low, x_high, y_low, y_high], four numbers, each low below its high")
+        if found := wrong(self.content):
+            raise self.bad(*found)
         return dict(self.content)
 
     def notes(self) -> NotesFile:
