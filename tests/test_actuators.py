@@ -6,9 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Channel, Course, course, mean_of
 from boatsim.physics.effects.command_delay import CommandDelay
+from boatsim.physics.effects.drive_map import DriveMap
 from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.servo import Servo
 from boatsim.physics.program import Program
@@ -102,3 +104,8 @@ def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: fl
         )  # fmt: skip
         ends.append(path[-1, : code.NQ])
     assert ends[0] == pytest.approx(ends[1], abs=1e-4)  # [m], [rad]; an arrival missed by 10 ms moves it by 0.01
+
+
+def test_a_drive_that_is_dead_over_all_of_its_span_is_refused_in_a_line() -> None:
+    with pytest.raises(BadInput, match=r"^drive_map\.dead = 60; allowed is less than its span, 50$"):
+        DriveMap(span=50.0, dead=60.0)

@@ -164,6 +164,42 @@ def test_a_heavier_otter_floats_deeper_by_her_weight() -> None:
     assert engine.state.z == pytest.approx(5.5 * 9.81 / 7541.4375 * (1 + 0.04 * 7541.4375 / 2551.7764024), rel=1e-3)
 
 
+def test_a_mass_ahead_sinks_and_trims_the_otter_by_its_weight() -> None:
+    mass, x, stiff, trimming, flotation = 4.0, 0.5, 7541.4375, 2551.776402439025, -0.2
+    engine = Engine(vessel.load("otter", extra=[{"use": "extra_mass", "mass": mass, "x": x}]))
+    engine.advance(2000)
+    theta = (flotation - x) * mass * 9.81 / trimming  # bow down, about the centre of flotation
+    assert engine.state.theta == pytest.approx(theta, rel=1e-3)
+    assert engine.state.z == pytest.approx(mass * 9.81 / stiff + flotation * theta, rel=1e-3)
+
+
+def test_a_point_mass_is_the_body_that_has_it_in_its_inertia() -> None:
+    """Otter and mass as one body by Steiner's theorem; both at one height, so that roll and yaw stay principal axes."""
+    mass, x, level = 4.0, 0.5, {"centre": [0.2, 0.0]}
+    body = vessel.load("otter", settings={"body": level}).body
+    ahead = (body.mass * body.centre[0] + mass * x) / (body.mass + mass)
+    steiner = body.mass * (body.centre[0] - ahead) ** 2 + mass * (x - ahead) ** 2
+    one = {
+        "mass": body.mass + mass, "centre": [ahead, 0.0], "yaw_inertia": body.yaw_inertia + steiner,
+        "pitch_inertia": float(body.pitch_inertia or 0.0) + steiner,
+    }  # fmt: skip
+    gained = []
+    at_rest = State(z=0.01, phi=0.1, theta=-0.05)
+    moving = at_rest._replace(u=1.0, v=0.3, w=0.1, p=0.2, q=-0.1, r=0.4)
+    for laden in (
+        vessel.load("otter", settings={"body": level}, extra=[{"use": "extra_mass", "mass": mass, "x": x}]),
+        vessel.load("otter", settings={"body": one, "hydrostatics": {"displacement": body.mass + mass}}),
+    ):
+        engine, rates = Engine(laden, step=1e-4), []
+        for start in (moving, at_rest):  # their difference knows no weight, which trims the one boat alone
+            engine.reset(start)
+            engine.advance(1)
+            rates.append((np.array(engine.state[7:]) - np.array(start[7:])) / 1e-4)
+        gained.append(rates[0] - rates[1])
+    assert gained[0] == pytest.approx(gained[1], rel=1e-3, abs=1e-4)
+    assert np.abs(gained[0]).max() > 0.5  # [m/s^2], [rad/s^2]
+
+
 # ---- any set of freedoms: Lagrange's equations of the kinetic energy of hull and water, slopes by complex steps
 
 HULL = """

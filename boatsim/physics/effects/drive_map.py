@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from numba import njit
 
+from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Course, param, preset
 from boatsim.physics.kinds.channel import MAPS
 
@@ -37,6 +38,12 @@ class DriveMap(Channel):
     neutral: float = param(0.0, low=-1e6, high=1e6, unit="", words="raw command at which it stands still")
     dead: float = param(0.0, low=0.0, high=1e6, unit="", words="from neutral, below which nothing turns")
     exponent: float = param(1.0, low=0.5, high=3.0, unit="", words="n of the curve")
+
+    def __post_init__(self) -> None:
+        """Raises BadInput for a drive that is dead over all of its span."""
+        super().__post_init__()
+        if self.dead >= self.span:
+            raise BadInput(f"{self.name}.dead = {self.dead:g}; allowed is less than its span, {self.span:g}")
 
 
 PwmThrust = preset(

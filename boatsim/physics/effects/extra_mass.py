@@ -5,26 +5,33 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Boat, Force, Inertia, Mass, Release, Wrench, mass, param, shift, wrench
+from boatsim.physics.base import Boat, Change, Force, Inertia, Mass, Release, Wrench, mass, param, shift, wrench
+from boatsim.physics.particulars import GRAVITY
 
 
 @njit(inline="always")
 def inertia(q: Any) -> Mass:
     """A point mass on the centreline."""
     first = q.mass * q.x
-    return mass(surge=q.mass, sway=q.mass, sway_yaw=first, yaw=first * q.x)
+    second = first * q.x
+    return mass(
+        surge=q.mass, sway=q.mass, heave=q.mass, pitch=second, yaw=second, heave_pitch=-first, sway_yaw=first
+    )  # fmt: skip
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Its Coriolis and centripetal force over ground: (v + x r) r and -u r at its place."""
-    across, along = q.mass * (m.v + q.x * m.r), q.mass * m.u
-    return wrench(X=across * m.r, Y=-along * m.r, N=-q.x * along * m.r)
+    """Its Coriolis and centripetal force over ground at its place, and its weight, which sinks and trims the hull."""
+    v, w = m.v + q.x * m.r, m.w - q.x * m.q
+    X = q.mass * (v * m.r - w * m.q)
+    Y = q.mass * (w * m.p - m.u * m.r)
+    Z = q.mass * (m.u * m.q - v * m.p + GRAVITY)
+    return wrench(X=X, Y=Y, Z=Z, M=-q.x * Z, N=q.x * Y)
 
 
 @dataclass(frozen=True)
 class ExtraMass(Inertia, Force):
-    """A point mass fixed to the hull on its centreline."""
+    """A point mass fixed to the hull on its centreline, at the height of the origin."""
 
     words: ClassVar[str] = "the boat carries a mass that the model does not know of"
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
@@ -49,11 +56,16 @@ class Payload(Release):
     strength: ClassVar = ("mass",)
 
     mass: float = shift(
-        "body.mass", "body.roll_inertia", "body.yaw_inertia", words="more than stated", unit="kg", spread=1.5,
-        low=-1e9, high=1e9,
+        "body.mass", "body.roll_inertia", "body.pitch_inertia", "body.yaw_inertia", words="more than stated",
+        unit="kg", spread=1.5, low=-1e9, high=1e9,
     )  # fmt: skip
+
+    def changes(self, vessel: Boat) -> list[Change]:
+        """A hull that does not pitch need not state its inertia in pitch."""
+        return [c for c in super().changes(vessel) if getattr(vessel.body, c.key) is not None]
 
     def weights(self, vessel: Boat) -> dict[str, float]:
         """The hull's radii of gyration stay."""
         body = vessel.body
-        return {f"body.{name}": getattr(body, name) / body.mass for name in ("roll_inertia", "yaw_inertia")}
+        inertias = ((f"body.{n}", getattr(body, n)) for n in ("roll_inertia", "pitch_inertia", "yaw_inertia"))
+        return {place: inertia / body.mass for place, inertia in inertias if inertia is not None}
