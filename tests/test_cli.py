@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -318,3 +319,69 @@ def test_ctrl_c_stops_all_processes_and_keeps_what_each_had(tmp_path: Path) -> N
         assert norms_of(folder)["complete"] is (folder.name == "short")
     same = [(folder / "recording.csv").read_bytes() for folder in (tmp_path / "alone", out / "short")]
     assert same[0] == same[1]
+
+
+def test_a_folder_of_vessel_and_scenarios_runs_the_scenarios_and_one_without_any_is_a_line(tmp_path: Path) -> None:
+    shutil.copytree(content.find("vessel", "trial_boat").parent, tmp_path / "mine")
+    bare = boatsim("run", str(tmp_path / "mine"))
+    assert bare.exit_code == 2 and "there is no scenario (*.toml) in this folder" in bare.stderr
+    (tmp_path / "mine" / "drift.toml").write_text(
+        'vessel = "./vessel.toml"\nduration = 1.0\n[controller]\nuse = "open_loop"\n'
+    )
+    assert boatsim("run", str(tmp_path / "mine"), "--out", str(tmp_path / "out")).exit_code == 0
+    assert (tmp_path / "out" / "norms.json").is_file()
+
+
+def test_a_recording_that_does_not_exist_is_said_to(tmp_path: Path) -> None:
+    for command in ("diagnose", "replay"):
+        found = boatsim(command, str(tmp_path / "none.csv"))
+        assert found.exit_code == 2 and "none.csv: there is no such file" in found.stderr
+
+
+LAW = """
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from numba import njit
+
+from boatsim.physics.base import Force, Wrench, param, wrench
+
+
+@njit(inline="always")
+def law(m: Any, q: Any) -> Wrench:
+    return wrench(X=-q.c * m.ur)
+
+
+@dataclass(frozen=True)
+class MistyDrag(Force):
+    law: ClassVar = law
+    c: float = param(0.0, low=0.0, high=9.0, unit="N s/m", words="drag", fit=True, spread=1.0)
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said"),
+    [
+        ("q.c", "q.d", "misty_drag.py:12: Unknown attribute 'd'"),
+        ("    law: ClassVar = law\n", "", "class MistyDrag has no compiled law"),
+        ('@njit(inline="always")\n', "", "class MistyDrag has no compiled law"),
+        (", spread=1.0", "", "line 18 ValueError: a parameter with fit=True needs a spread"),
+        ("(Force)", "", "class MistyDrag is no effect"),
+        ("class MistyDrag", "class FoggyDrag", "no class MistyDrag in it"),
+    ],
+)
+def test_a_mistake_in_an_effect_of_ones_own_is_a_line_that_says_where(
+    tmp_path: Path, right: str, wrong: str, said: str
+) -> None:
+    shutil.copytree(content.find("vessel", "trial_boat").parent, tmp_path / "mine")
+    text = (tmp_path / "mine" / "vessel.toml").read_text()
+    own = '[[effect]]\nuse = "misty_drag.py"\nc = 1.0\n\n'
+    (tmp_path / "mine" / "vessel.toml").write_text(text.replace("[[effect]]", own + "[[effect]]", 1))
+    assert right in LAW
+    (tmp_path / "mine" / "misty_drag.py").write_text(LAW.replace(right, wrong, 1))
+    (tmp_path / "mine" / "drift.toml").write_text(
+        'vessel = "./vessel.toml"\nduration = 1.0\n[controller]\nuse = "open_loop"\n'
+    )
+    found = boatsim("run", str(tmp_path / "mine"), "--out", str(tmp_path / "out"))
+    assert found.exit_code == 2 and said in found.stderr and found.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()

@@ -1,6 +1,7 @@
 """The commands and their options; what they do is imported when they are called, so that `--help` is quick."""
 
 import functools
+import re
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -80,9 +81,11 @@ def _code(command: Callable[[], int]) -> int:
 
 
 def _said(error: Exception) -> str:
-    """What numba says of a law, the first of its lines that says something."""
+    """What numba says of a law: the first place that it names, and the first line that says something."""
     lines = [" ".join(line.split()) for line in str(error).splitlines()]
-    return next((line.rstrip(":") for line in lines[1:] if line), type(error).__name__)
+    said = next((line.rstrip(":") for line in lines if line and not line.startswith("Failed in")), type(error).__name__)
+    place = re.search(r'File "([^"]+)", line (\d+)', str(error))
+    return f"{Path(place[1]).name}:{place[2]}: {said}" if place else said
 
 
 def _version(asked: bool) -> None:

@@ -48,6 +48,8 @@ def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
     """The vessel of a recording: the name on the command line, else the one its notes give. Raises BadInput."""
     notes = notes_for(path).notes
     name = vessel or notes.vessel
+    if not path.exists():
+        raise BadInput(f"{path}: there is no such file")
     if not name:
         raise BadInput(f"{path}: no vessel given; name one with --vessel or in a recording.toml beside it")
     try:

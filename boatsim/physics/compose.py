@@ -6,6 +6,7 @@ be read: `python -m boatsim.physics.program VESSEL` prints it.
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from inspect import getsourcefile
 from math import cos, sin
 
 from boatsim.errors import BadInput
@@ -154,6 +155,7 @@ class Composition:
                 yield f"S{i} = E[{i}].signals_type()"
             for law in dict.fromkeys(law for kind in type(effect).__mro__ for law in getattr(kind, "laws", ())):
                 if f"{law}{i}" in used:
+                    _check_compiled(type(effect), law)
                     yield f"{law}{i} = shared(E[{i}].{law})"
 
     def _body(self, part: Part, everything: Sequence[type[Kind]]) -> tuple[list[str], bool]:
@@ -175,6 +177,15 @@ class Composition:
                 body += lines
             body += station.end
         return body, busy
+
+
+def _check_compiled(kind: type[Effect], law: str) -> None:
+    """Raises BadInput for a law that is missing, or that numba does not know."""
+    if not hasattr(getattr(kind, law, None), "py_func"):
+        raise BadInput(
+            f"{getsourcefile(kind)}: class {kind.__name__} has no compiled {law}; it needs {law}: ClassVar = {law} of "
+            f'a function under @njit(inline="always")'
+        )
 
 
 def _calls(line: str) -> Iterator[str]:

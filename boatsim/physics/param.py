@@ -46,8 +46,10 @@ def param(
 ) -> N:
     """Dataclass field of a checked number; `nominal` may be UNSET.
 
-    `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter.
+    `unit` is "" for a ratio; `spread` is the prior sd of a fitted parameter. Raises ValueError for one without.
     """
+    if fit and not spread > 0.0:
+        raise ValueError(f"a parameter with fit=True needs a spread, its prior sd ({words})")
     about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows, releases, how)
     return field(default=nominal, metadata={"param": about})
 

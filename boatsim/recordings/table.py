@@ -121,8 +121,10 @@ def _raw(path: Path) -> Raw:
         raise refuse(path, "there is no such file")
     try:
         suffix = path.suffix.removeprefix(".").lower()
-        read_raw = module_of("reader", suffix if suffix in names("reader") else "csv").read
-        found: Raw = read_raw(path)
+        format = suffix if suffix in names("reader") else "csv"
+        found = module_of("reader", format).read(path)
+        if not isinstance(found, Raw):
+            raise refuse(path, f"read of the reader {format}.py gives {type(found).__name__}; a Raw is wanted")
         return found
     except OSError as error:
         raise refuse(path, f"can not be read ({error.strerror})") from error

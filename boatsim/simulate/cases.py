@@ -20,6 +20,7 @@ from boatsim.files import Value, read_toml, tables
 from boatsim.physics.content import find, names, root
 
 NAME = re.compile(r"[\w.+-]+")
+OTHERS = ("vessel.toml", "patched.toml", "recording.toml")  # files of a folder that are no scenarios
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,10 @@ def meant(given: str) -> list[str]:
     if inside:
         return inside
     if Path(given).is_dir():
-        return [one for path in sorted(Path(given).glob("[!_]*.toml")) for one in meant(str(path))]
+        files = [path for path in sorted(Path(given).glob("[!_]*.toml")) if path.name not in OTHERS]
+        if not files:
+            raise BadInput(f"{given}: there is no scenario (*.toml) in this folder")
+        return [one for path in files for one in meant(str(path))]
     if any(sign in given for sign in "*?[") and not Path(given).is_file():
         found = [n for n in shipped if fnmatchcase(n, given)]
         if not found:

@@ -42,6 +42,7 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
         elif effect.name in settings:
             told = {n: getattr(effect, n) for names in type(effect).facts.values() for n in names}
             table = _effect_table(_address(type(effect), vessel), told | settings[effect.name])
+            table.add(tomlkit.nl())
             document["effect"].append(table)
     _hold(document, problem, vessel, found)
     return str(tomlkit.dumps(document))
