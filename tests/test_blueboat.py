@@ -100,6 +100,7 @@ def pushing(thruster: Thruster, thrust: float, angle: float = 0.0) -> Any:
     return type(thruster).signals_type()(thrust, angle, np.cos(angle), np.sin(angle))
 
 
+@pytest.mark.slow
 def test_a_run_in_the_columns_of_the_lake_is_replayed_right(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     commands.replay(recorded(tmp_path), "blueboat", [], 10.0, tmp_path / "out")
     said = dict(line.split(":") for line in capsys.readouterr().out.splitlines()[:2])

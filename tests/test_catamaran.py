@@ -76,6 +76,7 @@ def test_table_3_needs_the_criterion_of_99_percent() -> None:
     assert reached["time"] == pytest.approx(2.05, abs=0.01)
 
 
+@pytest.mark.slow
 def test_the_published_kinematics_let_the_boat_arrive_where_the_right_ones_do_not() -> None:
     assert values("disturbance_6")["time"] is None and values("disturbance_6_replay")["time"] is not None
     assert values("disturbance_8")["time"] is None and values("disturbance_8_replay")["time"] is not None
@@ -327,6 +328,7 @@ def named(answer: dict[str, Any]) -> dict[str, dict[str, Any]]:
     return {e["name"]: {k: p["value"] for k, p in e["parameters"].items()} for e in answer["effects"]}
 
 
+@pytest.mark.slow
 def test_the_boat_of_the_paper_lacks_nothing(tmp_path: Path) -> None:
     answer = answer_to(recorded(tmp_path, [1, 3, 5]))
     assert answer["verdict"] == "nothing_missing" and not answer["effects"]

@@ -75,7 +75,7 @@ def sailed(engine: Engine, rows: Array, steps: int, start: State = START) -> Arr
 # Native, Python and twin
 
 
-@pytest.mark.parametrize(("name", "loads"), few(VESSELS, 7))
+@pytest.mark.parametrize(("name", "loads"), few(VESSELS, 5))
 def test_native_and_python_callback_give_the_same_numbers(name: str, loads: tuple[str, ...]) -> None:
     boat = on_water(name, loads)
     fast, plain = Engine(boat), Engine(boat, callback="python")
@@ -85,7 +85,7 @@ def test_native_and_python_callback_give_the_same_numbers(name: str, loads: tupl
     assert sailed(fast, rows, 5) == pytest.approx(sailed(plain, rows, 5), rel=1e-12, abs=1e-12)
 
 
-@pytest.mark.parametrize(("name", "loads"), few(VESSELS, 7))
+@pytest.mark.parametrize(("name", "loads"), few(VESSELS, 5))
 def test_engine_and_twin_agree_over_20_s_of_random_commands(name: str, loads: tuple[str, ...]) -> None:
     boat = on_water(name, loads)
     rows = held_commands(boat, 200, seed=2)

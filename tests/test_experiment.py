@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from alike import few
 from boats import PLANAR, ROLL, written
 from scipy.linalg import expm
 
@@ -88,7 +89,7 @@ def course(problem: Problem, winner: Fit, plan: experiment.Plan) -> Array:
     return np.asarray(found.track.measured)
 
 
-@pytest.mark.parametrize("case", CONFUSABLE)
+@pytest.mark.parametrize("case", few(CONFUSABLE, 1))
 def test_suggestion_tells_more_than_the_first_manoeuvre_once_more(case):
     problem, winner, rival = tie(case)
     name, _, other, script = CONFUSABLE[case]
@@ -190,6 +191,7 @@ def test_suggestion_is_the_same_every_time_and_stays_inside_walls_and_limits():
         assert (reach <= [4.0, 3.0]).all()  # [m] walls of the trials' tank
 
 
+@pytest.mark.slow
 def test_scenario_plays_the_plan_on_the_nominal_and_on_the_patched_vessel(tmp_path):
     text = experiment.scenario_text(suggested("wind at constant heading"), program().vessel)
     address = 'vessel = "trial_boat"'

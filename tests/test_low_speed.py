@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import few
 from runs import mean_of
 from scipy.signal import cont2discrete
 
@@ -268,12 +269,15 @@ def test_l1_takes_the_mean_error_out_in_waves_and_no_rms(sea: str) -> None:
     assert value(filtered, "steering_rms") < value(pd, "steering_rms")
 
 
+@pytest.mark.slow
 def test_filter_spares_the_nozzle_near_its_frequency_and_costs_accuracy_below() -> None:
     assert value("waves_4p5_filter", "steering_rms") < 0.3 * value("waves_4p5_pd", "steering_rms")
     assert value("waves_1p5_filter", "psi_rms") > 1.2 * value("waves_1p5_pd", "psi_rms")
 
 
-@pytest.mark.parametrize(("name", "grows"), [("l1_0p8", False), ("l1_1p0", True), ("pd_1p2", False), ("pd_1p5", True)])
+@pytest.mark.parametrize(
+    ("name", "grows"), few([("l1_0p8", False), ("l1_1p0", True), ("pd_1p2", False), ("pd_1p5", True)], 2)
+)
 def test_delay_that_the_loop_bears(name: str, grows: bool) -> None:
     log_ = done(f"delay_{name}")
     off = degrees(1.0) * (log_["psi_rad"] - radians(20.0))

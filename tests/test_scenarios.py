@@ -124,6 +124,7 @@ def test_corrected_controller_meets_its_bars(test: str, mode: str) -> None:
     assert not over(mean_of(shipped(test, mode), FEW), bars)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.60, 0.75])
 @pytest.mark.parametrize("mode", ["", "gyro"], ids=["speed sensor", "gyro only"])
 @EACH_TEST

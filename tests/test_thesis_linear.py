@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from alike import few
 from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
@@ -96,13 +97,13 @@ def test_wind_of_t12_is_a_force_and_a_moment_that_turn_with_the_boat() -> None:
 # The controller
 
 
-@pytest.mark.parametrize(("load", "motors"), LOADS)
+@pytest.mark.parametrize(("load", "motors"), few(LOADS, 1))
 def test_steering_finds_the_neutral_angle(load: str, motors: str) -> None:
     found = norms(sailed(f"{load}_{motors}"))["steering"].value
     assert found == pytest.approx(degrees(atan(LEVERS[motors] / LEVERS[load])), abs=0.2)
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", few(SHIPPED, 1))
 def test_estimates_stay_inside_their_bounds(name: str) -> None:
     log = sailed(name).recording
     found = [n for n in log.signals if n.startswith("estimate_") and not n.endswith(("_low", "_high"))]
