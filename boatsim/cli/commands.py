@@ -46,7 +46,7 @@ app = typer.Typer(
 Runs = Annotated[list[Path], typer.Argument(metavar="RUN", help="Recordings: .csv, .parquet or our own .rrd.")]
 OneRun = Annotated[Path, typer.Argument(metavar="RUN", help="A recording: .csv, .parquet or our own .rrd.")]
 VesselName = Annotated[
-    str | None, typer.Option("--vessel", metavar="NAME|FILE", help="Nominal vessel, instead of recording.toml's.")
+    str | None, typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="Nominal vessel, instead of recording.toml's.")
 ]
 Load = Annotated[
     list[str] | None, typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide.")
@@ -107,7 +107,7 @@ def options(
 @guarded
 def run(
     scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")],
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder [default: out/SCENARIO].")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder [default: out/VESSEL/SCENARIO].")] = None,
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
     seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,
     live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer while it runs.")] = False,
@@ -125,7 +125,7 @@ def manoeuvre(
         str,
         typer.Argument(metavar="MANOEUVRE", help="turning_circle, zigzag, pull_out, spiral, crash_stop or roll_decay."),
     ],
-    vessel: Annotated[str, typer.Option("--vessel", metavar="NAME|FILE", help="What does it.")],
+    vessel: Annotated[str, typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="What does it.")],
     load: Load = None,
     angle: Annotated[
         float | None, typer.Option(metavar="DEG", help="Helm angle, heel of a roll decay; negative to port.")
