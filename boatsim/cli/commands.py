@@ -46,7 +46,8 @@ app = typer.Typer(
 Runs = Annotated[list[Path], typer.Argument(metavar="RUN", help="Recordings: .csv, .parquet or our own .rrd.")]
 OneRun = Annotated[Path, typer.Argument(metavar="RUN", help="A recording: .csv, .parquet or our own .rrd.")]
 VesselName = Annotated[
-    str | None, typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="Nominal vessel, instead of recording.toml's.")
+    str | None,
+    typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="Nominal vessel, instead of recording.toml's."),
 ]
 Load = Annotated[
     list[str] | None, typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide.")

@@ -141,7 +141,9 @@ class Track:
         )
         return [(a, out[i, a : b + 1].copy()) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
 
-    def _pass(self, values: Array, on: Array, levels: Levels, full: bool, keep: Any, fresh: bool = True) -> float:
+    def _pass(
+        self, values: Array, on: Array, levels: Levels, full: bool, keep: tuple[Array, ...] | None, fresh: bool = True
+    ) -> float:
         nq = self.program.module.NQ
         noise = np.array([(levels.sensors[f] * self.noise_scale[f]) ** 2 for f in self.families])
         covariance = self.spread.copy()

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
-from boatsim.physics.signals import Array, Course
+from boatsim.physics.signals import Course
 
 
 def actuators(program: Composed) -> Sequence[Station]:
@@ -54,9 +54,9 @@ class Channel(Kind):
     laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes")
     acts_on: ClassVar[str] = "thrust"  # role of the signals it acts on where `on` names none; "": every actuator
     slots: ClassVar[int] = 0
-    pause: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
-    passes: ClassVar[Callable[[float, Array, int, Any], float] | None] = None
-    channel: ClassVar[Callable[[Course, float, float, Array, int, float, Any], Course]]
+    pause: ClassVar[Callable[..., float] | None] = None
+    passes: ClassVar[Callable[..., float] | None] = None
+    channel: ClassVar[Callable[..., Course]]
 
     fed_by: Sequence[str] = field(default=(), kw_only=True)  # commands that feed the channels in `on`, one for each
 
@@ -67,8 +67,8 @@ class Channel(Kind):
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
         """Pass the actuator's signal on, if the effect acts on it."""
-        effect: Any = program.effects[number]
-        if station.channel not in program.targets(number):
+        effect = program.effects[number]
+        if not isinstance(effect, Channel) or station.channel not in program.targets(number):
             return
         at = f"np.int64({program.memory(number, station.channel)})"  # plain integers count as types
         site = program.sites(number)[0]
