@@ -5,6 +5,7 @@ from math import cos, degrees, exp, log, pi, radians, sin, sqrt
 from pathlib import Path
 from typing import Any
 
+import boats
 import numpy as np
 import pytest
 from alike import few
@@ -341,6 +342,13 @@ def test_a_hull_that_also_turns_is_heeled_before_it_is_released() -> None:
     made = scenario_of("roll_decay", "eastward_ho", angle=5.0)
     assert made.file.duration == pytest.approx(12 * 7.14, rel=0.02)
     assert norms(run(made))["period"].value == pytest.approx(7.14, rel=0.005)
+
+
+def test_a_tunnel_across_the_bow_drives_no_boat_ahead(tmp_path: Path) -> None:
+    bow = '[[effect]]\nuse = "thruster"\nname = "bow"\non = { thrust = "bow_N", angle = 1.5708 }\nx = 0.4\n'
+    text = boats.PLANAR.replace("[channels]\n", "[channels]\nbow_N = { low = -8.0, high = 8.0 }\n") + bow
+    table = handled(vessel.load(str(boats.written(tmp_path, "test_boat", text) / "vessel.toml")))
+    assert set(table.ahead) == set(table.astern) == {"thrust_port_N", "thrust_starboard_N"}
 
 
 def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
