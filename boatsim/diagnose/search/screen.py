@@ -104,7 +104,8 @@ def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit,
 
     def look(x: Array) -> tuple[Array, float]:
         white = problem.whitened(free, x, on, levels)
-        return white, log_prior(free, x) - 0.5 * float(white @ white) + float(off @ ((x - middle) / space.sd))
+        with np.errstate(over="ignore"):  # a boat that runs away has no score, which the caller sees
+            return white, log_prior(free, x) - 0.5 * float(white @ white) + float(off @ ((x - middle) / space.sd))
 
     white, score = look(theta)
     own = np.arange(len(free)) >= len(begin.slope)
