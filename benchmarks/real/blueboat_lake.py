@@ -52,7 +52,7 @@ def corrected(heading: Array, effects: Sequence[Measurement]) -> Array:
 
 
 def _shown(psi: float, effects: Sequence[Measurement]) -> float:
-    seen = Shown(0.0, 0.0, psi, 0.0, 0.0, 0.0, 0.0, 0.0)
+    seen = Shown(**dict.fromkeys(Shown._fields, 0.0) | {"psi": psi})
     for effect in effects:
         show_as = type(effect).shown
         if show_as is not None:

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from boatsim.control.base import Sense
-from boatsim.physics.base import Array
+from boatsim.physics.base import Array, Release
+from boatsim.physics.content import load_class
 from boatsim.physics.program import Program
 from boatsim.simulate import scenario
 from boatsim.simulate.cases import content
@@ -74,6 +75,9 @@ class Bench:
         self.program = Program(self.scenario.vessel)
         self.published = {n: t.published for n, t in self.scenario.file.norms.items() if t.published is not None}
         self._links = _links(self.program)
+        kinds = {e["use"]: load_class("effect", e["use"]) for e in extra}
+        releases = {name: kind() for name, kind in kinds.items() if issubclass(kind, Release)}
+        self._released = {name: one.changes(self.scenario.vessel) for name, one in releases.items()}
         self._own = Bench(name) if played else None
         self._played: dict[int, Array] = {}  # seed -> commands (N, C), one row a step
 
@@ -95,6 +99,10 @@ class Bench:
                 camera = replace(camera, marks={**camera.marks, knob.name: place})
             elif knob.effect == "body":
                 body[-1] = knob.applied(body[-1], x)  # yaw inertia
+            elif knob.effect in self._released:
+                for change in (c for c in self._released[knob.effect] if c.parameter == knob.name):
+                    at = self.program.index(change.owner, change.key)
+                    p[at] = change.of(p[at], x)
             else:
                 at = self.program.index(knob.effect, knob.name)
                 p[at] = knob.applied(p[at], x)
