@@ -1,6 +1,6 @@
 """Draws the deep-V hull of a small outboard boat from its particulars.
 
-`python -m boatsim.physics.hullform models/joystick_boat` writes OBJ meshes with the origin at the transom on the
+`python -m boatsim.physics.hullform models/VESSEL` writes OBJ meshes with the origin at the transom on the
 centreline at the design waterline; x forward, y to port, z up.
 """
 
