@@ -20,8 +20,9 @@ from functools import cache
 import numpy as np
 from rich.progress import track as shown
 
-from boatsim.diagnose.analysis import suspects_of
-from boatsim.diagnose.filter import axes_of, nominal_levels, track, usual_time_constant
+from boatsim.diagnose import rules
+from boatsim.diagnose.filter import axes_of, nominal_levels, track
+from boatsim.diagnose.library import library_for
 from boatsim.diagnose.next.experiment import Plan, next_experiment, plans, question
 from boatsim.diagnose.problem import Problem, scale_of
 from boatsim.diagnose.search.rank import Ranking, rank
@@ -65,7 +66,7 @@ class Outcome:
 def program() -> Program:
     """The vessel with all its suspects, compiled once for all cases."""
     boat = vessel.load(BOAT)
-    return Program(boat, suspects_of(boat, ()))
+    return Program(boat, library_for(boat).entries)
 
 
 def drawn(truth: str, rng: np.random.Generator) -> Boat:
@@ -115,7 +116,7 @@ def recorded(name: str, boat: Boat, start: Array, commands: Array, rng: np.rando
     code.settle(commands[0], memory, boat.values, boat.on, act)
     about = program().vessel.diagnosis
     rms = np.array([about.ambient[axis] for axis in axes_of(program().vessel)])
-    kept = np.exp(-1.0 / RATE / usual_time_constant(program().vessel))
+    kept = np.exp(-1.0 / RATE / rules.time_constant(program().vessel))
     force, rows = rms * rng.standard_normal(3), []
     for i in range(len(commands)):
         rows.append(y[:3].copy())
@@ -133,8 +134,8 @@ def recorded(name: str, boat: Boat, start: Array, commands: Array, rng: np.rando
 def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
     """All entries ranked."""
     boat = program().vessel
-    uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}
-    problem = Problem([track(r, program()) for r in recordings], nominal_levels(boat, recordings[0]), uncertainty)
+    uncertainty = rules.uncertainty(boat)
+    problem = Problem([track(r, program()) for r in recordings], nominal_levels(boat, recordings), uncertainty)
     return problem, rank(problem, tuple(e.name for e in program().suspects))
 
 

@@ -31,8 +31,10 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.trials import SHARED
-from boatsim.diagnose.analysis import open_recording, suspects_of
-from boatsim.diagnose.filter import axes_of, nominal_levels, stated_noise, track
+from boatsim.diagnose import rules
+from boatsim.diagnose.analysis import open_recording
+from boatsim.diagnose.filter import axes_of, noise_of, nominal_levels, track
+from boatsim.diagnose.library import library_for
 from boatsim.diagnose.locate.forces import BAND, missing_force
 from boatsim.diagnose.locate.regions import LIKELY, Region, regions
 from boatsim.diagnose.problem import Fit, Problem
@@ -64,13 +66,11 @@ class Located:
 def problem_of(trial: Path) -> Problem:
     """The recordings of a trial laid on the vessel's program, as a diagnosis does it."""
     opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
-    recordings, boat = [r.thinned(b.diagnosis.rate) for r, b in opened], opened[0][1]
-    program = Program(boat, suspects_of(boat, ()))
-    tracks = [track(r, program, stated_noise(boat, recordings[0])) for r in recordings]
-    uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}
-    return Problem(
-        tracks, nominal_levels(boat, recordings[0]), uncertainty | recordings[0].notes.coefficient_uncertainty
-    )
+    recordings, boat = [r.thinned(rules.rate(b)) for r, b in opened], opened[0][1]
+    program = Program(boat, library_for(boat).entries)
+    tracks = [track(r, program, noise_of(boat, recordings)) for r in recordings]
+    uncertainty = rules.uncertainty(boat)
+    return Problem(tracks, nominal_levels(boat, recordings), uncertainty | recordings[0].notes.coefficient_uncertainty)
 
 
 def recalibrated(problem: Problem) -> Fit:

@@ -107,14 +107,12 @@ def solved(craft: Craft, h: float, delta: float, start: Array, times: Array) -> 
 
 
 def nominal_without(folder: Path, *effects: str) -> Path:
-    """The vessel file of the craft with some of its effects left out and suspected, in a folder of its own."""
+    """The vessel file of the craft with some of its effects left out, in a folder of its own."""
     own = vessel.load("jet_ski").file
     head, *blocks = re.split(r"(?=^\[\[effect\]\]$|^\[diagnosis\]$)", own.read_text(encoding="utf-8"), flags=re.M)
     kept = [block for block in blocks if not any(f'use = "{name}"' in block for name in effects)]
     place = folder / "craft"
     place.mkdir(exist_ok=True)
     (place / "hull.xml").write_text((own.parent / "hull.xml").read_text(encoding="utf-8"))
-    suspects = "".join(f', "{name}"' for name in effects)
-    text = (head + "".join(kept)).replace('"quadratic_damping",\n]', f'"quadratic_damping"{suspects},\n]')
-    (place / "vessel.toml").write_text(text)
+    (place / "vessel.toml").write_text(head + "".join(kept))
     return place

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from real_boat import Real, recorded
 
-from boatsim.diagnose import analysis, correlation_time
-from boatsim.diagnose.filter import nominal_levels, track, usual_time_constant
+from boatsim.diagnose import analysis, correlation_time, rules
+from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.physics import vessel
@@ -24,7 +24,7 @@ def test_no_vessel_states_one_and_the_usual_one_goes_by_froudes_law(name: str) -
     text = read_toml(find("vessel", name))
     assert "time_constant" not in text.get("diagnosis", {})
     boat = vessel.load(name)
-    assert usual_time_constant(boat) == pytest.approx(np.sqrt(boat.length / 1.2))
+    assert rules.time_constant(boat) == pytest.approx(np.sqrt(boat.length / 1.2))
 
 
 def test_a_vessel_file_that_states_one_is_told_so(tmp_path: Path) -> None:

@@ -12,8 +12,8 @@ from scipy.stats import multivariate_normal
 
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnose import analysis
-from boatsim.diagnose.analysis import suspects_of
 from boatsim.diagnose.filter import Levels, nominal_levels, segments, track
+from boatsim.diagnose.library import library_for
 from boatsim.diagnose.problem import scale_of
 from boatsim.diagnose.report import show
 from boatsim.diagnose.report.answer import key_of
@@ -121,7 +121,7 @@ def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
 def joystick():
     """Servos lag by 60 ms, motors fed by PWM by 150 ms; a delay is suspected; a rate limit that limits nothing."""
     boat = vessel.load("joystick_boat", extra=[{"use": "rate_limit", "on": ["thrust_port_N"]}])
-    return Program(boat, suspects_of(boat, ["command_delay"]))
+    return Program(boat, library_for(boat).entries)
 
 
 def driven(boat: vessel.Vessel) -> Recording:
@@ -141,7 +141,7 @@ def driven(boat: vessel.Vessel) -> Recording:
 
 def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely_splits_it(joystick):
     recording = driven(joystick.vessel)
-    laid, levels = track(recording, joystick), nominal_levels(joystick.vessel, recording)
+    laid, levels = track(recording, joystick), nominal_levels(joystick.vessel, [recording])
     nothing, delayed = joystick.switches(), joystick.switches(["command_delay"])
     split = laid.values.copy()
     split[joystick.index("command_delay", "delay")] = 1e-5

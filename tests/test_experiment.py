@@ -11,9 +11,9 @@ from boats import PLANAR, ROLL, written
 from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
-from boatsim.diagnose.analysis import absent, suspects_of
 from boatsim.diagnose.filter import Levels, nominal_levels, track
 from boatsim.diagnose.fit import converge, descend, fit
+from boatsim.diagnose.library import absent, library_for
 from boatsim.diagnose.next import experiment, manoeuvres
 from boatsim.diagnose.next.course import laid
 from boatsim.diagnose.next.manoeuvres import Manoeuvre, menu
@@ -43,7 +43,7 @@ CONFUSABLE = {  # truth with its values, rival, first recording in which the two
 @cache
 def program() -> Program:
     boat = vessel.load("trial_boat")
-    return Program(boat, suspects_of(boat, ()))
+    return Program(boat, library_for(boat).entries)
 
 
 def recorded(name: str, settings: dict[str, float], script: tuple[manoeuvres.Step, ...]) -> Recording:
@@ -69,7 +69,7 @@ def tie(case: str) -> tuple[Problem, Fit, Fit]:
     name, settings, rival, script = CONFUSABLE[case]
     first = recorded(name, settings, script)
     boat = program().vessel
-    problem = Problem([track(first, program())], nominal_levels(boat, first), {"damping": 0.05, "thrust": 0.05})
+    problem = Problem([track(first, program())], nominal_levels(boat, [first]), {"damping": 0.05, "thrust": 0.05})
     nominal = descend(problem, problem.nominal(), 4, 0.1)
     winner, other = (converge(problem, f) for f in screen(problem, nominal, [name, rival]).values())
     return problem, winner, other

@@ -11,7 +11,7 @@ from alike import few
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnose import analysis
-from boatsim.diagnose.analysis import suspects_of
+from boatsim.diagnose.library import library_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import AXES, Array, Course, Wrench, mean_of, motion
@@ -239,10 +239,10 @@ def test_late_commands_and_an_early_clock_are_told_to_be_the_same_in_open_loop(t
 def test_walls_that_nobody_states_are_not_tried_and_not_assumed() -> None:
     told = BOAT.diagnosis.facts["walls_m"]
     elsewhere = replace(BOAT, diagnosis=BOAT.diagnosis.model_copy(update={"facts": {}}))
-    assert "wall_effect" not in {e.name for e in suspects_of(elsewhere, ())}
+    assert "wall_effect" not in {e.name for e in library_for(elsewhere).entries}
     facts = {"walls_m": [-9.0, 8.0, -7.0, 6.0]}
-    (wall,) = (e for e in suspects_of(BOAT, (), facts) if e.name == "wall_effect")
-    (usual,) = (e for e in suspects_of(BOAT, ()) if e.name == "wall_effect")
+    (wall,) = (e for e in library_for(BOAT, (), facts).entries if e.name == "wall_effect")
+    (usual,) = (e for e in library_for(BOAT).entries if e.name == "wall_effect")
     assert [getattr(wall, n) for n in ("x_low", "x_high", "y_low", "y_high")] == facts["walls_m"]
     assert [getattr(usual, n) for n in ("x_low", "x_high", "y_low", "y_high")] == told
     with pytest.raises(BadInput, match="trial_boat: wall_effect needs x_low: state it in its table, or walls_m among"):

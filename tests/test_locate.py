@@ -10,9 +10,9 @@ from scipy.integrate import odeint
 from scipy.linalg import expm
 from scipy.stats import kstest
 
-from boatsim.diagnose.analysis import suspects_of
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.levels import fit_time_constant
+from boatsim.diagnose.library import library_for
 from boatsim.diagnose.locate.forces import BAND, force_left, intervals, missing_force
 from boatsim.diagnose.locate.region_ideas import walls_of
 from boatsim.diagnose.locate.region_tests import Evidence, joint
@@ -201,9 +201,9 @@ def nothing(t: float, y: Array, command: Array) -> Array:
 
 
 def laid(*recordings: Recording) -> tuple[Problem, Fit]:
-    program = Program(BOAT, suspects_of(BOAT, ()))
+    program = Program(BOAT, library_for(BOAT).entries)
     problem = Problem(
-        [track(r, program) for r in recordings], nominal_levels(BOAT, recordings[0]), {"damping": 0.05, "thrust": 0.05}
+        [track(r, program) for r in recordings], nominal_levels(BOAT, recordings), {"damping": 0.05, "thrust": 0.05}
     )
     return problem, baseline(problem)[1]
 
@@ -329,7 +329,7 @@ def test_walls_pull_and_drag_where_the_recording_says_they_are() -> None:
 def test_walls_stated_in_a_recording_are_those_of_the_library_entry_too() -> None:
     still = {n: np.zeros(30) for n in ("x_m", "y_m", "psi_rad", *COMMANDS)}
     stated = Recording("stated", np.arange(30) / RATE, still, Notes(facts={"walls_m": [-1.0, 2.0, -3.0, 5.0]}))
-    program = Program(BOAT, suspects_of(BOAT, ()))
+    program = Program(BOAT, library_for(BOAT).entries)
     own, other = track(replace(stated, notes=Notes()), program), track(stated, program)
     at = [program.index("wall_effect", n) for n in ("x_low", "x_high", "y_low", "y_high")]
     assert other.values[at] == pytest.approx([-1.0, 2.0, -3.0, 5.0]) == walls_of(other)
@@ -355,6 +355,6 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
     phi = odeint(slope, [0.25, 0.0], t, rtol=1e-9, atol=1e-11)[:, 0] + 1e-3 * rng.standard_normal(len(t))
     rec = Recording("decay", t, {"phi_rad": phi})
     program = Program(ship)
-    problem = Problem([track(rec, program)], nominal_levels(ship, rec), {"damping": 0.05, "restoring": 0.02})
+    problem = Problem([track(rec, program)], nominal_levels(ship, [rec]), {"damping": 0.05, "restoring": 0.02})
     found = baseline(problem)[1]
     assert [r.variable for r in regions(problem, found)][: 1 if name else None] == ([name] if name else [])

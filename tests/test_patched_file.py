@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from alike import few
 
-from boatsim.diagnose.analysis import composed
 from boatsim.diagnose.filter import MAX_STEP, Levels, Track, axes_of, body_of
+from boatsim.diagnose.library import composed
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import patch
 from boatsim.errors import BadInput

@@ -30,9 +30,7 @@ def drawn(folder: Path, geoms: str) -> Path:
     place = folder / "plain_boat"
     place.mkdir()
     (place / "hull.xml").write_text(f'<mujoco><worldbody><body name="hull">{geoms}</body></worldbody></mujoco>')
-    (place / "vessel.toml").write_text(
-        f"{PLANAR}\n[diagnosis]\nambient = {{ surge = 0.05, sway = 0.05, yaw = 0.02 }}\n"
-    )
+    (place / "vessel.toml").write_text(PLANAR)
     return place
 
 

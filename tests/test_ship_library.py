@@ -297,7 +297,7 @@ def test_what_a_linear_tanker_lacks_is_named_with_its_values(tmp_path: Path, rea
 CRAFT = """
 about = "high-speed craft for tests: 3.25 m, 388 kg, drag of the published water-jet craft"
 source = "C. Svendsen et al., IFAC MCMC 2012, Table 3"
-freedoms = ["surge", "sway", "yaw"]
+freedoms = ["surge"]
 length = 3.25
 beam = 1.22
 draught = 0.2
@@ -315,11 +315,6 @@ linear = 74.73
 quadratic = 1.358
 
 [[effect]]
-use = "linear_damping"
-sway = 85.0
-yaw = 150.0
-
-[[effect]]
 use = "thruster"
 name = "port"
 on = { thrust = "thrust_port_N", angle = "steer_port_rad" }
@@ -333,11 +328,6 @@ on = { thrust = "thrust_starboard_N", angle = "steer_starboard_rad" }
 x = -1.6
 y = 0.3
 
-[diagnosis]
-suspects = ["thrust_loss_with_speed", "quadratic_damping", "planing_lag"]
-ambient = { surge = 4.0, sway = 4.0, yaw = 3.0 }
-coefficient_uncertainty = { damping = 0.05, thrust = 0.05 }
-noise = { position_sd_m = 0.05, heading_sd_rad = 0.004, speed_sd_mps = 0.15 }
 """
 
 
@@ -351,7 +341,7 @@ def throttled(change: Callable[[float, float], float], seed: int) -> Recording:
         rows.append(y)
         y = solve_ivp(lambda t, z, a=a: [z[1], change(a, z[1])], (0.0, dt), y, rtol=1e-8, atol=1e-9).y[:, -1]
     x, u = np.array(rows).T + rng.standard_normal((2, n)) * [[0.05], [0.15]]
-    signals = {"x_m": x, "y_m": 0.05 * rng.standard_normal(n), "psi_rad": 0.004 * rng.standard_normal(n), "u_mps": u}
+    signals = {"x_m": x, "u_mps": u}
     signals |= {f"thrust_{side}_N": 0.5 * 388.0 * thrust for side in ("port", "starboard")}
     signals |= {f"steer_{side}_rad": np.zeros(n) for side in ("port", "starboard")}
     return Recording(f"{seed}", dt * np.arange(n), signals)

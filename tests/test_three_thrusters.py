@@ -89,15 +89,11 @@ yaw = 9.0
 roll = 1.0
 
 [diagnosis]
-suspects = [
+also = [
     { use = "weak_reverse", name = "weak_bow", on = "bow_N" },
     { use = "weak_reverse", name = "weak_screw", on = "screw_N" },
     { use = "weak_reverse", name = "weak_pod", on = "pod_N" },
-    { use = "weak_reverse", name = "weak_all", on = ["bow_N", "screw_N", "pod_N"] },
 ]
-ambient = { surge = 0.1, sway = 0.1, yaw = 0.05 }
-coefficient_uncertainty = { damping = 0.05, thrust = 0.05 }
-noise = { position_sd_m = 0.005, heading_sd_rad = 0.005 }
 """
 THRUSTERS = {"bow": (0.8, 0.0, 0.0), "screw": (-0.9, 0.1, 0.15), "pod": (-0.7, -0.2, 0.1)}  # [m] ahead, starboard, down
 RUDDERS = {"fore": (6.0, -0.5, 5.0), "aft": (-10.0, 1.0, 9.0)}  # per rad: sway [N], roll and yaw [N m]

@@ -7,8 +7,8 @@ from typing import Any
 import boats
 import pytest
 
-from boatsim.diagnose import analysis
-from boatsim.diagnose.analysis import absent
+from boatsim.diagnose import analysis, rules
+from boatsim.diagnose.library import called, fittable, library_for
 from boatsim.diagnose.problem import check_taken_up
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
@@ -33,20 +33,47 @@ def test_every_vessel_loads_in_every_load(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", content.names("vessel"))
-def test_suspects_of_a_vessel_can_be_put_on_it(name: str) -> None:
+def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str) -> None:
     boat = vessel.load(name)
-    for suspect in boat.diagnosis.suspects:
-        table = {"use": suspect} if isinstance(suspect, str) else suspect
-        assert not boat.known_as(str(table.get("name", table["use"])))
-        kind = content.load_class("effect", str(table["use"]), boat.path)
-        found = absent(kind, boat.diagnosis.facts, {k: v for k, v in table.items() if k != "use"})
-        vessel.check_bindings(vessel.added(boat, found), name)
+    library = library_for(boat)
+    for entry in library.entries:
+        own = [p for p in type(entry).params().values() if p.fit and p.axis in ("", *boat.freedoms)]
+        assert own and set(type(entry).needs) <= set(boat.freedoms)
+        vessel.check_bindings(vessel.added(boat, entry), name)
+    there = {called(e.name) for e in library.entries}
+    of_shelf = {n for n in content.names("effect") if fittable(content.load_class("effect", n))}
+    assert there | set(library.idle) == of_shelf and not there & set(library.idle)
+
+
+def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None:
+    boat = vessel.load("trial_boat")
+    everything = set(library_for(boat).tried)
+    facts = {"indoors": True, "still_water": True, "no_waves": True, "moored": False, "position_fix": "gnss"}
+    indoors = library_for(boat, (), facts | {"steering_measured": True})
+    assert everything - set(indoors.tried) == set(indoors.left_out) == {
+        "wind", "current", "wave_forcing", "tether", "camera_scale", "steering_backlash", "steering_rate_limit",
+    }  # fmt: skip
+    assert indoors.left_out["wind"] == "indoors = true" and indoors.entries == library_for(boat).entries
+    blind = library_for(boat, (), None, ("t_s", "x_m", "y_m"))
+    assert everything - set(blind.tried) == {"heading_offset", "heading_deviation"}
+    reasons = '[diagnosis.leave_out]\ntether = "nothing is tied to it"\n'
+    planar = of(boats.PLANAR + reasons, tmp_path)
+    assert library_for(planar).left_out == {"tether": "the vessel's reason: nothing is tied to it"}
+    with pytest.raises(BadInput, match="leave_out 'tehter' does not exist; did you mean 'tether'"):
+        library_for(of(boats.PLANAR + reasons.replace("tether", "tehter"), tmp_path))
+
+
+def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="rate takes the place of a rule; say why in reasons.rate"):
+        of(boats.PLANAR + "[diagnosis]\nrate = 3.0\n", tmp_path)
+    boat = of(boats.PLANAR + '[diagnosis]\nrate = 3.0\nreasons = { rate = "a slow hull" }\n', tmp_path)
+    assert rules.rate(boat) == 3.0
 
 
 @pytest.mark.parametrize("name", content.names("vessel"))
 def test_every_uncertainty_that_a_vessel_states_is_one_of_its_coefficients(name: str) -> None:
     boat = vessel.load(name)
-    check_taken_up(boat, {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}, name)
+    check_taken_up(boat, rules.uncertainty(boat), name)
 
 
 def test_an_uncertainty_that_nothing_takes_up_is_one_line(tmp_path: Path) -> None:

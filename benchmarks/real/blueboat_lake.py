@@ -15,14 +15,13 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.diagnose import analysis
+from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.correlation_time import timed
-from boatsim.diagnose.filter import Track, segments, stated_noise, track, usual_time_constant
+from boatsim.diagnose.filter import Track, noise_of, segments, track
 from boatsim.diagnose.fit import converge, fit
+from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.report import show
-from boatsim.diagnose.report.findings import FreeRun
 from boatsim.diagnose.search.rank import selection
 from boatsim.physics.base import Array, Measurement, Shown
 from boatsim.recordings.table import Recording
@@ -87,10 +86,10 @@ class LeftOut:
 def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
     """Each run judged by a model chosen without its group and fitted without it; one compiled program serves all."""
     whole = [analysis.open_recording(path, VESSEL, ())[0] for path in runs.values()]
-    stated, rate = stated_noise(found.vessel, whole[0]), found.vessel.diagnosis.rate
+    stated, rate = noise_of(found.vessel, whole), rules.rate(found.vessel)
     tracks = [track(run.thinned(rate), found.problem.program, stated) for run in whole]
     recorded = dict(zip((t.name for t in tracks), whole, strict=True))
-    of_hull = replace(found.problem.ambient, time_constant=usual_time_constant(found.vessel))
+    of_hull = replace(found.problem.ambient, time_constant=rules.time_constant(found.vessel))
     usual = Problem(tracks, of_hull, found.problem.uncertainty)  # of how long forces last a run left out tells nothing
     out = []
     for group in (tracks[i::GROUPS] for i in range(GROUPS)):
@@ -112,7 +111,7 @@ def without(problem: Problem, tracks: Sequence[Track], unseen: Sequence[Track]) 
 def _judged(rest: Problem, chosen: tuple[Fit, Fit], unseen: Track, run: Recording) -> LeftOut:
     """Coefficients of the recalibrated and the patched boat fitted on `rest`, both judged on the run left out."""
     fits = {name: converge(rest, fit(rest, f)) for name, f in zip(("recalibrated", "patched"), chosen, strict=True)}
-    stretches = show.free_runs(rest, fits, [unseen], rest.program.vessel.diagnosis.horizon)
+    stretches = free_runs(rest, fits, [unseen], rest.horizon)
     heading = corrected(run["psi_rad"], instruments(rest, fits["patched"]))
     reckoned = dead_reckoning(run, run["psi_rad"]), dead_reckoning(run, heading)
     return LeftOut(unseen.name, chosen[1].suspects, stretches, *reckoned)
@@ -136,7 +135,7 @@ def print_left_out(folds: Sequence[LeftOut]) -> None:
 
 
 def _free(stretches: Sequence[FreeRun]) -> list[str]:
-    found = show.errors(stretches).get("position_rms_m")
+    found = errors(stretches).get("position_rms_m")
     if not found:
         return ["", "", ""]
     before, after = found["recalibrated"], found["patched"]

@@ -6,10 +6,11 @@ Z_20_05; then each of the ten runs is left out once, with the couplings kept and
 """
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.diagnose import analysis
+from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, track
 from boatsim.diagnose.fit import converge, descend
+from boatsim.diagnose.free_runs import free_runs
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import show
 
@@ -22,7 +23,7 @@ UNITS = {"heading_rms_rad": ("heading [deg]", 57.29578), "position_rms_m": ("pos
 
 def errors(problem: Problem, fits: dict[str, Fit], tracks: list[Track]) -> dict[str, dict[str, float]]:
     """Rms errors of free runs by family and model."""
-    return show.errors(show.free_runs(problem, fits, tracks, problem.program.vessel.diagnosis.horizon))
+    return errors(free_runs(problem, fits, tracks, problem.horizon))
 
 
 def cells(found: dict[str, dict[str, float]]) -> list[str]:
@@ -36,7 +37,7 @@ def cells(found: dict[str, dict[str, float]]) -> list[str]:
 
 def print_unseen(found: Diagnosis) -> None:
     """The two runs kept unseen, against the goal."""
-    unseen = show.errors(found.findings.free_runs)
+    unseen = errors(found.findings.free_runs)
     rows = []
     for family, goal in GOALS.items():
         what, factor = UNITS[family]
@@ -86,7 +87,7 @@ def main() -> None:
     report(found, NAME)
     print_unseen(found)
     print_couplings(found)
-    rate = found.vessel.diagnosis.rate
+    rate = rules.rate(found.vessel)
     opened = [analysis.open_recording(path, None, ())[0].thinned(rate) for path in runs.values()]
     print_left_out(found, [track(r, found.problem.program) for r in opened])
 

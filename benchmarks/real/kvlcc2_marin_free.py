@@ -9,7 +9,7 @@ positions have steps of 10 m. The circle goes far below any speed of the fit.
 import numpy as np
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.diagnose import analysis
+from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, track
 from boatsim.diagnose.problem import Fit
@@ -42,7 +42,7 @@ def main() -> None:
     found = analysis.diagnose([runs[n] for n in FITTED], [runs[UNSEEN]])
     report(found, NAME)
     recording, boat = analysis.open_recording(runs[UNSEEN], None, ())
-    circle = track(recording.thinned(boat.diagnosis.rate), found.problem.program)
+    circle = track(recording.thinned(rules.rate(boat)), found.problem.program)
     nominal, before, after = (turn(found, f, circle) for f in fits_of(found.problem, found.ranking).values())
     rows = [
         [what, *(f"{x[i]:.3f}" for x in (nominal, before, after)), f"{after[i] / before[i]:.3f}", f"<= {goal}"]

@@ -14,10 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.real.common import report, table
-from boatsim.diagnose import analysis
+from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, track
 from boatsim.diagnose.fit import converge
+from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import show
 from boatsim.diagnose.search.rank import ENOUGH, Ranking, rank
@@ -40,7 +41,7 @@ Table = tuple[str, list[str], Rows]
 def opened(name: str) -> tuple[Recording, Vessel]:
     """A release as the diagnosis reads it."""
     recording, vessel = analysis.open_recording(DATA / f"{name}.csv", None, ())
-    return replace(recording.thinned(vessel.diagnosis.rate), name=name), vessel
+    return replace(recording.thinned(rules.rate(vessel)), name=name), vessel
 
 
 def cut(whole: Recording, edges: Sequence[float]) -> list[Recording]:
@@ -76,7 +77,7 @@ def thirds(whole: Recording) -> list[Recording]:
 
 def unseen_errors(found: Diagnosis) -> dict[str, float]:
     """Rms roll error of free runs over what was unseen, by model [rad]."""
-    return show.errors(found.findings.free_runs)["roll_rms_rad"]
+    return errors(found.findings.free_runs)["roll_rms_rad"]
 
 
 def ratio(found: Diagnosis) -> float:
@@ -228,8 +229,8 @@ def carried_over(at_rest: Diagnosis, whole: Recording) -> Rows:
     """The boats fitted at zero speed on the release at speed, which they have not seen."""
     (laid,) = laid_on(at_rest, [whole])
     problem, fits = at_rest.problem, show.fits_of(at_rest.problem, at_rest.ranking)
-    stretches = show.free_runs(problem, fits, [laid], float(np.ptp(laid.times)))
-    rms = show.errors(stretches)["roll_rms_rad"]
+    stretches = free_runs(problem, fits, [laid], float(np.ptp(laid.times)))
+    rms = errors(stretches)["roll_rms_rad"]
     return [[m, f"{rms[m] * DEG:.3f}", f"{rms[m] / rms['recalibrated']:.2f}"] for m in show.MODELS]
 
 
@@ -243,7 +244,7 @@ def last_third(found: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
     ranking = rank(alone, tuple(e.name for e in found.problem.program.suspects))
     fits = show.fits_of(found.problem, found.ranking) | {"linear, fitted here": ranking.recalibrated}
     fits |= {f"{n}, fitted here": with_effects(alone, ranking.recalibrated, [n]) for n in ranking.first}
-    rms = show.errors(show.free_runs(alone, fits, [tail], float(np.ptp(tail.times))))["roll_rms_rad"]
+    rms = errors(free_runs(alone, fits, [tail], float(np.ptp(tail.times))))["roll_rms_rad"]
     gains = {f"{n}, fitted here": f"{g:+.1f}" for n, g in ranking.first.items()}
     return [[label, f"{x * DEG:.4f}", gains.get(label, "")] for label, x in rms.items()], ranking
 

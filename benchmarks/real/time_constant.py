@@ -11,9 +11,10 @@ from pathlib import Path
 
 from benchmarks.real import blueboat_lake, kvlcc2_hsva_zigzag, kvlcc2_marin_free
 from benchmarks.real.common import runs_of, table
-from boatsim.diagnose import analysis
+from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.correlation_time import STEPS, correlation_time, halves_error
-from boatsim.diagnose.filter import nominal_levels, stated_noise, track
+from boatsim.diagnose.filter import noise_of, nominal_levels, track
+from boatsim.diagnose.library import library_for
 from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.search.rank import selection
 from boatsim.physics.program import Program
@@ -30,11 +31,11 @@ def problem_of(paths: list[Path], vessel: str | None) -> Problem:
     """The question of a diagnosis of some recordings."""
     opened = [analysis.open_recording(path, vessel, ()) for path in paths]
     boat, first = opened[0][1], opened[0][0]
-    program = Program(boat, analysis.suspects_of(boat, ()))
-    stated = stated_noise(boat, first)
-    tracks = [track(run.thinned(boat.diagnosis.rate), program, stated) for run, _ in opened]
-    uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}
-    return Problem(tracks, nominal_levels(boat, first), uncertainty | first.notes.coefficient_uncertainty)
+    program = Program(boat, library_for(boat).entries)
+    stated = noise_of(boat, [first])
+    tracks = [track(run.thinned(rules.rate(boat)), program, stated) for run, _ in opened]
+    uncertainty = rules.uncertainty(boat)
+    return Problem(tracks, nominal_levels(boat, [first]), uncertainty | first.notes.coefficient_uncertainty)
 
 
 def main() -> None:

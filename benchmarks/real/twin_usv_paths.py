@@ -9,6 +9,7 @@ import numpy as np
 from benchmarks.real.common import report, runs_of, table
 from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import Diagnosis
+from boatsim.diagnose.free_runs import errors
 from boatsim.diagnose.report import show
 
 NAME, VESSEL = "twin_usv_paths", "twin_usv"
@@ -18,13 +19,13 @@ TOLD = 0.5  # share of its prior sd below which the sd of a coefficient says tha
 
 def print_unseen(found: Diagnosis) -> None:
     """Free runs over the middle third."""
-    errors = show.errors(found.findings.free_runs)
+    off = errors(found.findings.free_runs)
     rows = []
     for family, what, factor in (
         ("position_rms_m", "position [m]", 1.0),
         ("heading_rms_rad", "heading [deg]", 57.29578),
     ):
-        nominal, before, after = (errors[family][m] * factor for m in show.MODELS)
+        nominal, before, after = (off[family][m] * factor for m in show.MODELS)
         rows.append([what, f"{nominal:.3f}", f"{before:.3f}", f"{after:.3f}", f"{after / before:.2f}"])
     header = ["rms of free runs, 10 s", "as written", "recalibrated", "patched", "patched / recalibrated"]
     table("fitted on the first and last third, unseen the middle third", header, rows)

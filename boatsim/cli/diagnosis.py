@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from boatsim.diagnose.analysis import NEXT, Diagnosis, composed, open_recording
+from boatsim.diagnose.analysis import NEXT, Diagnosis, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.filter import nominal_levels, track
+from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.library import composed
 from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import page as report
 from boatsim.diagnose.report import patch, show
 from boatsim.diagnose.report.entries import Family
-from boatsim.diagnose.report.findings import FreeRun
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.files import replacing
 from boatsim.physics.signals import COMPONENTS, STATE, Array
@@ -159,11 +160,11 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
     recording, boat = open_recording(run, vessel, load)
     _say(recording.remarks)
     problem, fitted = _as_written(recording, boat)
-    stretches = show.free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
+    stretches = free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
     if not stretches:
         raise BadInput(f"{run}: {recording.t[-1] - recording.t[0]:g} s long; a free run of {horizon:g} s does not fit")
     _write_replay(stretches, out / "replay.csv")
-    for family, found in show.errors(stretches).items():
+    for family, found in errors(stretches).items():
         print(f"{family}: {found['simulated']:.5g} ({len(stretches)} free runs of {horizon:g} s)")
     print(f"written to {out}: replay.csv")
     return 0
@@ -172,7 +173,7 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
 def _as_written(recording: Recording, boat: Vessel) -> tuple[Problem, Fit]:
     """A vessel file on a recording, nothing fitted but the noise that the smoothed starts need."""
     program, acting = composed(boat)
-    problem = Problem([track(recording, program)], nominal_levels(boat, recording), {})
+    problem = Problem([track(recording, program)], nominal_levels(boat, [recording]), {})
     return problem, fit_noise(problem, replace(problem.nominal(), suspects=acting))
 
 
@@ -196,7 +197,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
     else:
         problem, fitted = _as_written(recording, boat)
         whole = float(recording.t[-1] - recording.t[0])
-        only = show.free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[0]
+        only = free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[0]
         simulated = only.channels["simulated"]
     signals: dict[str, Array] = {}
     lines = [f"{'signal':10s} {'rms error':>12s} {'largest':>12s}   of a range of"]

@@ -7,8 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.diagnose import rules
 from boatsim.diagnose.correlation_time import timed
-from boatsim.diagnose.filter import Track, axes_of, nominal_levels, stated_noise, track
+from boatsim.diagnose.filter import Track, axes_of, noise_of, nominal_levels, track
+from boatsim.diagnose.free_runs import errors, free_runs
+from boatsim.diagnose.library import less, library_for
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
 from boatsim.diagnose.log.position_frame import in_one_frame
@@ -19,12 +22,11 @@ from boatsim.diagnose.report import show
 from boatsim.diagnose.report.answer import compose, meanings
 from boatsim.diagnose.report.findings import Findings, Missing
 from boatsim.diagnose.search.rank import Ranking, rank
-from boatsim.errors import BadInput, unknown_name
+from boatsim.errors import BadInput
 from boatsim.physics import vessel as vessels
-from boatsim.physics.base import Array, Effect
-from boatsim.physics.content import load_class, names
+from boatsim.physics.base import Array
 from boatsim.physics.program import Program
-from boatsim.physics.vessel import Vessel, check_bindings
+from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording, read
 
@@ -73,58 +75,6 @@ def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple
     return in_one_frame(steered(read(path, found.limits(), found.columns).used(), found)), found
 
 
-def suspects_of(
-    vessel: Vessel, library: Sequence[str], facts: Mapping[str, object] | None = None
-) -> tuple[Effect, ...]:
-    """Entries there are: the vessel's list and --library, less what the vessel already has.
-
-    One that needs a fact nobody states (where walls are) is left out; `facts` are a recording's. The vessel's own list
-    may name files beside it, --library files from the working directory. Raises BadInput.
-    """
-    known: dict[str, object] = {**vessel.diagnosis.facts, **(facts or {})}
-    found: dict[str, Effect] = {}
-    for entry, folder in [*((s, vessel.path) for s in vessel.diagnosis.suspects), *((n, Path()) for n in library)]:
-        table = {"use": entry} if isinstance(entry, str) else entry
-        kind: type[Effect] = load_class("effect", str(table.get("use")), folder)
-        if not any(p.fit for p in kind.params().values()):
-            raise BadInput(f"{table['use']}: this effect has no parameter that a diagnosis may fit (fit=True)")
-        called = str(table.get("name", kind.idea()))
-        if not vessel.known_as(called) and all(f in known for f in kind.facts):
-            bound = {k: v for k, v in table.items() if k != "use"}
-            found[called] = absent(kind, known, bound).completed(vessel)
-    check_bindings(replace(vessel, effects=(*vessel.effects, *found.values())), f"{vessel.name}: suspects")
-    return tuple(found.values())
-
-
-def tried(suspects: Sequence[Effect], without: Sequence[str]) -> tuple[str, ...]:
-    """Names of the suspects less those taken out; they stay composed, so nothing is compiled anew. Raises BadInput."""
-    there = [e.name for e in suspects]
-    for name in without:
-        if name not in there and name not in names("effect"):
-            raise BadInput(unknown_name("--without", name, there))
-    return tuple(n for n in there if n not in without)
-
-
-def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
-    """A vessel's program as a diagnosis composes it, and which of its suspects act: a patched boat compiles nothing."""
-    suspected = {s if isinstance(s, str) else str(s.get("name", s["use"])) for s in vessel.diagnosis.suspects}
-    own = tuple(e for e in vessel.effects if e.name not in suspected)
-    there = {e.name: e for e in vessel.effects if e not in own}
-    nominal = replace(vessel, effects=own)
-    tried = {e.name: e for e in suspects_of(nominal, ())}
-    suspects = tuple((tried | there).values())
-    return Program(nominal, suspects), tuple(e.name for e in suspects if e.name in there)
-
-
-def absent(
-    kind: type[Effect], facts: Mapping[str, object] | None = None, given: Mapping[str, object] | None = None
-) -> Effect:
-    """An entry at the values at which it does nothing, with what stated facts and its own table say of it."""
-    named = ((names, (facts or {})[fact]) for fact, names in kind.facts.items() if fact in (facts or {}))
-    told = {n: float(x) for names, values in named for n, x in zip(names, np.array(values, dtype=float), strict=True)}
-    return kind.from_settings(told | {n: p.absent for n, p in kind.params().items() if p.fit} | dict(given or {}))
-
-
 def diagnose(
     runs: Sequence[Path],
     hold_out: Sequence[Path] = (),
@@ -132,19 +82,23 @@ def diagnose(
     load: Sequence[str] = (),
     library: Sequence[str] = (),
     without: Sequence[str] = (),
+    horizon: float | None = None,
 ) -> Diagnosis:
-    """Locate, name and model what the vessel leaves out of the recordings. Raises BadInput."""
+    """Locate, name and model what the vessel leaves out of the recordings. Raises BadInput.
+
+    `horizon` is the length [s] of the free runs by which it is judged, if not the usual one.
+    """
     _check_apart([*runs, *hold_out])
     opened = [open_recording(path, vessel, load) for path in (*runs, *hold_out)]
     boats = [boat for _, boat in opened]
     if len({(b.file, b.freedoms) for b in boats}) > 1:
         raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}")
-    thin = [r.thinned(b.diagnosis.rate) for r, b in opened]
+    thin = [r.thinned(rules.rate(b)) for r, b in opened]
     named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
     fitted, unseen, note = show.split(named[: len(runs)], named[len(runs) :])
     remarks = tuple(dict.fromkeys(m for r, _ in opened for m in r.remarks))
     vessels_of = {r.path: b for r, b in opened}
-    return diagnose_recordings(fitted, unseen, vessels_of, note, library, without, remarks)
+    return diagnose_recordings(fitted, unseen, vessels_of, note, library, without, remarks, horizon)
 
 
 def diagnose_recordings(
@@ -155,31 +109,35 @@ def diagnose_recordings(
     library: Sequence[str] = (),
     without: Sequence[str] = (),
     remarks: tuple[str, ...] = (),
+    horizon: float | None = None,
 ) -> Diagnosis:
     """The same for recordings that are already opened, thinned and split: `boats` is the vessel of each file.
 
     `note` says in words what was kept unseen. Raises BadInput.
     """
     boat, facts = boats[fitted[0].path], fitted[0].notes.facts
-    programs = {path: Program(b, suspects_of(b, library, facts)) for path, b in boats.items()}
-    stated = stated_noise(boat, fitted[0])
+    columns = sorted({c for r in fitted for c in r.signals})
+    there = {path: library_for(b, library, facts, columns) for path, b in boats.items()}
+    programs = {path: Program(b, there[path].entries) for path, b in boats.items()}
+    stated = noise_of(boat, fitted)
     laid = [track(r, programs[r.path], stated) for r in (*fitted, *unseen)]
-    uncertainty = {str(k): sd for k, sd in boat.diagnosis.coefficient_uncertainty.items()}
+    uncertainty = rules.uncertainty(boat)
     check_taken_up(boat, uncertainty, f"{boat.file.parent.name}/{boat.file.name}: diagnosis")
     for r in (*fitted, *unseen):
         check_taken_up(boats[r.path], r.notes.coefficient_uncertainty, f"{r.path or r.name} by its recording.toml")
     uncertainty |= fitted[0].notes.coefficient_uncertainty
-    problem = Problem(laid[: len(fitted)], nominal_levels(boat, fitted[0]), uncertainty)
-    candidates = tried(problem.program.suspects, without)
+    unseen_tracks = laid[len(fitted) :]
+    problem = Problem(laid[: len(fitted)], nominal_levels(boat, fitted), uncertainty, horizon)
+    candidates = less(there[fitted[0].path], without)
     _compile(problem)
     begin = time.perf_counter()
     try:
-        ranking = rank(problem, candidates)
+        ranking = rank(problem, candidates, unseen_tracks)
         a_fact = "time_constant_s" in fitted[0].notes.ambient
         if not a_fact and (again := timed(problem, ranking.best)) is not problem:
-            problem, ranking = again, rank(again, candidates)
+            problem, ranking = again, rank(again, candidates, unseen_tracks)
         plan = experiment.next_experiment(problem, *experiment.question(ranking))
-        findings = _findings(problem, ranking, laid[len(fitted) :], boat, note, plan)
+        findings = _findings(problem, ranking, unseen_tracks, boat, note, plan)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         where = fitted[0].path or fitted[0].name
         raise BadInput(f"{where}: {boat.name} can not follow this recording ({error}); are its units right?") from None
@@ -224,12 +182,12 @@ def _findings(
 ) -> Findings:
     """Locate and show, then the answer."""
     longest = max(float(np.ptp(t.times)) for t in unseen)
-    horizon = min(vessel.diagnosis.horizon, float(f"{longest:.3g}") if longest < vessel.diagnosis.horizon else np.inf)
+    horizon = min(problem.horizon, float(f"{longest:.3g}") if longest < problem.horizon else np.inf)
     fits = show.fits_of(problem, ranking)
     everything = [*problem.tracks, *unseen]
     forces = locate.missing_force(problem, ranking.recalibrated, everything)
     left = locate.force_left(problem, ranking.best, everything)
-    stretches = show.free_runs(problem, fits, unseen, horizon)
+    stretches = free_runs(problem, fits, unseen, horizon)
     parts = show.by_part(problem, fits, everything, horizon) if ranking.named else []
     table = show.table_of(parts, problem.tracks, horizon)
     axes = axes_of(vessel)
@@ -251,6 +209,6 @@ def _findings(
     return Findings(
         compose(problem, ranking, forces, stretches, held_out, horizon, experiment.entry(plan, NEXT)), vessel.name,
         tuple(t.name for t in problem.tracks), held_out, note, missing, tuple(stretches),
-        tuple(show.remarks(parts, problem.tracks, show.errors(stretches), ranking)), coefficients,
+        tuple(show.remarks(parts, problem.tracks, errors(stretches), ranking)), coefficients,
         (table,) if table[2] else (), meanings(problem.program.suspects), experiment.steps(plan),
     )  # fmt: skip

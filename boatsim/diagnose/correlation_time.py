@@ -13,8 +13,8 @@ import numpy as np
 
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import fit
+from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.report import show
 
 STEPS = 2  # halvings or doublings at most
 CLEARLY = 0.98  # error per error before, below which a step is taken
@@ -25,7 +25,9 @@ def timed(problem: Problem, found: Fit) -> Problem:
     seconds = correlation_time(problem, found)
     if seconds == problem.ambient.time_constant:
         return problem
-    return Problem(problem.tracks, replace(problem.ambient, time_constant=seconds), problem.uncertainty)
+    return Problem(
+        problem.tracks, replace(problem.ambient, time_constant=seconds), problem.uncertainty, problem.horizon
+    )
 
 
 def correlation_time(problem: Problem, found: Fit) -> float:
@@ -67,9 +69,9 @@ def halves_error(problem: Problem, start: Fit, seconds: float) -> float:
     ambient = replace(problem.ambient, time_constant=seconds)
     begin = replace(start, levels=replace(start.levels, time_constant=seconds), evidence=-np.inf)
     first, second = halves(problem.tracks)
-    horizon = min(problem.program.vessel.diagnosis.horizon, *(float(np.ptp(t.times)) for t in (*first, *second)))
+    horizon = min(problem.horizon, *(float(np.ptp(t.times)) for t in (*first, *second)))
     stretches = []
     for fitted, unseen in ((first, second), (second, first)):
-        rest = Problem(fitted, ambient, problem.uncertainty)
-        stretches += show.free_runs(rest, {"": fit(rest, begin)}, unseen, horizon)
-    return float(np.exp(np.mean([np.log(found[""]) for found in show.errors(stretches).values()])))
+        rest = Problem(fitted, ambient, problem.uncertainty, horizon)
+        stretches += free_runs(rest, {"": fit(rest, begin)}, unseen, horizon)
+    return float(np.exp(np.mean([np.log(found[""]) for found in errors(stretches).values()])))

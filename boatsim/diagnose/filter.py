@@ -4,12 +4,13 @@ The model has one slowly varying latent force per freedom (Ornstein-Uhlenbeck, a
 modelling). It stands for whatever is not modelled, so that parameter estimates are not bent to absorb it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from boatsim.diagnose import rules
 from boatsim.errors import BadInput
 from boatsim.physics.base import Unsteady
 from boatsim.physics.commands import taken_rows
@@ -22,7 +23,6 @@ FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into 
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
 FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sample
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
-SMALL_BOAT = 1.2  # [m]
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
 # [kg], [m], [kg m^2] numbers of the body at the end of a track's values, as in `Program.body`
@@ -207,8 +207,8 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
         )
     codes = np.array([axes.index(s.axis) + s.rate * len(axes) for s in found])
     measured = np.column_stack([recording.signals[s.column] for s in found])
-    own = stated_noise(vessel, recording)
-    scale = {f: own[f] / (stated or own)[f] for f in own}
+    own = recording.notes.noise
+    scale = {f: own.get(f, common) / common for f, common in (stated or NOISE | own).items()}
     commands = (
         taken_rows(vessel, recording.signals, len(recording)) if vessel.commands else np.zeros((len(recording), 1))
     )
@@ -265,15 +265,18 @@ def _feeds(vessel: Vessel, actuator: str, command: str) -> bool:
     return any(vessel.feeder(e, actuator) == command for e in vessel.effects)
 
 
-def stated_noise(vessel: Vessel, recording: Recording) -> dict[str, float]:
-    """Sensor noise by family: the recording's word, else the vessel's, else a general one. Raises BadInput."""
-    of_vessel = {str(family): sd for family, sd in vessel.diagnosis.noise.items()}
-    noise = {**NOISE, **of_vessel, **recording.notes.noise}
-    if wrong := [n for n, sd in noise.items() if not 0 < sd < HUGE]:
+def noise_of(vessel: Vessel, recordings: Sequence[Recording]) -> dict[str, float]:
+    """Sensor noise by family that recordings share: what the first states, else the vessel, else what is in the data.
+
+    Raises BadInput.
+    """
+    first = recordings[0]
+    told = {str(family): sd for family, sd in vessel.diagnosis.noise.items()} | first.notes.noise
+    if wrong := [n for n, sd in told.items() if not 0 < sd < HUGE]:
         raise BadInput(
-            f"{_called(recording)}: noise {wrong[0]} = {noise[wrong[0]]:g}; allowed is more than 0, at most {HUGE:g}"
+            f"{_called(first)}: noise {wrong[0]} = {told[wrong[0]]:g}; allowed is more than 0, at most {HUGE:g}"
         )
-    return noise
+    return NOISE | {f: x for f in NOISE if (x := rules.sensed_noise(vessel, recordings, f))} | told
 
 
 def facts_of(vessel: Vessel, recording: Recording) -> dict[str, Any]:
@@ -286,14 +289,12 @@ def _called(recording: Recording) -> str:
     return str(recording.path or recording.name)
 
 
-def usual_time_constant(vessel: Vessel) -> float:
-    """Correlation time [s] of what the water does: 1 s on a boat of 1.2 m, by Froude's law on others."""
-    return float(np.sqrt(vessel.length / SMALL_BOAT))
+def nominal_levels(vessel: Vessel, recordings: Sequence[Recording]) -> Levels:
+    """What is known before any fit: ambient force as the first recording states it or by rule, noise.
 
-
-def nominal_levels(vessel: Vessel, recording: Recording) -> Levels:
-    """What is stated before any fit: ambient force of recording or vessel, sensor noise. Raises BadInput."""
-    axes = axes_of(vessel)
+    Raises BadInput.
+    """
+    axes, recording = axes_of(vessel), recordings[0]
     given = recording.notes.ambient.get("force_rms", {})
     if not isinstance(given, Mapping):
         named = recording.notes.ambient.get("axes", axes)
@@ -303,19 +304,18 @@ def nominal_levels(vessel: Vessel, recording: Recording) -> Levels:
                 f"{', '.join(named)} in turn"
             )
         given = dict(zip(named, given, strict=True))
-    ambient = {str(a): rms for a, rms in vessel.diagnosis.ambient.items()}
-    force = np.array([float(given.get(a, ambient.get(a, 0.0))) for a in axes])
-    time_constant = float(recording.notes.ambient.get("time_constant_s", usual_time_constant(vessel)))
-    noise = stated_noise(vessel, recording)
+    ambient = rules.tolerated_force(vessel)
+    force = np.array([float(given.get(a, ambient[a])) for a in axes])
+    time_constant = float(recording.notes.ambient.get("time_constant_s", rules.time_constant(vessel)))
     for axis, rms in zip(axes, force.tolist(), strict=True):
         if not 0 < rms < HUGE:
             raise BadInput(
-                f"{_called(recording)} on {vessel.name}: diagnosis.ambient.{axis} = {rms:g}, the unmodelled force that "
-                f"is tolerated; state it in the vessel's file: allowed is more than 0, at most {HUGE:g}"
+                f"{_called(recording)} on {vessel.name}: ambient force in {axis} = {rms:g}, what is tolerated; allowed "
+                f"is more than 0, at most {HUGE:g}"
             )
     if not 0 < time_constant < HUGE:
         raise BadInput(
             f"{_called(recording)}: ambient time_constant_s = {time_constant:g}; allowed is more than 0, "
             f"at most {HUGE:g}"
         )
-    return Levels(force, time_constant, noise)
+    return Levels(force, time_constant, noise_of(vessel, recordings))

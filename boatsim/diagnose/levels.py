@@ -11,6 +11,7 @@ from boatsim.physics.base import Array
 
 FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above the ambient level
 SENSOR_PRIOR = 0.4  # sd of log noise about the stated one
+CLIMBS, FLAT = 8, 2.0  # rounds in which levels are sought, as long as one gains more nats than this
 TIME_PRIOR = 0.7  # sd of log time constant
 
 
@@ -64,10 +65,14 @@ def fit_noise(problem: Problem, found: Fit, sweeps: int = 3) -> Fit:
         return likelihood + force_prior(problem, levels(x)) + prior
 
     x = np.concatenate([np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)])
-    for step, rounds in ((0.6, 1), (0.42, sweeps - 1)):
-        score(x, fresh=True)
-        x = _coordinate_search(score, x, step, rounds)
-    return replace(found, levels=levels(x))
+    before = score(x, fresh=True)
+    for _ in range(CLIMBS):  # the force may lie far above what is tolerated
+        x = _coordinate_search(score, x, 0.6, 1)
+        after = score(x, fresh=True)
+        if after < before + FLAT:
+            break
+        before = after
+    return replace(found, levels=levels(_coordinate_search(score, x, 0.42, sweeps - 1)))
 
 
 def fit_time_constant(problem: Problem, found: Fit) -> Levels:

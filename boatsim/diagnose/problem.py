@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from boatsim.diagnose import rules
 from boatsim.diagnose.filter import BODY, Levels, Track
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Effect, Release, Unsteady
@@ -103,10 +104,16 @@ class _Acts(NamedTuple):
 class Problem:
     """Recordings, a program with all suspects compiled in, and what may be fitted."""
 
-    def __init__(self, tracks: Sequence[Track], ambient: Levels, uncertainty: dict[str, float]) -> None:
-        """`uncertainty` is the relative sd of coefficients by kind ("damping", "thrust", ...)."""
+    def __init__(
+        self, tracks: Sequence[Track], ambient: Levels, uncertainty: dict[str, float], horizon: float | None = None
+    ) -> None:
+        """`uncertainty` is the relative sd of coefficients by kind ("damping", "thrust", ...).
+
+        `horizon` is the length [s] of the free runs by which it is judged, if not the usual one.
+        """
         self.tracks, self.ambient, self.uncertainty = list(tracks), ambient, uncertainty
         self.program = tracks[0].program
+        self.horizon = horizon or rules.horizon(self.program.vessel)
         self.nuisances = self._nuisances()
         self.links = self._links()
 

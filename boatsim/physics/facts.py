@@ -1,9 +1,38 @@
-"""Facts of a run or a vessel that laws read: what shape each must have."""
+"""Facts of a run or a vessel: what shape each must have, and what it says in words.
+
+Some are read by laws (where the walls are), others rule entries of the library out (no wind blows indoors).
+"""
 
 from collections.abc import Mapping
 from math import isfinite
 
 WALLS, FORWARD = "walls_m", "forward_speed_mps"  # walls x_low, x_high, y_low, y_high [m]; mean speed ahead [m/s]
+WORDS = {
+    WALLS: "where the walls are",
+    FORWARD: "the mean speed ahead",
+    "indoors": "it was recorded indoors",
+    "still_water": "the water stands still",
+    "no_waves": "there are no waves",
+    "moored": "whether a line holds the boat",
+    "steering_measured": "the steering angle is the measured one, not the command",
+    "position_fix": "what the position was fixed with",
+}
+FLAGS = ("indoors", "still_water", "no_waves", "moored", "steering_measured")  # true or false
+FIXES = ("camera", "gnss", "tracking", "inertial")  # what a position is fixed with: marks in a picture, satellites, ...
+
+
+def in_words(fact: str) -> str:
+    """What a fact says, for a report."""
+    return WORDS.get(fact, fact)
+
+
+def ruled_out(by: Mapping[str, tuple[object, ...]], facts: Mapping[str, object]) -> str:
+    """The fact that rules an entry out, as it is stated; "" where none does."""
+    return next((f"{f} = {_toml(facts[f])}" for f, values in by.items() if f in facts and facts[f] in values), "")
+
+
+def _toml(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def wrong(facts: Mapping[str, object]) -> tuple[str, str] | None:
@@ -12,6 +41,10 @@ def wrong(facts: Mapping[str, object]) -> tuple[str, str] | None:
         return WALLS, "[x_low, x_high, y_low, y_high], four numbers, each low below its high"
     if FORWARD in facts and not _number(facts[FORWARD]):
         return FORWARD, "a number"
+    if fact := next((f for f in FLAGS if f in facts and not isinstance(facts[f], bool)), None):
+        return fact, "true or false"
+    if facts.get("position_fix", FIXES[0]) not in FIXES:
+        return "position_fix", f"one of {', '.join(FIXES)}"
     return None
 
 

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import Field, PositiveFloat, field_validator
+from pydantic import Field, PositiveFloat, field_validator, model_validator
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, checked, read_toml, tables
@@ -44,20 +44,21 @@ class CommandChannel(Table):
     about: str = ""
 
 
+OVERRIDES = ("ambient", "horizon", "rate", "noise")  # of the rules of a diagnosis, which need a reason
+
+
 class DiagnosisTable(Table):
     """What a diagnosis may assume of this vessel before it has seen data."""
 
-    suspects: list[str | dict[str, object]] = []  # names, or tables with use, on and a name as in [[effect]]
-    ambient: dict[
-        Freedom, PositiveFloat
-    ] = {}  # tolerated unmodelled force per axis (surge, sway, roll, yaw), rms [N, N m]
-    horizon: float = Field(default=6.0, gt=0)  # [s] length of a free run
-    rate: float = Field(default=20.0, gt=0)  # [Hz] rows closer together are thinned out: their noise is not independent
-    most: int = Field(default=3, ge=1, le=8)  # effects in one answer
-    coefficient_uncertainty: dict[
-        Literal["damping", "thrust", "restoring"], PositiveFloat
-    ] = {}  # relative sd: damping, thrust, restoring
-    noise: dict[str, PositiveFloat] = {}  # by family; sensor noise where a recording states none
+    leave_out: dict[str, str] = {}  # entry of the library that is not tried -> the reason, in words
+    also: list[dict[str, object]] = []  # tables as in [[effect]], tried beside the library: on what else it may act
+    coefficient_uncertainty: dict[Literal["damping", "thrust", "restoring"], PositiveFloat] = {}  # relative sd
+    # In place of a rule of `boatsim.diagnose.rules`, each with its reason in `reasons`
+    ambient: dict[Freedom, PositiveFloat] = {}  # tolerated unmodelled force per axis, rms [N, N m]
+    horizon: float | None = Field(default=None, gt=0)  # [s] length of a free run
+    rate: float | None = Field(default=None, gt=0)  # [Hz] of rows that are used
+    noise: dict[str, PositiveFloat] = {}  # sd of instruments by family
+    reasons: dict[str, str] = {}
     facts: dict[str, float | str | bool | list[float]] = {}  # what holds where a recording states nothing else: walls_m
 
     @field_validator("facts")
@@ -66,6 +67,13 @@ class DiagnosisTable(Table):
         if found := wrong(facts):
             raise ValueError(f"{found[0]} = {facts[found[0]]!r}; allowed is {found[1]}")
         return facts
+
+    @model_validator(mode="after")
+    def _reasoned(self) -> Self:
+        for key in OVERRIDES:
+            if getattr(self, key) and not self.reasons.get(key):
+                raise ValueError(f"{key} takes the place of a rule; say why in reasons.{key}")
+        return self
 
 
 class ManoeuvringTable(Table):
@@ -83,6 +91,7 @@ class VesselFile(Table):
     about: str
     source: str
     based_on: str = ""  # vessel whose folder holds the hull and own effects; set in a patched file
+    found: list[str] = []  # names of those effects that a diagnosis found; set in a patched file
     hull: str = "hull.xml"
     freedoms: list[Freedom]
     length: float = Field(gt=0)  # [m]
@@ -127,6 +136,7 @@ class Vessel:
     columns: Mapping[str, str] = field(default_factory=dict)  # our name -> column of its recordings, "-" flips the sign
     manoeuvring: ManoeuvringTable = ManoeuvringTable()
     marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # [m] ahead and to starboard of the CG
+    found: tuple[str, ...] = ()  # names of those effects that a diagnosis found
 
     @property
     def actuators(self) -> tuple[str, ...]:
@@ -254,7 +264,7 @@ def load(
     vessel = Vessel(
         called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
-        file.scale, file.scales, file.columns, file.manoeuvring, file.marks,
+        file.scale, file.scales, file.columns, file.manoeuvring, file.marks, tuple(file.found),
     )  # fmt: skip
     whole = with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
     check_bindings(whole, label)

@@ -121,7 +121,7 @@ def _ship(vessel: Vessel, in_use: dict[str, float]) -> tuple[Manoeuvre, ...]:
     for words, script in SHIP.items():
         script = script or tuple((t, 1, 1, a, a) for t, _, _, a, _ in _random(words, 4.0, 12.0, LONG_SHIP))
         found.append(_from_script(vessel, words, script, in_use))
-    for degrees in ZIGZAGS:
+    for degrees in ZIGZAGS if "yaw" in vessel.freedoms else ():
         angle = radians(degrees)
         both = tuple(
             {

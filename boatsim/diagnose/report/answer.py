@@ -6,10 +6,11 @@ import numpy as np
 
 from boatsim import __version__
 from boatsim.control.base import wrap
+from boatsim.diagnose.free_runs import FreeRun, errors
+from boatsim.diagnose.library import called
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate.regions import regions
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.report import show
 from boatsim.diagnose.report import words as report_words
 from boatsim.diagnose.report.entries import (
     Acting,
@@ -20,7 +21,6 @@ from boatsim.diagnose.report.entries import (
     NextEntry,
     ParameterEntry,
 )
-from boatsim.diagnose.report.findings import FreeRun
 from boatsim.diagnose.search.rank import Named, Ranking
 from boatsim.physics.base import Effect
 
@@ -50,7 +50,7 @@ def compose(
         "effects": effects,
         "unknown": {"flag": ranking.unknown, "gain_nats": round(ranking.left_over, 3)},
         "candidates": _candidates(ranking),
-        "upper_limits": {name: _limits(problem, fitted, name) for name, fitted in ranking.last.items()},
+        "upper_limits": {called(name): _limits(problem, fitted, name) for name, fitted in ranking.last.items()},
         "where": {
             "axes": locate.strength(problem, forces),
             "intervals": [
@@ -72,7 +72,7 @@ def compose(
 
 def meanings(suspects: Iterable[Effect]) -> dict[str, str]:
     """What each entry says, by name, and each of its fitted parameters, by "entry.parameter" as in the answer."""
-    there = [(e.name, type(e)) for e in suspects]
+    there = [(called(e.name), type(e)) for e in suspects]
     fitted = ((entry, name, p) for entry, kind in there for name, p in kind.params().items() if p.fit)
     return {n: k.words for n, k in there} | {f"{n}.{key_of(name, p.unit)}": p.words for n, name, p in fitted}
 
@@ -85,7 +85,7 @@ def key_of(name: str, unit: str) -> str:
 
 def _fit(stretches: Sequence[FreeRun], held_out: Sequence[str], horizon: float) -> FitEntry:
     """Errors of the free runs; that in roll only where it was recorded."""
-    found = show.errors(stretches)
+    found = errors(stretches)
     fit: FitEntry = {
         "horizon_s": horizon,
         "held_out": list(held_out),
@@ -102,13 +102,13 @@ def _effect(problem: Problem, best: Fit, named: Named) -> EffectEntry:
     kind = type(effect)
     acting: Acting = {"on": list(effect.on)} if effect.on else {}
     return {
-        "name": named.name,
+        "name": called(named.name),
         **acting,
         "kind": kind.kind,
         "probability": round(named.probability, 4),
         "gain_nats": round(named.gain, 2),
         "words": kind.words,
-        "tied_with": list(named.tied_with),
+        "tied_with": [called(n) for n in named.tied_with],
         "parameters": {
             key_of(f.name, kind.params()[f.name].unit): _parameter(best, effect, f.name)
             for f in best.free
@@ -137,7 +137,7 @@ def _candidates(ranking: Ranking) -> list[CandidateEntry]:
     weights = np.exp(gains - gains.max())
     weights /= weights.sum()
     return [
-        {"name": n, "gain_nats": round(float(g), 2), "probability": round(float(w), 4)}
+        {"name": called(n), "gain_nats": round(float(g), 2), "probability": round(float(w), 4)}
         for n, g, w in zip(names, gains[1:], weights[1:], strict=True)
     ]
 

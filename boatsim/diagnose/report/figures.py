@@ -12,8 +12,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnose.free_runs import FreeRun
 from boatsim.diagnose.report.entries import IntervalEntry
-from boatsim.diagnose.report.findings import FreeRun, Missing
+from boatsim.diagnose.report.findings import Missing
 from boatsim.diagnose.report.words import handy, number
 from boatsim.physics.base import Array
 

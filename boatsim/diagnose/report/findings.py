@@ -3,20 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from boatsim.diagnose.free_runs import FreeRun
 from boatsim.diagnose.report.entries import Answer
 from boatsim.physics.base import Array
-
-MODELS = ("recorded", "nominal", "recalibrated", "patched")  # what a free run compares
-
-
-@dataclass(frozen=True)
-class FreeRun:
-    """A stretch of unseen recording, and what each boat does from its first row with the recorded commands alone."""
-
-    run: str  # name of the recording
-    start_s: float
-    t: Array  # (M,) s
-    channels: dict[str, dict[str, Array]]  # one of `MODELS` -> x_m, y_m, psi_rad, phi_rad (those there are), each (M,)
 
 
 @dataclass(frozen=True)

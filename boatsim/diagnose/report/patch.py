@@ -22,11 +22,15 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
     """Text of the patched vessel file that is to lie at `path`; its own paths start there, so that folders can move."""
     text = vessel.file.read_text(encoding="utf-8")
     base = tomlkit.parse(text).get("based_on")
-    if not base:
-        text = f'based_on = ""  # its folder holds the hull\n{text}'
+    for key, empty in (("found", "[]"), ("based_on", '""')):  # new keys go first, above the tables
+        if key not in tomlkit.parse(text):
+            text = f"{key} = {empty}\n{text}"
     document = tomlkit.parse(text)
     document["based_on"] = tomlkit.item(_based_on(vessel, base, path))
     document["based_on"].comment("its folder holds the hull")
+    laws = [e.name for e in problem.program.suspects if e.name in found.suspects and not isinstance(e, Release)]
+    document["found"] = tomlkit.item(laws)
+    document["found"].comment("effects that were added to it; the others it had")
     document.setdefault("effect", tomlkit.aot())
     settings: dict[str, dict[str, float]] = {name: {} for name in found.suspects}
     for free, x in zip(found.free, found.theta, strict=True):
@@ -41,7 +45,9 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
             _release(document, vessel, effect, settings[effect.name])
         elif effect.name in settings:
             told = {n: getattr(effect, n) for names in type(effect).facts.values() for n in names}
-            table = _effect_table(_address(type(effect), vessel), told | settings[effect.name])
+            named = {} if effect.name == type(effect).idea() else {"name": effect.name}
+            bound = {"on": list(effect.on)} if effect.on else {}
+            table = _effect_table(_address(type(effect), vessel), named | bound | told | settings[effect.name])
             table.add(tomlkit.nl())
             document["effect"].append(table)
     _hold(document, problem, vessel, found)
@@ -113,12 +119,12 @@ def _state(table: Table | InlineTable, name: str, value: float, why: str) -> Non
         table[name].comment(f"{before}; {why}" if before else why)
 
 
-def _effect_table(name: str, settings: Mapping[str, float]) -> Table:
+def _effect_table(name: str, settings: Mapping[str, object]) -> Table:
     table = tomlkit.table()
     table["use"] = name
     table["use"].comment("found by the diagnosis")
     for key, value in settings.items():
-        table[key] = _rounded(value)
+        table[key] = _rounded(value) if isinstance(value, float) else value
     return table
 
 

@@ -7,12 +7,13 @@ from itertools import groupby
 
 import numpy as np
 
+from boatsim.diagnose.free_runs import FreeRun
 from boatsim.diagnose.next.experiment import WORTH
 from boatsim.diagnose.report import figures
 from boatsim.diagnose.report.answer import SHAPE
 from boatsim.diagnose.report.blocks import Block, Figures, Heading, Items, Section, Table, Text, without_empty
 from boatsim.diagnose.report.entries import EffectEntry, Family
-from boatsim.diagnose.report.findings import Findings, FreeRun, Missing
+from boatsim.diagnose.report.findings import Findings, Missing
 from boatsim.diagnose.report.words import (
     UNTRIED,
     alike,

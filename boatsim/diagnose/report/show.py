@@ -1,20 +1,18 @@
-"""Shows what a model gains: free runs over data it has not seen, beside the nominal and the recalibrated boat."""
+"""Shows what a model gains on data it has not seen, beside the nominal and the recalibrated boat."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnose.filter import Track, segments
+from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import descend
+from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.report.findings import FreeRun
 from boatsim.diagnose.search.rank import UNKNOWN_FACTOR, Ranking
-from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 
 MODELS = ("nominal", "recalibrated", "patched")
-FAMILIES = {"position_rms_m": ("x_m", "y_m"), "heading_rms_rad": ("psi_rad",), "roll_rms_rad": ("phi_rad",)}
 
 
 def split(
@@ -48,47 +46,6 @@ def split(
 def fits_of(problem: Problem, ranking: Ranking) -> dict[str, Fit]:
     """The three boats that are compared."""
     return {"nominal": ranking.nominal, "recalibrated": ranking.recalibrated, "patched": ranking.best}
-
-
-def free_runs(problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Track], horizon: float) -> list[FreeRun]:
-    """Free runs of all models over recordings, each started at its own smoothed state every `horizon` s."""
-    nq = problem.program.module.NQ
-    out = []
-    for track in tracks:
-        runs = {
-            name: track.free_runs(
-                problem.values(track, f.free, f.theta), problem.program.switches(f.suspects), f.levels, horizon
-            )
-            for name, f in fits.items()
-        }
-        for i, (begin, end) in enumerate(zip(*segments(track.times, horizon), strict=True)):
-            channels: dict[str, dict[str, Array]] = {"recorded": {}, **{name: {} for name in fits}}
-            for c, code in enumerate(track.codes):
-                if code < nq:
-                    channels["recorded"][track.signals[c]] = track.measured[begin : end + 1, c]
-                    for name in fits:
-                        channels[name][track.signals[c]] = runs[name][i][1][:, code]
-            t = track.times[begin : end + 1]
-            out.append(FreeRun(track.name, float(t[0]), t, channels))
-    return out
-
-
-def errors(stretches: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
-    """Rms error per family of signals and model over all stretches."""
-    found: dict[str, dict[str, float]] = {}
-    for family, signals in FAMILIES.items():
-        if not stretches or not any(s in stretches[0].channels["recorded"] for s in signals):
-            continue
-        found[family] = {}
-        for model in (m for m in stretches[0].channels if m != "recorded"):
-            off = [
-                (s.channels[model][n] - s.channels["recorded"][n]).ravel()
-                for s in stretches
-                for n in signals
-                if n in s.channels["recorded"]
-            ]
-            found[family][model] = float(np.sqrt(np.nanmean(np.concatenate(off) ** 2)))
-    return found
 
 
 def by_part(

@@ -1,21 +1,25 @@
 """Names what is missing: every suspect fitted in the filter, scored by evidence, selected forward, pruned backward."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnose.fit import converge, descend, fit, reduced
+from boatsim.diagnose.filter import Track
+from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
+from boatsim.diagnose.free_runs import free_runs
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.screen import handed_over, joined, screen, starts
 from boatsim.physics.base import Unsteady
 
-ENOUGH = 4.0  # [nats] an effect must gain to be named
+ODDS = 1.0  # log of the odds at which an effect is named, where each of those tried is as likely before the data
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
 CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
 HALF = 0.5  # and those with this share of its gain
 MANY = 5  # but no more of them than this
+MOST = 8  # effects in one answer: further ones would have next to no data of their own
 RIVALS = 3  # fitted in the place of what was named
 UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
 DWARFED = 0.1  # an effect that gains less than this share of what is left over is not stood for
@@ -28,6 +32,7 @@ class Named:
 
     name: str
     gain: float  # [nats] on top of the others named
+    shared: float  # [nats] that it and its rivals gain together: that one of them is there, whichever
     probability: float
     tied_with: tuple[str, ...]  # look-alikes, at most three
     rivals: Mapping[str, Fit]  # fits with the next best suspects in its place
@@ -51,26 +56,42 @@ class Ranking:
         return self.left_over > UNKNOWN
 
 
-def rank(problem: Problem, candidates: tuple[str, ...]) -> Ranking:
-    """Forward selection over the candidates, the incumbent converged before each comparison.
+def rank(problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] = ()) -> Ranking:
+    """Forward selection over the candidates, the incumbent converged before each comparison, members exchanged.
 
-    Where far more stays unexplained than an effect explains, the tool does not stand for that effect.
+    Where far more stays unexplained than an effect explains, the tool does not stand for that effect; nor does it where
+    free runs over `unseen` recordings get worse by it.
     """
     nominal, recalibrated = baseline(problem)
     search = _Search(problem, candidates, recalibrated)
-    best = search.selected()
-    best, named = search.settled(best)
+    best, named = search.settled(search.selected(recalibrated))
     while (left := left_over(problem, best)) > UNKNOWN and (dwarfed := [n for n in named if n.gain < DWARFED * left]):
         best, named = search.settled(search.without(best, min(dwarfed, key=lambda n: n.gain).name))
+    while named and unseen and (worse := misled(problem, search, best, unseen)):
+        search.banned.add(worse)
+        best, named = search.settled(search.selected(search.without(best, worse)))
+    left = left_over(problem, best)
     tried = search.tried(best)
-    first = {n: f.evidence - search.base.evidence for n, f in search.tried(search.base).items()}
+    first = {n: f.evidence - search.base.evidence for n, f in search.looked(search.base).items()}
     return Ranking(nominal, search.base, best, named, first, tried, left)
+
+
+def misled(problem: Problem, search: "_Search", best: Fit, unseen: Sequence[Track]) -> str:
+    """The effect without which free runs over unseen recordings are best, if with all they are worse than with none."""
+    horizon = min(problem.horizon, max(float(np.ptp(t.times)) for t in unseen))
+    fits = {"none": search.base, "all": best} | {n: search.without(best, n) for n in best.suspects}
+    first = free_runs(problem, {n: fits[n] for n in ("none", "all")}, unseen, horizon)
+    none = carries.squares(first, "none")
+    if not none or not carries.grew(none, carries.squares(first, "all")):
+        return ""
+    rest = free_runs(problem, {n: fits[n] for n in best.suspects}, unseen, horizon)
+    return min(best.suspects, key=lambda n: carries.misfit(carries.squares(rest, n), none))
 
 
 def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:
     """The recalibrated nominal and the best set on top of it, and no more: for cross-validation."""
     _, recalibrated = baseline(problem)
-    return recalibrated, _Search(problem, candidates, recalibrated).selected()
+    return recalibrated, _Search(problem, candidates, recalibrated).selected(recalibrated)
 
 
 def baseline(problem: Problem) -> tuple[Fit, Fit]:
@@ -86,16 +107,18 @@ class _Search:
         self.problem, self.candidates, self.base = problem, candidates, base
         self.fits: dict[frozenset[str], Fit] = {frozenset(): base}
         self.looks: dict[frozenset[str], dict[str, Fit]] = {}
+        self.full: set[tuple[frozenset[str], str]] = set()  # looks that were followed by a fit in full
+        self.banned: set[str] = set()
+        self.price = ODDS + float(np.log(max(len(candidates), 1)))  # [nats] of an effect, look-alikes counted in
 
-    def selected(self) -> Fit:
-        """The best set: suspects added one by one, earlier ones dropped that a newer one makes needless."""
-        best, most = self.base, self.problem.program.vessel.diagnosis.most
-        for _ in range(2 * most):  # additions and prunings together
+    def selected(self, best: Fit) -> Fit:
+        """The best set from one on: suspects added one by one, earlier ones dropped that a newer one makes needless."""
+        for _ in range(2 * MOST):  # additions and prunings together
             tried = self.tried(best)
-            if not tried or len(best.suspects) == most:
+            if not tried or len(best.suspects) == MOST:
                 break
             name = max(tried, key=lambda n: tried[n].evidence)
-            if tried[name].evidence - best.evidence < ENOUGH:
+            if together([f.evidence - best.evidence for f in tried.values()]) < self.price:
                 break
             best = self.pruned(self.converged(tried[name]))
         return best
@@ -112,13 +135,22 @@ class _Search:
         return self.converged(reduced(self.problem, best, name))
 
     def tried(self, best: Fit) -> dict[str, Fit]:
+        """Every other candidate on top of a set, less those found to mislead."""
+        return {n: f for n, f in self.looked(best).items() if n not in self.banned}
+
+    def looked(self, best: Fit) -> dict[str, Fit]:
         """Every other candidate on top of a set: a quick look at all, those in front fitted in full."""
         key = frozenset(best.suspects)
         if key not in self.looks:
             tried = screen(self.problem, best, [n for n in self.candidates if n not in best.suspects])
-            front = _front(tried, best)[:MANY]
-            self.looks[key] = tried | {n: self.fitted(best, n, tried[n]) for n in front}
-        return self.looks[key]
+            self.looks[key] = tried
+        tried = self.looks[key]
+        allowed = {n: f for n, f in tried.items() if n not in self.banned}
+        for n in _front(allowed, best)[:MANY]:
+            if (key, n) not in self.full:
+                self.full.add((key, n))
+                tried[n] = self.fitted(best, n, tried[n])
+        return tried
 
     def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
         """A candidate fitted in full from its quick look; where that leaves much over, from each of its starts."""
@@ -134,15 +166,22 @@ class _Search:
         """Without the earlier effects that the newest one has made needless."""
         for name in best.suspects[:-1]:
             without = self.without(best, name)
-            if without.evidence > best.evidence - ENOUGH:
+            if without.evidence > best.evidence - self.price:
                 best = without
         return best
 
     def settled(self, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
-        """The set without members that gain too little on top of the others, and what is to be said of the rest."""
+        """The set without members that gain too little on top of the others, and what is to be said of the rest.
+
+        A member in whose place another does better makes way for it.
+        """
         while True:
             named = tuple(self.named(best, n) for n in best.suspects)
-            weak = [n for n in named if n.gain < ENOUGH or not self.there(best, n.name)]
+            better = [f for n in named for f in n.rivals.values() if f.evidence > best.evidence + SETTLED]
+            if better:
+                best = self.selected(max(better, key=lambda f: f.evidence))
+                continue
+            weak = [n for n in named if n.shared < self.price or not self.there(best, n.name)]
             if not weak:
                 return best, named
             best = self.without(best, min(weak, key=lambda n: n.gain).name)
@@ -164,7 +203,19 @@ class _Search:
         weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
         order = sorted(gains, key=lambda n: -gains[n])
         tied = tuple(n for n in order if gains[n] > gain - ALIKE)[:3]
-        return Named(name, gain, float(weights[1] / weights.sum()), tied, {n: rivals[n] for n in order})
+        return Named(
+            name,
+            gain,
+            together([gain, *gains.values()]),
+            float(weights[1] / weights.sum()),
+            tied,
+            {n: rivals[n] for n in order},
+        )
+
+
+def together(gains: Sequence[float]) -> float:
+    """Nats that one of several entries gains, whichever: the evidence that any is there, but for how many there are."""
+    return float(np.logaddexp.reduce(np.array(gains, dtype=float)))
 
 
 def _front(tried: Mapping[str, Fit], base: Fit) -> list[str]:

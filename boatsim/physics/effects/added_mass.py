@@ -53,6 +53,7 @@ class AddedMass(Inertia, Force):
     (H. Lamb, Hydrodynamics, 1932), and roll is `roll_share` of the body's own roll inertia, about the origin.
     """
 
+    alone: ClassVar = True
     words: ClassVar[str] = "the water that moves with the hull adds inertia"
     shown_by: ClassVar[str] = "sharp starts and stops in sway and yaw"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.3"
@@ -123,6 +124,7 @@ class AddedMassCoriolis(Release):
 class ShallowWater(Release):
     """What a small water depth adds to the sway and yaw of a hull that has added mass, and to its cross-flow drag."""
 
+    needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the bottom is near: sway and yaw move more water and drag more"
     shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
     source: ClassVar[str] = "assumption [A] of the checked specification of Bayless 2017, section 2 (factor k)"

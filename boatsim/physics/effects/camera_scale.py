@@ -20,6 +20,9 @@ def shown(m: Shown, q: Any) -> Shown:
 class CameraScale(Measurement):
     """Positions stretched along the axes of the tank."""
 
+    of_columns: ClassVar = ("x_m", "y_m")
+    ruled_out_by: ClassVar = {"position_fix": ("gnss", "inertial")}
+    needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "the camera's length scale is off, so recorded positions are stretched (not physics)"
     shown_by: ClassVar[str] = "the same straight run along x and along y"
     shown: ClassVar = shown

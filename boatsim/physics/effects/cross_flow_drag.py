@@ -66,6 +66,7 @@ def law(m: Any, q: Any) -> Wrench:
 class CrossFlowDrag(Force):
     """Drag of a hull of constant section in sway and yaw together, by strips in closed form."""
 
+    needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "hull sections drag sideways with the square of the water crossing them"
     shown_by: ClassVar[str] = "sway and spin at two speeds"
     source: ClassVar[str] = "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, section 6"

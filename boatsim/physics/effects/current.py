@@ -18,6 +18,8 @@ def flow(q: Any) -> tuple[float, float]:
 class Current(Flow):
     """A uniform, steady current."""
 
+    ruled_out_by: ClassVar = {"still_water": (True,)}
+    needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "the water moves over the ground and carries the boat along"
     shown_by: ClassVar[str] = "drifting, and runs on opposite headings"
     flow: ClassVar = flow

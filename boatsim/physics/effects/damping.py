@@ -134,6 +134,7 @@ class DampingError(Release):
 class LateralCentreShift(Release):
     """Centre of the linear sway damping ahead of or behind the origin of motion (skeg, trim, load)."""
 
+    needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the water's sideways resistance acts ahead of or behind the mass centre"
     shown_by: ClassVar[str] = "pushing sideways, and coasting after a turn"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4 (Y_r, N_v)"

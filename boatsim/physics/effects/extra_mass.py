@@ -33,6 +33,7 @@ def law(m: Any, q: Any) -> Wrench:
 class ExtraMass(Inertia, Force):
     """A point mass fixed to the hull on its centreline, at the height of the origin."""
 
+    needs: ClassVar = ("surge",)
     words: ClassVar[str] = "the boat carries a mass that the model does not know of"
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"

@@ -19,6 +19,7 @@ def law(m: Any, q: Any) -> Wrench:
 class ForwardSpeedDamping(Force):
     """Linear damping in proportion to the forward speed."""
 
+    needs: ClassVar = ("surge",)
     words: ClassVar[str] = "damping of sway, roll and yaw grows with the forward speed"
     shown_by: ClassVar[str] = "the same turns at two forward speeds"
     source: ClassVar[str] = "M. Blanke, Ship Propulsion Losses, PhD, DTU 1981: terms Y_|u|v, K_|u|p, N_|u|r"

@@ -24,6 +24,8 @@ def shown(m: Shown, q: Any) -> Shown:
 class HeadingDeviation(Measurement):
     """Semicircular deviation of a compass, from iron or current-carrying wires aboard."""
 
+    of_columns: ClassVar = ("psi_rad",)
+    needs: ClassVar = ("surge", "yaw")
     words: ClassVar[str] = "the compass deviates with the heading (not physics)"
     shown_by: ClassVar[str] = "straight runs on four headings, or a slow full turn"
     source: ClassVar[str] = "coefficients B and C of the classical deviation formula (Archibald Smith)"

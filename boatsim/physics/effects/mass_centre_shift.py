@@ -26,6 +26,7 @@ def law(m: Any, q: Any) -> Wrench:
 class MassCentreShift(Inertia, Force):
     """The hull's mass centre ahead of the origin of motion; thrusters and damping stay where they are."""
 
+    needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the mass centre lies ahead of or behind where the model has it"
     shown_by: ClassVar[str] = "sharp starts and stops sideways, and fast turns"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"

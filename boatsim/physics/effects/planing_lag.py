@@ -21,6 +21,7 @@ def reaction(m: Any, w: Wrench, q: Any) -> Wrench:
 class PlaningLag(Reaction):
     """Every change of speed is scaled down at low speed, where the wetted area is large; steady speeds stay."""
 
+    needs: ClassVar = ("surge",)
     words: ClassVar[str] = "the craft changes its speed more slowly the less it planes; steady speeds are right"
     shown_by: ClassVar[str] = "throttle steps at low and at high speed"
     source: ClassVar[str] = "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, section III-A"

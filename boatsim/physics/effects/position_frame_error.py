@@ -21,6 +21,8 @@ def shown(m: Shown, q: Any) -> Shown:
 class PositionFrameError(Measurement):
     """Lever arm: antenna, marker or origin of the recording away from where the model has its origin."""
 
+    of_columns: ClassVar = ("x_m", "y_m")
+    needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "recorded positions are those of another point of the hull (not physics)"
     shown_by: ClassVar[str] = "turning on the spot"
     shown: ClassVar = shown

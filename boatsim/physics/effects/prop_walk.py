@@ -19,6 +19,7 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
 class PropWalk(Force):
     """Side force in proportion to the thrust: to starboard ahead and to port astern for a positive value."""
 
+    needs: ClassVar = ("sway",)
     words: ClassVar[str] = "the propellers walk the stern sideways, most of all astern"
     shown_by: ClassVar[str] = "straight astern, then straight ahead"
     source: ClassVar[str] = "J. Brix (ed.), Manoeuvring Technical Manual, 1993; a third of it ahead is an assumption"

@@ -59,6 +59,7 @@ SteeringRateLimit = preset(
     shown_by="hard-over steering reversals",
     source="J. van Amerongen, Adaptive Steering of Ships, PhD, Delft 1982 (steering machine)",
     acts_on="angle",
+    ruled_out_by={"steering_measured": (True,)},
     starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
     frees={
         "rate": {

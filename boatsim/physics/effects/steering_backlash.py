@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, param
+from boatsim.physics.kinds.channel import COMMANDS
 
 
 @njit(inline="always")
@@ -28,11 +29,13 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
 class SteeringBacklash(Channel):
     """Free play between steering command and thruster angle."""
 
+    ruled_out_by: ClassVar = {"steering_measured": (True,)}
     words: ClassVar[str] = "the steering linkage has play, so an angle stays behind when the steering reverses"
     shown_by: ClassVar[str] = "small steering reversals while pushing"
     source: ClassVar[str] = "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, 1996 (play operator)"
     acts_on: ClassVar[str] = "angle"
     slots: ClassVar[int] = 1
+    stage: ClassVar[int] = COMMANDS
     channel: ClassVar = channel
     starts: ClassVar = ({"width": 0.05}, {"width": 0.2})
 

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, param, preset
+from boatsim.physics.kinds.channel import DEEDS
 
 
 @njit(inline="always")
@@ -27,6 +28,7 @@ class SteeringOffset(Channel):
     words: ClassVar[str] = "the thrusters are mounted or trimmed at an angle"
     shown_by: ClassVar[str] = "straight runs ahead and astern"
     acts_on: ClassVar[str] = "angle"
+    stage: ClassVar[int] = DEEDS
     channel: ClassVar = channel
 
     port: float = param(0.0, low=-0.6, high=0.6, unit="rad", words="added to the port angle", fit=True, spread=0.12)

@@ -18,6 +18,7 @@ def law(m: Any, q: Any) -> Wrench:
 class SwayYawCoupling(Force):
     """Cross terms of hull lift and added mass at a small angle to the flow; a moment alone is the Munk moment."""
 
+    needs: ClassVar = ("surge", "sway", "yaw")
     words: ClassVar[str] = "a hull with way on feels a side force when it turns and a moment when it drifts"
     shown_by: ClassVar[str] = "the same turns at two speeds ahead, and astern"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 6"

@@ -37,6 +37,8 @@ def law(m: Any, q: Any) -> Wrench:
 class Tether(Force):
     """A cable or line between the boat and a fixed point: its weight pulls always, its stretch when it is taut."""
 
+    ruled_out_by: ClassVar = {"moored": (False,)}
+    needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "a line or cable pulls the boat towards a fixed point"
     shown_by: ClassVar[str] = "visiting the corners of the tank on several headings"
     anchored: ClassVar[str] = "a fixed point"

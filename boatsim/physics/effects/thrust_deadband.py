@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, param
+from boatsim.physics.kinds.channel import COMMANDS
 
 
 @njit(inline="always")
@@ -27,6 +28,7 @@ class ThrustDeadband(Channel):
     words: ClassVar[str] = "small thrust commands do nothing and all thrust is less by a constant"
     shown_by: ClassVar[str] = "slow runs at several small thrust levels"
     acts_on: ClassVar[str] = "thrust"
+    stage: ClassVar[int] = COMMANDS
     channel: ClassVar = channel
 
     width: float = param(0.0, low=0.0, high=0.5, unit="N", words="half width", fit=True, spread=0.1)

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, param
+from boatsim.physics.kinds.channel import DEEDS
 
 
 @njit(inline="always")
@@ -22,6 +23,7 @@ class ThrustImbalance(Channel):
     words: ClassVar[str] = "one side pushes harder than the other for the same command"
     shown_by: ClassVar[str] = "straight runs ahead and astern with equal commands"
     acts_on: ClassVar[str] = "thrust"
+    stage: ClassVar[int] = DEEDS
     channel: ClassVar = channel
 
     fraction: float = param(

@@ -35,6 +35,7 @@ def law(m: Any, q: Any) -> Wrench:
 class WallEffect(Force):
     """More damping and suction near the walls of a rectangular tank, told by a recording's facts or its own table."""
 
+    needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "near the walls of the tank the boat drags more and is drawn towards them"
     shown_by: ClassVar[str] = "approaching a wall slowly and leaving it again"
     source: ClassVar[str] = "assumption: exponential fall-off; its reach is half a boat length"

@@ -41,6 +41,7 @@ def swell(q: Any) -> Swell:
 class WaveForcing(Unsteady):
     """Narrow-band wave forces in body axes, independent from axis to axis."""
 
+    ruled_out_by: ClassVar = {"no_waves": (True,)}
     words: ClassVar[str] = "waves push the hull to and fro about one frequency"
     shown_by: ClassVar[str] = "lying still without thrust"
     source: ClassVar[str] = (

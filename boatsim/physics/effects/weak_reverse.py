@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, param
+from boatsim.physics.kinds.channel import DEEDS
 
 
 @njit(inline="always")
@@ -28,6 +29,7 @@ class WeakReverse(Channel):
     shown_by: ClassVar[str] = "turning on the spot or swaying with one motor astern"
     source: ClassVar[str] = "J. A. Bayless 2017, Appendix H (motor calibration 0.70)"
     acts_on: ClassVar[str] = "thrust"
+    stage: ClassVar[int] = DEEDS
     channel: ClassVar = channel
 
     astern_factor: float = param(

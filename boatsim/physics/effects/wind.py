@@ -23,6 +23,8 @@ def law(m: Any, q: Any) -> Wrench:
 class Wind(Force):
     """A push in a fixed direction of the world that depends on the heading."""
 
+    ruled_out_by: ClassVar = {"indoors": (True,)}
+    needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "a steady wind pushes the hull in one direction of the world"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"

@@ -31,8 +31,11 @@ def pausing(program: Composed) -> Sequence[Station]:
     return [Station((f"x = commands[{program.commands.index(name)}]",), (), name) for name in program.actuators]
 
 
-MAPS = -2  # stage of what makes a signal out of a raw command, at once
-DELAYS = -1  # stage of what shifts a command in time: what follows sees it arrive, and it sees commands alone
+# Stages: what is wrong with a command comes before the actuator that follows it, what is wrong with its deed after it
+MAPS = -3  # what makes a signal out of a raw command, at once
+DELAYS = -2  # what shifts a command in time: what follows sees it arrive, and it sees commands alone
+COMMANDS = -1  # what the actuator never hears of: a dead band, play in the linkage; the actuator itself is 0
+DEEDS = 1  # what an actuator that has followed gives: weak astern, uneven, askew
 INSTANT = "1e-9"  # [s] of a signal that is asked for as it is now
 ACTUATE = Part("actuate", "commands, memory, dt, p, on, act, held", ("pass",), "", stations=actuators)
 PAUSE = Part("pause", "commands, memory, p, on", ("left = np.inf",), "left", stations=pausing)

@@ -13,6 +13,12 @@ from boatsim.physics.content import snake_case
 from boatsim.physics.param import UNSET, Checked
 
 
+@cache
+def _named(fields: tuple[str, ...]) -> Callable[..., tuple[float, ...]]:
+    """The NamedTuple type of these fields; entries over one law share it, so that the law is compiled once for all."""
+    return namedtuple("Given", fields)
+
+
 @dataclass(frozen=True)
 class Role:
     """A signal that a law takes, whatever the vessel calls its channel: `thrust`, `angle`, `shaft`."""
@@ -35,6 +41,9 @@ class Effect(Checked):
     starts: ClassVar[tuple[Mapping[str, float], ...]] = ()  # where a fit starts; empty: a tenth of each spread
     roles: ClassVar[Mapping[str, Role]] = {}  # signals its law takes as its third argument, each with a channel
     stage: ClassVar[int] = 0  # those of a lower one come first in the program; else the order is that of the files
+    needs: ClassVar[tuple[str, ...]] = ()  # freedoms without which it can not act, besides those of its parameters
+    ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}  # fact -> what it must say for the effect not to act
+    alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
     rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
 
     filled: frozenset[str] = field(  # parameters by `completed`, which nobody stated
@@ -70,17 +79,15 @@ class Effect(Checked):
         return snake_case(cls.__name__)
 
     @classmethod
-    @cache
     def values_type(cls) -> Callable[..., tuple[float, ...]]:
         """NamedTuple type of the parameters, as the compiled law receives them."""
-        return namedtuple(f"{cls.__name__}Values", list(cls.params()))
+        return _named(tuple(cls.params()))
 
     @classmethod
-    @cache
     def signals_type(cls) -> Callable[..., tuple[float, ...]]:
         """NamedTuple type of the signals of its roles, with cosine and sine of those that are angles."""
         angles = [f"{part}_{n}" for n, role in cls.roles.items() if role.unit == "rad" for part in ("cos", "sin")]
-        return namedtuple(f"{cls.__name__}Signals", [*cls.roles, *angles])
+        return _named((*cls.roles, *angles))
 
     @classmethod
     def signals(cls, **given: float) -> tuple[float, ...]:

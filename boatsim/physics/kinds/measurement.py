@@ -23,6 +23,7 @@ class Measurement(Kind):
     kind: ClassVar[str] = "measurement"
     parts: ClassVar = (SHOWN, DISTORTED, LATE)
     laws: ClassVar = ("shown", "late")
+    of_columns: ClassVar[tuple[str, ...]] = ()  # recorded columns in which it shows, any of them
     shown: ClassVar[Callable[..., Shown] | None] = None
     late: ClassVar[Callable[..., float] | None] = None
 

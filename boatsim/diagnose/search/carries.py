@@ -1,0 +1,37 @@
+"""Whether an explanation carries over: free runs over recordings that no fit has seen."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from boatsim.diagnose.free_runs import FAMILIES, FreeRun
+
+SCATTER = 2.0  # standard errors of the mean by which a square error must have grown to count,
+WORSE = 1.05  # and the ratio of rms errors
+
+
+def squares(stretches: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
+    """Mean square error of each free run, by family of signals."""
+    found: dict[str, list[float]] = {}
+    for family, signals in FAMILIES.items():
+        for s in stretches:
+            recorded = s.channels["recorded"]
+            off = [s.channels[model][n] - recorded[n] for n in signals if n in recorded]
+            if off:
+                found.setdefault(family, []).append(float(np.nanmean(np.concatenate(off) ** 2)))
+    return found
+
+
+def grew(before: Mapping[str, Sequence[float]], after: Mapping[str, Sequence[float]]) -> bool:
+    """Whether the error of any family grew, by more than its scatter from run to run."""
+    for family, old in before.items():
+        rise = np.array(after[family]) - np.array(old)
+        scatter = SCATTER * rise.std(ddof=1) / np.sqrt(len(rise)) if len(rise) > 1 else 0.0
+        if rise.mean() > max(scatter, (WORSE**2 - 1.0) * np.mean(old)):
+            return True
+    return False
+
+
+def misfit(found: Mapping[str, Sequence[float]], per: Mapping[str, Sequence[float]]) -> float:
+    """Geometric mean over the families of the mean square errors, in those of another model."""
+    return float(np.exp(np.mean([np.log(np.mean(found[f]) / np.mean(per[f])) for f in found])))
