@@ -132,7 +132,7 @@ def earthward(boat: Boat, q: Array) -> Array:
 
 
 def pose_rates(boat: Boat, q: Array, nu: Array, R: Array) -> Array:
-    """q' (6, B)."""
+    """Rates of the pose (6, B)."""
     moved = np.einsum("ijb,jb->ib", R, nu[:3])
     if not boat.tilts:
         return np.concatenate([moved, nu[3:]])
