@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from benchmarks.practice import motion
 from benchmarks.practice.boats import BOATS
-
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.simulate.twin import Twin

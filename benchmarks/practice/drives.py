@@ -70,8 +70,9 @@ def command_delay(boat: Boat, rng: Rng, s: float) -> Cause:
 
         def given(goal: Array, k: int) -> Array:
             past.append(goal)
-            back = round(late * lots[int(len(past) * dt / b.scale)] / dt)
-            return past[max(len(past) - 1 - back, 0)]
+            at = max(len(past) - 1 - late * lots[int(len(past) * dt / b.scale)] / dt, 0.0)
+            first, part = int(at), at % 1.0
+            return np.asarray((1 - part) * past[first] + part * past[min(first + 1, len(past) - 1)])
 
         return given
 
@@ -126,7 +127,7 @@ def steering_backlash(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def steering_rate_limit(boat: Boat, rng: Rng, s: float) -> Cause:
     """A steering machine that is slow, and slower still close to its goal."""
-    rate = (0.5 - 0.35 * s) / boat.scale
+    rate = 0.12 / s / boat.scale
 
     def drive(b: Boat, dt: float) -> Given:
         near = 0.03  # [rad]
@@ -137,7 +138,7 @@ def steering_rate_limit(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def rudder_stall(boat: Boat, rng: Rng, s: float) -> Cause:
     """The force bends over about an angle and falls a little beyond it."""
-    stall = 0.5 - 0.28 * s
+    stall = 0.7 - 0.45 * s
 
     def curve(x: Array) -> Array:
         bent = x / (1.0 + np.abs(x / stall) ** 6) ** (1.0 / 6.0)

@@ -103,14 +103,14 @@ def added_mass_coriolis(boat: Boat, rng: Rng, s: float) -> Cause:
 def righting_arm_stiffening(boat: Boat, rng: Rng, s: float) -> Cause:
     """A curve of levers: a sine that bends over, or the wall-sided formula that hardens."""
     bends = bool(rng.integers(2))
-    n, wall = 2.0 + 1.3 * s, 1.0 + 4.0 * s
+    n, wall = 3.0 * np.sqrt(s), 1 / 3 + 4.0 * s
 
     def force(b: Boat, m: Motion) -> Array:
         phi, k = m.q[3], b.c["righting"]
         lever = np.sin(n * phi) / n if bends else np.sin(phi) * (1.0 + wall / 2 * np.tan(phi) ** 2)
         return forces(phi.size, K=-k * (lever - phi))
 
-    cubic = -n * n / 6 if bends else wall / 2 - 1 / 6
+    cubic = float(-n * n / 6 if bends else wall / 2 - 1 / 6)
     return Cause("righting_arm_stiffening", {"cubic_perrad2": cubic}, force=force, not_compared=("cubic_perrad2",))
 
 
@@ -168,7 +168,7 @@ def position_frame_error(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def clock_offset(boat: Boat, rng: Rng, s: float) -> Cause:
     """Poses late behind commands."""
-    late = round(16 * s) * 0.025 * boat.scale
+    late = 0.4 * s * boat.scale
     return Cause("clock_offset", {"pose_late_s": late}, late=late, same_by_hand=("command_delay",))
 
 
@@ -214,7 +214,7 @@ def lifting_hull(boat: Boat, rng: Rng, s: float) -> Cause:
 
 def stiction(boat: Boat, rng: Rng, s: float) -> Cause:
     """A rubbing stern gland or guide: dry friction in roll."""
-    K = 0.02 * s * boat.c["righting"]
+    K = 0.004 * s * boat.c["righting"]
     return Cause("outside_library:stiction", force=lambda b, m: forces(m.t.size, K=-K * np.tanh(m.nu[3] / 0.02)))
 
 

@@ -26,6 +26,8 @@ CALIBRATION = 0.03  # sd of a real boat's own damping and thrust
 RIGHTING = 0.005  # and of its righting levers
 SEEN, SURE = 12.0, (5.0, 20.0)  # [nats] visible from, borderline between
 STRANGE_SEEN, STRANGE_SURE = 20.0, (10.0, 40.0)  # [nats] the same of causes outside the library
+FIRST, WEAK_TO_STRONG = 0.5, (0.03, 1.2)  # strength of a first try, from which that with the wanted evidence follows
+WANTED, STRANGE_WANTED = (15.0, 300.0), (40.0, 400.0)  # [nats] drawn evenly by ratio
 OUTLIERS, FAR = 0.02, 15.0  # share of the rows, and how far off in sd of the instrument
 
 
@@ -73,30 +75,60 @@ class Deck:
 
 def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
     """Write one trial to its folder; its answer."""
-    rng = np.random.default_rng([seed, int(trial.name[1:4])])
-    nominal, plan = BOATS[trial.vessel](), PLANS[trial.vessel]
-    grid, strength = plan.grid(), float(rng.uniform(0.3, 1.0))
-    noise = instruments(nominal, plan, rng)
-    real = own(nominal, rng)
-    causes = [maker(nominal, rng, strength) for maker in trial.makers]
-    pilot = Keeper(nominal, grid, rng) if trial.concealed else hand(nominal, grid, rng)
-    voyage = sail(real, causes, pilot, grid, noise, rng)
-    oracle = Oracle(nominal, real, causes, voyage, noise)
+    lots = (seed, int(trial.name[1:4]))
+    plan, strange = PLANS[trial.vessel], trial.kind == "unknown"
+    strengths, oracle, gains = chosen(trial, lots)
     answer = {
-        "kind": trial.kind, "vessel": trial.vessel, "concealed": trial.concealed, "strength": round(strength, 3),
-        "outliers": trial.outliers, "calibration_error": CALIBRATION,
-        "effects": [described(c) for c in causes],
-        **{f"noise_{f}_{UNITS[f]}": float(f"{s:.3g}") for f, s in zip(FAMILIES, noise, strict=True) if s},
-        **told(trial, oracle, causes), **same(trial, causes),
+        "kind": trial.kind, "vessel": trial.vessel, "concealed": trial.concealed,
+        "strength": [round(float(s), 3) for s in strengths], "outliers": trial.outliers,
+        "calibration_error": CALIBRATION, "effects": [described(c) for c in oracle.causes],
+        **{f"noise_{f}_{UNITS[f]}": float(f"{s:.3g}") for f, s in zip(FAMILIES, oracle.noise, strict=True) if s},
+        **told(strange, gains), **same(trial, oracle.causes),
     }  # fmt: skip
-    if 0 in nominal.free:
-        horizon = 6.0 * nominal.scale
-        answer["reference_position_rms_m"] = {k: round(v, 6) for k, v in oracle.free_runs(horizon, rng).items()
-                                              if k != "true_structure" or trial.kind != "unknown"}  # fmt: skip
-    if trial.outliers:
-        voyage = spoilt(voyage, noise, rng)
-    write(out / trial.name, nominal, plan, voyage, answer)
+    rng = np.random.default_rng([*lots, 1])
+    if 0 in oracle.nominal.free:
+        rms = oracle.free_runs(6.0 * oracle.nominal.scale, rng)
+        left_out = "true_structure" if strange else ""
+        answer["reference_position_rms_m"] = {k: round(v, 6) for k, v in rms.items() if k != left_out}
+    voyage = spoilt(oracle.voyage, oracle.noise, rng) if trial.outliers else oracle.voyage
+    write(out / trial.name, oracle.nominal, plan, voyage, answer)
     return answer
+
+
+def chosen(trial: Trial, lots: tuple[int, int]) -> tuple[Array, Oracle, Array]:
+    """Strengths of the causes with which they give about the evidence that is wanted, the trial, its gains [nats]."""
+    strange, count = trial.kind == "unknown", len(trial.makers)
+    low, high = np.log(STRANGE_WANTED if strange else WANTED)
+    wanted = np.exp([np.random.default_rng([*lots, 0, i]).uniform(low, high) for i in range(count)])
+    strengths = np.full(count, FIRST)
+    oracle = sailed(trial, lots, strengths)
+    if not count:
+        return strengths, oracle, strengths
+    found = np.maximum(evidence(oracle, strange), 0.1)
+    strengths = np.clip(strengths * np.sqrt(wanted / found), *WEAK_TO_STRONG)
+    oracle = sailed(trial, lots, strengths)
+    return strengths, oracle, evidence(oracle, strange)
+
+
+def sailed(trial: Trial, lots: tuple[int, int], strengths: Array) -> Oracle:
+    """The trial with causes of these strengths; all else is drawn alike."""
+    nominal, plan = BOATS[trial.vessel](), PLANS[trial.vessel]
+    grid, rng = plan.grid(), np.random.default_rng([*lots, 2])
+    noise, real = instruments(nominal, plan, rng), own(nominal, rng)
+    causes = [
+        on_grid(maker(nominal, np.random.default_rng([*lots, 3, i]), float(s)), grid.dt)
+        for i, (maker, s) in enumerate(zip(trial.makers, strengths, strict=True))
+    ]
+    pilot = Keeper(nominal, grid, rng) if trial.concealed else hand(nominal, grid, rng)
+    return Oracle(nominal, real, causes, sail(real, causes, pilot, grid, noise, rng), noise)
+
+
+def on_grid(cause: Cause, dt: float) -> Cause:
+    """A late clock is late by whole fine steps."""
+    if not cause.late:
+        return cause
+    late = max(round(cause.late / dt), 1) * dt
+    return replace(cause, late=late, parameters={name: late for name in cause.parameters})
 
 
 def instruments(boat: Boat, plan: Plan, rng: Rng) -> Array:
@@ -118,20 +150,24 @@ def described(cause: Cause) -> dict[str, Any]:
     return found | ({"not_compared": list(cause.not_compared)} if cause.not_compared else {})
 
 
-def told(trial: Trial, oracle: Oracle, causes: list[Cause]) -> dict[str, Any]:
+def evidence(oracle: Oracle, strange: bool) -> Array:
+    """Nats that each cause adds to the others, or to the library."""
+    return np.array([oracle.beyond_library(c) if strange else oracle.marginal(c) for c in oracle.causes])
+
+
+def told(strange: bool, gains: Array) -> dict[str, Any]:
     """What the oracle says of the evidence."""
-    if not causes:
+    if not len(gains):
         return {}
-    strange = trial.kind == "unknown"
-    gains = [oracle.beyond_library(c) if strange else oracle.marginal(c) for c in causes]
     seen, (low, high) = (STRANGE_SEEN, STRANGE_SURE) if strange else (SEEN, SURE)
-    least = min(gains)
+    least = float(gains.min())
     return {
-        "visible": least > seen, "borderline": low < least < high, "marginal_gain_nats": [round(g, 1) for g in gains]
+        "visible": least > seen, "borderline": low < least < high,
+        "marginal_gain_nats": [round(float(g), 1) for g in gains],
     }  # fmt: skip
 
 
-def same(trial: Trial, causes: list[Cause]) -> dict[str, Any]:
+def same(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any]:
     """Entries that count as the true ones."""
     found = {c.name: [*c.same, *(() if trial.concealed else c.same_by_hand)] for c in causes}
     found = {name: others for name, others in found.items() if others}

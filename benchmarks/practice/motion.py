@@ -45,14 +45,14 @@ class Drive:
 
     def follow(self, y: Array, goal: Array, dt: float) -> Array:
         """Where the actuators (A, B) are after dt: at the largest rate until the lag is as slow, then as the lag."""
-        lag, rate = self.lag[:, None], self.rate[:, None]
-        gap = goal - y
-        slow = np.where(lag > 0.0, np.where(np.isfinite(rate), rate, 0.0) * lag, 0.0)
-        ramp = np.where(np.isfinite(rate), np.maximum(np.abs(gap) - slow, 0.0) / rate, 0.0)
-        turning = np.minimum(ramp, dt)
-        turned = np.where(turning > 0.0, np.sign(gap) * np.where(np.isfinite(rate), rate, 0.0) * turning, 0.0)
-        decay = np.where(lag > 0.0, np.exp(-(dt - turning) / np.maximum(lag, 1e-9)), np.where(ramp > dt, 1.0, 0.0))
-        return np.asarray(goal - (gap - turned) * decay)
+        lag, gap = np.maximum(self.lag, 1e-9)[:, None], goal - y
+        left: Array | float = dt
+        limited = np.isfinite(self.rate)
+        if limited.any():
+            rate = np.where(limited, self.rate, 1e9)[:, None]
+            ramp = np.minimum(np.maximum(np.abs(gap) / rate - lag, 0.0), dt) * limited[:, None]
+            gap, left = gap - np.sign(gap) * rate * ramp, dt - ramp
+        return np.asarray(goal - gap * np.exp(-left / lag))
 
 
 @dataclass(frozen=True)
@@ -108,11 +108,19 @@ def cross(a: Array, b: Array) -> Array:
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def kirchhoff(mass: Array, nu: Array, spin: Array) -> Array:
-    """-C(nu) nu (6, B) of a mass matrix, in axes that turn with `spin` (3, B)."""
+def kirchhoff(mass: Array, nu: Array) -> Array:
+    """-C(nu) nu (6, B) of a mass matrix, in axes fixed in the hull."""
     momentum = mass @ nu
-    turned = cross(spin, momentum[3:]) + cross(nu[:3], momentum[:3])
-    return -np.concatenate([cross(spin, momentum[:3]), turned])
+    v, spin = nu[:3], nu[3:]
+    return -np.concatenate([cross(spin, momentum[:3]), cross(spin, momentum[3:]) + cross(v, momentum[:3])])
+
+
+def level(mass: Array, nu: Array) -> Array:
+    """The same of a hull in level axes, which only yaw turns."""
+    momentum, found = mass @ nu, np.zeros_like(nu)
+    found[0], found[1] = momentum[1] * nu[5], -momentum[0] * nu[5]
+    found[5] = nu[1] * momentum[0] - nu[0] * momentum[1]
+    return found
 
 
 def earthward(boat: Boat, q: Array) -> Array:
@@ -133,7 +141,7 @@ def earthward(boat: Boat, q: Array) -> Array:
 
 def pose_rates(boat: Boat, q: Array, nu: Array, R: Array) -> Array:
     """Rates of the pose (6, B)."""
-    moved = np.einsum("ijb,jb->ib", R, nu[:3])
+    moved = R[:, 0] * nu[0] + R[:, 1] * nu[1] + R[:, 2] * nu[2]
     if not boat.tilts:
         return np.concatenate([moved, nu[3:]])
     cf, sf, ct, tt = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.tan(q[4])
@@ -152,7 +160,9 @@ Extra = Callable[[Motion], Array]  # further forces (6, B)
 Water = Callable[[Array, Array, Whole], Flow | None]  # of t, q, run
 
 
-def seen(boat: Boat, t: Array, run: Whole, q: Array, nu: Array, act: Array, water: Water) -> tuple[Motion, Array, Array]:
+def seen(
+    boat: Boat, t: Array, run: Whole, q: Array, nu: Array, act: Array, water: Water
+) -> tuple[Motion, Array, Array]:
     """The motion as forces see it, R, and the water's velocity (3, B) in body axes."""
     R, flow = earthward(boat, q), water(t, q, run)
     carried = np.zeros_like(nu[:3]) if flow is None else R[0] * flow.north + R[1] * flow.east
@@ -162,10 +172,12 @@ def seen(boat: Boat, t: Array, run: Whole, q: Array, nu: Array, act: Array, wate
 
 def load(boat: Boat, m: Motion, carried: Array, extra: Extra) -> Array:
     """(6, B) all that drives M nu': laws, Coriolis forces, water that turns with a uniform current."""
-    spin = m.nu[3:] * (1.0 if boat.tilts else np.array([[0.0], [0.0], [1.0]]))
-    found = boat.law(boat.c, m) + extra(m) + kirchhoff(boat.hull, m.nu, spin)
-    if boat.coriolis:
-        found += boat.coriolis * kirchhoff(boat.water, m.through, spin)
+    coriolis = kirchhoff if boat.tilts else level
+    found = boat.law(boat.c, m) + extra(m)
+    if not carried.any():
+        return np.asarray(found + coriolis(boat.hull + boat.coriolis * boat.water, m.nu))
+    found += coriolis(boat.hull, m.nu) + boat.coriolis * coriolis(boat.water, m.through)
+    spin = m.nu[3:] if boat.tilts else m.nu[3:] * np.array([[0.0], [0.0], [1.0]])
     return np.asarray(found - boat.water[:, :3] @ cross(spin, carried))
 
 

@@ -113,14 +113,14 @@ class Oracle:
         return np.diag(off[:, 1:7]), np.diag(off[:, 7:])
 
     def white(self, force: Array, runs: Sequence[int] = FITTED) -> Array:
-        """A force in the metric in which half its square is its gain [nats], as one vector."""
+        """A force in the metric in which half its square is its gain [nats], as one vector, axis after axis."""
         grid = self.voyage.grid
         heard = np.fft.rfftfreq(grid.steps + 1, grid.dt) < 0.5 / grid.row
         axes = list(self.nominal.free)
-        spectrum = np.fft.rfft(force[:, axes][:, :, list(runs)], axis=0) * grid.dt
-        weight = np.where(np.arange(len(heard)) == 0, 1.0, 2.0) * heard / ((grid.steps + 1) * grid.dt)
-        scaled = spectrum * np.sqrt(weight[:, None, None] / self.spectra[axes].T[:, :, None])
-        return np.concatenate([scaled.real.ravel(), scaled.imag.ravel()])
+        spectrum = np.moveaxis(np.fft.rfft(force[:, axes][:, :, list(runs)], axis=0)[heard], 1, 0) * grid.dt
+        weight = np.where(np.arange(heard.sum()) == 0, 1.0, 2.0) / ((grid.steps + 1) * grid.dt)
+        scaled = spectrum * np.sqrt(weight / self.spectra[axes][:, heard])[:, :, None]
+        return np.stack([scaled.real, scaled.imag], 1).ravel()
 
     def coefficients(self) -> dict[str, Array]:
         """(K, 6, RUNS) what one stated sd of each of the nominal's own coefficients changes."""
@@ -182,13 +182,20 @@ class Oracle:
         return found
 
     def recalibrated(self) -> Boat:
-        """The nominal with its own coefficients fitted to what it lacks in the runs to diagnose from."""
-        columns = self.coefficients()
-        y = self.white(self.needed(self.nominal, (), self.own, self.seen))
-        A = np.array([self.white(f) for f in columns.values()]).T
-        theta = -np.linalg.solve(A.T @ A + np.eye(A.shape[1]), A.T @ y)
-        sd = {n: self.nominal.uncertainty.get(kind, 0.05) for n, kind in self.nominal.kinds.items()}
-        fitted = {n: self.nominal.c[n] * max(1 + sd[n] * x, 0.05) for n, x in zip(columns, theta, strict=True)}
+        """The nominal with its own coefficients fitted to what it lacks in the runs to diagnose from.
+
+        Each axis counts as little as what is left of it asks for, as if the ambient force were that strong.
+        """
+        names, axes = list(self.nominal.kinds), len(self.nominal.free)
+        sd = np.array([self.nominal.uncertainty.get(self.nominal.kinds[n], 0.05) for n in names])
+        y = self.white(self.needed(self.nominal, (), self.own, self.seen)).reshape(axes, -1)
+        A = np.array([self.white(f).reshape(axes, -1) for f in self.coefficients().values()])
+        theta, heard = np.zeros(len(names)), max(int((y[0] != 0.0).sum()), 1)
+        for _ in range(4):
+            rms = np.sqrt(np.maximum(((y + np.tensordot(theta, A, 1)) ** 2).sum(axis=1) / heard, 1.0))[:, None]
+            B, z = (A / rms).reshape(len(names), -1), (y / rms).ravel()
+            theta = -np.linalg.solve(B @ B.T + np.eye(len(names)), B @ z)
+        fitted = {n: self.nominal.c[n] * max(1 + s * x, 0.05) for n, s, x in zip(names, sd, theta, strict=True)}
         return replace(self.nominal, c={**self.nominal.c, **fitted})
 
     def free_runs(self, horizon: float, rng: np.random.Generator) -> dict[str, float]:

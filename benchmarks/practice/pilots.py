@@ -1,4 +1,4 @@
-"""Who steers: a hand that moves the joystick by steps, and a keeper of tracks whose integrals conceal what is missing."""
+"""Who steers: a hand that moves the joystick by steps, and a keeper of tracks who conceals what is missing."""
 
 from dataclasses import dataclass, field
 
@@ -142,7 +142,7 @@ def allocated(boat: Boat, X: Array, N: Array) -> Array:
     if boat.name == "otter":
         thrust = np.array([X / 2 + N / 0.79, X / 2 - N / 0.79])
         k = np.where(thrust > 0.0, 0.01108, 0.006445)
-        return np.clip(np.sign(thrust) * np.sqrt(np.abs(thrust) / k), -95.0, 95.0)
+        return np.asarray(np.clip(np.sign(thrust) * np.sqrt(np.abs(thrust) / k), -95.0, 95.0))
     T = np.where(np.abs(X) < 0.1, 0.1, X) / 2  # of one outboard
     angle = np.clip(-N / T, -0.5, 0.5)
     rest = (N + T * np.sin(angle)) / 0.38

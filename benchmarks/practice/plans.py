@@ -40,12 +40,12 @@ CAMERA = {"position": 0.0035, "heading": 0.012}
 
 PLANS = {
     "catamaran": Plan(
-        1.0, 0.025, 6, CAMERA,
+        1.0, 0.0375, 4, CAMERA,
         (*AROUND, *STEERED, *PUSHED, drives.thrust_lag, hulls.mass_centre_shift, hulls.added_mass_coriolis),
         (hulls.bilge_pump, hulls.eddies, hulls.lifting_hull, drives.seized_motor),
     ),
     "eastward_ho": Plan(
-        30.5, 0.125, 4, {"position": 0.4, "heading": 2e-3, "roll": 2e-3},
+        30.5, 0.25, 2, {"position": 0.4, "heading": 2e-3, "roll": 2e-3},
         (
             drives.rudder_stall, drives.steering_rate_limit, drives.steering_offset, drives.steering_backlash,
             hulls.quadratic_damping, hulls.righting_arm_stiffening, hulls.metacentric_height_error, outside.current,
@@ -54,7 +54,7 @@ PLANS = {
         (hulls.bilge_pump, hulls.shifting_cargo),
     ),
     "joystick_boat": Plan(
-        1.2, 0.02, 8, CAMERA,
+        1.2, 0.04, 4, CAMERA,
         (
             outside.wind, outside.current, outside.wave_forcing, outside.tether, drives.command_delay,
             hulls.extra_mass, hulls.camera_scale, hulls.heading_deviation, hulls.heading_offset,
@@ -72,7 +72,7 @@ PLANS = {
         (hulls.stiction, hulls.shifting_cargo), kept=False,
     ),
     "otter": Plan(
-        2.0, 0.025, 6, {"position": 0.015, "heading": 0.005, "heave": 0.01, "roll": 3e-3, "pitch": 3e-3},
+        2.0, 0.0375, 4, {"position": 0.015, "heading": 0.005, "heave": 0.01, "roll": 3e-3, "pitch": 3e-3},
         (*AROUND, hulls.added_mass_coriolis),
         (hulls.bilge_pump, hulls.eddies, hulls.lifting_hull, drives.seized_motor),
     ),
