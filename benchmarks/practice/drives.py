@@ -144,7 +144,12 @@ def rudder_stall(boat: Boat, rng: Rng, s: float) -> Cause:
         bent = x / (1.0 + np.abs(x / stall) ** 6) ** (1.0 / 6.0)
         return np.asarray(bent * (1.0 - 0.08 * np.clip(np.abs(x) / stall - 1.0, 0.0, 1.0)))
 
-    return Cause("rudder_stall", {"angle_rad": stall}, drive=lambda b, dt: each(b.drive.angles, curve))
+    return Cause(
+        "rudder_stall",
+        {"angle_rad": stall},
+        drive=lambda b, dt: each(b.drive.angles, curve),
+        not_compared=("angle_rad",),
+    )
 
 
 def prop_walk(boat: Boat, rng: Rng, s: float) -> Cause:
