@@ -184,11 +184,11 @@ def thrust_loss_with_speed(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def thrust_gain_error(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Another propeller than the one in the file; the difference is a little less at high thrust."""
-    factor, usual = 1.0 + 0.3 * s * sign(rng), strongest(boat)
+    """Another propeller than the one in the file; a bend would be evidence of a bend, not of a gain."""
+    factor = 1.0 + 0.5 * s * sign(rng)
     return Cause(
         "thrust_gain_error", {"factor": factor},
-        drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T * (1 + (factor - 1) * (1.1 - 0.1 * np.abs(T) / usual)))),
+        drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T * factor)),
     )  # fmt: skip
 
 
