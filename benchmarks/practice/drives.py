@@ -100,12 +100,14 @@ def thrust_imbalance(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def steering_offset(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Bent mounts, and a linkage that gives three per cent less than asked."""
+    """Bent mounts, and a linkage that for the same reason gives a little less than asked."""
     sides = ("middle",) if len(boat.drive.angles) == 1 else ("port", "starboard")
     off = np.array([[0.15 * s * sign(rng)] for _ in sides])
     stated = {f"{n}_rad": float(a[0]) for n, a in zip(sides, off, strict=True)}
     return Cause(
-        "steering_offset", stated, drive=lambda b, dt: each(b.drive.angles, lambda x: np.asarray(0.97 * x + off))
+        "steering_offset",
+        stated,
+        drive=lambda b, dt: each(b.drive.angles, lambda x: np.asarray((1 - 0.15 * np.abs(off)) * x + off)),
     )
 
 
@@ -144,7 +146,12 @@ def rudder_stall(boat: Boat, rng: Rng, s: float) -> Cause:
         bent = x / (1.0 + np.abs(x / stall) ** 6) ** (1.0 / 6.0)
         return np.asarray(bent * (1.0 - 0.08 * np.clip(np.abs(x) / stall - 1.0, 0.0, 1.0)))
 
-    return Cause("rudder_stall", {"angle_rad": stall}, drive=lambda b, dt: each(b.drive.angles, curve))
+    return Cause(
+        "rudder_stall",
+        {"angle_rad": stall},
+        drive=lambda b, dt: each(b.drive.angles, curve),
+        not_compared=("angle_rad",),
+    )
 
 
 def prop_walk(boat: Boat, rng: Rng, s: float) -> Cause:
@@ -177,11 +184,11 @@ def thrust_loss_with_speed(boat: Boat, rng: Rng, s: float) -> Cause:
 
 
 def thrust_gain_error(boat: Boat, rng: Rng, s: float) -> Cause:
-    """Another propeller than the one in the file, which the flow fills a little less at high thrust."""
-    factor, usual = 1.0 + 0.3 * s * sign(rng), strongest(boat)
+    """Another propeller than the one in the file; a bend would be evidence of a bend, not of a gain."""
+    factor = 1.0 + 0.5 * s * sign(rng)
     return Cause(
         "thrust_gain_error", {"factor": factor},
-        drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T * (factor - 0.03 * np.abs(T) / usual))),
+        drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T * factor)),
     )  # fmt: skip
 
 

@@ -27,7 +27,7 @@ RIGHTING = 0.005  # and of its righting levers
 SEEN, SURE = 12.0, (5.0, 20.0)  # [nats] visible from, borderline between
 STRANGE_SEEN, STRANGE_SURE = 20.0, (10.0, 40.0)  # [nats] the same of causes outside the library
 FIRST, WEAK_TO_STRONG = 0.5, (0.03, 1.2)  # strength of a first try, from which that with the wanted evidence follows
-WANTED, STRANGE_WANTED = (15.0, 300.0), (40.0, 400.0)  # [nats] drawn evenly by ratio
+WANTED, STRANGE_WANTED = (6.0, 300.0), (40.0, 400.0)  # [nats] drawn evenly by ratio
 OUTLIERS, FAR = 0.02, 15.0  # share of the rows, and how far off in sd of the instrument
 
 

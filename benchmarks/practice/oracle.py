@@ -2,8 +2,8 @@
 
 The force that a model without the cause lacks along the true motion is a known signal in coloured noise: ambient force
 plus what noise of the instruments is taken for. Gain = 1/2 sum |F|^2 / S over all frequencies that the rows resolve,
-after all that the model's own coefficients can take up (a matched filter: H. L. Van Trees, Detection, Estimation, and
-Modulation Theory, part I, 1968, section 4.3).
+after all that the model's own coefficients and a stronger ambient force can take up (a matched filter: H. L. Van Trees,
+Detection, Estimation, and Modulation Theory, part I, 1968, section 4.3).
 """
 
 from collections.abc import Sequence
@@ -93,11 +93,11 @@ class Oracle:
         grid, b = self.voyage.grid, self.nominal
         w = 2 * np.pi * np.fft.rfftfreq(grid.steps + 1, grid.dt)
         tau = b.scale
-        ambient = 2 * b.ambient()[:, None] ** 2 * tau / (1 + (w * tau) ** 2)
+        self.ambient = 2 * b.ambient()[:, None] ** 2 * tau / (1 + (w * tau) ** 2)
         mass = np.diag(b.hull + b.water)[:, None]
         stiff, damping = self._slopes()
         impedance = (stiff[:, None] - mass * w**2) ** 2 + (damping[:, None] * w) ** 2
-        return np.asarray(ambient + impedance * self.noise[:, None] ** 2 * grid.row)
+        return np.asarray(self.ambient + impedance * self.noise[:, None] ** 2 * grid.row)
 
     def _slopes(self) -> tuple[Array, Array]:
         """(6,), (6,) stiffness and damping of the nominal hull at its usual speed, each axis for itself."""
@@ -133,13 +133,24 @@ class Oracle:
         return found
 
     def gain(self, force: Array, others: Sequence[Array]) -> float:
-        """Nats that remain of a force when coefficients, and others of any size, take up what they can."""
+        """Nats that remain of a force when coefficients, and others of any size, take up what they can.
+
+        Who does not know the force may also take the ambient one of each axis to be stronger than it is, and does.
+        """
         y = self.white(force)
         columns = [self.white(f) for f in self.coefficients().values()]
         free = [30.0 * v / np.linalg.norm(v) for f in others if np.linalg.norm(v := self.white(f)) > 1e-9]
         A = np.array([*columns, *free]).T
-        taken = A.T @ y
-        return float(0.5 * (y @ y - taken @ np.linalg.solve(A.T @ A + np.eye(A.shape[1]), taken)))
+        theta = np.linalg.solve(A.T @ A + np.eye(A.shape[1]), A.T @ y)  # in prior sd
+        left = y - A @ theta
+        grid, axes = self.voyage.grid, list(self.nominal.free)
+        heard = np.fft.rfftfreq(grid.steps + 1, grid.dt) < 0.5 / grid.row
+        share = (self.ambient[axes] / self.spectra[axes])[:, heard]
+        square = (left**2).reshape(len(axes), 2, heard.sum(), -1).sum(axis=(1, 3))
+        count = np.full(heard.sum(), 2.0 * len(FITTED)) - (np.arange(heard.sum()) == 0) * len(FITTED)
+        more = 1.0 + (np.geomspace(1.0, 30.0, 80)[:, None, None] ** 2 - 1.0) * share  # spectrum per true one
+        nats = 0.5 * (count * (np.log(more) + 1.0 / more - 1.0) + square / more).sum(axis=2)
+        return float(nats.min(axis=0).sum() + 0.5 * theta @ theta)
 
     def marginal(self, cause: Cause) -> float:
         """Gain of a true cause on top of the trial's others."""

@@ -37,7 +37,7 @@ def hand(boat: Boat, grid: Grid, rng: Rng) -> Hand:
         row = 0
         while row < grid.rows and len(boat.channels):
             until = row + max(round(rng.uniform(shortest, longest) / grid.row), 1)
-            table[row:until, :, run] = drawn(boat, rng, row)
+            table[row:until, :, run] = drawn(boat, rng)
             row = until
     q, nu = np.zeros((6, RUNS)), np.zeros((6, RUNS))
     q[:2] = rng.uniform(-boat.length, boat.length, (2, RUNS)) if 0 in boat.free else 0.0
@@ -48,7 +48,7 @@ def hand(boat: Boat, grid: Grid, rng: Rng) -> Hand:
     return Hand(boat, table, (q, nu))
 
 
-def drawn(boat: Boat, rng: Rng, row: int) -> Array:
+def drawn(boat: Boat, rng: Rng) -> Array:
     """Commands of one level."""
     if boat.name == "catamaran":
         return np.array([rng.choice([0.0, 1.5, 3.0, 6.0, 9.0]), rng.choice([0.0, *rng.uniform(-1.2, 1.2, 4)])])
@@ -57,7 +57,7 @@ def drawn(boat: Boat, rng: Rng, row: int) -> Array:
         angle, toe = rng.uniform(-0.6, 0.6), rng.choice([0.0, 0.0, 0.15])
         return np.array([0.0, 0.0, angle + toe, angle - toe, port, starboard])
     if boat.name == "otter":
-        both, turn = rng.choice([-50.0, 0.0, 40.0, 60.0, 80.0]), rng.choice([-25.0, -10.0, 0.0, 10.0, 25.0])
+        both, turn = rng.choice([-50.0, 0.0, 40.0, 60.0, 78.0]), rng.choice([-25.0, -10.0, 0.0, 10.0, 25.0])
         return np.array([both + turn, both - turn])
     helm = rng.choice([*HELM, 0.0])
     return np.array([helm if rng.integers(2) else -helm])
