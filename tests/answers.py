@@ -9,12 +9,14 @@ from boatsim.recordings import table as recording
 from boatsim.recordings.table import Recording
 
 
-def diagnosed(runs: Sequence[Recording], folder: Path, vessel: str, library: Sequence[str] = ()) -> dict[str, Any]:
+def diagnosed(
+    runs: Sequence[Recording], folder: Path, vessel: str, library: Sequence[str] = (), horizon: float | None = None
+) -> dict[str, Any]:
     """The answer for runs written to files; the last one is held out."""
     files = [folder / f"{run.name}.csv" for run in runs]
     for file, run in zip(files, runs, strict=True):
         recording.write_csv(run, file)
-    return analysis.diagnose(files[:-1], files[-1:], vessel, library=library).findings.answer
+    return analysis.diagnose(files[:-1], files[-1:], vessel, library=library, horizon=horizon).findings.answer
 
 
 def named(answer: Mapping[str, Any], name: str, true: Mapping[str, float], more: bool = False) -> None:

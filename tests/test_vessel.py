@@ -42,7 +42,7 @@ def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str
         vessel.check_bindings(vessel.added(boat, entry), name)
     there = {called(e.name) for e in library.entries}
     of_shelf = {n for n in content.names("effect") if fittable(content.load_class("effect", n))}
-    assert there | set(library.idle) == of_shelf and not there & set(library.idle)
+    assert there | set(library.idle) | set(library.left_out) == of_shelf and not there & set(library.idle)
 
 
 def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None:
@@ -50,7 +50,8 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
     everything = set(library_for(boat).tried)
     facts = {"indoors": True, "still_water": True, "no_waves": True, "moored": False, "position_fix": "gnss"}
     indoors = library_for(boat, (), facts | {"steering_measured": True})
-    assert everything - set(indoors.tried) == set(indoors.left_out) == {
+    ruled_out = {n: why for n, why in indoors.left_out.items() if "--library" not in why}
+    assert everything - set(indoors.tried) == set(ruled_out) == {
         "wind", "current", "wave_forcing", "tether", "camera_scale", "steering_backlash", "steering_rate_limit",
     }  # fmt: skip
     assert indoors.left_out["wind"] == "indoors = true" and indoors.entries == library_for(boat).entries
@@ -58,9 +59,16 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
     assert everything - set(blind.tried) == {"heading_offset", "heading_deviation"}
     reasons = '[diagnosis.leave_out]\ntether = "nothing is tied to it"\n'
     planar = of(boats.PLANAR + reasons, tmp_path)
-    assert library_for(planar).left_out == {"tether": "the vessel's reason: nothing is tied to it"}
+    assert library_for(planar).left_out["tether"] == "the vessel's reason: nothing is tied to it"
     with pytest.raises(BadInput, match="leave_out 'tehter' does not exist; did you mean 'tether'"):
         library_for(of(boats.PLANAR + reasons.replace("tether", "tehter"), tmp_path))
+
+
+def test_an_entry_that_shows_as_another_does_is_tried_where_it_is_asked_for() -> None:
+    boat = vessel.load("trial_boat")
+    usual = library_for(boat)
+    assert "shallow_water" not in usual.tried and "added_mass_error" in usual.left_out["shallow_water"]
+    assert set(library_for(boat, ["shallow_water"]).tried) == {*usual.tried, "shallow_water"}
 
 
 def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:

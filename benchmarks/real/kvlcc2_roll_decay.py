@@ -21,7 +21,7 @@ from boatsim.diagnose.fit import converge
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import show
-from boatsim.diagnose.search.rank import ENOUGH, Ranking, rank
+from boatsim.diagnose.search.rank import Ranking, price, rank
 from boatsim.diagnose.search.screen import screen
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -271,7 +271,7 @@ def tables(splits: Mapping[str, Diagnosis], releases: Sequence[Recording]) -> li
     errors += error_rows(middle, of_thirds, laid_on(middle, thirds(whole)[1:2]), "middle third")
     header = ["window", "mean envelope [deg]", "recorded", *fits]
     tail, ranking = last_third(middle, whole)
-    best = max(ranking.first.values())
+    best, enough = max(ranking.first.values()), price(len(ranking.first))
     return [
         split_table(splits),
         (
@@ -286,8 +286,8 @@ def tables(splits: Mapping[str, Diagnosis], releases: Sequence[Recording]) -> li
         ),
         ("Phase: period [s] by window", header, periods),
         (
-            f"Last third: {'no' if best < ENOUGH else 'a'} model beats the linear clearly, once that is fitted here "
-            f"(the best entry then gains {best:.1f} nats; named from {ENOUGH:g} on)",
+            f"Last third: {'no' if best < enough else 'a'} model beats the linear clearly, once that is fitted here "
+            f"(the best entry then gains {best:.1f} nats; named from {enough:.1f} on)",
             ["model", "rms roll error [deg]", "gain over linear fitted here [nats]"],
             tail,
         ),

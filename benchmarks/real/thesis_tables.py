@@ -35,9 +35,10 @@ from benchmarks.real.common import table
 from benchmarks.real.thesis_runs import TESTS, WINDY, Bench, Knob
 from benchmarks.real.thesis_score import CLIP, SCALE, J
 from boatsim.diagnose.fit import Space, log_prior
-from boatsim.diagnose.search.rank import ALIKE, ENOUGH
+from boatsim.diagnose.search.rank import ALIKE
 from boatsim.physics.base import Array
 
+ENOUGH = 4.0  # [nats] an effect must gain to be named
 SPREAD = 0.3  # of a residual: camera marks, rounding of the tables, and how far runs of one test differ
 INDEPENDENT = 2.0  # numbers that the norms of one test are worth
 ROOM, TIMES = 0.15, (13.0, 18.0)  # [m] ahead of the bow in the tank; [s] of a sway test

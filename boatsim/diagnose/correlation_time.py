@@ -25,9 +25,7 @@ def timed(problem: Problem, found: Fit) -> Problem:
     seconds = correlation_time(problem, found)
     if seconds == problem.ambient.time_constant:
         return problem
-    return Problem(
-        problem.tracks, replace(problem.ambient, time_constant=seconds), problem.uncertainty, problem.horizon
-    )
+    return Problem(problem.tracks, problem.ambient.lasting(seconds), problem.uncertainty, problem.horizon)
 
 
 def correlation_time(problem: Problem, found: Fit) -> float:
@@ -66,8 +64,8 @@ def part(track: Track, begin: int, end: int) -> Track:
 
 def halves_error(problem: Problem, start: Fit, seconds: float) -> float:
     """Geometric mean of the rms of position [m] and heading or roll [rad]: each half by a fit of the other half."""
-    ambient = replace(problem.ambient, time_constant=seconds)
-    begin = replace(start, levels=replace(start.levels, time_constant=seconds), evidence=-np.inf)
+    ambient = problem.ambient.lasting(seconds)
+    begin = replace(start, levels=start.levels.lasting(seconds), evidence=-np.inf)
     first, second = halves(problem.tracks)
     horizon = min(problem.horizon, *(float(np.ptp(t.times)) for t in (*first, *second)))
     stretches = []

@@ -5,7 +5,7 @@ modelling). It stands for whatever is not modelled, so that parameter estimates 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,8 @@ from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
 
 FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into thirds
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
-FIT_STEP = 0.17  # [s] the same in the filter, which is corrected at every sample
+FIT_STEP = 0.17  # [s] the same in the filter of a boat of 1.2 m, which is corrected at every sample
+SMOOTH = 0.3  # [rad] of the hull's quickest oscillation that one goes: Runge-Kutta's phase is then off by 2e-5 rad
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
@@ -37,6 +38,10 @@ class Levels:
     force: Array  # (NQ,) rms of the latent force [N, N m]
     time_constant: float  # [s] of the latent force
     sensors: Mapping[str, float]  # standard deviation by noise family
+
+    def lasting(self, seconds: float) -> "Levels":
+        """The same slow force with another correlation time: what it does to the motion over long times stays."""
+        return replace(self, force=self.force * np.sqrt(self.time_constant / seconds), time_constant=seconds)
 
 
 @dataclass
@@ -58,8 +63,9 @@ class Track:
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
 
     def __post_init__(self) -> None:
-        self.rate = quickest(self.program, self.values, self.commands[0])
-        self.step = min(FIT_STEP, STEADY / max(self.rate, 1e-9))
+        self.rate, swings = quickest(self.program, self.values, self.commands[0])
+        usual = FIT_STEP * rules.froude_time(self.program.vessel)
+        self.step = min(usual, STEADY / max(self.rate, 1e-9), SMOOTH / max(swings, 1e-9))
         nq = self.program.module.NQ
         self.start, self.spread = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq))
         self._gains = np.zeros((*self.measured.shape, self.program.module.NZ))
@@ -207,7 +213,7 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
         )
     codes = np.array([axes.index(s.axis) + s.rate * len(axes) for s in found])
     measured = np.column_stack([recording.signals[s.column] for s in found])
-    own = recording.notes.noise
+    own = checked_noise(recording)
     scale = {f: own.get(f, common) / common for f, common in (stated or NOISE | own).items()}
     commands = (
         taken_rows(vessel, recording.signals, len(recording)) if vessel.commands else np.zeros((len(recording), 1))
@@ -226,8 +232,8 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     return laid
 
 
-def quickest(program: Program, values: Array, command: Array) -> float:
-    """Rate [1/s] at which the quickest motion of the nominal hull dies out at rest."""
+def quickest(program: Program, values: Array, command: Array) -> tuple[float, float]:
+    """Rates of the nominal hull at rest: at which its quickest motion dies out [1/s], at which it swings [rad/s]."""
     code, on = program.module, program.switches()
     nq = code.NQ
     k, act, memory = np.zeros(code.K), np.zeros(program.held_size), np.zeros(program.memory_size)
@@ -235,8 +241,10 @@ def quickest(program: Program, values: Array, command: Array) -> float:
     code.settle(command, memory, values, on, act)
     slopes = np.zeros((nq, 2 * nq))
     code.slopes(0.0, np.zeros(2 * nq), act, values, on, k, np.zeros(nq), slopes)
-    slope = slopes[:, nq:]
-    return float(np.abs(np.linalg.eigvals(slope)).max()) if np.isfinite(slope).all() else 0.0
+    if not np.isfinite(slopes).all():
+        return 0.0, 0.0
+    whole = np.block([[np.zeros((nq, nq)), np.eye(nq)], [slopes]])
+    return float(np.abs(np.linalg.eigvals(slopes[:, nq:])).max()), float(np.linalg.eigvals(whole).imag.max())
 
 
 def stated_values(program: Program, facts: Mapping[str, Any]) -> Array:
@@ -270,13 +278,18 @@ def noise_of(vessel: Vessel, recordings: Sequence[Recording]) -> dict[str, float
 
     Raises BadInput.
     """
-    first = recordings[0]
-    told = {str(family): sd for family, sd in vessel.diagnosis.noise.items()} | first.notes.noise
+    told = {str(family): sd for family, sd in vessel.diagnosis.noise.items()} | checked_noise(recordings[0])
+    return NOISE | {f: x for f in NOISE if (x := rules.sensed_noise(vessel, recordings, f))} | told
+
+
+def checked_noise(recording: Recording) -> dict[str, float]:
+    """What a recording's notes state of its instruments. Raises BadInput."""
+    told = recording.notes.noise
     if wrong := [n for n, sd in told.items() if not 0 < sd < HUGE]:
         raise BadInput(
-            f"{_called(first)}: noise {wrong[0]} = {told[wrong[0]]:g}; allowed is more than 0, at most {HUGE:g}"
+            f"{_called(recording)}: noise {wrong[0]} = {told[wrong[0]]:g}; allowed is more than 0, at most {HUGE:g}"
         )
-    return NOISE | {f: x for f in NOISE if (x := rules.sensed_noise(vessel, recordings, f))} | told
+    return told
 
 
 def facts_of(vessel: Vessel, recording: Recording) -> dict[str, Any]:

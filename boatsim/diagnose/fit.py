@@ -25,7 +25,7 @@ def fit(problem: Problem, found: Fit, settled: bool = False) -> Fit:
     return descend(problem, found, iterations=3, enough=0.1)
 
 
-def converge(problem: Problem, found: Fit, most: int = 4) -> Fit:
+def converge(problem: Problem, found: Fit, most: int = 8) -> Fit:
     """Refit until parameters and force levels agree, so that a later gain is not the gain of a refit."""
     for i in range(most):
         again = fit(problem, found, settled=i > 0)

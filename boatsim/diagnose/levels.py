@@ -43,7 +43,7 @@ def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) 
 
     problem.likelihood(found.free, found.theta, on, found.levels)
     begin = np.concatenate([np.log(found.levels.force), found.theta[searched] / sd])
-    levels, theta = placed(_coordinate_search(score, begin, step, sweeps))
+    levels, theta = placed(_climbed(score, begin, step, sweeps))
     return replace(found, levels=levels, theta=theta)
 
 
@@ -65,13 +65,9 @@ def fit_noise(problem: Problem, found: Fit, sweeps: int = 3) -> Fit:
         return likelihood + force_prior(problem, levels(x)) + prior
 
     x = np.concatenate([np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)])
-    before = score(x, fresh=True)
-    for _ in range(CLIMBS):  # the force may lie far above what is tolerated
-        x = _coordinate_search(score, x, 0.6, 1)
-        after = score(x, fresh=True)
-        if after < before + FLAT:
-            break
-        before = after
+    score(x, fresh=True)
+    x = _climbed(score, x, 0.6, 1)
+    score(x, fresh=True)
     return replace(found, levels=levels(_coordinate_search(score, x, 0.42, sweeps - 1)))
 
 
@@ -101,6 +97,18 @@ def _roughness(problem: Problem, family: str) -> float:
             if f == family and len(y) > 8:
                 found.append(np.diff(y, 3) ** 2 / 20.0)
     return float(np.sqrt(np.median(np.concatenate(found)) / 0.455)) if found else 0.0
+
+
+def _climbed(score: Callable[[Array], float], x: Array, step: float, sweeps: int) -> Array:
+    """Coordinate searches with the first step as long as one gains much: a level may lie far from where it begins."""
+    before = score(x)
+    for _ in range(CLIMBS):
+        x = _coordinate_search(score, x, step, sweeps)
+        after = score(x)
+        if after < before + FLAT:
+            break
+        before = after
+    return x
 
 
 def _coordinate_search(score: Callable[[Array], float], x: Array, step: float, sweeps: int) -> Array:

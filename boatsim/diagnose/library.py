@@ -61,6 +61,10 @@ def library_for(
         if lacks := lacking(kind, vessel, known, table):
             idle[called] = lacks
             continue
+        if kind.told_by and not asked:
+            left_out[called] = f"shows as {' or '.join(kind.told_by)} does; --library {called} tries it"
+            continue
+        left_out.pop(called, None)
         effect = placed(kind, vessel, known, table)
         entries[effect.name] = effect
         if why := reasons.get(called) or ruled_out(kind.ruled_out_by, known) or _unseen(kind, columns):

@@ -26,7 +26,7 @@ from boatsim.physics.base import Effect
 
 ONE_SIDED_95 = 1.645  # [sd]
 SHAPE = 0.05  # nature's law is never quite the entry's: an sd holds this share of what was found [rad for directions]
-TOLD = 0.9  # a fitted sd above this share of the prior one means that the data say nothing
+TOLD = 0.5  # a fitted sd above this share of the prior one means that the data say nothing
 
 
 def compose(

@@ -22,7 +22,8 @@ MANY = 5  # but no more of them than this
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
 RIVALS = 3  # fitted in the place of what was named
 UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
-DWARFED = 0.1  # an effect that gains less than this share of what is left over is not stood for
+WORTH = 4.0  # [nats] that an effect must gain by itself,
+DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
 UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library
 
 
@@ -65,8 +66,8 @@ def rank(problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] 
     nominal, recalibrated = baseline(problem)
     search = _Search(problem, candidates, recalibrated)
     best, named = search.settled(search.selected(recalibrated))
-    while (left := left_over(problem, best)) > UNKNOWN and (dwarfed := [n for n in named if n.gain < DWARFED * left]):
-        best, named = search.settled(search.without(best, min(dwarfed, key=lambda n: n.gain).name))
+    while left_over(problem, best) > UNKNOWN and (little := search.dwarfed(best, named)):
+        best, named = search.settled(search.without(best, little))
     while named and unseen and (worse := misled(problem, search, best, unseen)):
         search.banned.add(worse)
         best, named = search.settled(search.selected(search.without(best, worse)))
@@ -109,7 +110,7 @@ class _Search:
         self.looks: dict[frozenset[str], dict[str, Fit]] = {}
         self.full: set[tuple[frozenset[str], str]] = set()  # looks that were followed by a fit in full
         self.banned: set[str] = set()
-        self.price = ODDS + float(np.log(max(len(candidates), 1)))  # [nats] of an effect, look-alikes counted in
+        self.price = price(len(candidates))
 
     def selected(self, best: Fit) -> Fit:
         """The best set from one on: suspects added one by one, earlier ones dropped that a newer one makes needless."""
@@ -181,15 +182,23 @@ class _Search:
             if better:
                 best = self.selected(max(better, key=lambda f: f.evidence))
                 continue
-            weak = [n for n in named if n.shared < self.price or not self.there(best, n.name)]
+            weak = [n for n in named if n.gain < WORTH or n.shared < self.price or not self.there(best, n.name)]
             if not weak:
                 return best, named
             best = self.without(best, min(weak, key=lambda n: n.gain).name)
 
+    def dwarfed(self, best: Fit, named: Sequence[Named]) -> str:
+        """The least of the effects that take away next to nothing of the force that nothing explains; "" for none."""
+        share = {n.name: float(np.min(best.levels.force / self.without(best, n.name).levels.force)) for n in named}
+        little = [n for n in named if share[n.name] > DWARFED]
+        return min(little, key=lambda n: n.gain).name if little else ""
+
     def there(self, best: Fit, name: str) -> bool:
         """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it."""
-        params = next(type(e).params() for e in self.problem.program.suspects if e.name == name)
-        fitted = {f.name: params[f.name].absent for f in best.free if f.effect == name and not f.relative}
+        kind = next(type(e) for e in self.problem.program.suspects if e.name == name)
+        params = {n: p for n, p in kind.params().items() if n in (kind.strength or kind.params())}
+        own = (f.name for f in best.free if f.effect == name and not f.relative)
+        fitted = {n: params[n].absent for n in own if n in params}
         found = {n: best.value(name, n) for n in fitted}
         return not found or any(abs(x - fitted[n]) > sd for n, (x, sd) in found.items())
 
@@ -211,6 +220,14 @@ class _Search:
             tied,
             {n: rivals[n] for n in order},
         )
+
+
+def price(number: int) -> float:
+    """Nats that an effect must gain, its look-alikes counted in, where so many were tried.
+
+    Before the data each is as likely as another, and one of them as likely to be there as none.
+    """
+    return ODDS + float(np.log(max(number, 1)))
 
 
 def together(gains: Sequence[float]) -> float:

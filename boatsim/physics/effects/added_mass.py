@@ -125,6 +125,7 @@ class ShallowWater(Release):
     """What a small water depth adds to the sway and yaw of a hull that has added mass, and to its cross-flow drag."""
 
     needs: ClassVar = ("sway", "yaw")
+    told_by: ClassVar = ("added_mass_error",)
     words: ClassVar[str] = "the bottom is near: sway and yaw move more water and drag more"
     shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
     source: ClassVar[str] = "assumption [A] of the checked specification of Bayless 2017, section 2 (factor k)"

@@ -29,6 +29,7 @@ def law(m: Any, q: Any) -> Wrench:
 class BilgeKeels(Force):
     """Normal force of a pair of bilge keels, without what they change in the pressure on the hull."""
 
+    told_by: ClassVar = ("quadratic_damping",)
     words: ClassVar[str] = "bilge keels damp the roll, more so when it is large"
     shown_by: ClassVar[str] = "a roll decay from a large heel"
     source: ClassVar[str] = (

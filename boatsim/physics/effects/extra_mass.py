@@ -51,6 +51,7 @@ class ExtraMass(Inertia, Force):
 class Payload(Release):
     """Mass spread over the hull like its own; the deeper draught that comes with it is an error of the added mass."""
 
+    needs: ClassVar = ("surge", "sway")  # a hull that only rolls shows no more than the ratio of moment to inertia
     words: ClassVar[str] = "the whole boat is heavier than stated"
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = ExtraMass.source

@@ -50,6 +50,8 @@ class MetacentricHeightError(Release):
     shown_by: ClassVar[str] = "the period of a roll decay"
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 4"
 
+    starts: ClassVar = ({"factor": 0.5}, {"factor": 0.8}, {"factor": 1.25}, {"factor": 2.0})  # a period off is another
+
     factor: float = factor("righting_arm.stiffness", words="GM per stated GM", axis="roll")
 
 

@@ -133,19 +133,31 @@ def shows(y: Array, code: int, p: Array, on: Any) -> float:
 
 
 @lean
-def observe(z: Array, code: int, row: Array, p: Array, on: Any) -> float:
-    """Expected value of one channel; fills its row (n,) of the measurement matrix."""
-    for j in range(NZ):
-        row[j] = 0.0
+def look(z: Array, codes: Any, H: Array, p: Array, on: Any) -> None:
+    """Fill H (C, 2 NQ): how each channel that is shown changes with the motion z, where that takes differences."""
     if not TILTS and not distorted(on):
-        return observe_level(z, code, row)
-    value = shows(z, code, p, on)
-    for j in range(NY):
+        return
+    seen = shown(moved(z), p, on)
+    for c in range(len(codes)):
+        H[c, 0] = seen[SHOWS[codes[c]]]
+    for j in range(NY - 1, -1, -1):  # the first column last: until then it keeps what is seen from z itself
         here = z[j]
         z[j] = here + BESIDE
-        row[j] = (shows(z, code, p, on) - value) / BESIDE
+        beside = shown(moved(z), p, on)
+        for c in range(len(codes)):
+            H[c, j] = (beside[SHOWS[codes[c]]] - H[c, 0]) / BESIDE
         z[j] = here
-    return value
+
+
+@lean
+def observe(z: Array, code: int, slope: Array, row: Array, p: Array, on: Any) -> float:
+    """Expected value of one channel; fills its row (n,) of the measurement matrix, from `look` if that filled it."""
+    if not TILTS and not distorted(on):
+        for j in range(NZ):
+            row[j] = 0.0
+        return observe_level(z, code, row)
+    copy(slope, row[:NY])
+    return shows(z, code, p, on)
 
 
 @compiled
@@ -232,7 +244,7 @@ def kalman(
     begin(z0, P0, n, s, z, P)
     undistorted(z, p, on)
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
-    y, force, Ph = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
+    y, force, Ph, H = np.zeros(NY), np.zeros(NQ), np.zeros(NZ), np.zeros((len(codes), NY))
     likelihood, outliers = 0.0, np.zeros(measured.shape[1])
     held = np.int64(0)  # a plain 0 would have `predict` compiled twice
     if keep:
@@ -254,11 +266,13 @@ def kalman(
         if keep:
             copy(z, predicted[i])
             copy_square(F, transitions[i], NZ)
+        if full:
+            look(z, codes, H, p, on)
         for c in range(measured.shape[1]):
             if np.isnan(measured[i, c]):
                 scale[i, c] = white[i, c] = 0.0
                 continue
-            error = measured[i, c] - observe(z, codes[c], row, p, on)
+            error = measured[i, c] - observe(z, codes[c], H[c], row, p, on)
             likelihood += take(
                 error, row, noise[c], full, outliers[c:], z, P, Ph, n, NY, gains[i, c], scale[i, c:], white[i, c:]
             )

@@ -43,6 +43,7 @@ class Effect(Checked):
     stage: ClassVar[int] = 0  # those of a lower one come first in the program; else the order is that of the files
     needs: ClassVar[tuple[str, ...]] = ()  # freedoms without which it can not act, besides those of its parameters
     ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}  # fact -> what it must say for the effect not to act
+    told_by: ClassVar[tuple[str, ...]] = ()  # entries that show the same: it is tried only where somebody asks for it
     alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
     rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
 
