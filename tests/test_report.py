@@ -398,14 +398,14 @@ def test_every_verdict_is_one_sentence(verdict, effects, text):
         ("unknown", "Something is missing (0.21 N rms in surge), and nothing was tried to explain it "),
         (
             "nothing_missing",
-            "No more force is missing than the vessel file tolerates, but nothing was tried to explain it ",
+            "No more force is missing than is taken for nobody's fault, but nothing was tried to explain it ",
         ),
     ],
 )
 def test_a_diagnosis_with_nothing_to_try_says_so(verdict: str, begins: str) -> None:
     where = {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}}
     said = report.sentence({"verdict": verdict, "effects": [], "where": where, "candidates": []})
-    assert said == f"{begins}(the vessel's list of suspects and --library NAME say what is tried)."
+    assert said == f"{begins}(facts or the vessel's reasons leave every entry out)."
 
 
 def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_numbers():

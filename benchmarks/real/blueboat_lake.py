@@ -30,6 +30,7 @@ NAME, VESSEL = "blueboat_lake", "blueboat"
 UNSEEN = ("run_220", "run_225")
 GROUPS = 3  # of four runs each, for which what is missing is chosen on the other eight
 GOALS = {"free runs": 0.75, "dead reckoning": 0.6}
+HORIZON = 10.0  # [s] of a free run
 WINDOW, SHORTEST = 20.0, 5.0  # [s] of dead reckoning; [m] of path below which a window tells nothing
 
 
@@ -111,7 +112,7 @@ def without(problem: Problem, tracks: Sequence[Track], unseen: Sequence[Track]) 
 def _judged(rest: Problem, chosen: tuple[Fit, Fit], unseen: Track, run: Recording) -> LeftOut:
     """Coefficients of the recalibrated and the patched boat fitted on `rest`, both judged on the run left out."""
     fits = {name: converge(rest, fit(rest, f)) for name, f in zip(("recalibrated", "patched"), chosen, strict=True)}
-    stretches = free_runs(rest, fits, [unseen], rest.horizon)
+    stretches = free_runs(rest, fits, [unseen], HORIZON)
     heading = corrected(run["psi_rad"], instruments(rest, fits["patched"]))
     reckoned = dead_reckoning(run, run["psi_rad"]), dead_reckoning(run, heading)
     return LeftOut(unseen.name, chosen[1].suspects, stretches, *reckoned)
@@ -166,7 +167,7 @@ def main() -> None:
     """Diagnose, then leave one run out."""
     runs = runs_of(NAME)
     fitted = [path for name, path in runs.items() if name not in UNSEEN]
-    found = analysis.diagnose(fitted, [runs[name] for name in UNSEEN], VESSEL)
+    found = analysis.diagnose(fitted, [runs[name] for name in UNSEEN], VESSEL, horizon=HORIZON)
     report(found, NAME)
     print_verdict(found)
     print_left_out(left_out(found, runs))

@@ -17,6 +17,7 @@ from boatsim.diagnose.report.show import fits_of
 from boatsim.physics.base import Array
 
 NAME = "kvlcc2_marin_free"
+HORIZON = 400.0  # [s] of a free run: ten lengths
 FITTED = ("zz_10", "zz_m10", "zz_m20")
 UNSEEN = "tc_35"
 DURATION = 600.0  # [s]
@@ -39,7 +40,7 @@ def turn(found: Diagnosis, model: Fit, circle: Track) -> Array:
 def main() -> None:
     """Diagnose the zig-zags, judge on the circle."""
     runs = runs_of(NAME)
-    found = analysis.diagnose([runs[n] for n in FITTED], [runs[UNSEEN]])
+    found = analysis.diagnose([runs[n] for n in FITTED], [runs[UNSEEN]], horizon=HORIZON)
     report(found, NAME)
     recording, boat = analysis.open_recording(runs[UNSEEN], None, ())
     circle = track(recording.thinned(rules.rate(boat)), found.problem.program)

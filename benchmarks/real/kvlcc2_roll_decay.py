@@ -28,6 +28,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 NAME = "kvlcc2_roll_decay"
+HORIZON = 60.0  # [s] of a free run: a decay shows over many periods
 DATA = Path(__file__).parents[2] / "tests" / "data" / NAME
 AT_REST, AT_SPEED = "decay_0kn_run2", "decay_15p5kn"
 WINDOW = 20.0  # [s] about eight periods
@@ -60,14 +61,15 @@ def by_windows(whole: Recording, vessel: Vessel) -> Diagnosis:
     """Windows of 20 s, every second one unseen; the rest at the end is left out."""
     parts = cut_windows(whole)
     note = f"every second window of {WINDOW:g} s was kept unseen"
-    return analysis.diagnose_recordings(parts[::2], parts[1::2], {whole.path: vessel}, note)
+    return analysis.diagnose_recordings(parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON)
 
 
 def by_thirds(whole: Recording, vessel: Vessel, unseen: int = 1) -> Diagnosis:
     """One third unseen, the middle one unless told."""
     parts = thirds(whole)
     kept = parts.pop(unseen)
-    return analysis.diagnose_recordings(parts, [kept], {whole.path: vessel}, f"{kept.name} was kept unseen")
+    note = f"{kept.name} was kept unseen"
+    return analysis.diagnose_recordings(parts, [kept], {whole.path: vessel}, note, horizon=HORIZON)
 
 
 def thirds(whole: Recording) -> list[Recording]:

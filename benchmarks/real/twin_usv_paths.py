@@ -13,6 +13,7 @@ from boatsim.diagnose.free_runs import errors
 from boatsim.diagnose.report import show
 
 NAME, VESSEL = "twin_usv_paths", "twin_usv"
+HORIZON = 10.0  # [s] of a free run
 HELPS = 0.9  # ratio of errors on unseen data above which an effect found has not earned its place
 TOLD = 0.5  # share of its prior sd below which the sd of a coefficient says that the data know it
 
@@ -63,7 +64,7 @@ def print_untold(found: Diagnosis) -> None:
 
 def main() -> None:
     """Diagnose the one run there is."""
-    found = analysis.diagnose(list(runs_of(NAME).values()), vessel=VESSEL)
+    found = analysis.diagnose(list(runs_of(NAME).values()), vessel=VESSEL, horizon=HORIZON)
     report(found, NAME)
     print_unseen(found)
     print_found(found)

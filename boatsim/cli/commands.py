@@ -222,11 +222,14 @@ def diagnose(
     without: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Do not try this effect; may be repeated.")
     ] = None,
+    horizon: Annotated[
+        float | None, typer.Option(min=0.1, metavar="S", help="Length of each free run [s], if not the usual one.")
+    ] = None,
 ) -> int:
     """Say which physics a vessel's model leaves out of recordings of the real one."""
     from boatsim.cli import diagnosis as commands
 
-    return commands.diagnose(runs, hold_out or [], vessel, _loads(load), out, library or [], without or [])
+    return commands.diagnose(runs, hold_out or [], vessel, _loads(load), out, library or [], without or [], horizon)
 
 
 def _loads(given: list[str] | None) -> list[str]:

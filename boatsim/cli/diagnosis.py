@@ -18,7 +18,7 @@ from boatsim.diagnose.library import composed
 from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import page as report
-from boatsim.diagnose.report import patch, show
+from boatsim.diagnose.report import patch, show, taken
 from boatsim.diagnose.report.entries import Family
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.files import replacing
@@ -36,10 +36,10 @@ FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.item
 
 def diagnose(
     runs: list[Path], hold_out: list[Path], vessel: str | None, load: list[str], out: Path, library: list[str],
-    without: list[str],
+    without: list[str], horizon: float | None = None,
 ) -> int:  # fmt: skip
     """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
-    found = analyse(runs, hold_out, vessel, load, library, without)
+    found = analyse(runs, hold_out, vessel, load, library, without, horizon)
     _say(found.remarks)
     write(found, out)
     for line in summary(found):
@@ -85,6 +85,7 @@ def summary(found: Diagnosis) -> list[str]:
             f"  {effect['name']}: gains {effect['gain_nats']:.1f} nats, probability {effect['probability']:.2f}"
         )
         lines += [f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()]
+    lines += [f"  {line}" for line in taken.in_words(answer)]
     fit = answer["fit"]
     lines.append(f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):")
     families: dict[Family, tuple[str, float]] = {

@@ -18,7 +18,7 @@ from boatsim.diagnose.log.position_frame import in_one_frame
 from boatsim.diagnose.log.steering_sense import steered
 from boatsim.diagnose.next import experiment
 from boatsim.diagnose.problem import Problem, check_taken_up
-from boatsim.diagnose.report import show
+from boatsim.diagnose.report import show, taken
 from boatsim.diagnose.report.answer import compose, meanings
 from boatsim.diagnose.report.findings import Findings, Missing
 from boatsim.diagnose.search.rank import Ranking, rank
@@ -141,6 +141,7 @@ def diagnose_recordings(
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         where = fitted[0].path or fitted[0].name
         raise BadInput(f"{where}: {boat.name} can not follow this recording ({error}); are its units right?") from None
+    taken.add(findings.answer, problem, there[fitted[0].path], candidates)
     findings.answer["seconds"] = round(time.perf_counter() - begin, 3)
     return Diagnosis(findings, boat, problem, ranking, remarks, plan)
 

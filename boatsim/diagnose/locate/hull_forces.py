@@ -5,6 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from boatsim.diagnose.filter import Track
+from boatsim.diagnose.next.manoeuvres import commanded
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.physics.base import Array
 
@@ -28,6 +29,21 @@ def along(track: Track, states: Iterable[Array], held: Iterable[Array], values: 
     forces, on = track.program.module.forces, track.program.switches()
     first = np.int64(0)
     return np.array([forces(0.0, y, act, first, values, on) for y, act in zip(states, held, strict=True)])
+
+
+def full_thrust(track: Track) -> float:
+    """Surge force [N] of the vessel as written at rest, every drive at its limit and straight ahead, over neutral."""
+    program, vessel = track.program, track.program.vessel
+    drives = [n for n in commanded(vessel) if n not in vessel.angles]
+    if "surge" not in vessel.freedoms or not drives:
+        return 0.0
+    neutral = {n: c.neutral for n, c in vessel.commands.items()}
+    found = []
+    for sent in (neutral | {n: vessel.commands[n].high for n in drives}, neutral):
+        act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
+        program.module.settle(program.command_array(sent), memory, track.values, program.switches(), act)
+        found.append(along(track, np.zeros((1, 2 * program.module.NQ)), [act], track.values)[0])
+    return float(found[0][0] - found[1][0])
 
 
 def coefficient_forces(problem: Problem, found: Fit, track: Track, states: Array) -> Array:

@@ -98,6 +98,31 @@ class NextEntry(TypedDict, total=False):
     expected_gain_nats: float
 
 
+class LeftOutEntry(TypedDict):
+    """An entry of the library that was not tried."""
+
+    name: str
+    reason: str  # the fact, the column that is missing, or the vessel's own reason
+
+
+class AmbientEntry(TypedDict):
+    """The unmodelled force of one axis that is nobody's fault."""
+
+    rms: float
+    unit: str
+    share_of_full_thrust: NotRequired[float]  # of a force, where the vessel's drives push ahead
+
+
+class RulesEntry(TypedDict):
+    """What was taken for granted before any data were seen, by one rule for every boat or by the file's own word."""
+
+    ambient: dict[str, AmbientEntry]
+    time_constant_s: float
+    horizon_s: float
+    effect_gain_nats: float  # that an effect needs, for so many tried
+    overridden: dict[str, str]  # rule -> the vessel's reason
+
+
 class Answer(TypedDict):
     """The whole of diagnosis.json."""
 
@@ -108,6 +133,10 @@ class Answer(TypedDict):
     effects: list[EffectEntry]
     unknown: UnknownEntry
     candidates: list[CandidateEntry]
+    tried: NotRequired[list[str]]
+    left_out: NotRequired[list[LeftOutEntry]]
+    facts: NotRequired[dict[str, object]]
+    rules: NotRequired[RulesEntry]
     upper_limits: dict[str, dict[str, float]]
     where: WhereEntry
     fit: FitEntry

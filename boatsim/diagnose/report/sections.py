@@ -9,7 +9,7 @@ import numpy as np
 
 from boatsim.diagnose.free_runs import FreeRun
 from boatsim.diagnose.next.experiment import WORTH
-from boatsim.diagnose.report import figures
+from boatsim.diagnose.report import figures, taken
 from boatsim.diagnose.report.answer import SHAPE
 from boatsim.diagnose.report.blocks import Block, Figures, Heading, Items, Section, Table, Text, without_empty
 from boatsim.diagnose.report.entries import EffectEntry, Family
@@ -50,7 +50,7 @@ GLOSSARY = (
     ("missing force",
      "The force or moment on the hull that the recording shows and the vessel as written has no cause for, estimated "
      "along the run. The band is two standard deviations wide on either side; flagged is where zero lies outside it "
-     "and the force is more than the vessel file tolerates."),
+     "and the force is more than is taken for nobody's fault."),
     ("unseen data", "Recordings that were kept apart: nothing was fitted to them."),
     ("free run",
      "The simulated boat starts at the state of the real one and is then driven by the recorded commands alone, "
@@ -59,8 +59,9 @@ GLOSSARY = (
         "In a position x and y count each."),
     ("gain, in nats",
      "How much better an explanation predicts the recordings, as a natural logarithm, the freedom of its extra "
-     "parameters paid for. 1 nat is a factor of 2.7, 3 nats 20, 4 nats 55. An effect is named from 4 nats on; entries "
-     "within 3 nats of it are its look-alikes."),
+     "parameters paid for. 1 nat is a factor of 2.7, 3 nats 20, 4 nats 55. An effect is named from 4 nats on if, with "
+     "its look-alikes, it gains more than one and the logarithm of the number of entries tried: more tried, "
+     "more to gain. Entries within 3 nats of it are its look-alikes."),
     ("probability", "Share of belief that the evidence gives an entry among its rivals and nothing at all."),
     ("\u00b1", "One standard deviation: the true value is expected within twice this in 95 of 100 cases."),
     ("surge, sway, roll, yaw", "Forward, to starboard, starboard side down, bow to starboard."),
@@ -98,6 +99,7 @@ def sections_of(f: Findings) -> list[Section]:
     """The whole report in order; sections that have nothing to say are empty."""
     return [
         Section("what", "What was found", list(_what(f))),
+        Section("taken", "What was tried, and what was taken for granted", list(_taken(f))),
         Section("where", "Where it shows", list(_where(f))),
         Section("ranking", "Ranking", list(_ranking(f))),
         Section("proof", "Before and after on unseen data", list(_proof(f))),
@@ -146,6 +148,11 @@ def _what(f: Findings) -> Iterator[Block]:
             "No entry of the library explains the recordings clearly better than the vessel as it is. What may still "
             "be hidden in them is bounded by the upper limits below."
         )
+
+
+def _taken(f: Findings) -> Iterator[Block]:
+    if lines := taken.in_words(f.answer):
+        yield Items(tuple(("", capital(f"{line}.")) for line in lines))
 
 
 def _beside(words: str) -> str:

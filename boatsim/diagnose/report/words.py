@@ -16,7 +16,7 @@ STEPS = {  # unit -> from this size on, size of the unit taken instead, its name
     "s": ((0.1, 1.0, "s"), (0.0, 1e-3, "ms")),
 } | {unit: tuple((least, size, name + unit) for least, size, name in FORCES) for unit in ("N", "N m")}
 COUNTS = ("nothing", "one thing", "two things", "three things", "four things", "five things", "six things")
-UNTRIED = "nothing was tried to explain it (the vessel's list of suspects and --library NAME say what is tried)"
+UNTRIED = "nothing was tried to explain it (facts or the vessel's reasons leave every entry out)"
 MOST = 3  # numbers of one effect in the sentence; the table has all of them
 FACTOR = "(kg|rad|N|m|s)([2-9]?)"
 UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")  # how keys spell a unit
@@ -216,7 +216,7 @@ def _untried(answer: Answer) -> str:
     """What can be said all the same: whether more force is left than the vessel file tolerates."""
     if answer["verdict"] == "unknown":
         return f"something is missing{_sizes(answer)}, and {UNTRIED}"
-    return f"no more force is missing than the vessel file tolerates, but {UNTRIED}"
+    return f"no more force is missing than is taken for nobody's fault, but {UNTRIED}"
 
 
 def _sizes(answer: Answer) -> str:
