@@ -18,7 +18,7 @@ ODDS = 1.0  # log of the odds at which an effect is named, where each of those t
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
 CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
 HALF = 0.5  # and those with this share of its gain
-MANY = 5  # but no more of them than this
+MANY = 6  # but no more of them than this
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
 RIVALS = 3  # fitted in the place of what was named
 UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
@@ -143,14 +143,17 @@ class _Search:
         """Every other candidate on top of a set: a quick look at all, those in front fitted in full."""
         key = frozenset(best.suspects)
         if key not in self.looks:
-            tried = screen(self.problem, best, [n for n in self.candidates if n not in best.suspects])
-            self.looks[key] = tried
+            rest = [n for n in self.candidates if n not in best.suspects]
+            self.looks[key] = screen(self.problem, best, rest)
         tried = self.looks[key]
         allowed = {n: f for n, f in tried.items() if n not in self.banned}
-        for n in _front(allowed, best)[:MANY]:
-            if (key, n) not in self.full:
-                self.full.add((key, n))
-                tried[n] = self.fitted(best, n, tried[n])
+        for _ in range(MANY):  # a look may promise too much: what is in front then is judged anew after each fit
+            hopeful = {n: f for n, f in allowed.items() if f.evidence > best.evidence}
+            ahead = [n for n in _front(hopeful, best) if (key, n) not in self.full]
+            if not ahead:
+                break
+            self.full.add((key, ahead[0]))
+            allowed[ahead[0]] = tried[ahead[0]] = self.fitted(best, ahead[0], tried[ahead[0]])
         return tried
 
     def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
