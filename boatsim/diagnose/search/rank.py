@@ -67,12 +67,13 @@ def rank(problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] 
     search = _Search(problem, candidates, recalibrated)
     best, named = search.settled(search.selected(recalibrated))
     while left_over(problem, best) > UNKNOWN and (little := search.dwarfed(best, named)):
+        search.banned.add(little)
         best, named = search.settled(search.without(best, little))
     while named and unseen and (worse := misled(problem, search, best, unseen)):
         search.banned.add(worse)
         best, named = search.settled(search.selected(search.without(best, worse)))
     left = left_over(problem, best)
-    tried = search.tried(best)
+    tried = search.looked(best)
     first = {n: f.evidence - search.base.evidence for n, f in search.looked(search.base).items()}
     return Ranking(nominal, search.base, best, named, first, tried, left)
 
@@ -110,6 +111,7 @@ class _Search:
         self.looks: dict[frozenset[str], dict[str, Fit]] = {}
         self.full: set[tuple[frozenset[str], str]] = set()  # looks that were followed by a fit in full
         self.banned: set[str] = set()
+        self.random = {e.name for e in problem.program.suspects if isinstance(e, Unsteady)}
         self.price = price(len(candidates))
 
     def selected(self, best: Fit) -> Fit:
@@ -118,11 +120,19 @@ class _Search:
             tried = self.tried(best)
             if not tried or len(best.suspects) == MOST:
                 break
-            name = max(tried, key=lambda n: tried[n].evidence)
-            if together([f.evidence - best.evidence for f in tried.values()]) < self.price:
+            laws = {n: f for n, f in tried.items() if n not in self.random}
+            if self.gained(laws, best) > self.price:  # a random force can stand for a law, a law not for it
+                tried = laws
+            if self.gained(tried, best) < self.price:
                 break
+            name = max(tried, key=lambda n: tried[n].evidence)
             best = self.pruned(self.converged(tried[name]))
         return best
+
+    @staticmethod
+    def gained(tried: Mapping[str, Fit], best: Fit) -> float:
+        """Nats that one of several entries gains on top of a set, whichever."""
+        return together([f.evidence - best.evidence for f in tried.values()]) if tried else -np.inf
 
     def converged(self, start: Fit) -> Fit:
         """The fit of a set, kept: made from `start` unless it was made before."""
@@ -177,13 +187,18 @@ class _Search:
     def settled(self, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         """The set without members that gain too little on top of the others, and what is to be said of the rest.
 
-        A member in whose place another does better makes way for it.
+        A member in whose place another does better makes way for it, unless that leads back to where it was.
         """
+        seen = set()
         while True:
+            seen.add(frozenset(best.suspects))
             named = tuple(self.named(best, n) for n in best.suspects)
-            better = [f for n in named for f in n.rivals.values() if f.evidence > best.evidence + SETTLED]
-            if better:
-                best = self.selected(max(better, key=lambda f: f.evidence))
+            rivals = [(n.name, r, f) for n in named for r, f in n.rivals.items()]
+            fair = [f for name, rival, f in rivals if name in self.random or rival not in self.random]
+            better = [f for f in fair if f.evidence > best.evidence + SETTLED]
+            further = self.selected(max(better, key=lambda f: f.evidence)) if better else best
+            if frozenset(further.suspects) not in seen:
+                best = further
                 continue
             weak = [n for n in named if n.gain < WORTH or n.shared < self.price or not self.there(best, n.name)]
             if not weak:
