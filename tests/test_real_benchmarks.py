@@ -27,9 +27,10 @@ def test_the_middle_third_is_predicted_from_the_first_and_the_last() -> None:
     assert roll.ratio(roll.by_thirds(*roll.opened(roll.AT_REST))) <= 0.2
 
 
-def test_on_the_last_third_alone_no_entry_beats_the_linear_boat(windows: Diagnosis) -> None:
+def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(windows: Diagnosis) -> None:
     _, ranking = roll.last_third(windows, roll.opened(roll.AT_REST)[0])
-    assert not ranking.named and max(ranking.first.values()) < 4.0
+    assert {n.name for n in ranking.named} == {"steady_force"}
+    assert max(gain for name, gain in ranking.first.items() if name != "steady_force") < 4.0
 
 
 def test_stiffening_explains_the_phase_and_damping_the_envelope(windows: Diagnosis) -> None:
@@ -38,7 +39,7 @@ def test_stiffening_explains_the_phase_and_damping_the_envelope(windows: Diagnos
     off = roll.polar_errors(windows.problem, roll.one_at_a_time(windows), unseen)
     envelope, phase = ({label: e[i] / off["linear"][i] for label, e in off.items()} for i in (0, 1))
     assert phase["+ righting_arm_stiffening"] < 0.4 < 0.9 < envelope["+ righting_arm_stiffening"]
-    assert envelope["+ cubic_damping"] < 0.6 < 0.9 < phase["+ cubic_damping"]
+    assert envelope["+ cubic_damping"] < 0.7 < 0.9 < phase["+ cubic_damping"]
 
 
 @pytest.mark.parametrize("test", ["sway_1", "yaw_2"])

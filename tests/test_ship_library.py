@@ -364,7 +364,7 @@ def slipping(a: float, u: float) -> float:
     ("change", "wanted"),
     [
         slow((lagging, {"planing_lag": {"full_speed_mps": 28.0, "least": 0.2}})),
-        (slipping, {"thrust_loss_with_speed": {"loss_spm": 0.015}}),
+        (slipping, {"thrust_loss_with_speed": {"loss_spm": 0.012, "curve_s2pm2": 0.015 * 0.2 / 12.0}}),
     ],
 )
 def test_what_a_planing_craft_lacks_is_named_with_its_values(tmp_path: Path, change: Any, wanted: Any) -> None:

@@ -11,8 +11,8 @@ from boatsim.physics.effects.thruster import at_mount
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """Each thruster's thrust T loses loss |T| u: falls ahead, grows when it brakes."""
-    return at_mount(-t.gain * q.loss * m.ur * abs(s.thrust), s, t)
+    """Each thruster's thrust T loses (loss u + curve u |u|) |T|: falls ahead, grows when it brakes."""
+    return at_mount(-t.gain * (q.loss + q.curve * abs(m.ur)) * m.ur * abs(s.thrust), s, t)
 
 
 @dataclass(frozen=True)
@@ -26,3 +26,4 @@ class ThrustLossWithSpeed(Force):
     law: ClassVar = law
 
     loss: float = param(0.0, low=0.0, high=50.0, unit="s/m", words="share lost per speed ahead", fit=True, spread=0.5)
+    curve: float = param(0.0, low=-20.0, high=20.0, unit="s^2/m^2", words="and per speed squared", fit=True, spread=0.1)
