@@ -1,8 +1,9 @@
 """Diagnoses a folder of trials: `python -m benchmarks.trials [TRIALS] [--out RESULTS] [--unknowns] [--jobs N]`.
 
 TRIALS/Txxx/ holds run_1.csv, run_2.csv (to diagnose from), run_3.csv (held out) and answer.json. Writes
-RESULTS/Txxx/diagnosis.json, patched.toml and replay.csv (free runs of 6 s over run_3), then prints how the answers
-compare with the truth:
+RESULTS/Txxx/diagnosis.json, patched.toml and replay.csv (free runs over run_3: 6 s for a boat of 1.2 m,
+for others by Froude's scale of time), then prints how the answers compare with the truth, vessel by vessel where there
+are several (their recording.toml names them; `python -m benchmarks.practice` makes such a set):
 
 - a trial is exact if every true effect is named and nothing else; an effect counts if it is visible (adds more than
   6 nats in the program that made the trials);
@@ -31,10 +32,17 @@ from typing import Any
 from rich.progress import Progress
 
 SHARED = Path(__file__).parents[2] / "shared" / "recordings" / "trials" / "practice"
-VESSEL, HORIZON = "trial_boat", 6.0  # [s]
+VESSEL, HORIZON, LENGTH = "trial_boat", 6.0, 1.2  # where none is named; [s] of free runs at this length [m]
 BINS = (0.0, 0.02, 0.1, 0.3, 0.7, 0.95, 1.0)
 Answers = dict[str, dict[str, Any]]  # by trial
 WORTH = 0.15  # share of the recalibrated error that the true structure must save for a skill to be told
+
+
+def vessel_of(trial: Path) -> str:
+    """The vessel its recording.toml names."""
+    from boatsim.recordings.notes import notes_for
+
+    return notes_for(trial / "run_1.csv").notes.vessel or VESSEL
 
 
 def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[str, Any]:
@@ -44,12 +52,13 @@ def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[st
     from boatsim.diagnose.report import patch
 
     found = analysis.diagnose(
-        [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"], VESSEL, without=without
+        [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"], vessel_of(trial), without=without
     )
+    horizon = HORIZON * math.sqrt(found.vessel.length / LENGTH)
     out.mkdir(parents=True, exist_ok=True)
     patch.write(found.problem, found.vessel, found.ranking.best, out / "patched.toml")
     with contextlib.redirect_stdout(io.StringIO()):
-        commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], HORIZON, out)
+        commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon, out)
     (out / "diagnosis.json").write_text(json.dumps(found.findings.answer, indent=1))
     return dict(found.findings.answer)
 
@@ -209,6 +218,18 @@ def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answer
         print(f"    {n} without {', '.join(left_out[n])}: {said}")
 
 
+def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> None:
+    """Of all trials, then of each vessel where there are several."""
+    vessels = {n: vessel_of(trials / n) for n in found}
+    several = sorted(set(vessels.values())) if len(set(vessels.values())) > 1 else []
+    for vessel in ("", *several):
+        part = {n: f for n, f in found.items() if vessel in ("", vessels[n])}
+        print(f"\n{vessel}, {len(part)} trials" if vessel else "")
+        for what, value in {**figures(answers, part), **fit_figures(trials, out, answers, part)}.items():
+            print(f"{what:44s} {value}")
+    print()
+
+
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -223,8 +244,7 @@ def main() -> None:
     begin = time.time()
     found = all_of(args.jobs, {n: (args.trials / n, args.out / n, ()) for n in answers}, "diagnosing")
     print(f"{len(found)} trials in {time.time() - begin:.0f} s on {args.jobs} processes; answers in {args.out}")
-    for what, value in {**figures(answers, found), **fit_figures(args.trials, args.out, answers, found)}.items():
-        print(f"{what:44s} {value}")
+    print_figures(args.trials, args.out, answers, found)
     for n, f in found.items():
         said, truth = said_of(answers[n], f), truth_of(answers[n])
         if said != truth:

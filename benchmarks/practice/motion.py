@@ -1,0 +1,199 @@
+"""Newton's law of a hull with any of six freedoms, many hulls at once, and one Runge-Kutta step of it.
+
+Axes are SNAME; vectors have the order (surge, sway, heave, roll, pitch, yaw), held freedoms are zero. M nu' = tau -
+C(nu) nu with Kirchhoff's form of C (T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapters 3, 6).
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+GRAVITY = 9.81  # [m/s^2]
+RUNS = 3  # of a trial
+
+
+class Motion(NamedTuple):
+    """What a force may depend on, for B hulls at once."""
+
+    t: Array  # (B,) s
+    run: Whole  # (B,) which run of the trial, for what differs from run to run
+    q: Array  # (6, B) x y z [m], phi theta psi [rad]
+    nu: Array  # (6, B) u v w [m/s], p q r [rad/s] over ground
+    through: Array  # (6, B) the same through the water
+    act: Array  # (A, B) thrusts [N], angles [rad], shaft rates [rad/s]
+
+
+Law = Callable[[Mapping[str, float], Motion], Array]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """From commands to what the actuators do: a map, then a lag and a rate of each."""
+
+    goals: Callable[[Array], Array]  # commands (C, B) -> goals (A, B)
+    lag: Array  # (A,) s, 0: at once
+    rate: Array  # (A,) per s
+    thrusts: tuple[int, ...] = ()  # which of them push
+    angles: tuple[int, ...] = ()  # which of them steer
+    mounts: tuple[tuple[float, float], ...] = ()  # x, y [m] of each thrust
+
+    def follow(self, y: Array, goal: Array, dt: float) -> Array:
+        """Where the actuators (A, B) are after dt: at the largest rate until the lag is as slow, then as the lag."""
+        lag, gap = np.maximum(self.lag, 1e-9)[:, None], goal - y
+        left: Array | float = dt
+        limited = np.isfinite(self.rate)
+        if limited.any():
+            rate = np.where(limited, self.rate, 1e9)[:, None]
+            ramp = np.minimum(np.maximum(np.abs(gap) / rate - lag, 0.0), dt) * limited[:, None]
+            gap, left = gap - np.sign(gap) * rate * ramp, dt - ramp
+        return np.asarray(goal - gap * np.exp(-left / lag))
+
+
+@dataclass(frozen=True)
+class Boat:
+    """A hull with its numbers; `law` gives hull and actuator forces from the coefficients `c`."""
+
+    name: str
+    free: tuple[int, ...]
+    length: float  # [m]
+    draught: float  # [m]
+    mass: float  # [kg]
+    hull: Array  # (6, 6) rigid body about the origin
+    water: Array  # (6, 6) added mass
+    c: Mapping[str, float]
+    kinds: Mapping[str, str]  # of the coefficients that are never known exactly: damping, thrust, restoring
+    uncertainty: Mapping[str, float]  # relative sd of each kind, as the vessel's file states it
+    law: Law
+    drive: Drive
+    channels: Mapping[str, tuple[float, float]]  # low, high
+    coriolis: float = 1.0  # share of the water's Coriolis force
+    cruise: float = 0.0  # [m/s] speed about which the model is made
+
+    @property
+    def tilts(self) -> bool:
+        """Axes fixed in the hull; else level ones that turn with the heading alone."""
+        return 4 in self.free
+
+    @property
+    def scale(self) -> float:
+        """Froude's scale of time against the 1.2 m boat of the first practice set."""
+        return float(np.sqrt(self.length / 1.2))
+
+    @property
+    def push(self) -> float:
+        """Rms of the ambient force [N]: 2.2e-4 of the weight."""
+        return 2.2e-4 * self.mass * GRAVITY
+
+    def ambient(self) -> Array:
+        """(6,) rms of the ambient forces [N, N m]."""
+        lever = np.array([1.0, 1.0, 1.0, self.draught, 0.25 * self.length, 0.25 * self.length])
+        held = np.isin(np.arange(6), self.free)
+        return np.asarray(self.push * lever * held)
+
+    def inverse(self) -> Array:
+        """(6, 6) of the whole mass over the free axes, zero elsewhere."""
+        found, rows = np.zeros((6, 6)), np.ix_(self.free, self.free)
+        found[rows] = np.linalg.inv((self.hull + self.water)[rows])
+        return found
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Vector product of (3, B)."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def kirchhoff(mass: Array, nu: Array) -> Array:
+    """-C(nu) nu (6, B) of a mass matrix, in axes fixed in the hull."""
+    momentum = mass @ nu
+    v, spin = nu[:3], nu[3:]
+    return -np.concatenate([cross(spin, momentum[:3]), cross(spin, momentum[3:]) + cross(v, momentum[:3])])
+
+
+def level(mass: Array, nu: Array) -> Array:
+    """The same of a hull in level axes, which only yaw turns."""
+    momentum, found = mass @ nu, np.zeros_like(nu)
+    found[0], found[1] = momentum[1] * nu[5], -momentum[0] * nu[5]
+    found[5] = nu[1] * momentum[0] - nu[0] * momentum[1]
+    return found
+
+
+def earthward(boat: Boat, q: Array) -> Array:
+    """(3, 3, B) body axes to earth axes."""
+    psi = q[5]
+    cp, sp, zero = np.cos(psi), np.sin(psi), np.zeros_like(psi)
+    if not boat.tilts:
+        return np.array([[cp, -sp, zero], [sp, cp, zero], [zero, zero, zero + 1.0]])
+    cf, sf, ct, st = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
+    return np.array(
+        [
+            [cp * ct, cp * st * sf - sp * cf, sp * sf + cp * st * cf],
+            [sp * ct, cp * cf + sp * st * sf, sp * st * cf - cp * sf],
+            [-st, ct * sf, ct * cf],
+        ]
+    )
+
+
+def pose_rates(boat: Boat, q: Array, nu: Array, R: Array) -> Array:
+    """Rates of the pose (6, B)."""
+    moved = R[:, 0] * nu[0] + R[:, 1] * nu[1] + R[:, 2] * nu[2]
+    if not boat.tilts:
+        return np.concatenate([moved, nu[3:]])
+    cf, sf, ct, tt = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.tan(q[4])
+    across = sf * nu[4] + cf * nu[5]
+    return np.concatenate([moved, [nu[3] + tt * across, cf * nu[4] - sf * nu[5], across / ct]])
+
+
+class Flow(NamedTuple):
+    """Water (2, B) m/s north and east where the hulls are."""
+
+    north: Array
+    east: Array
+
+
+Extra = Callable[[Motion], Array]  # further forces (6, B)
+Water = Callable[[Array, Array, Whole], Flow | None]  # of t, q, run
+
+
+def seen(
+    boat: Boat, t: Array, run: Whole, q: Array, nu: Array, act: Array, water: Water
+) -> tuple[Motion, Array, Array]:
+    """The motion as forces see it, R, and the water's velocity (3, B) in body axes."""
+    R, flow = earthward(boat, q), water(t, q, run)
+    carried = np.zeros_like(nu[:3]) if flow is None else R[0] * flow.north + R[1] * flow.east
+    through = np.concatenate([nu[:3] - carried, nu[3:]])
+    return Motion(t, run, q, nu, through, act), R, carried
+
+
+def load(boat: Boat, m: Motion, carried: Array, extra: Extra) -> Array:
+    """(6, B) all that drives M nu': laws, Coriolis forces, water that turns with a uniform current."""
+    coriolis = kirchhoff if boat.tilts else level
+    found = boat.law(boat.c, m) + extra(m)
+    if not carried.any():
+        return np.asarray(found + coriolis(boat.hull + boat.coriolis * boat.water, m.nu))
+    found += coriolis(boat.hull, m.nu) + boat.coriolis * coriolis(boat.water, m.through)
+    spin = m.nu[3:] if boat.tilts else m.nu[3:] * np.array([[0.0], [0.0], [1.0]])
+    return np.asarray(found - boat.water[:, :3] @ cross(spin, carried))
+
+
+def step(
+    boat: Boat, t: Array, run: Whole, q: Array, nu: Array, acts: tuple[Array, Array, Array], dt: float, push: Array,
+    extra: Extra, water: Water, inverse: Array,
+) -> tuple[Array, Array]:  # fmt: skip
+    """One Runge-Kutta step; `acts` at its begin, middle and end, `push` (6, B) a force held over it."""
+
+    def slopes(ahead: float, q: Array, nu: Array, act: Array) -> tuple[Array, Array]:
+        m, R, carried = seen(boat, t + ahead, run, q, nu, act, water)
+        return pose_rates(boat, q, nu, R), inverse @ (load(boat, m, carried, extra) + push)
+
+    a, b, c = acts
+    q1, n1 = slopes(0.0, q, nu, a)
+    q2, n2 = slopes(dt / 2, q + dt / 2 * q1, nu + dt / 2 * n1, b)
+    q3, n3 = slopes(dt / 2, q + dt / 2 * q2, nu + dt / 2 * n2, b)
+    q4, n4 = slopes(dt, q + dt * q3, nu + dt * n3, c)
+    return q + dt / 6 * (q1 + 2 * q2 + 2 * q3 + q4), nu + dt / 6 * (n1 + 2 * n2 + 2 * n3 + n4)
