@@ -61,7 +61,8 @@ def water(causes: Sequence[Cause]) -> Callable[[Array, Array, Whole], Flow | Non
 
     def velocity(t: Array, q: Array, run: Whole) -> Flow | None:
         found = [f(t, q, run) for f in flows]
-        return Flow(sum(f.north for f in found), sum(f.east for f in found)) if found else None  # type: ignore[arg-type]
+        still = np.zeros(())
+        return Flow(sum((f.north for f in found), still), sum((f.east for f in found), still)) if found else None
 
     return velocity
 
