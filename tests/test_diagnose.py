@@ -413,10 +413,11 @@ def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder
     code = commands.diagnose([DECAY], [], str(mine / "vessel.toml"), [], tmp_path / "out", [str(own)], without)
     assert code == 0 and "roll_weed" in capsys.readouterr().out
     (tmp_path / "elsewhere").mkdir()
-    code = commands.replay(DECAY, str(tmp_path / "out" / "patched.toml"), [], 60.0, tmp_path / "elsewhere")
+    fit = json.loads((tmp_path / "out" / "diagnosis.json").read_text())["fit"]
+    patched = str(tmp_path / "out" / "patched.toml")
+    code = commands.replay(DECAY, patched, [], fit["horizon_s"], tmp_path / "elsewhere")
     rms = float(capsys.readouterr().out.split("roll_rms_rad:")[1].split()[0])
-    answer = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
-    assert code == 0 and rms < 0.5 * answer["fit"]["roll_rms_rad"]["recalibrated"]
+    assert code == 0 and rms < 0.5 * fit["roll_rms_rad"]["recalibrated"]
 
 
 def test_froude_scaled_priors_are_those_of_the_small_boat():

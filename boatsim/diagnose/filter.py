@@ -22,6 +22,7 @@ from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
 FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into thirds
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
 FIT_STEP = 0.17  # [s] the same in the filter of a boat of 1.2 m, which is corrected at every sample
+START = 10.0
 SMOOTH = 0.3  # [rad] of the hull's quickest oscillation that one goes: Runge-Kutta's phase is then off by 2e-5 rad
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
 GRAVITY = 9.81  # [m/s^2]
@@ -157,7 +158,7 @@ class Track:
             if code < nq:
                 covariance[code, code] = noise[c]
         for i in range(nq):
-            covariance[2 * nq + i, 2 * nq + i] = levels.force[i] ** 2
+            covariance[2 * nq + i, 2 * nq + i] = (START * levels.force[i]) ** 2
             if covariance[nq + i, nq + i] == 0.0:
                 covariance[nq + i, nq + i] = 1.0
         means, covariances, transitions, predicted = keep or NOTHING

@@ -14,7 +14,7 @@ from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.screen import handed_over, joined, screen, starts
 from boatsim.physics.base import Unsteady
 
-ODDS = 1.0  # log of the odds at which an effect is named, where each of those tried is as likely before the data
+ODDS = 2.0  # log of the odds, seven to one, at which an effect is named, where each of those tried is as likely before
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
 CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
 HALF = 0.5  # and those with this share of its gain

@@ -1,4 +1,4 @@
-"""Rate limit: a signal follows its command no faster than a rate."""
+"""Rate limit: a signal follows its command no faster than a rate, the last of the way as a lag where it has one."""
 
 from dataclasses import dataclass
 from math import inf
@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, course, mean_of, param, preset
+from boatsim.physics.base import Array, Channel, Course, followed, mean_of, param, preset
+from boatsim.physics.effects.servo import NONE, ramp, towards
 
 SAME = 1e-9  # of a ramp: what is left of it before zero is nothing
 NEVER = 1e6  # [1/s] nothing is that quick: the command is followed at once
@@ -15,26 +16,24 @@ INSTANT = 2.0  # [rad/s] 115 deg/s; a steering that turns faster follows its com
 
 @njit(inline="always")
 def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
-    """A ramp to the command, then the command: exact for a held one."""
+    """A ramp to the command, then its lag, then the command."""
     if q.rate >= q.instant:
         memory[at] = x.end
         return x
-    y, goal = memory[at], mean_of(x)
-    needed = abs(goal - y) / q.rate  # [s]
-    turning = min(needed, dt)
-    turned = q.rate * turning if goal > y else -q.rate * turning
-    memory[at] = goal if needed <= dt else y + turned
-    return course(y, y + turned - 0.5 * turned * turning / dt, memory[at])
+    return towards(mean_of(x), memory, at, dt, q.rate, q.lag)
 
 
 @njit(inline="always")
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """Until the ramp ends, and no further than until it passes zero, where laws of thrust bend."""
+    """Until the ramp ends, and no further than until it passes zero, where laws of thrust bend; then as far as its lag."""
     y = memory[at]
     gap = abs(x - y)
     if gap == 0.0 or q.rate >= q.instant:
         return inf
-    return (abs(y) if x * y < 0.0 and abs(y) > SAME * gap else gap) / q.rate
+    left = ramp(gap, q.rate, q.lag)
+    if left <= 0.0:
+        return followed(q.lag if q.lag >= NONE else 0.0)
+    return min(left, abs(y) / q.rate) if x * y < 0.0 and abs(y) > SAME * gap else left
 
 
 @dataclass(frozen=True)
@@ -50,6 +49,7 @@ class RateLimit(Channel):
 
     rate: float = param(NEVER, low=1e-6, high=NEVER, unit="1/s", words="fastest change, in the channel's unit a second")
     instant: float = param(NEVER, low=1e-3, high=NEVER, unit="1/s", words="from which the command is followed at once")
+    lag: float = param(0.0, low=0.0, high=60.0, unit="s", words="time constant of the last of the way")
 
 
 SteeringRateLimit = preset(
@@ -64,7 +64,8 @@ SteeringRateLimit = preset(
     frees={
         "rate": {
             "low": 0.0005, "high": 50.0, "unit": "rad/s", "words": "fastest turning", "spread": 2.0, "absent": INSTANT,
-        }
+        },
+        "lag": {"spread": 0.3},
     },
     fixed={"instant": INSTANT},
 )  # fmt: skip

@@ -12,26 +12,25 @@ NONE = 1e-4  # [s] a shorter lag is none
 
 
 @njit(inline="always")
-def ramp(gap: float, q: Any) -> float:
+def ramp(gap: float, rate: float, lag: float) -> float:
     """Time [s] at the largest rate until the lag alone would be as slow."""
-    slow = q.rate * q.lag if q.lag >= NONE else 0.0
-    return max(abs(gap) - slow, 0.0) / q.rate
+    slow = rate * lag if lag >= NONE else 0.0
+    return max(abs(gap) - slow, 0.0) / rate
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
-    """Towards the limited command at the largest rate, then as a first-order lag: exact for a held command."""
+def towards(goal: float, memory: Array, at: int, dt: float, rate: float, lag: float) -> Course:
+    """To a goal at the largest rate, then as a first-order lag: exact for a held one."""
     y = memory[at]
-    goal = min(max(mean_of(x), -q.range), q.range)
     gap = goal - y
-    needed = ramp(gap, q)
+    needed = ramp(gap, rate, lag)
     turning = min(needed, dt)
-    turned = q.rate * turning if gap > 0.0 else -q.rate * turning
+    turned = rate * turning if gap > 0.0 else -rate * turning
     rest, left = gap - turned, dt - turning
     area = 0.5 * turned * turning + turned * left  # [rad s] by which the angle is beyond y
-    if q.lag >= NONE:
-        decay = exp(-left / q.lag)
-        area += rest * (left - q.lag * (1.0 - decay))
+    if lag >= NONE:
+        decay = exp(-left / lag)
+        area += rest * (left - lag * (1.0 - decay))
         rest *= decay
     elif needed <= dt:
         rest = 0.0  # there, to the last bit: a ramp that is left over would ask for a step of its own
@@ -40,9 +39,15 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
 
 
 @njit(inline="always")
+def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+    """Towards the limited command."""
+    return towards(min(max(mean_of(x), -q.range), q.range), memory, at, dt, q.rate, q.lag)
+
+
+@njit(inline="always")
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
     """Until the ramp ends, then as far as the lag's course is followed."""
-    left = ramp(min(max(x, -q.range), q.range) - memory[at], q)
+    left = ramp(min(max(x, -q.range), q.range) - memory[at], q.rate, q.lag)
     return left if left > 0.0 else followed(q.lag if q.lag >= NONE else 0.0)
 
 
