@@ -68,7 +68,7 @@ def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> N
 
 @pytest.mark.slow
 def test_what_a_recordings_notes_state_is_a_fact(tmp_path: Path) -> None:
-    assert nominal_levels(vessel.load("trial_boat"), Recording("r", np.zeros(1), {})).time_constant == 1.0
+    assert nominal_levels(vessel.load("trial_boat"), [Recording("r", np.zeros(1), {})]).time_constant == 1.0
     run = replace(recorded(Real(power=(1.15, 0.85)), 1), notes=Notes())
     write_csv(run, tmp_path / "run.csv")
     (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\n[ambient]\ntime_constant_s = 3.0\n')

@@ -212,7 +212,7 @@ def recorded(real: Real, seed: int) -> Recording:
     [
         ({"screw": 0.7}, "weak_screw"),
         slow(({"pod": 0.8}, "weak_pod")),
-        slow((dict.fromkeys(THRUSTERS, 0.85), "weak_all")),
+        slow((dict.fromkeys(THRUSTERS, 0.85), "weak_reverse")),
         ({}, ""),
     ],
     ids=lambda case: case if isinstance(case, str) else "",

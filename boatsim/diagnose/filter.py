@@ -22,13 +22,14 @@ from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
 FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into thirds
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
 FIT_STEP = 0.17  # [s] the same in the filter of a boat of 1.2 m, which is corrected at every sample
-START = 10.0
+START = 3.0  # tolerated forces by which actuators on their way, or a hand's push, may act when a recording begins
 SMOOTH = 0.3  # [rad] of the hull's quickest oscillation that one goes: Runge-Kutta's phase is then off by 2e-5 rad
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
 # [kg], [m], [kg m^2] numbers of the body at the end of a track's values, as in `Program.body`
 BODY = ("mass", "centre_ahead", "centre_below", "roll_inertia", "pitch_inertia", "yaw_inertia")
+MASS_ENTRIES = 12  # of `Mass`, the last of a pass' constants: its diagonal, axis by axis, comes first
 NOTHING = np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))  # where no pass is kept
 
 
@@ -39,6 +40,7 @@ class Levels:
     force: Array  # (NQ,) rms of the latent force [N, N m]
     time_constant: float  # [s] of the latent force
     sensors: Mapping[str, float]  # standard deviation by noise family
+    begins: Array = field(default_factory=lambda: np.zeros(1))  # (NQ,) least rms of the force when a recording begins
 
     def lasting(self, seconds: float) -> "Levels":
         """The same slow force with another correlation time: what it does to the motion over long times stays."""
@@ -60,6 +62,7 @@ class Track:
     values: Array  # nominal parameters of this run, then the body's `BODY`
     noise_scale: Mapping[str, float]  # this recording's sensor noise per common one, by family
     facts: Mapping[str, Any] = field(default_factory=dict)  # what the recording's notes state besides
+    inertia: Array = field(init=False)  # (NQ,) of the hull as written, with its water, axis by axis [kg, kg m^2]
     start: Array = field(init=False)  # (n,) first state
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
 
@@ -67,6 +70,7 @@ class Track:
         self.rate, swings = quickest(self.program, self.values, self.commands[0])
         usual = FIT_STEP * rules.froude_time(self.program.vessel)
         self.step = min(usual, STEADY / max(self.rate, 1e-9), SMOOTH / max(swings, 1e-9))
+        self.inertia = inertia_of(self.program, self.values, self.program.switches())
         nq = self.program.module.NQ
         self.start, self.spread = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq))
         self._gains = np.zeros((*self.measured.shape, self.program.module.NZ))
@@ -117,7 +121,8 @@ class Track:
         means, covariances, transitions, predicted = keep
         gains = np.zeros_like(transitions)
         self.program.module.smooth(
-            means, covariances, transitions, predicted, gains, levels.force**2, self.times, levels.time_constant,
+            means, covariances, transitions, predicted, gains, self._jolts(values, on, levels) ** 2, self.times,
+            levels.time_constant,
             values, on,
         )  # fmt: skip
         return means, covariances, gains
@@ -148,6 +153,13 @@ class Track:
         )
         return [(a, out[i, a : b + 1].copy()) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
 
+    def _jolts(self, values: Array, on: Array, levels: Levels) -> Array:
+        """Rms of the latent force on a hull of these values (NQ,): what would shake the hull as written as much.
+
+        Were it the force itself, any mass added would calm the water, and be believed for that alone.
+        """
+        return np.asarray(levels.force * inertia_of(self.program, values, on) / self.inertia)
+
     def _pass(
         self, values: Array, on: Array, levels: Levels, full: bool, keep: tuple[Array, ...] | None, fresh: bool = True
     ) -> float:
@@ -157,14 +169,16 @@ class Track:
         for c, code in enumerate(self.codes):
             if code < nq:
                 covariance[code, code] = noise[c]
+        force = self._jolts(values, on, levels)
+        begins = np.maximum(force, levels.begins)
         for i in range(nq):
-            covariance[2 * nq + i, 2 * nq + i] = (START * levels.force[i]) ** 2
+            covariance[2 * nq + i, 2 * nq + i] = begins[i] ** 2
             if covariance[nq + i, nq + i] == 0.0:
                 covariance[nq + i, nq + i] = 1.0
         means, covariances, transitions, predicted = keep or NOTHING
         found = self.program.module.kalman(
             self.times, self.measured, self.codes, self.commands, self.step, body_of(values), values, on,
-            levels.force**2, levels.time_constant, noise, self.start, covariance, full, fresh, self._linear,
+            force**2, levels.time_constant, noise, self.start, covariance, full, fresh, self._linear,
             self._gains, self._scale, self._white, keep is not None, means, covariances, transitions, predicted,
         )  # fmt: skip
         return float(found)
@@ -246,6 +260,15 @@ def quickest(program: Program, values: Array, command: Array) -> tuple[float, fl
         return 0.0, 0.0
     whole = np.block([[np.zeros((nq, nq)), np.eye(nq)], [slopes]])
     return float(np.abs(np.linalg.eigvals(slopes[:, nq:])).max()), float(np.linalg.eigvals(whole).imag.max())
+
+
+def inertia_of(program: Program, values: Array, on: Array) -> Array:
+    """Mass or moment of inertia with which each freedom answers to a force of its own (NQ,) [kg, kg m^2]."""
+    code = program.module
+    k = np.zeros(code.K)
+    code.constants(body_of(values), values, on, k)
+    whole = k[-MASS_ENTRIES:][[AXES.index(axis) for axis in axes_of(program.vessel)]]
+    return np.asarray(1.0 / whole if code.CLOSED else whole)
 
 
 def stated_values(program: Program, facts: Mapping[str, Any]) -> Array:
@@ -332,4 +355,4 @@ def nominal_levels(vessel: Vessel, recordings: Sequence[Recording]) -> Levels:
             f"{_called(recording)}: ambient time_constant_s = {time_constant:g}; allowed is more than 0, "
             f"at most {HUGE:g}"
         )
-    return Levels(force, time_constant, noise_of(vessel, recordings))
+    return Levels(force, time_constant, noise_of(vessel, recordings), START * force)

@@ -1,6 +1,7 @@
 """Fits a hypothesis (which suspects act) inside the filter and scores it by its Laplace evidence."""
 
 from collections.abc import Callable, Sequence
+from math import erf, log, sqrt
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from boatsim.physics.base import Array
 SETTLED = 0.3  # [nats] a refit that gains less changes nothing
 HALVINGS = 6  # of the way from a start at which the boat runs away to the boat with nothing missing
 SHORT = 0.1  # a step damped this much goes but part of the way, so that it does as promised says nothing
+TINY = 1e-300  # variance of what is known exactly
 NEW_SWEEPS = 3  # rounds in which a new random force takes over from the latent one
 
 
@@ -103,6 +105,15 @@ def log_prior(free: Sequence[Free], theta: Array) -> float:
     return found
 
 
+def cut_off(free: Sequence[Free], theta: Array, covariance: Array) -> float:
+    """Log of the share of a posterior that lies within bounds where priors are one-sided: a half for what is at one."""
+    found = 0.0
+    for f, x, variance in zip(free, theta, np.diag(covariance), strict=True):
+        if f.mean in (f.low, f.high):
+            found += log(0.5 + 0.5 * erf(abs(float(x) - f.mean) / sqrt(2.0 * max(float(variance), TINY))))
+    return found
+
+
 def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit:
     """Gauss-Newton on prior and whitened prediction errors from `found`, bounds kept; covariance and evidence."""
     free, levels, space = found.free, found.levels, Space(found.free)
@@ -138,8 +149,9 @@ def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit
             break
     information = np.eye(len(free)) + J.T @ J
     information[np.diag_indices(len(free))] += _curvature(problem, free, theta, on, levels)
+    covariance = space.covariance(information)
     evidence = best - 0.5 * float(np.linalg.slogdet(information)[1]) + force_prior(problem, levels)
-    return Fit(found.suspects, free, theta, space.covariance(information), levels, evidence)
+    return Fit(found.suspects, free, theta, covariance, levels, evidence + cut_off(free, theta, covariance))
 
 
 def slopes(

@@ -12,6 +12,7 @@ from boatsim.physics.base import Array
 FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above the ambient level
 SENSOR_PRIOR = 0.4  # sd of log noise about the stated one
 CLIMBS, FLAT = 8, 2.0  # rounds in which levels are sought, as long as one gains more nats than this
+LEAST = 1 / 10  # of the tolerated force, which a level is at least: no law is better than that
 TIME_PRIOR = 0.7  # sd of log time constant
 
 
@@ -19,6 +20,11 @@ def force_prior(problem: Problem, levels: Levels) -> float:
     """Log prior of the latent force: near the ambient level, more is likelier than less."""
     over = np.log(levels.force / problem.ambient.force)
     return float(np.sum(-0.5 * np.where(over > 0, over / FORCE_PRIOR[1], over / FORCE_PRIOR[0]) ** 2))
+
+
+def _forces(problem: Problem, logs: Array) -> Array:
+    """Levels of the latent force from their logarithms: however calm the water, a model is no better than so much."""
+    return np.maximum(np.exp(logs), LEAST * problem.ambient.force)
 
 
 def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) -> Fit:
@@ -34,7 +40,7 @@ def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) 
     def placed(x: Array) -> tuple[Levels, Array]:
         theta = found.theta.copy()
         theta[searched] = np.clip(x[n:] * sd, low, high)
-        return replace(found.levels, force=np.exp(x[:n])), theta
+        return replace(found.levels, force=_forces(problem, x[:n])), theta
 
     def score(x: Array) -> float:
         levels, theta = placed(x)
@@ -57,7 +63,7 @@ def fit_noise(problem: Problem, found: Fit, sweeps: int = 3) -> Fit:
 
     def levels(x: Array) -> Levels:
         sensors = {**problem.ambient.sensors, **dict(zip(families, np.exp(x[n:]).tolist(), strict=True))}
-        return replace(problem.ambient, force=np.exp(x[:n]), sensors=sensors)
+        return replace(problem.ambient, force=_forces(problem, x[:n]), sensors=sensors)
 
     def score(x: Array, fresh: bool = False) -> float:
         prior = -0.5 * float(np.sum(((x[n:] - stated) / SENSOR_PRIOR) ** 2))

@@ -12,6 +12,7 @@ from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.screen import handed_over, joined, screen, starts
+from boatsim.diagnose.spread import widened
 from boatsim.physics.base import Unsteady
 
 ODDS = 2.0  # log of the odds, seven to one, at which an effect is named, where each of those tried is as likely before
@@ -75,7 +76,7 @@ def rank(problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] 
     left = left_over(problem, best)
     tried = search.looked(best)
     first = {n: f.evidence - search.base.evidence for n, f in search.looked(search.base).items()}
-    return Ranking(nominal, search.base, best, named, first, tried, left)
+    return Ranking(nominal, search.base, widened(problem, best), named, first, tried, left)
 
 
 def misled(problem: Problem, search: "_Search", best: Fit, unseen: Sequence[Track]) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from boatsim.diagnose.filter import axes_of
-from boatsim.diagnose.fit import Space, as_promised, jacobian, log_prior
+from boatsim.diagnose.fit import Space, as_promised, cut_off, jacobian, log_prior
 from boatsim.diagnose.levels import force_prior
 from boatsim.diagnose.problem import Fit, Problem, scale_of
 from boatsim.physics.base import Array, Effect, Unsteady
@@ -91,7 +91,10 @@ def _look(problem: Problem, base: Fit, effect: Effect, begin: Begin) -> Fit:
     best = max(first, key=lambda f: f[1])
     if len(begun) > 1:
         best = _step(problem, best[0], begin, ROUNDS - 1)
-    return replace(best[0], evidence=base.evidence + best[1] - begin.score + _half_determinant(begin.columns))
+    found, score = best
+    one_sided = cut_off(found.free, found.theta, found.covariance) - cut_off(base.free, base.theta, base.covariance)
+    gain = score - begin.score + _half_determinant(begin.columns) + one_sided
+    return replace(found, evidence=base.evidence + gain)
 
 
 def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit, float]:
