@@ -26,6 +26,7 @@ from boatsim.physics.vessel import Vessel
 ROUNDS, HALVINGS = 3, 3  # Gauss-Newton steps of a rival's refit, and how often one is halved
 NUDGE = 0.05  # [sd] of the posterior by which parameters are moved for a derivative
 WORTH = 1.0  # [nats] that a manoeuvre must be expected to tell to be suggested
+HINT = 1.0  # [nats] that an entry which is not named must gain for a manoeuvre to ask about it
 STEP = 0.02  # [s] of the scenario of a 1.2 m boat; others by Froude's law
 
 
@@ -77,14 +78,14 @@ def question(ranking: Ranking) -> tuple[Fit, dict[str, Fit]]:
     """What a ranking leaves to be decided: the winner, and its rivals by name.
 
     Rivals are the look-alikes of what was named; without any, the nearest one of the least certain. Where nothing was
-    named, the best entry stands against nothing at all and its own look-alikes, if it gains anything.
+    named, the best entry stands against nothing at all and its own look-alikes, if it gains anything to speak of.
     """
     tied = [n for n in ranking.named if n.tied_with] or sorted(ranking.named, key=lambda n: n.probability)[:1]
     if tied:
         rivals = {r: n.rivals[r] for n in tied for r in n.tied_with or list(n.rivals)[:1]}
         return ranking.best, rivals
     order = sorted(ranking.last, key=lambda n: -ranking.last[n].evidence)
-    hints = [n for n in order if ranking.last[n].evidence > ranking.best.evidence]
+    hints = [n for n in order if ranking.last[n].evidence > ranking.best.evidence + HINT]
     if not hints:
         return ranking.best, {}
     winner = ranking.last[hints[0]]
