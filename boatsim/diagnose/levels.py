@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.diagnose.filter import Levels
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.physics.base import Array
+from boatsim.physics.base import Array, Wandering
 
 FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above the ambient level
 SENSOR_PRIOR = 0.4  # sd of log noise about the stated one
@@ -28,27 +28,38 @@ def _forces(problem: Problem, logs: Array) -> Array:
 
 
 def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) -> Fit:
-    """A hypothesis with the latent-force level of each axis refitted, and with it the spectra it has (`searched`)."""
+    """A hypothesis with the latent-force level of each axis refitted, and with it the spectra it has (`searched`).
+
+    Where the error of an instrument wanders, the noise of the instruments with them: it was fitted without that error.
+    """
     on = problem.program.switches(found.suspects)
     searched = [j for j, f in enumerate(found.free) if f.searched]
     low = np.array([found.free[j].low for j in searched])
     high = np.array([found.free[j].high for j in searched])
     mean = np.array([found.free[j].mean for j in searched])
     sd = np.array([found.free[j].sd for j in searched])
-    n = len(found.levels.force)
+    wanders = any(isinstance(e, Wandering) and e.name in found.suspects for e in problem.program.suspects)
+    families = sorted({f for t in problem.tracks for f in t.families}) if wanders else []
+    stated = np.log([problem.ambient.sensors[f] for f in families])
+    k, n = len(searched), len(searched) + len(families)
 
     def placed(x: Array) -> tuple[Levels, Array]:
         theta = found.theta.copy()
-        theta[searched] = np.clip(x[n:] * sd, low, high)
-        return replace(found.levels, force=_forces(problem, x[:n])), theta
+        theta[searched] = np.clip(x[:k] * sd, low, high)
+        sensors = dict(zip(families, np.exp(x[k:n]).tolist(), strict=True))
+        force = _forces(problem, x[n:])
+        return replace(found.levels, force=force, sensors={**found.levels.sensors, **sensors}), theta
 
     def score(x: Array) -> float:
         levels, theta = placed(x)
-        prior = -0.5 * float(np.sum(((theta[searched] - mean) / sd) ** 2))
+        prior = -0.5 * float(
+            np.sum(((theta[searched] - mean) / sd) ** 2) + np.sum(((x[k:n] - stated) / SENSOR_PRIOR) ** 2)
+        )
         return problem.likelihood(found.free, theta, on, levels, fresh=False) + force_prior(problem, levels) + prior
 
     problem.likelihood(found.free, found.theta, on, found.levels)
-    begin = np.concatenate([np.log(found.levels.force), found.theta[searched] / sd])
+    noise = np.log([found.levels.sensors[f] for f in families])
+    begin = np.concatenate([found.theta[searched] / sd, noise, np.log(found.levels.force)])
     levels, theta = placed(_climbed(score, begin, step, sweeps))
     return replace(found, levels=levels, theta=theta)
 

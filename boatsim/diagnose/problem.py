@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from boatsim.diagnose import rules
+from boatsim.diagnose.excursion import excursion
 from boatsim.diagnose.filter import BODY, Levels, Track
 from boatsim.errors import BadInput
-from boatsim.physics.base import Array, Channel, Effect, Release, Unsteady
+from boatsim.physics.base import Array, Channel, Effect, Release, Wandering
 from boatsim.physics.vessel import Vessel
 
 
@@ -125,8 +126,8 @@ class Problem:
             for name, about in type(effect).params().items():
                 axis_is_free = not about.axis or about.axis in self.program.vessel.freedoms
                 if about.fit and axis_is_free and self._on_board(effect, name) and (acts := self._acts(effect, name)):
-                    sd = about.spread * scale_of(about.unit, self.program.vessel)
-                    searched = isinstance(effect, Unsteady)
+                    sd = about.spread * self.scale(effect, name)
+                    searched = type(effect).random
                     free.append(
                         Free(
                             effect.name, name, acts.at, about.absent, sd, about.low, about.high, False, searched,
@@ -165,6 +166,20 @@ class Problem:
     def whitened(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> Array:
         """Whitened prediction errors of all runs with the gains of the last `likelihood`."""
         return np.concatenate([t.whitened(self.values(t, free, theta), on, levels) for t in self.tracks])
+
+    def scale(self, effect: Effect, name: str) -> float:
+        """How much larger a parameter may be than on the boat for which effects state their priors, by its unit.
+
+        A threshold of thrust goes with the largest command given: that boat's full thrust is 1 N. What an instrument
+        wanders by goes with its noise.
+        """
+        unit = type(effect).params()[name].unit
+        if isinstance(effect, Wandering):
+            noise = {"m": "position_sd_m", "rad": "heading_sd_rad"}
+            return self.ambient.sensors[noise[unit]] if unit in noise else 1.0
+        if name in type(effect).thresholds and unit != "rad" and (largest := excursion(self.tracks, effect)):
+            return largest
+        return scale_of(unit, self.program.vessel)
 
     def _on_board(self, effect: Effect, parameter: str) -> bool:
         """Whether there is an actuator on the side to which a channel effect's parameter belongs, if it is of one."""

@@ -17,6 +17,7 @@ from boatsim.physics.kinds.measurement import Measurement
 from boatsim.physics.kinds.reaction import Reaction
 from boatsim.physics.kinds.release import Change, Release
 from boatsim.physics.kinds.unsteady import Unsteady
+from boatsim.physics.kinds.wandering import Wandering
 from boatsim.physics.param import UNSET, Checked, Param, factor, number, param, shift
 from boatsim.physics.presets import preset
 from boatsim.physics.signals import (
@@ -27,6 +28,7 @@ from boatsim.physics.signals import (
     Motion,
     Shown,
     Swell,
+    Wander,
     Wrench,
     course,
     followed,
@@ -37,7 +39,8 @@ from boatsim.physics.signals import (
 
 __all__ = [
     "AXES", "UNSET", "Array", "Boat", "Change", "Channel", "Checked", "Course", "Effect", "Flow", "Force", "Inertia",
-    "Mass", "Measurement", "Motion", "Param", "Reaction", "Release", "Role", "Shown", "Swell", "Unsteady", "Wrench",
+    "Mass", "Measurement", "Motion", "Param", "Reaction", "Release", "Role", "Shown", "Swell", "Unsteady",
+    "Wander", "Wandering", "Wrench",
     "course", "factor", "followed", "mass", "mean_of", "motion", "number", "param", "preset", "shift", "snake_case",
     "wrench",
 ]  # fmt: skip

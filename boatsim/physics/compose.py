@@ -145,7 +145,7 @@ class Composition:
         yield ""
         yield "from boatsim.physics.compose import classes_of"
         yield "from boatsim.physics.kernel.compiling import inlined, merged, shared"
-        yield "from boatsim.physics.signals import Course, Swell, Wrench"
+        yield "from boatsim.physics.signals import Course, Swell, Wander, Wrench"
         yield ""
         yield f"E = classes_of({[address(type(e)) for e in self.effects]!r})"
         for i, effect in enumerate(self.effects):

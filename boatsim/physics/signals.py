@@ -172,6 +172,14 @@ def swell(
     return Swell(X, Y, Z, K, M, N, frequency, damping)
 
 
+class Wander(NamedTuple):
+    """Error of instruments that comes and goes slowly, as that of satellite fixes does (Gauss-Markov, first order)."""
+
+    position: float  # [m] rms, north and east alike
+    heading: float  # [rad] rms
+    time: float  # [s] correlation time
+
+
 for _constructor, _record in ((wrench, Wrench), (mass, Mass), (swell, Swell)):
     known_to_numba(_constructor, _record)
 

@@ -13,7 +13,6 @@ from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.screen import handed_over, joined, screen, starts
 from boatsim.diagnose.spread import widened
-from boatsim.physics.base import Unsteady
 
 ODDS = 2.0  # log of the odds, seven to one, at which an effect is named, where each of those tried is as likely before
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
@@ -21,6 +20,7 @@ CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
 HALF = 0.5  # and those with this share of its gain
 MANY = 6  # but no more of them than this
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
+LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
 RIVALS = 3  # fitted in the place of what was named
 UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
 WORTH = 4.0  # [nats] that an effect must gain by itself,
@@ -112,7 +112,7 @@ class _Search:
         self.looks: dict[frozenset[str], dict[str, Fit]] = {}
         self.full: set[tuple[frozenset[str], str]] = set()  # looks that were followed by a fit in full
         self.banned: set[str] = set()
-        self.random = {e.name for e in problem.program.suspects if isinstance(e, Unsteady)}
+        self.random = {e.name for e in problem.program.suspects if type(e).random}
         self.price = price(len(candidates))
 
     def selected(self, best: Fit) -> Fit:
@@ -122,8 +122,8 @@ class _Search:
             if not tried or len(best.suspects) == MOST:
                 break
             laws = {n: f for n, f in tried.items() if n not in self.random}
-            if self.gained(laws, best) > self.price:  # a random force can stand for a law, a law not for it
-                tried = laws
+            if self.gained(laws, best) > max(self.price, LAWFUL * self.gained(tried, best)):
+                tried = laws  # a random force can stand for a law, a law hardly for it
             if self.gained(tried, best) < self.price:
                 break
             name = max(tried, key=lambda n: tried[n].evidence)
@@ -172,7 +172,7 @@ class _Search:
         found = fit(self.problem, look)
         effect = next(e for e in self.problem.program.suspects if e.name == name)
         begun = starts(self.problem, effect)
-        if len(begun) == 1 or isinstance(effect, Unsteady) or left_over(self.problem, found) < UNKNOWN:
+        if len(begun) == 1 or type(effect).random or left_over(self.problem, found) < UNKNOWN:
             return found
         others = [fit(self.problem, handed_over(joined(self.problem, best, name, s), effect)) for s in begun]
         return max((found, *others), key=lambda f: f.evidence)

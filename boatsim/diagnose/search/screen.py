@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from boatsim.diagnose.excursion import excursion
 from boatsim.diagnose.filter import axes_of
 from boatsim.diagnose.fit import Space, as_promised, cut_off, jacobian, log_prior
 from boatsim.diagnose.levels import force_prior
-from boatsim.diagnose.problem import Fit, Problem, scale_of
+from boatsim.diagnose.problem import Fit, Problem
 from boatsim.physics.base import Array, Effect, Unsteady
 
 ROUNDS = 3  # Gauss-Newton steps of a suspect
@@ -38,12 +39,8 @@ def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, 
     score = log_prior(base.free, base.theta) - 0.5 * float(white @ white)
     begin = Begin(known, off, score)
     effects = {e.name: e for e in problem.program.suspects}
-    tried = {n: _look(problem, base, effects[n], begin) for n in candidates if not _random(effects[n])}
-    return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if _random(effects[n])}
-
-
-def _random(effect: Effect) -> bool:
-    return isinstance(effect, Unsteady)
+    tried = {n: _look(problem, base, effects[n], begin) for n in candidates if not type(effects[n]).random}
+    return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if type(effects[n]).random}
 
 
 def _half_determinant(J: Array) -> float:
@@ -51,14 +48,16 @@ def _half_determinant(J: Array) -> float:
 
 
 def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
-    """Where the fit of a suspect's parameters begins: its own starts, Froude-scaled, or a little of it."""
-    params, vessel = type(effect).params(), problem.program.vessel
+    """Where a suspect's fit begins: its own starts, Froude-scaled, shares of the commands given, or a little of it."""
+    params = type(effect).params()
     default = {}
     for name, p in params.items():
-        step = SMALL * p.spread * scale_of(p.unit, vessel)
+        step = SMALL * p.spread * problem.scale(effect, name)
         default[name] = p.absent + (step if p.absent + step <= p.high else -step)
-    given = [{n: x * scale_of(params[n].unit, vessel) for n, x in s.items()} for s in type(effect).starts] or [{}]
-    return [{**default, **s} for s in given]
+    given = [{n: x * problem.scale(effect, n) for n, x in s.items()} for s in type(effect).starts]
+    largest = excursion(problem.tracks, effect)
+    given += [{n: share * largest} for n, shares in type(effect).thresholds.items() for share in shares if largest]
+    return [{**default, **s} for s in given or [{}]]
 
 
 def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -> Fit:
@@ -139,17 +138,29 @@ def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit,
 
 
 def _random_look(problem: Problem, base: Fit, effect: Effect) -> Fit:
-    """A random force takes over a share of the latent one, at each of the frequencies it may have."""
-    on = problem.program.switches((*base.suspects, effect.name))
-    levels = replace(base.levels, force=SWELL_SHARE * base.levels.force)
-    of_axis = dict(zip(axes_of(problem.program.vessel), levels.force.tolist(), strict=True))
+    """A random force, or the error of an instrument, takes over from the latent one; the best of its starts."""
     # linearised once; the determinant of what was free before is much the same with and without
     was = problem.likelihood(base.free, base.theta, problem.program.switches(base.suspects), base.levels)
     was += log_prior(base.free, base.theta) + force_prior(problem, base.levels)
     tried = []
-    for start in starts(problem, effect):
-        rms = {n: of_axis.get(n, 0.0) for n in type(effect).strength}
-        at = replace(joined(problem, base, effect.name, {**start, **rms}), levels=levels)
-        score = problem.likelihood(at.free, at.theta, on, levels, fresh=False) + log_prior(at.free, at.theta)
-        tried.append(replace(at, evidence=base.evidence + score + force_prior(problem, levels) - was))
+    for at in random_starts(problem, base, effect):
+        on = problem.program.switches(at.suspects)
+        score = problem.likelihood(at.free, at.theta, on, at.levels, fresh=False) + log_prior(at.free, at.theta)
+        tried.append(replace(at, evidence=base.evidence + score + force_prior(problem, at.levels) - was))
     return max(tried, key=lambda f: f.evidence)
+
+
+def random_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
+    """Where the fit of a random force begins, with a share of the latent one; that of an instrument's error, in calm.
+
+    Force and noise fitted without that error have taken up what they could of it.
+    """
+    of_axis = dict(zip(axes_of(problem.program.vessel), (SWELL_SHARE * base.levels.force).tolist(), strict=True))
+    if isinstance(effect, Unsteady):
+        levels = replace(base.levels, force=SWELL_SHARE * base.levels.force)
+        rms = {n: of_axis.get(n, 0.0) for n in type(effect).strength}
+    else:
+        calm = np.minimum(base.levels.force, problem.ambient.force)
+        levels, rms = replace(base.levels, force=calm, sensors=problem.ambient.sensors), {}
+    begun = (joined(problem, base, effect.name, start | rms) for start in starts(problem, effect))
+    return [replace(fit, levels=levels) for fit in begun]

@@ -25,7 +25,7 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
 
 @njit(inline="always")
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """Until the ramp ends, and no further than until it passes zero, where laws of thrust bend; then as far as its lag."""
+    """Until the ramp ends or passes zero, where laws of thrust bend; after it as far as its lag reaches."""
     y = memory[at]
     gap = abs(x - y)
     if gap == 0.0 or q.rate >= q.instant:

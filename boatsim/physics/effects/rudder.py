@@ -63,7 +63,7 @@ class RudderStall(Release):
     words: ClassVar[str] = "the rudder stalls: beyond an angle its force grows no further"
     shown_by: ClassVar[str] = "turns at small and at large rudder angles"
     source: ClassVar[str] = "L. F. Whicker, L. F. Fehlner, DTMB report 933, 1958: lift of low aspect ratio surfaces"
-    starts: ClassVar = ({"angle": 0.2}, {"angle": 0.35}, {"angle": 0.5})
+    thresholds: ClassVar = {"angle": (0.3, 0.45, 0.6, 0.75, 0.9)}
 
     angle: float = number(
         "rudder.stall", words="angle of stall", unit="rad", spread=1.0, low=0.02, high=NEVER, absent=NEVER

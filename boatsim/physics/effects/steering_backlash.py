@@ -37,6 +37,6 @@ class SteeringBacklash(Channel):
     slots: ClassVar[int] = 1
     stage: ClassVar[int] = COMMANDS
     channel: ClassVar = channel
-    starts: ClassVar = ({"width": 0.05}, {"width": 0.2})
+    thresholds: ClassVar = {"width": (0.07, 0.3)}
 
     width: float = param(0.0, low=0.0, high=0.8, unit="rad", words="total play", fit=True, spread=0.2)

@@ -30,5 +30,6 @@ class ThrustDeadband(Channel):
     acts_on: ClassVar[str] = "thrust"
     stage: ClassVar[int] = COMMANDS
     channel: ClassVar = channel
+    thresholds: ClassVar = {"width": (0.02, 0.1, 0.3)}
 
-    width: float = param(0.0, low=0.0, high=0.5, unit="N", words="half width", fit=True, spread=0.1)
+    width: float = param(0.0, low=0.0, high=1e7, unit="N", words="half width", fit=True, spread=0.1)

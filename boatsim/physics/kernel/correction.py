@@ -12,10 +12,11 @@ IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has
 
 
 @lean
-def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int, ny: int) -> float:
+def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int, ny: int, own: int) -> float:
     """Gain (n,) of one measurement and P row' (n,), in place; returns the inverse sd of its prediction error.
 
-    A measurement shows the motion alone: of its `row` only the first `ny` entries are not zero.
+    A measurement shows the motion, the first `ny` entries of its `row`, and the state `own`, its instrument's wandering
+    error; -1: it has none.
     """
     variance = noise
     for a in range(n):
@@ -24,6 +25,10 @@ def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int, ny
         if row[b] != 0.0:
             for a in range(n):
                 Ph[a] += P[a, b] * row[b]
+    if own >= 0:
+        for a in range(n):
+            Ph[a] += P[a, own]
+        variance += Ph[own]
     for b in range(ny):
         variance += row[b] * Ph[b]
     for a in range(n):
@@ -34,7 +39,7 @@ def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int, ny
 @lean
 def take(
     error: float, row: Array, noise: float, full: bool, outliers: Array, z: Array, P: Array, Ph: Array, n: int,
-    ny: int, gain: Array, scale: Array, white: Array,
+    ny: int, own: int, gain: Array, scale: Array, white: Array,
 ) -> float:  # fmt: skip
     """Correct z by one measurement, and P if `full`; returns what it adds to the log likelihood.
 
@@ -42,7 +47,7 @@ def take(
     """
     likelihood = 0.0
     if full:
-        scale[0] = weigh(P, row, noise, gain, Ph, n, ny)
+        scale[0] = weigh(P, row, noise, gain, Ph, n, ny, own)
         likelihood += log(scale[0])
         far = abs(error) * scale[0] > GATE and outliers[0] < IN_A_ROW
         outliers[0] = outliers[0] + 1.0 if far else 0.0

@@ -1,8 +1,9 @@
 """Kalman filter over a recording with one slowly varying unmodelled force per freedom, and its smoother.
 
-State z = (positions, earth-axes rates, body-axes latent forces), CALM = 3 NQ, then, for vessels that may meet a swell,
-an oscillating force and its rate per axis. Measured channels are coded: 0 .. NQ-1 a position, NQ .. 2 NQ-1 a
-body-axes rate. Measurements are taken one at a time, so any of them may be missing (nan).
+State z = (positions, earth-axes rates, body-axes latent forces), CALM = 3 NQ, then, where a swell acts, an oscillating
+force and its rate per axis, then, where instruments wander, the error of each position. Measured channels are coded:
+0 .. NQ-1 a position, NQ .. 2 NQ-1 a body-axes rate. Measurements are taken one at a time, so any of them may be missing
+(nan).
 """
 
 from math import cos, exp, sin, sqrt
@@ -13,10 +14,10 @@ import numpy as np
 from boatsim.physics.kernel.compiling import compiled, lean
 from boatsim.physics.kernel.correction import take
 from boatsim.physics.kernel.matrices import carry, copy, copy_square, exponential, multiply, solve
-from boatsim.physics.signals import Array, Swell
+from boatsim.physics.signals import Array, Swell, Wander
 
 from .inertia import constants
-from .laws import HAS_SWELL, HELD, MEMORY, distorted, late, shown, swell
+from .laws import HAS_SWELL, HAS_WANDER, HELD, MEMORY, distorted, late, shown, swell, wander
 from .motion import (
     BESIDE,
     FREE,
@@ -34,7 +35,7 @@ from .run import SHORTEST, actuate_in_place, least_after, settle, until_bend
 
 # not plain integers: those count as types, and what is called with several would be compiled for each
 NY, CALM = np.int64(2 * NQ), np.int64(3 * NQ)
-NZ = np.int64(CALM + (2 * NQ if HAS_SWELL else 0))
+NZ = np.int64(CALM + (2 * NQ if HAS_SWELL else 0) + (NQ if HAS_WANDER else 0))
 INVERT = 10  # rounds of the inversion of what the instruments show, which is never far from the truth
 
 
@@ -109,12 +110,32 @@ def add_swell(h: float, s: Swell, F: Array) -> None:
 
 
 @lean
-def diffuse(h: float, n: int, sigma: Array, tau: float, s: Swell, P: Array) -> None:
-    """Add to P what the noise behind the latent forces does over h."""
+def sizes(s: Swell, w: Wander) -> tuple[Any, Any]:
+    """How many entries of a state are motion and forces, and how many it has with the errors of instruments."""
+    m = NZ if not HAS_WANDER else NZ - NQ
+    if s.frequency == 0.0:
+        m = CALM
+    return m, m + NQ if w.position > 0.0 or w.heading > 0.0 else m
+
+
+@lean
+def wandering(w: Wander, j: int) -> float:
+    """Rms of the wandering error of position j of a state."""
+    if FREE[j] < 2:
+        return float(w.position)
+    return float(w.heading) if FREE[j] == 5 else 0.0
+
+
+@lean
+def diffuse(h: float, m: int, n: int, sigma: Array, tau: float, s: Swell, w: Wander, P: Array) -> None:
+    """Add to P what the noise behind latent forces and instruments does over h."""
     decay = exp(-h / tau)
     for j in range(NQ):
         P[NY + j, NY + j] += sigma[j] * (1.0 - decay * decay)
-    if n > CALM:
+    for j in range(n - m):
+        kept = exp(-h / w.time)
+        P[m + j, m + j] += wandering(w, j) ** 2 * (1.0 - kept * kept)
+    if m > CALM:
         f11, f12, f21, f22, _, _ = oscillation(h, s)
         w2 = s.frequency * s.frequency
         for j in range(NQ):
@@ -174,24 +195,26 @@ def undistorted(z: Array, p: Array, on: Any) -> None:
 
 
 @lean
-def begin(z0: Array, P0: Array, n: int, s: Swell, z: Array, P: Array) -> None:
+def begin(z0: Array, P0: Array, m: int, n: int, s: Swell, w: Wander, z: Array, P: Array) -> None:
     """State and covariance of the first row, the swell anywhere in its cycle."""
     for a in range(CALM):
         z[a] = z0[a]
     copy_square(P0, P, CALM)
-    if n > CALM:
+    for j in range(n - m):
+        P[m + j, m + j] = wandering(w, j) ** 2
+    if m > CALM:
         for j in range(NQ):
             P[CALM + 2 * j, CALM + 2 * j] = s[FREE[j]] ** 2
             P[CALM + 2 * j + 1, CALM + 2 * j + 1] = (s.frequency * s[FREE[j]]) ** 2
 
 
 @lean
-def felt(z: Array, h: float, s: Swell, n: int, y: Array, force: Array) -> None:
+def felt(z: Array, h: float, s: Swell, m: int, y: Array, force: Array) -> None:
     """The motion y (2 NQ,) in a state, and the mean of its latent forces over the next h seconds."""
     copy(z, y)
     for a in range(NQ):
         force[a] = z[NY + a]
-    if n > CALM:
+    if m > CALM:
         _, _, _, _, mean1, mean2 = oscillation(h, s)
         for a in range(NQ):
             force[a] += mean1 * z[CALM + 2 * a] + mean2 * z[CALM + 2 * a + 1]
@@ -199,27 +222,33 @@ def felt(z: Array, h: float, s: Swell, n: int, y: Array, force: Array) -> None:
 
 @lean
 def spread(
-    F: Array, h: float, tau: float, s: Swell, n: int, sigma: Array, P: Array, work: Array,
+    F: Array, h: float, tau: float, s: Swell, w: Wander, m: int, n: int, sigma: Array, P: Array, work: Array,
 ) -> None:  # fmt: skip
     """Carry P over h; F comes as the transition of motion and lasting forces, and leaves with that of all forces."""
     for a in range(NY, CALM):
         F[a, a] = exp(-h / tau)
-    if n > CALM:
+    if m > CALM:
         add_swell(h, s, F)
+    for j in range(m, n):
+        for i in range(n):
+            F[i, j] = F[j, i] = 0.0
+        F[j, j] = exp(-h / w.time)
     carry(F, P, work, n)
-    diffuse(h, n, sigma, tau, s, P)
+    diffuse(h, m, n, sigma, tau, s, w, P)
 
 
 @lean
-def arrived(y: Array, h: float, tau: float, s: Swell, n: int, z: Array) -> None:
-    """The state h later, its motion now y: lasting forces decay, the swell goes on in its cycle."""
+def arrived(y: Array, h: float, tau: float, s: Swell, w: Wander, m: int, n: int, z: Array) -> None:
+    """The state h later, its motion now y: lasting forces and errors decay, the swell goes on in its cycle."""
     for a in range(NY):
         z[a] = y[a]
     for a in range(NY, CALM):
         z[a] *= exp(-h / tau)
-    if n > CALM:
+    for a in range(m, n):
+        z[a] *= exp(-h / w.time)
+    if m > CALM:
         f11, f12, f21, f22, _, _ = oscillation(h, s)
-        for a in range(CALM, n, 2):
+        for a in range(CALM, m, 2):
             z[a], z[a + 1] = f11 * z[a] + f12 * z[a + 1], f21 * z[a] + f22 * z[a + 1]
 
 
@@ -238,10 +267,10 @@ def kalman(
     k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)
     constants(body, p, on, k)
     settle(commands[0], memory, p, on, act)
-    s, lateness = swell(p, on), late(p, on)
-    n = NZ if s.frequency > 0.0 else CALM
+    s, w, lateness = swell(p, on), wander(p, on), late(p, on)
+    m, n = sizes(s, w)
     z, P = np.zeros(NZ), np.zeros((NZ, NZ))
-    begin(z0, P0, n, s, z, P)
+    begin(z0, P0, m, n, s, w, z, P)
     undistorted(z, p, on)
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
     y, force, Ph, H = np.zeros(NY), np.zeros(NQ), np.zeros(NZ), np.zeros((len(codes), NY))
@@ -253,7 +282,7 @@ def kalman(
         copy_square(P, covariances[0], NZ)
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
-        felt(z, h, s, n, y, force)
+        felt(z, h, s, m, y, force)
         held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, force, act)
         if full:  # linearised about the state before, with the actuators of this interval
             if fresh:
@@ -261,8 +290,8 @@ def kalman(
                 copy_square(F, linear[i], CALM)
             else:
                 copy_square(linear[i], F, CALM)
-            spread(F, h, tau, s, n, sigma, P, work2)
-        arrived(y, h, tau, s, n, z)
+            spread(F, h, tau, s, w, m, n, sigma, P, work2)
+        arrived(y, h, tau, s, w, m, n, z)
         if keep:
             copy(z, predicted[i])
             copy_square(F, transitions[i], NZ)
@@ -273,8 +302,12 @@ def kalman(
                 scale[i, c] = white[i, c] = 0.0
                 continue
             error = measured[i, c] - observe(z, codes[c], H[c], row, p, on)
+            own = np.int64(-1)
+            if n > m and codes[c] < NQ:
+                own = m + codes[c]
+                error -= z[own]
             likelihood += take(
-                error, row, noise[c], full, outliers[c:], z, P, Ph, n, NY, gains[i, c], scale[i, c:], white[i, c:]
+                error, row, noise[c], full, outliers[c:], z, P, Ph, n, NY, own, gains[i, c], scale[i, c:], white[i, c:]
             )
         if keep:
             copy(z, means[i])
@@ -288,15 +321,15 @@ def smooth(
     tau: float, p: Array, on: Any,
 ) -> None:  # fmt: skip
     """Rauch-Tung-Striebel smoother, in place on means (N, n) and covariances (N, n, n); fills its gains (N, n, n)."""
-    s = swell(p, on)
-    n = NZ if s.frequency > 0.0 else CALM
+    s, w = swell(p, on), wander(p, on)
+    m, n = sizes(s, w)
     ahead, cross, G, work = np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
     off = np.zeros(NZ)
     for i in range(len(times) - 2, -1, -1):
         multiply(transitions[i + 1], covariances[i], cross, n)  # F P
         copy_square(covariances[i], ahead, n)
         carry(transitions[i + 1], ahead, work, n)
-        diffuse(times[i + 1] - times[i], n, sigma, tau, s, ahead)
+        diffuse(times[i + 1] - times[i], m, n, sigma, tau, s, w, ahead)
         for j in range(n):
             ahead[j, j] *= 1.0 + 1e-9  # positions and rates are driven through the force alone: keep it invertible
             ahead[j, j] += 1e-18

@@ -6,12 +6,13 @@ cosine and sine of those that are angles, HELD numbers each at begin, middle and
 
 from typing import Any
 
-from boatsim.physics.signals import Array, Motion, Shown, Swell, Wrench
+from boatsim.physics.signals import Array, Motion, Shown, Swell, Wander, Wrench
 
 HELD = 0
 MEMORY = 1  # floats that all channels together remember
 HAS_PAUSE = False  # whether the signal of any channel may jump or bend while its command is held
 HAS_SWELL = False  # whether any effect of the vessel is a swell
+HAS_WANDER = False  # whether the error of any instrument wanders
 
 
 def wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
@@ -56,4 +57,9 @@ def late(p: Array, on: Any) -> float:
 
 def swell(p: Array, on: Any) -> Swell:
     """The random oscillating force that acts; frequency 0: none."""
+    raise NotImplementedError
+
+
+def wander(p: Array, on: Any) -> Wander:
+    """The slowly varying error of the instruments; zeros: none."""
     raise NotImplementedError

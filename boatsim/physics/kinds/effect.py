@@ -39,11 +39,13 @@ class Effect(Checked):
     strength: ClassVar[tuple[str, ...]] = ()  # parameters that say how strong it is; empty: all that may be fitted
     facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # fact in a recording's notes -> the parameters it states
     starts: ClassVar[tuple[Mapping[str, float], ...]] = ()  # where a fit starts; empty: a tenth of each spread
+    thresholds: ClassVar[Mapping[str, tuple[float, ...]]] = {}  # parameter -> starts in largest commands recorded
     roles: ClassVar[Mapping[str, Role]] = {}  # signals its law takes as its third argument, each with a channel
     stage: ClassVar[int] = 0  # those of a lower one come first in the program; else the order is that of the files
     needs: ClassVar[tuple[str, ...]] = ()  # freedoms without which it can not act, besides those of its parameters
     ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}  # fact -> what it must say for the effect not to act
     told_by: ClassVar[tuple[str, ...]] = ()  # entries that show the same: it is tried only where somebody asks for it
+    random: ClassVar[bool] = False  # only its spectrum can be fitted: the filter follows its course, a free run can not
     alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
     rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
 

@@ -21,8 +21,8 @@ class Measurement(Kind):
     """
 
     kind: ClassVar[str] = "measurement"
-    parts: ClassVar = (SHOWN, DISTORTED, LATE)
-    laws: ClassVar = ("shown", "late")
+    parts: ClassVar[tuple[Part, ...]] = (SHOWN, DISTORTED, LATE)
+    laws: ClassVar[tuple[str, ...]] = ("shown", "late")
     of_columns: ClassVar[tuple[str, ...]] = ()  # recorded columns in which it shows, any of them
     shown: ClassVar[Callable[..., Shown] | None] = None
     late: ClassVar[Callable[..., float] | None] = None

@@ -19,6 +19,7 @@ class Unsteady(Force):
     instead and silences the law by setting the parameter `realisation` to 0.
     """
 
+    random: ClassVar[bool] = True
     parts: ClassVar = (SWELL,)
     laws: ClassVar[tuple[str, ...]] = ("law", "swell")
     swell: ClassVar[Callable[..., Swell]]
