@@ -1,6 +1,7 @@
 """What `boatsim diagnose`, `replay` and `compare` do: files in, files and a few printed lines out."""
 
 import json
+import logging
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -39,6 +40,7 @@ def diagnose(
     without: list[str], horizon: float | None = None,
 ) -> int:  # fmt: skip
     """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
+    _show_progress()
     found = analyse(runs, hold_out, vessel, load, library, without, horizon)
     _say(found.remarks)
     write(found, out)
@@ -48,6 +50,13 @@ def diagnose(
     files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *plan, "diagnosis.rrd"]
     print(f"written to {out}: {', '.join(files)}")
     return 0
+
+
+def _show_progress() -> None:
+    """What is being tried and the best so far, to stderr."""
+    progress = logging.getLogger("boatsim.diagnose")
+    progress.handlers = [logging.StreamHandler()]
+    progress.setLevel(logging.INFO)
 
 
 def _say(remarks: Sequence[str]) -> None:

@@ -208,8 +208,8 @@ def _findings(
     }
     held_out = tuple(t.name for t in unseen)
     return Findings(
-        compose(problem, ranking, forces, stretches, held_out, horizon, experiment.entry(plan, NEXT)), vessel.name,
-        tuple(t.name for t in problem.tracks), held_out, note, missing, tuple(stretches),
+        compose(problem, ranking, forces, left, stretches, held_out, horizon, experiment.entry(plan, NEXT)),
+        vessel.name, tuple(t.name for t in problem.tracks), held_out, note, missing, tuple(stretches),
         tuple(show.remarks(parts, problem.tracks, errors(stretches), ranking)), coefficients,
         (table,) if table[2] else (), meanings(problem.program.suspects), experiment.steps(plan),
     )  # fmt: skip

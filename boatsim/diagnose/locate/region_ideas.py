@@ -151,8 +151,9 @@ def _thrust(factors: Array) -> str:
 
 
 def _play(factors: Array) -> str:
-    way = "stays behind" if factors[0] > 0 else "runs ahead"
-    return f"after the steering reverses, its angle {way} as with {abs(factors[0]):.2g} rad of play"
+    if factors[0] < 0:
+        return f"after the steering reverses, its angle is ahead by {-factors[0]:.2g} rad, which no play explains"
+    return f"after the steering reverses, its angle stays behind as with {factors[0]:.2g} rad of play"
 
 
 def _near(reach: float) -> Callable[[Array], str]:

@@ -16,6 +16,7 @@ from boatsim.physics.base import Array
 
 BAND = 1.26  # upper over lower end of a band: a third of an octave
 NEIGHBOURS = 2  # bands on either side that a peak is compared with
+ROWS_A_PERIOD = 5.0  # that a rhythm must have to be told from errors that differ from row to row
 FEWEST = 3  # periodogram ordinates that a band must hold
 
 
@@ -56,5 +57,7 @@ def _stands_out(here: Array, below: Array, above: Array) -> float:
 def _periodogram(t: Array, errors: Array) -> tuple[Array, Array]:
     """Frequencies (F,) [Hz] and ordinates (F, C), without zero, the highest and the first row (no prediction)."""
     errors = errors[1:] / np.maximum(np.sqrt(np.mean(errors[1:] ** 2, axis=0)), 1e-300)
-    frequency = np.asarray(np.fft.rfftfreq(len(errors), float(np.median(np.diff(t)))), dtype=np.float64)
-    return frequency[1:-1], np.asarray(np.abs(np.fft.rfft(errors, axis=0)[1:-1]) ** 2, dtype=np.float64)
+    step = float(np.median(np.diff(t)))
+    frequency = np.asarray(np.fft.rfftfreq(len(errors), step), dtype=np.float64)
+    seen = slice(1, max(1, min(len(frequency) - 1, int(np.searchsorted(frequency, 1.0 / (ROWS_A_PERIOD * step))))))
+    return frequency[seen], np.asarray(np.abs(np.fft.rfft(errors, axis=0)[seen]) ** 2, dtype=np.float64)

@@ -26,6 +26,7 @@ from boatsim.physics.base import Effect
 
 ONE_SIDED_95 = 1.645  # [sd]
 SHAPE = 0.05  # nature's law is never quite the entry's: an sd holds this share of what was found [rad for directions]
+AT_BOUND = 1e-3  # of a bound: a value this near to it is at it
 TOLD = 0.5  # a fitted sd above this share of the prior one means that the data say nothing
 
 
@@ -33,6 +34,7 @@ def compose(
     problem: Problem,
     ranking: Ranking,
     forces: Sequence[locate.Force],
+    left: Sequence[locate.Force],
     stretches: Sequence[FreeRun],
     held_out: Sequence[str],
     horizon: float,
@@ -66,6 +68,8 @@ def compose(
         "next_experiment": wanted,
         "patch": "patched.toml",
     }
+    if ranking.unknown:
+        answer["unknown"]["rest"] = locate.strength(problem, left)
     answer["sentence"] = report_words.sentence(answer, meanings(problem.program.suspects))
     return answer
 
@@ -107,7 +111,7 @@ def _effect(problem: Problem, best: Fit, named: Named) -> EffectEntry:
         "kind": kind.kind,
         "probability": round(named.probability, 4),
         "gain_nats": round(named.gain, 2),
-        "words": kind.words,
+        "words": _words(best, effect),
         "tied_with": [called(n) for n in named.tied_with],
         "parameters": {
             key_of(f.name, kind.params()[f.name].unit): _parameter(best, effect, f.name)
@@ -115,6 +119,15 @@ def _effect(problem: Problem, best: Fit, named: Named) -> EffectEntry:
             if f.effect == named.name and not f.relative
         },
     }
+
+
+def _words(best: Fit, effect: Effect) -> str:
+    """What an effect says; the other way round where what it takes away was added."""
+    kind = type(effect)
+    if not kind.words_above:
+        return kind.words
+    strength = next(f for f in best.free if f.effect == effect.name and not f.relative)
+    return kind.words_above if best.value(effect.name, strength.name)[0] > 1.0 else kind.words
 
 
 def _parameter(best: Fit, effect: Effect, name: str) -> ParameterEntry:
@@ -127,7 +140,12 @@ def _parameter(best: Fit, effect: Effect, name: str) -> ParameterEntry:
         sd = float(np.hypot(sd, SHAPE * strength))
     elif about.unit == "rad":
         sd = float(np.hypot(sd, SHAPE))
-    return {"value": wrap(value) if about.unit == "rad" else value, "sd": sd, "unit": about.unit}
+    shown = wrap(value) if about.unit == "rad" else value
+    entry: ParameterEntry = {"value": shown, "sd": sd, "unit": about.unit}
+    ends = [end for end in (about.low, about.high) if end != about.absent]
+    if any(abs(value - end) <= AT_BOUND * abs(end) for end in ends):
+        entry["at_bound"] = True
+    return entry
 
 
 def _candidates(ranking: Ranking) -> list[CandidateEntry]:

@@ -11,6 +11,7 @@ class ParameterEntry(TypedDict):
     value: float
     sd: float
     unit: str
+    at_bound: NotRequired[bool]  # as far as the entry allows: the data may want more
 
 
 class Acting(TypedDict, total=False):
@@ -36,6 +37,7 @@ class UnknownEntry(TypedDict):
 
     flag: bool
     gain_nats: float
+    rest: NotRequired[dict[str, "StrengthEntry"]]  # force that the named effects leave over, where something is missing
 
 
 class CandidateEntry(TypedDict):

@@ -6,7 +6,7 @@ from pathlib import Path
 from boatsim.diagnose.report.blocks import Section, as_text, safe
 from boatsim.diagnose.report.findings import Findings
 from boatsim.diagnose.report.sections import proof, sections_of
-from boatsim.diagnose.report.words import listed, sentence, tried
+from boatsim.diagnose.report.words import capital, listed, plain, sentence, tried
 from boatsim.files import replacing
 
 __all__ = ["sentence", "write"]
@@ -19,6 +19,7 @@ VERDICTS = {
 }
 
 
+LONG = 200  # characters from which a sentence is no headline
 UNTRIED = "Something missing, nothing tried"
 NOT_PHYSICS = "Measurement, not physics"  # if all that was named is of that kind
 
@@ -40,8 +41,8 @@ def page(findings: Findings, sections: Sequence[Section]) -> str:
     environment.filters["held"] = _held
     answer = findings.answer
     return environment.from_string(template).render(
-        f=findings, verdict=_verdict(findings), answer=answer, headline=_headline(findings), sections=sections,
-        proof=proof(findings), facts=_facts(findings),
+        f=findings, verdict=_verdict(findings), answer=answer, headline=_headline(findings),
+        sentence=_sentence(findings), sections=sections, proof=proof(findings), facts=_facts(findings),
     )  # fmt: skip
 
 
@@ -52,7 +53,9 @@ def _held(words: str) -> str:
 
 def markdown(findings: Findings, sections: Sequence[Section]) -> str:
     """The same as text."""
-    lines = [f"# {safe(_headline(findings))}", "", f"**{_verdict(findings)}.** {safe(proof(findings))}", ""]
+    title, whole = _headline(findings), _sentence(findings)
+    lines = [f"# {safe(title)}", "", *([safe(whole), ""] if whole != title else [])]
+    lines += [f"**{_verdict(findings)}.** {safe(proof(findings))}", ""]
     lines += [f"- {name}: {safe(value)}" for name, value in _facts(findings)]
     for section in sections:
         lines += ["", f"## {section.title}"]
@@ -62,6 +65,16 @@ def markdown(findings: Findings, sections: Sequence[Section]) -> str:
 
 
 def _headline(f: Findings) -> str:
+    """The sentence of the answer, or the names alone where that would be a paragraph."""
+    said = _sentence(f)
+    names = [plain(e["name"]) for e in f.answer["effects"]]
+    if len(said) <= LONG or not names:
+        return said
+    rest = "; more is missing than these explain" if f.answer["verdict"] == "unknown" else ""
+    return f"{capital(listed(names))}{rest}."
+
+
+def _sentence(f: Findings) -> str:
     return str(f.answer["sentence"]) or sentence(f.answer, f.words)
 
 

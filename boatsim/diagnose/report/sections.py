@@ -33,6 +33,7 @@ from boatsim.diagnose.report.words import (
 )
 from boatsim.diagnose.search.rank import ALIKE, UNKNOWN, UNKNOWN_FACTOR
 
+INTERVALS = 24  # flagged ones that a table shows; diagnosis.json has all
 PICTURES = 6  # runs whose missing force is drawn; the strongest ones
 UNSEEN_PICTURES = 3  # unseen runs that are drawn
 RANKED = 8  # entries of the ranking, and of the limits, that are seen without asking for the rest
@@ -203,9 +204,12 @@ def _where(f: Findings) -> Iterator[Block]:
                 "they are not enough for a verdict: no entry explains them clearly better, and a cause outside the "
                 f"library would gain {nats(f.answer['unknown']['gain_nats'])} nats (said from {UNKNOWN:g} on)."
             )
-        rows = [[i["run"], i["axis"], f"{i['from_s']:.1f}", f"{i['to_s']:.1f}"] for i in where["intervals"]]
-        header = ["run", "axis", "from [s]", "to [s]"]
-        yield Table(f"All {len(rows)} flagged intervals", header, rows, (1,), folded=True)
+        every = where["intervals"]
+        longest = sorted(every, key=lambda i: i["from_s"] - i["to_s"])[:INTERVALS]
+        rows = [[i["run"], i["axis"], f"{i['from_s']:.1f}", f"{i['to_s']:.1f}"] for i in every if i in longest]
+        header, most = ["run", "axis", "from [s]", "to [s]"], f"The {len(rows)} longest of {len(every)}"
+        title = f"{'All ' + str(len(every)) if len(every) == len(rows) else most} flagged intervals"
+        yield Table(title, header, rows, (1,), folded=True)
 
 
 def _shares(f: Findings) -> dict[str, float]:

@@ -175,7 +175,7 @@ def parameters(effect: EffectEntry, words: Mapping[str, str]) -> str:
         if effect["kind"] == "measurement":  # "cos" says little, "error heading north" does
             name = words.get(f"{effect['name']}.{key}", name)
         if abs(p["value"]) > p["sd"] or "factor" in key:
-            found.append(f"{name} {text}")
+            found.append(f"{name} {text}{', as far as the entry goes' if p.get('at_bound') else ''}")
     return ", ".join(found[:MOST])
 
 
@@ -220,8 +220,8 @@ def _untried(answer: Answer) -> str:
 
 
 def _sizes(answer: Answer) -> str:
-    """How large what is missing is, per axis; in brackets."""
-    axes = answer["where"]["axes"]
+    """How large what nothing explains is, per axis; in brackets."""
+    axes = answer["unknown"].get("rest") or answer["where"]["axes"]
     sizes = [f"{quantity(a['rms'], a['unit'], digits=2)} rms in {axis}" for axis, a in axes.items()]
     return f" ({listed(sizes)})" if sizes else ""
 

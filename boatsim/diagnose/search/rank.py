@@ -1,5 +1,6 @@
 """Names what is missing: every suspect fitted in the filter, scored by evidence, selected forward, pruned backward."""
 
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -9,11 +10,13 @@ from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
 from boatsim.diagnose.free_runs import free_runs
 from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.library import called
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.screen import handed_over, joined, screen, starts
 from boatsim.diagnose.spread import widened
 
+progress = logging.getLogger("boatsim.diagnose")
 ODDS = 2.0  # log of the odds, seven to one, at which an effect is named, where each of those tried is as likely before
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
 CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
@@ -64,9 +67,12 @@ def rank(problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] 
     Where far more stays unexplained than an effect explains, the tool does not stand for that effect; nor does it where
     free runs over `unseen` recordings get worse by it.
     """
+    progress.info("fitting the vessel as written to %d recordings", len(problem.tracks))
     nominal, recalibrated = baseline(problem)
+    progress.info("trying %d entries of the library", len(candidates))
     search = _Search(problem, candidates, recalibrated)
     best, named = search.settled(search.selected(recalibrated))
+    progress.info("judging what is left over")
     while left_over(problem, best) > UNKNOWN and (little := search.dwarfed(best, named)):
         search.banned.add(little)
         best, named = search.settled(search.without(best, little))
@@ -128,6 +134,8 @@ class _Search:
                 break
             name = max(tried, key=lambda n: tried[n].evidence)
             best = self.pruned(self.converged(tried[name]))
+            gain = best.evidence - self.base.evidence
+            progress.info("best so far: %s (%.0f nats)", ", ".join(map(called, best.suspects)), gain)
         return best
 
     @staticmethod

@@ -27,5 +27,5 @@ class CameraScale(Measurement):
     shown_by: ClassVar[str] = "the same straight run along x and along y"
     shown: ClassVar = shown
 
-    x_fraction: float = param(0.0, low=-0.4, high=0.4, unit="", words="x too long by", fit=True, spread=0.1)
-    y_fraction: float = param(0.0, low=-0.4, high=0.4, unit="", words="y too long by", fit=True, spread=0.1)
+    x_fraction: float = param(0.0, low=-0.4, high=0.4, unit="", words="x off by", fit=True, spread=0.1)
+    y_fraction: float = param(0.0, low=-0.4, high=0.4, unit="", words="y off by", fit=True, spread=0.1)

@@ -42,6 +42,6 @@ HeadingOffset = preset(
     words="the recorded heading is off by a constant angle (not physics)",
     shown_by="a straight run ahead followed by one astern",
     source="compass or marker mounted askew, declination not applied",
-    frees={"offset": {"words": "heading too large by", "spread": 0.1}},
+    frees={"offset": {"words": "heading off by", "spread": 0.1}},
     fixed={"cos": 0.0, "sin": 0.0},
 )

@@ -26,6 +26,7 @@ class WeakReverse(Channel):
     """Astern thrust is a fraction of what was commanded."""
 
     words: ClassVar[str] = "the propellers push less astern than commanded"
+    words_above: ClassVar[str] = "the propellers push more astern than commanded"
     shown_by: ClassVar[str] = "turning on the spot or swaying with one motor astern"
     source: ClassVar[str] = "J. A. Bayless 2017, Appendix H (motor calibration 0.70)"
     acts_on: ClassVar[str] = "thrust"

@@ -200,8 +200,11 @@ def begin(z0: Array, P0: Array, m: int, n: int, s: Swell, w: Wander, z: Array, P
     for a in range(CALM):
         z[a] = z0[a]
     copy_square(P0, P, CALM)
-    for j in range(n - m):
-        P[m + j, m + j] = wandering(w, j) ** 2
+    for j in range(n - m):  # the first fix was off by an error as large as any: the boat is the other way by as much
+        variance = wandering(w, j) ** 2
+        P[m + j, m + j] = variance
+        P[j, j] += variance
+        P[j, m + j] = P[m + j, j] = -variance
     if m > CALM:
         for j in range(NQ):
             P[CALM + 2 * j, CALM + 2 * j] = s[FREE[j]] ** 2

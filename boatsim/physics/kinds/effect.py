@@ -33,6 +33,7 @@ class Effect(Checked):
     """One instance of an idea on a vessel. Subclasses are of one or several of the kinds in this folder."""
 
     words: ClassVar[str] = ""  # the sentence a report prints: "a steady wind pushes the hull downwind ..."
+    words_above: ClassVar[str] = ""  # the same where the factor by which it weakens is above one
     shown_by: ClassVar[str] = ""  # the manoeuvre that shows it best
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law
