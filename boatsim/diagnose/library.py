@@ -113,7 +113,7 @@ def lacking(kind: type[Effect], vessel: Vessel, facts: Mapping[str, object], tab
     except BadInput as error:
         return str(error).removeprefix(f"{vessel.name}: ")
     if isinstance(found, Channel) and not vessel.targets(found):
-        return f"no command of {type(found).acts_on or 'any kind'}"
+        return f"no command of {type(found).acts_on.replace('|', ' or ') or 'any kind'}"
     if isinstance(found, Release) and all(c.weight == 0.0 for c in found.changes(vessel)):
         return "none of the numbers it releases"
     return ""

@@ -202,7 +202,8 @@ class Vessel:
             return ()
         if effect.on:
             return tuple(n for n in self.actuators if n in effect.on)
-        return tuple(n for n in self.actuators if type(effect).acts_on in ("", self.roles[n]))
+        roles = type(effect).acts_on.split("|")
+        return tuple(n for n in self.actuators if roles == [""] or self.roles[n] in roles)
 
     def feeder(self, effect: Effect, actuator: str) -> str | None:
         """The command that feeds an actuator through a channel effect: its `fed_by` in the actuator's place."""

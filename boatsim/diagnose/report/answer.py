@@ -50,7 +50,11 @@ def compose(
         "seconds": 0.0,
         "version": __version__,
         "effects": effects,
-        "unknown": {"flag": ranking.unknown, "gain_nats": round(ranking.left_over, 3)},
+        "unknown": {
+            "flag": ranking.unknown,
+            "gain_nats": round(ranking.left_over, 3),
+            "told_from_nats": round(ranking.told_from, 3),
+        },
         "candidates": _candidates(ranking),
         "upper_limits": {called(name): _limits(problem, fitted, name) for name, fitted in ranking.last.items()},
         "where": {

@@ -37,6 +37,7 @@ class UnknownEntry(TypedDict):
 
     flag: bool
     gain_nats: float
+    told_from_nats: float  # the gain from which it is flagged: more where entries explained much
     rest: NotRequired[dict[str, "StrengthEntry"]]  # force that the named effects leave over, where something is missing
 
 

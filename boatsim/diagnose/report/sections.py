@@ -31,7 +31,7 @@ from boatsim.diagnose.report.words import (
     spread,
     tried,
 )
-from boatsim.diagnose.search.rank import ALIKE, UNKNOWN, UNKNOWN_FACTOR
+from boatsim.diagnose.search.rank import ALIKE, UNKNOWN_FACTOR
 
 INTERVALS = 24  # flagged ones that a table shows; diagnosis.json has all
 PICTURES = 6  # runs whose missing force is drawn; the strongest ones
@@ -141,7 +141,7 @@ def _what(f: Findings) -> Iterator[Block]:
         yield Heading("Something that no entry of the library explains", f"gain {nats(unknown['gain_nats'])} nats")
         yield Text(
             f"After the best set of entries, a random force of {UNKNOWN_FACTOR:g} times the tolerated size is not "
-            f"enough: the recordings call for more, by {nats(unknown['gain_nats'])} nats (said from {UNKNOWN:g} on). "
+            f"enough: the recordings call for more, by {nats(unknown['gain_nats'])} nats (said from {nats(unknown['told_from_nats'])} on). "
             "Where and when it acts is shown below."
         )
     elif not f.answer["effects"]:
@@ -202,7 +202,7 @@ def _where(f: Findings) -> Iterator[Block]:
             yield Text(
                 "Stretches are flagged one by one, wherever the force leaves what the vessel file tolerates. Together "
                 "they are not enough for a verdict: no entry explains them clearly better, and a cause outside the "
-                f"library would gain {nats(f.answer['unknown']['gain_nats'])} nats (said from {UNKNOWN:g} on)."
+                f"library would gain {nats(f.answer['unknown']['gain_nats'])} nats (said from {nats(f.answer['unknown']['told_from_nats'])} on)."
             )
         every = where["intervals"]
         longest = sorted(every, key=lambda i: i["from_s"] - i["to_s"])[:INTERVALS]

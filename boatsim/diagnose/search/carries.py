@@ -6,8 +6,7 @@ import numpy as np
 
 from boatsim.diagnose.free_runs import FAMILIES, FreeRun
 
-SCATTER = 2.0  # standard errors of the mean by which a square error must have grown to count,
-WORSE = 1.05  # and the ratio of rms errors
+WORSE = 1.05  # ratio of rms errors from which they have grown
 
 
 def squares(stretches: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
@@ -22,11 +21,11 @@ def squares(stretches: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
     return found
 
 
-def grew(before: Mapping[str, Sequence[float]], after: Mapping[str, Sequence[float]]) -> bool:
-    """Whether the error of any family grew, by more than its scatter from run to run."""
+def grew(before: Mapping[str, Sequence[float]], after: Mapping[str, Sequence[float]], sure: float) -> bool:
+    """Whether the error of any family grew, by so many standard errors of its mean over the runs."""
     for family, old in before.items():
         rise = np.array(after[family]) - np.array(old)
-        scatter = SCATTER * rise.std(ddof=1) / np.sqrt(len(rise)) if len(rise) > 1 else 0.0
+        scatter = sure * rise.std(ddof=1) / np.sqrt(len(rise)) if len(rise) > 1 else 0.0
         if rise.mean() > max(scatter, (WORSE**2 - 1.0) * np.mean(old)):
             return True
     return False

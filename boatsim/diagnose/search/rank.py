@@ -23,12 +23,14 @@ CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
 HALF = 0.5  # and those with this share of its gain
 MANY = 6  # but no more of them than this
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
+SURE, SURE_RANDOM = 2.0, 1.0  # standard errors by which unseen errors must grow; a random force predicts nothing anyway
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
 RIVALS = 3  # fitted in the place of what was named
 UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
 WORTH = 4.0  # [nats] that an effect must gain by itself,
 DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
-UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library
+UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library,
+INEXACT = 0.05  # and so much of what was explained: nature's laws are never quite the entries'
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,12 @@ class Ranking:
     @property
     def unknown(self) -> bool:
         """Whether something is left that no entry of the library explains."""
-        return self.left_over > UNKNOWN
+        return self.left_over > self.told_from
+
+    @property
+    def told_from(self) -> float:
+        """What must be left over [nats] for something to be missing besides: a law is never quite that of its entry."""
+        return told_from(self.best.evidence - self.recalibrated.evidence)
 
 
 def rank(problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] = ()) -> Ranking:
@@ -73,7 +80,7 @@ def rank(problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] 
     search = _Search(problem, candidates, recalibrated)
     best, named = search.settled(search.selected(recalibrated))
     progress.info("judging what is left over")
-    while left_over(problem, best) > UNKNOWN and (little := search.dwarfed(best, named)):
+    while left_over(problem, best) > search.told_from(best) and (little := search.dwarfed(best, named)):
         search.banned.add(little)
         best, named = search.settled(search.without(best, little))
     while named and unseen and (worse := misled(problem, search, best, unseen)):
@@ -91,7 +98,8 @@ def misled(problem: Problem, search: "_Search", best: Fit, unseen: Sequence[Trac
     fits = {"none": search.base, "all": best} | {n: search.without(best, n) for n in best.suspects}
     first = free_runs(problem, {n: fits[n] for n in ("none", "all")}, unseen, horizon)
     none = carries.squares(first, "none")
-    if not none or not carries.grew(none, carries.squares(first, "all")):
+    sure = SURE_RANDOM if search.random & set(best.suspects) else SURE
+    if not none or not carries.grew(none, carries.squares(first, "all"), sure):
         return ""
     rest = free_runs(problem, {n: fits[n] for n in best.suspects}, unseen, horizon)
     return min(best.suspects, key=lambda n: carries.misfit(carries.squares(rest, n), none))
@@ -142,6 +150,10 @@ class _Search:
     def gained(tried: Mapping[str, Fit], best: Fit) -> float:
         """Nats that one of several entries gains on top of a set, whichever."""
         return together([f.evidence - best.evidence for f in tried.values()]) if tried else -np.inf
+
+    def told_from(self, best: Fit) -> float:
+        """What must be left over [nats] for something to be missing besides a set."""
+        return told_from(best.evidence - self.base.evidence)
 
     def converged(self, start: Fit) -> Fit:
         """The fit of a set, kept: made from `start` unless it was made before."""
@@ -255,6 +267,11 @@ def price(number: int) -> float:
     Before the data each is as likely as another, and one of them as likely to be there as none.
     """
     return ODDS + float(np.log(max(number, 1)))
+
+
+def told_from(explained: float) -> float:
+    """Nats left over from which something is missing that the library has not, where its entries explained so many."""
+    return UNKNOWN + INEXACT * max(explained, 0.0)
 
 
 def together(gains: Sequence[float]) -> float:

@@ -119,15 +119,24 @@ CubicDamping = preset(
 
 @dataclass(frozen=True)
 class DampingError(Release):
-    """Linear damping is off by more than its stated uncertainty."""
+    """Damping is off by more than its stated uncertainty: the linear one, or what a hull without has in its place."""
 
-    words: ClassVar[str] = "the linear damping coefficients are off by more than their stated uncertainty"
+    words: ClassVar[str] = "the damping coefficients are off by more than their stated uncertainty"
     shown_by: ClassVar[str] = "coasting down in each axis"
 
-    surge_factor: float = factor("linear_damping.surge", words="surge", axis="surge")
-    sway_factor: float = factor("linear_damping.sway", words="sway", axis="sway")
-    yaw_factor: float = factor("linear_damping.yaw", words="yaw", axis="yaw")
-    roll_factor: float = factor("linear_damping.roll", words="roll", axis="roll")
+    surge_factor: float = factor(
+        "linear_damping.surge|surge_drag.linear|approach_balance.damping|mmg_hull.R_0|abkowitz_hull.X_u",
+        "surge_drag.quadratic",
+        words="surge", axis="surge",
+    )  # fmt: skip
+    sway_factor: float = factor(
+        "linear_damping.sway|linear_hull.sway|mmg_hull.Y_v|abkowitz_hull.Y_v|cross_flow_drag.section_drag_coefficient",
+        words="sway", axis="sway",
+    )  # fmt: skip
+    yaw_factor: float = factor(
+        "linear_damping.yaw|linear_hull.yaw|mmg_hull.N_r|abkowitz_hull.N_r", words="yaw", axis="yaw"
+    )
+    roll_factor: float = factor("linear_damping.roll|roll_damping.roll", words="roll", axis="roll")
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,8 @@ from numba import njit
 from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 from boatsim.physics.effects.mmg_propeller import drift_angle, inflow, open_water
 
+NEVER = pi  # [rad] any angle of attack
+
 
 @njit(inline="always")
 def race(m: Any, q: Any, shaft: float) -> float:
@@ -24,7 +26,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     """Force normal to the blade; hull and propeller straighten the flow that meets it."""
     across = sqrt(m.ur * m.ur + m.vr * m.vr) * drift_angle(m) - q.flow_at * m.r * q.length  # U beta_R
     along, across = race(m, q, s.shaft), across * (q.straightening_port if across > 0.0 else q.straightening_starboard)
-    attack = s.angle - atan2(across, along)
+    attack = min(max(s.angle - atan2(across, along), -q.stall), q.stall)
     F = 0.5 * q.gain * q.density * q.area * q.slope * (along * along + across * across) * sin(attack)
     lever = (q.rudder_at + q.hull_share * q.hull_at) * q.length  # [m]
     return wrench(
@@ -75,3 +77,4 @@ class MmgRudder(Force):
     straightening_starboard: float = param(1.0, low=0.0, high=2.0, unit="", words="gamma_R for water from starboard")
     epsilon: float = param(1.0, low=0.0, high=3.0, unit="", words="wake at the rudder over wake at the propeller")
     kappa: float = param(0.5, low=0.0, high=2.0, unit="", words="share of the race's speed that reaches the rudder")
+    stall: float = param(NEVER, low=0.02, high=NEVER, unit="rad", words="angle of attack at which F_N stops growing")

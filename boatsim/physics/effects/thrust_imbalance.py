@@ -22,7 +22,7 @@ class ThrustImbalance(Channel):
 
     words: ClassVar[str] = "one side pushes harder than the other for the same command"
     shown_by: ClassVar[str] = "straight runs ahead and astern with equal commands"
-    acts_on: ClassVar[str] = "thrust"
+    acts_on: ClassVar[str] = "thrust|shaft"
     stage: ClassVar[int] = DEEDS
     channel: ClassVar = channel
 

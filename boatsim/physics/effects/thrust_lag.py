@@ -47,7 +47,7 @@ class ThrustLag(Channel):
 
     words: ClassVar[str] = "thrust builds up with a lag behind its command"
     shown_by: ClassVar[str] = "quick steps of the thrust"
-    acts_on: ClassVar[str] = "thrust"
+    acts_on: ClassVar[str] = "thrust|shaft"
     slots: ClassVar[int] = 1
     channel: ClassVar = channel
     pause: ClassVar = pause

@@ -47,4 +47,7 @@ class ThrustGainError(Release):
     words: ClassVar[str] = "all thrust is stronger or weaker than stated by one factor"
     shown_by: ClassVar[str] = "runs at several thrust levels"
 
-    factor: float = factor("thruster.gain", words="thrust per stated thrust", spread=0.3, low=0.2, high=3.0)
+    factor: float = factor(
+        "thruster.gain", "propeller.gain", "mmg_propeller.gain", "water_jet.gain",
+        words="thrust per stated thrust", spread=0.3, low=0.2, high=3.0,
+    )  # fmt: skip

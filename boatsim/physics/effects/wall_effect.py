@@ -55,9 +55,9 @@ class WallEffect(Force):
     x_high: float = param(UNSET, low=-1e5, high=1e5, unit="m", words="at its high end")
     y_low: float = param(UNSET, low=-1e5, high=1e5, unit="m", words="wall across the y axis, at its low end")
     y_high: float = param(UNSET, low=-1e5, high=1e5, unit="m", words="at its high end")
-    surge: float = param(UNSET, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.surge")
-    sway: float = param(UNSET, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.sway")
-    yaw: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
+    surge: float = param(UNSET, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.surge?")
+    sway: float = param(UNSET, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.sway?")
+    yaw: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw?")
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """The reach by the boat's length."""

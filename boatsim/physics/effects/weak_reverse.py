@@ -29,7 +29,7 @@ class WeakReverse(Channel):
     words_above: ClassVar[str] = "the propellers push more astern than commanded"
     shown_by: ClassVar[str] = "turning on the spot or swaying with one motor astern"
     source: ClassVar[str] = "J. A. Bayless 2017, Appendix H (motor calibration 0.70)"
-    acts_on: ClassVar[str] = "thrust"
+    acts_on: ClassVar[str] = "thrust|shaft"
     stage: ClassVar[int] = DEEDS
     channel: ClassVar = channel
 

@@ -55,7 +55,7 @@ class Channel(Kind):
 
     parts: ClassVar = (ACTUATE, PAUSE)
     laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes")
-    acts_on: ClassVar[str] = "thrust"  # role of the signals it acts on where `on` names none; "": every actuator
+    acts_on: ClassVar[str] = "thrust"  # roles (a|b) of the signals it acts on where `on` names none; "": all
     slots: ClassVar[int] = 0
     pause: ClassVar[Callable[..., float] | None] = None
     passes: ClassVar[Callable[..., float] | None] = None

@@ -22,6 +22,12 @@ class Change(NamedTuple):
         return stated + self.weight * value if self.how == "shifts" else value
 
 
+def _there(places: str, vessel: Boat) -> list[str]:
+    """Of places that say the same of different hulls, `a.key|b.key`, the first that the vessel has."""
+    owners = ((place, place.partition(".")[0]) for place in places.split("|"))
+    return [place for place, owner in owners if owner == "body" or vessel.known_as(owner)][:1]
+
+
 @dataclass(frozen=True)
 class Release(Effect):
     """A suspicion that stated numbers of the vessel are off: no law of its own, the vessel's own effects feel it.
@@ -34,7 +40,7 @@ class Release(Effect):
         """What it does to the numbers that the vessel has."""
         found, weights = [], self.weights(vessel)
         for name, about in type(self).params().items():
-            for place in about.releases:
+            for place in (p for places in about.releases for p in _there(places, vessel)):
                 owner, _, key = place.partition(".")
                 instances = ["body"] if owner == "body" else vessel.known_as(owner)
                 found += [Change(name, one, key, about.how, weights.get(place, 1.0)) for one in instances]
@@ -48,5 +54,5 @@ class Release(Effect):
         """Raises BadInput where the vessel has none of the numbers."""
         if not self.changes(vessel):
             places = (p for about in type(self).params().values() for p in about.releases)
-            self.needed(vessel, next(places).partition(".")[0])
+            self.needed(vessel, " or ".join(dict.fromkeys(p.partition(".")[0] for p in next(places).split("|"))))
         return super().completed(vessel)
