@@ -171,7 +171,7 @@ def rolling() -> Findings:
              "tied_with": [], "words": "the righting arm bends with heel",
              "parameters": {"cubic": {"value": -0.381, "sd": 0.0217, "unit": ""}}},
         ],
-        "unknown": {"flag": False, "gain_nats": 0.0},
+        "unknown": {"flag": False, "gain_nats": 0.0, "told_from_nats": 6.0},
         "candidates": [{"name": "quadratic_damping", "gain_nats": 812.0, "probability": 0.99994},
                        {"name": "cubic_damping", "gain_nats": 788.0, "probability": 2.9e-5},
                        {"name": "righting_arm_stiffening", "gain_nats": 196.0, "probability": 1e-90},

@@ -141,7 +141,8 @@ def _what(f: Findings) -> Iterator[Block]:
         yield Heading("Something that no entry of the library explains", f"gain {nats(unknown['gain_nats'])} nats")
         yield Text(
             f"After the best set of entries, a random force of {UNKNOWN_FACTOR:g} times the tolerated size is not "
-            f"enough: the recordings call for more, by {nats(unknown['gain_nats'])} nats (said from {nats(unknown['told_from_nats'])} on). "
+            f"enough: the recordings call for more, by {nats(unknown['gain_nats'])} nats (said from "
+            f"{nats(unknown['told_from_nats'])} on: more where entries explain much, for no law is quite nature's). "
             "Where and when it acts is shown below."
         )
     elif not f.answer["effects"]:
@@ -197,12 +198,13 @@ def _where(f: Findings) -> Iterator[Block]:
             yield Text("These forces are not real: they are what the error of measurement looks like.")
     if f.missing:
         yield from _missing_figures(f)
+    unknown = f.answer["unknown"]
     if where["intervals"]:
         if f.answer["verdict"] == "nothing_missing":
             yield Text(
                 "Stretches are flagged one by one, wherever the force leaves what the vessel file tolerates. Together "
                 "they are not enough for a verdict: no entry explains them clearly better, and a cause outside the "
-                f"library would gain {nats(f.answer['unknown']['gain_nats'])} nats (said from {nats(f.answer['unknown']['told_from_nats'])} on)."
+                f"library would gain {nats(unknown['gain_nats'])} nats (said from {nats(unknown['told_from_nats'])} on)."
             )
         every = where["intervals"]
         longest = sorted(every, key=lambda i: i["from_s"] - i["to_s"])[:INTERVALS]
