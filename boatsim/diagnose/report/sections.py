@@ -204,7 +204,7 @@ def _where(f: Findings) -> Iterator[Block]:
             yield Text(
                 "Stretches are flagged one by one, wherever the force leaves what the vessel file tolerates. Together "
                 "they are not enough for a verdict: no entry explains them clearly better, and a cause outside the "
-                f"library would gain {nats(unknown['gain_nats'])} nats (said from {nats(unknown['told_from_nats'])} on)."
+                f"library would gain {nats(unknown['gain_nats'])} nats (told from {nats(unknown['told_from_nats'])})."
             )
         every = where["intervals"]
         longest = sorted(every, key=lambda i: i["from_s"] - i["to_s"])[:INTERVALS]
