@@ -60,12 +60,12 @@ class Ranking:
     @property
     def unknown(self) -> bool:
         """Whether something is left that no entry of the library explains."""
-        return self.left_over > self.told_from
+        return bool(self.left_over > self.told_from)
 
     @property
     def told_from(self) -> float:
         """What must be left over [nats] for something to be missing besides: a law is never quite that of its entry."""
-        return told_from(self.best.evidence - self.recalibrated.evidence)
+        return told_from(float(self.best.evidence - self.recalibrated.evidence))
 
 
 def rank(problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] = ()) -> Ranking:
@@ -153,7 +153,7 @@ class _Search:
 
     def told_from(self, best: Fit) -> float:
         """What must be left over [nats] for something to be missing besides a set."""
-        return told_from(best.evidence - self.base.evidence)
+        return told_from(float(best.evidence - self.base.evidence))
 
     def converged(self, start: Fit) -> Fit:
         """The fit of a set, kept: made from `start` unless it was made before."""
