@@ -259,7 +259,7 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
     for name in ("diagnose", "replay", "compare"):
         monkeypatch.setattr(f"boatsim.cli.diagnosis.{name}", fake)
     boat = ["--vessel", "trial_boat", "--load", "heavy,wide", "--out", "o"]
-    kept = ["--hold-out", "c.csv", "--library", "wind", "--library", "own.py", "--without", "current"]
+    kept = ["--hold-out", "c.csv", "--library", "wind", "--library", "own.py", "--without", "current", "--horizon", 3]
     assert boatsim("diagnose", "a.csv", "b.csv", *boat, *kept).exit_code == 0
     assert (
         boatsim("replay", "a.csv", *boat).exit_code == boatsim("replay", "a.csv", *boat, "--horizon", 4).exit_code == 0
@@ -267,7 +267,7 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
     assert boatsim("compare", "a.csv", "--scenario", "s.toml", "--out", "o").exit_code == 0
     a, load, out = Path("a.csv"), ["heavy", "wide"], Path("o")
     assert asked == [
-        ([a, Path("b.csv")], [Path("c.csv")], "trial_boat", load, out, ["wind", "own.py"], ["current"]),
+        ([a, Path("b.csv")], [Path("c.csv")], "trial_boat", load, out, ["wind", "own.py"], ["current"], 3.0),
         (a, "trial_boat", load, 6.0, out),
         (a, "trial_boat", load, 4.0, out),
         (a, None, [], "s.toml", out),

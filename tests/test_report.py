@@ -81,7 +81,7 @@ def planar_answer(intervals: list[IntervalEntry]) -> Answer:
             "words": "the propellers push less astern than commanded", "tied_with": ["prop_walk"],
             "parameters": {"astern_factor": {"value": 0.6943, "sd": 0.0118, "unit": ""}},
         }],
-        "unknown": {"flag": False, "gain_nats": 1.21},
+        "unknown": {"flag": False, "gain_nats": 1.21, "told_from_nats": 6.0},
         "candidates": [
             {"name": n, "gain_nats": g, "probability": p}
             for n, g, p in (
@@ -211,7 +211,11 @@ def nothing() -> Findings:
 def unknown() -> Findings:
     """A cause outside the library."""
     f = nothing()
-    answer = f.answer | {"verdict": "unknown", "unknown": {"flag": True, "gain_nats": 37.4}, "fit": {}}
+    answer = f.answer | {
+        "verdict": "unknown",
+        "unknown": {"flag": True, "gain_nats": 37.4, "told_from_nats": 6.0},
+        "fit": {},
+    }
     answer["sentence"] = report.sentence(answer)
     return replace(f, answer=answer, free_runs=(), held_out=(), held_out_note="")
 
@@ -388,7 +392,9 @@ MISSING = "Something is missing that no entry of the library explains (0.21 N rm
 )  # fmt: skip
 def test_every_verdict_is_one_sentence(verdict, effects, text):
     where = {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}}
-    answer = {"verdict": verdict, "effects": effects, "where": where, "candidates": [{"name": "wind"}]}
+    answer = {
+        "verdict": verdict, "effects": effects, "where": where, "candidates": [{"name": "wind"}], "unknown": {},
+    }  # fmt: skip
     assert report.sentence(answer, MEANT) == text
 
 
@@ -404,7 +410,7 @@ def test_every_verdict_is_one_sentence(verdict, effects, text):
 )
 def test_a_diagnosis_with_nothing_to_try_says_so(verdict: str, begins: str) -> None:
     where = {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}}
-    said = report.sentence({"verdict": verdict, "effects": [], "where": where, "candidates": []})
+    said = report.sentence({"verdict": verdict, "effects": [], "where": where, "candidates": [], "unknown": {}})
     assert said == f"{begins}(facts or the vessel's reasons leave every entry out)."
 
 

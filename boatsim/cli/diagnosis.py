@@ -53,7 +53,9 @@ def diagnose(
 
 
 def _show_progress() -> None:
-    """What is being tried and the best so far, to stderr."""
+    """What is being tried and the best so far, to whoever watches: to stderr, if that is a terminal."""
+    if not sys.stderr.isatty():
+        return
     progress = logging.getLogger("boatsim.diagnose")
     progress.handlers = [logging.StreamHandler()]
     progress.setLevel(logging.INFO)

@@ -6,6 +6,7 @@ import numpy as np
 
 from boatsim.diagnose.free_runs import FAMILIES, FreeRun
 
+FEWEST = 3  # free runs from which their scatter is known
 WORSE = 1.05  # ratio of rms errors from which they have grown
 
 
@@ -25,7 +26,9 @@ def grew(before: Mapping[str, Sequence[float]], after: Mapping[str, Sequence[flo
     """Whether the error of any family grew, by so many standard errors of its mean over the runs."""
     for family, old in before.items():
         rise = np.array(after[family]) - np.array(old)
-        scatter = sure * rise.std(ddof=1) / np.sqrt(len(rise)) if len(rise) > 1 else 0.0
+        if len(rise) < FEWEST:
+            continue
+        scatter = sure * rise.std(ddof=1) / np.sqrt(len(rise))
         if rise.mean() > max(scatter, (WORSE**2 - 1.0) * np.mean(old)):
             return True
     return False
