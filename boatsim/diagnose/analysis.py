@@ -14,6 +14,7 @@ from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.library import less, library_for
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
+from boatsim.diagnose.log.held_fixes import without_repeats
 from boatsim.diagnose.log.position_frame import in_one_frame
 from boatsim.diagnose.log.steering_sense import steered
 from boatsim.diagnose.next import experiment
@@ -93,10 +94,10 @@ def diagnose(
     boats = [boat for _, boat in opened]
     if len({(b.file, b.freedoms) for b in boats}) > 1:
         raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}")
-    thin = [r.thinned(rules.rate(b)) for r, b in opened]
+    thin = [without_repeats(r.thinned(rules.rate(b))) for r, b in opened]
     named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
     fitted, unseen, note = show.split(named[: len(runs)], named[len(runs) :])
-    remarks = tuple(dict.fromkeys(m for r, _ in opened for m in r.remarks))
+    remarks = tuple(dict.fromkeys(m for r in thin for m in r.remarks))
     vessels_of = {r.path: b for r, b in opened}
     return diagnose_recordings(fitted, unseen, vessels_of, note, library, without, remarks, horizon)
 
