@@ -12,6 +12,7 @@ from boatsim.diagnose.filter import Levels, Track, inertia_of, track
 from boatsim.diagnose.library import library_for
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
+from boatsim.physics.facts import wrong
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 
@@ -94,6 +95,7 @@ def wandering(run: Recording, sd: float, time: float, seed: int) -> Recording:
 )
 def test_wander_is_named_as_such_and_physics_beside_it(tmp_path: Path, power: float, names: list[str]) -> None:
     runs = [wandering(recorded(Real(power=(power, power)), s, 5), 0.1, 20.0, s) for s in (1, 2, 3)]
+    (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\n[facts]\nposition_fix = "gnss"\n')
     said = diagnosed(runs, tmp_path, "trial_boat", FURTHER)
     found = {e["name"]: e["parameters"] for e in said["effects"]}
     assert sorted(found) == names and said["verdict"] == "named", said["sentence"]
@@ -108,3 +110,19 @@ def test_a_camera_does_not_wander() -> None:
     left_out = library_for(boat, facts={"position_fix": "camera"}).left_out
     assert left_out["position_wander"] == "position_fix = camera"
     assert "position_wander" in library_for(boat, facts={"position_fix": "gnss"}).tried
+
+
+@pytest.mark.slow
+def test_a_stated_wander_is_known_from_the_start(tmp_path: Path) -> None:
+    runs = [wandering(recorded(Real(power=(0.7, 0.7)), s, 5), 0.1, 20.0, s) for s in (1, 2, 3)]
+    facts = "position_wander_sd_m = 0.1\nposition_wander_time_s = 20.0\n"
+    (tmp_path / "recording.toml").write_text(f'vessel = "trial_boat"\n[facts]\n{facts}')
+    said = diagnosed(runs, tmp_path, "trial_boat", FURTHER)
+    assert [e["name"] for e in said["effects"]] == ["thrust_gain_error"] and said["verdict"] == "named"
+    assert said["facts"]["position_wander_sd_m"] == 0.1
+
+
+def test_a_stated_wander_must_be_complete() -> None:
+    assert wrong({"position_wander_sd_m": 0.1}) is not None
+    assert wrong({"position_wander_sd_m": 0.1, "position_wander_time_s": -1.0}) is not None
+    assert wrong({"position_wander_sd_m": 0.1, "position_wander_time_s": 30.0}) is None

@@ -11,7 +11,7 @@ from boatsim.diagnose import rules
 from boatsim.diagnose.correlation_time import timed
 from boatsim.diagnose.filter import Track, axes_of, noise_of, nominal_levels, track
 from boatsim.diagnose.free_runs import errors, free_runs
-from boatsim.diagnose.library import less, library_for
+from boatsim.diagnose.library import less, library_for, with_stated_errors
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
 from boatsim.diagnose.log.held_fixes import without_repeats
@@ -118,8 +118,9 @@ def diagnose_recordings(
     """
     boat, facts = boats[fitted[0].path], fitted[0].notes.facts
     columns = sorted({c for r in fitted for c in r.signals})
-    there = {path: library_for(b, library, facts, columns) for path, b in boats.items()}
-    programs = {path: Program(b, there[path].entries) for path, b in boats.items()}
+    known = {path: with_stated_errors(b, facts) for path, b in boats.items()}
+    there = {path: library_for(b, library, facts, columns) for path, b in known.items()}
+    programs = {path: Program(b, there[path].entries) for path, b in known.items()}
     stated = noise_of(boat, fitted)
     laid = [track(r, programs[r.path], stated) for r in (*fitted, *unseen)]
     uncertainty = rules.uncertainty(boat)

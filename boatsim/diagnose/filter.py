@@ -12,7 +12,7 @@ import numpy as np
 
 from boatsim.diagnose import rules
 from boatsim.errors import BadInput
-from boatsim.physics.base import Unsteady
+from boatsim.physics.base import Unsteady, Wandering
 from boatsim.physics.commands import taken_rows
 from boatsim.physics.program import Program
 from boatsim.physics.signals import AXES, NOISE, Array, signals_of
@@ -151,7 +151,25 @@ class Track:
             states,
             out,
         )
-        return [(a, out[i, a : b + 1].copy()) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
+        found = [(a, out[i, a : b + 1].copy()) for i, (a, b) in enumerate(zip(starts, ends, strict=True))]
+        for effect in self.program.effects:
+            if isinstance(effect, Wandering) and on[self.program.effects.index(effect)]:
+                lasts = values[self.program.index(effect.name, "time")]
+                self._add_wander(found, means, lasts, 2 if self._swells(values, on) else 0)
+        return found
+
+    def _add_wander(self, runs: list[tuple[int, Array]], means: Array, lasts: float, swells: int) -> None:
+        """What is expected of an instrument's error after the start of each run: it dies out."""
+        nq = self.program.module.NQ
+        first = (3 + swells) * nq
+        for a, shown in runs:
+            since = self.times[a : a + len(shown)] - self.times[a]
+            shown[:, :nq] += means[a, first : first + nq] * np.exp(-since / lasts)[:, None]
+
+    def _swells(self, values: Array, on: Array) -> bool:
+        """Whether the filter follows an oscillating force."""
+        acting = (e for i, e in enumerate(self.program.effects) if isinstance(e, Unsteady) and on[i])
+        return any(values[self.program.index(e.name, n)] > 0.0 for e in acting for n in type(e).strength)
 
     def _jolts(self, values: Array, on: Array, levels: Levels) -> Array:
         """Rms of the latent force on a hull of these values (NQ,): what would shake the hull as written as much.

@@ -13,7 +13,7 @@ import numpy as np
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Channel, Effect, Measurement, Release
 from boatsim.physics.content import load_class, names
-from boatsim.physics.facts import in_words, ruled_out
+from boatsim.physics.facts import WANDER, in_words, ruled_out
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, check_bindings
 
@@ -153,6 +153,16 @@ def less(library: Library, without: Sequence[str]) -> tuple[str, ...]:
 def called(name: str) -> str:
     """What an answer calls an entry, be the vessel's own the same idea or not."""
     return name.removeprefix(FURTHER)
+
+
+def with_stated_errors(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
+    """The vessel with the wandering error of its fixes that facts state: the filter then knows it from the start."""
+    known = {**vessel.diagnosis.facts, **facts}
+    if not all(f in known for f in WANDER) or not {"surge", "sway"} <= set(vessel.freedoms):
+        return vessel
+    sd, time = (float(str(known[f])) for f in WANDER)
+    error = load_class("effect", "position_wander").from_settings({"position": sd, "time": time})
+    return replace(vessel, effects=(*vessel.effects, error.completed(vessel)))
 
 
 def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:

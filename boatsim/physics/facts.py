@@ -16,8 +16,11 @@ WORDS = {
     "moored": "whether a line holds the boat",
     "steering_measured": "the steering angle is the measured one, not the command",
     "position_fix": "what the position was fixed with",
+    "position_wander_sd_m": "how far the error of a position wanders",
+    "position_wander_time_s": "over which time it does",
 }
 FLAGS = ("indoors", "still_water", "no_waves", "moored", "steering_measured")  # true or false
+WANDER = ("position_wander_sd_m", "position_wander_time_s")  # rms [m] and correlation time [s] of an error of fixes
 FIXES = ("camera", "gnss", "tracking", "inertial")  # what a position is fixed with: marks in a picture, satellites, ...
 
 
@@ -43,6 +46,10 @@ def wrong(facts: Mapping[str, object]) -> tuple[str, str] | None:
         return FORWARD, "a number"
     if fact := next((f for f in FLAGS if f in facts and not isinstance(facts[f], bool)), None):
         return fact, "true or false"
+    if fact := next((f for f in WANDER if f in facts and not _positive(facts[f])), None):
+        return fact, "a number above 0"
+    if fact := next((f for f in WANDER if (WANDER[0] in facts) != (WANDER[1] in facts) and f in facts), None):
+        return fact, f"both of {' and '.join(WANDER)}, or neither"
     if facts.get("position_fix", FIXES[0]) not in FIXES:
         return "position_fix", f"one of {', '.join(FIXES)}"
     return None
@@ -53,6 +60,10 @@ def _walls(found: object) -> bool:
         return False
     x_low, x_high, y_low, y_high = found
     return bool(x_low < x_high and y_low < y_high)
+
+
+def _positive(found: object) -> bool:
+    return isinstance(found, int | float) and _number(found) and found > 0
 
 
 def _number(x: object) -> bool:

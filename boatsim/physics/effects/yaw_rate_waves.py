@@ -52,6 +52,7 @@ class YawRateWaves(Unsteady):
     source: ClassVar[str] = "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, equation 8"
     law: ClassVar = law
     swell: ClassVar = swell
+    strength: ClassVar = ("rms",)
 
     rms: float = param(0.0, low=0.0, high=10.0, unit="rad/s", words="rms of the wave's yaw rate r_w")
     frequency: float = param(3.0, low=0.05, high=20.0, unit="rad/s", words="of the filter, omega_w")
