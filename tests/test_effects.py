@@ -399,7 +399,7 @@ def test_righting_arm_stiffening_bends_the_vessels_own_curve() -> None:
 
 @pytest.mark.parametrize(
     ("kind", "boat"),
-    [(DampingError, "joystick_boat"), (RightingArmStiffening, "trial_boat"), (ShallowWater, "mariner")],
+    [(ThrustGainError, "mariner"), (RightingArmStiffening, "trial_boat"), (ShallowWater, "mariner")],
 )
 def test_an_effect_that_changes_another_says_which_one_is_missing(kind: type[Effect], boat: str) -> None:
     with pytest.raises(BadInput, match=f"{boat}: {kind.idea()} needs a vessel with"):

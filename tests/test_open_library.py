@@ -75,9 +75,10 @@ def test_the_price_of_an_effect_grows_with_the_number_tried_and_look_alikes_pay_
 
 def test_an_error_has_grown_where_it_is_beyond_its_scatter_and_five_percent() -> None:
     before = {"position_rms_m": [1.0, 1.0, 1.0, 1.0]}
-    assert grew(before, {"position_rms_m": [1.3, 1.25, 1.35, 1.3]})
-    assert not grew(before, {"position_rms_m": [1.02, 1.02, 1.02, 1.02]})  # by one percent of the rms
-    assert not grew(before, {"position_rms_m": [3.0, 0.5, 0.9, 1.0]})  # scatter
+    assert grew(before, {"position_rms_m": [1.3, 1.25, 1.35, 1.3]}, 2.0)
+    assert not grew(before, {"position_rms_m": [1.02, 1.02, 1.02, 1.02]}, 2.0)  # by one percent of the rms
+    assert not grew(before, {"position_rms_m": [3.0, 0.5, 0.9, 1.0]}, 2.0)  # scatter
+    assert not grew({"position_rms_m": [1.0]}, {"position_rms_m": [9.0]}, 2.0)  # of one alone the scatter is not known
     assert misfit({"a": [4.0], "b": [1.0]}, {"a": [1.0], "b": [1.0]}) == pytest.approx(2.0)
 
 
