@@ -23,7 +23,7 @@ CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
 HALF = 0.5  # and those with this share of its gain
 MANY = 6  # but no more of them than this
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
-SURE, SURE_RANDOM = (
+SURE, SURE_RANDOM = 2.0, 1.65  # standard errors by which unseen errors must grow; a random force predicts nothing
     2.0,
     1.65,
 )  # standard errors by which unseen errors must grow; a random force predicts nothing anyway
