@@ -24,9 +24,6 @@ HALF = 0.5  # and those with this share of its gain
 MANY = 6  # but no more of them than this
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
 SURE, SURE_RANDOM = 2.0, 1.65  # standard errors by which unseen errors must grow; a random force predicts nothing
-    2.0,
-    1.65,
-)  # standard errors by which unseen errors must grow; a random force predicts nothing anyway
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
 RIVALS = 3  # fitted in the place of what was named
 UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
