@@ -30,6 +30,7 @@ UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambie
 WORTH = 4.0  # [nats] that an effect must gain by itself,
 DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
 UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library,
+SLIGHT = 0.025  # of what the others explain, below which an effect may be what their laws are off by
 INEXACT = 0.05  # and so much of what was explained: nature's laws are never quite the entries'
 
 
@@ -138,7 +139,7 @@ class _Search:
             laws = {n: f for n, f in tried.items() if n not in self.random}
             if self.gained(laws, best) > max(self.price, LAWFUL * self.gained(tried, best)):
                 tried = laws  # a random force can stand for a law, a law hardly for it
-            if self.gained(tried, best) < self.price:
+            if self.gained(tried, best) < max(self.price, SLIGHT * self.explained(best)):
                 break
             name = max(tried, key=lambda n: tried[n].evidence)
             best = self.pruned(self.converged(tried[name]))
@@ -153,7 +154,11 @@ class _Search:
 
     def told_from(self, best: Fit) -> float:
         """What must be left over [nats] for something to be missing besides a set."""
-        return told_from(float(best.evidence - self.base.evidence))
+        return told_from(self.explained(best))
+
+    def explained(self, best: Fit) -> float:
+        """Nats that a set gains over the recalibrated vessel."""
+        return float(best.evidence - self.base.evidence)
 
     def converged(self, start: Fit) -> Fit:
         """The fit of a set, kept: made from `start` unless it was made before."""
@@ -221,10 +226,15 @@ class _Search:
             if frozenset(further.suspects) not in seen:
                 best = further
                 continue
-            weak = [n for n in named if n.gain < WORTH or n.shared < self.price or not self.there(best, n.name)]
+            weak = [n for n in named if self.weak(best, n)]
             if not weak:
                 return best, named
             best = self.without(best, min(weak, key=lambda n: n.gain).name)
+
+    def weak(self, best: Fit, named: Named) -> bool:
+        """Whether a member gains too little to be named."""
+        beside = SLIGHT * (self.explained(best) - named.gain)
+        return named.gain < max(WORTH, beside) or named.shared < self.price or not self.there(best, named.name)
 
     def dwarfed(self, best: Fit, named: Sequence[Named]) -> str:
         """The least of the effects that take away next to nothing of the force that nothing explains; "" for none."""
