@@ -117,8 +117,8 @@ ROLL, HSVA, MARIN, LAKE, THESIS = (
 REAL = (
     Row(ROLL, "every second 20 s window", "split", "windows", (1, 2, 3)),
     Row(ROLL, "middle third", "split", "middle third", (1, 2, 3)),
-    Row(HSVA, "unseen 15/5 and 20/5", "fitted on eight runs", "heading [deg]", (1, 2, 3)),
-    Row(HSVA, "position", "fitted on eight runs", "position [m]", (1, 2, 3)),
+    Row(HSVA, "unseen 15/5 and 20/5", "fitted on eight runs", "heading [deg]", (1, 2, 3), long=True),
+    Row(HSVA, "position", "fitted on eight runs", "position [m]", (1, 2, 3), long=True),
     Row(MARIN, "35 deg turning circle", "fitted on", "yaw rate [deg/s]", (1, 2, 3), long=True),
     Row(MARIN, "speed", "fitted on", "speed [m/s]", (1, 2, 3), long=True),
     Row(LAKE, "each of 12 runs", "each run left out", "all", (0, 1, 2), long=True),
