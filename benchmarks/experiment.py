@@ -22,10 +22,10 @@ from rich.progress import track as shown
 
 from boatsim.diagnose import rules
 from boatsim.diagnose.filter import axes_of, nominal_levels, track
-from boatsim.diagnose.library import library_for
 from boatsim.diagnose.next.experiment import Plan, next_experiment, plans, question
 from boatsim.diagnose.problem import Problem, scale_of
 from boatsim.diagnose.search.rank import Ranking, rank
+from boatsim.diagnose.tried import library_for
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program

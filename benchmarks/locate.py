@@ -34,11 +34,11 @@ from benchmarks.trials import SHARED
 from boatsim.diagnose import rules
 from boatsim.diagnose.analysis import open_recording
 from boatsim.diagnose.filter import axes_of, noise_of, nominal_levels, track
-from boatsim.diagnose.library import library_for
 from boatsim.diagnose.locate.forces import BAND, missing_force
 from boatsim.diagnose.locate.regions import LIKELY, Region, regions
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.rank import baseline
+from boatsim.diagnose.tried import library_for
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 

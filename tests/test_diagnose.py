@@ -13,10 +13,10 @@ from scipy.stats import multivariate_normal
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnose import analysis
 from boatsim.diagnose.filter import Levels, nominal_levels, segments, track
-from boatsim.diagnose.library import library_for
 from boatsim.diagnose.problem import scale_of
 from boatsim.diagnose.report import show
 from boatsim.diagnose.report.answer import key_of
+from boatsim.diagnose.tried import library_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.content import address, load_class

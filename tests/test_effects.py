@@ -12,7 +12,7 @@ import boats
 import numpy as np
 import pytest
 
-from boatsim.diagnose.library import absent
+from boatsim.diagnose.tried import absent
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import (

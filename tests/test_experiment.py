@@ -13,12 +13,12 @@ from scipy.linalg import expm
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnose.filter import Levels, nominal_levels, track
 from boatsim.diagnose.fit import converge, descend, fit
-from boatsim.diagnose.library import absent, library_for
 from boatsim.diagnose.next import experiment, manoeuvres
 from boatsim.diagnose.next.course import laid
 from boatsim.diagnose.next.manoeuvres import Manoeuvre, menu
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.screen import screen
+from boatsim.diagnose.tried import absent, library_for
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.content import load_class

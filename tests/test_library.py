@@ -11,7 +11,7 @@ from alike import few
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnose import analysis
-from boatsim.diagnose.library import library_for
+from boatsim.diagnose.tried import library_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import AXES, Array, Course, Wrench, mean_of, motion

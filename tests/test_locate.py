@@ -12,7 +12,6 @@ from scipy.stats import kstest
 
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.levels import fit_time_constant
-from boatsim.diagnose.library import library_for
 from boatsim.diagnose.locate.forces import BAND, force_left, intervals, missing_force
 from boatsim.diagnose.locate.region_ideas import walls_of
 from boatsim.diagnose.locate.region_tests import Evidence, joint
@@ -21,6 +20,7 @@ from boatsim.diagnose.locate.rhythm import rhythm
 from boatsim.diagnose.locate.smoothing import information, running_average, variance_of_average
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.rank import baseline
+from boatsim.diagnose.tried import library_for
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from boatsim.diagnose.filter import MAX_STEP
-from boatsim.diagnose.library import composed
+from boatsim.diagnose.tried import composed
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array, Release
 from boatsim.simulate.engine import Engine

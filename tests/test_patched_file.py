@@ -9,9 +9,9 @@ import pytest
 from alike import few
 
 from boatsim.diagnose.filter import MAX_STEP, Levels, Track, axes_of, body_of
-from boatsim.diagnose.library import composed
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import patch
+from boatsim.diagnose.tried import composed
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array, Release

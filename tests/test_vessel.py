@@ -8,8 +8,8 @@ import boats
 import pytest
 
 from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.library import called, fittable, library_for
 from boatsim.diagnose.problem import check_taken_up
+from boatsim.diagnose.tried import called, fittable, library_for
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.effects.added_mass import AddedMass

@@ -9,7 +9,7 @@ from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnose.filter import Levels, Track, inertia_of, track
-from boatsim.diagnose.library import library_for
+from boatsim.diagnose.tried import library_for
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.facts import wrong

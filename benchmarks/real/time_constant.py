@@ -14,9 +14,9 @@ from benchmarks.real.common import runs_of, table
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.correlation_time import STEPS, correlation_time, halves_error
 from boatsim.diagnose.filter import noise_of, nominal_levels, track
-from boatsim.diagnose.library import library_for
 from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.search.rank import selection
+from boatsim.diagnose.tried import library_for
 from boatsim.physics.program import Program
 
 UNSEEN = {

@@ -15,12 +15,12 @@ from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.levels import fit_noise
-from boatsim.diagnose.library import composed
 from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import page as report
 from boatsim.diagnose.report import patch, show, taken
 from boatsim.diagnose.report.entries import Family
+from boatsim.diagnose.tried import composed
 from boatsim.errors import BadInput, BadPhysics
 from boatsim.files import replacing
 from boatsim.physics.signals import COMPONENTS, STATE, Array

@@ -11,7 +11,6 @@ from boatsim.diagnose import rules
 from boatsim.diagnose.correlation_time import timed
 from boatsim.diagnose.filter import Track, axes_of, noise_of, nominal_levels, track
 from boatsim.diagnose.free_runs import errors, free_runs
-from boatsim.diagnose.library import less, library_for, with_stated_errors
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
 from boatsim.diagnose.log.held_fixes import without_repeats
@@ -23,6 +22,7 @@ from boatsim.diagnose.report import show, taken
 from boatsim.diagnose.report.answer import compose, meanings
 from boatsim.diagnose.report.findings import Findings, Missing
 from boatsim.diagnose.search.rank import Ranking, rank
+from boatsim.diagnose.tried import less, library_for, with_stated_errors
 from boatsim.errors import BadInput
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array

@@ -7,7 +7,6 @@ import numpy as np
 from boatsim import __version__
 from boatsim.control.base import wrap
 from boatsim.diagnose.free_runs import FreeRun, errors
-from boatsim.diagnose.library import called
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate.regions import regions
 from boatsim.diagnose.problem import Fit, Problem
@@ -22,6 +21,7 @@ from boatsim.diagnose.report.entries import (
     ParameterEntry,
 )
 from boatsim.diagnose.search.rank import Named, Ranking
+from boatsim.diagnose.tried import called
 from boatsim.physics.base import Effect
 
 ONE_SIDED_95 = 1.645  # [sd]

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 
 from boatsim.diagnose.filter import axes_of
-from boatsim.diagnose.library import Library, called
 from boatsim.diagnose.locate.forces import UNITS
 from boatsim.diagnose.locate.hull_forces import full_thrust
 from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.report.entries import AmbientEntry, Answer, LeftOutEntry, RulesEntry
 from boatsim.diagnose.report.words import listed, number, plain, quantity
 from boatsim.diagnose.search.rank import price
+from boatsim.diagnose.tried import Library, called
 
 
 def add(answer: Answer, problem: Problem, library: Library, tried: Sequence[str]) -> None:

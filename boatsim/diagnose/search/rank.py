@@ -10,11 +10,11 @@ from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
 from boatsim.diagnose.free_runs import free_runs
 from boatsim.diagnose.levels import fit_noise
-from boatsim.diagnose.library import called
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.screen import handed_over, joined, screen, starts
 from boatsim.diagnose.spread import widened
+from boatsim.diagnose.tried import called
 
 progress = logging.getLogger("boatsim.diagnose")
 ODDS = 2.0  # log of the odds, seven to one, at which an effect is named, where each of those tried is as likely before
