@@ -40,7 +40,7 @@ class File:
         kinds = {k: kind for kind in ("damping", "thrust", "restoring") for k in more.pop(kind, ())}
         return Boat(
             self.name, free, t["length"], t["draught"], t["body"]["mass"], *mass, c, kinds,
-            t["diagnosis"]["coefficient_uncertainty"], law, drive,
+            t.get("diagnosis", {}).get("coefficient_uncertainty", {}), law, drive,
             {n: (v["low"], v["high"]) for n, v in t.get("channels", {}).items()}, **more,
         )  # fmt: skip
 

@@ -137,7 +137,7 @@ def diagnose_recordings(
         ranking = rank(problem, candidates, unseen_tracks)
         a_fact = "time_constant_s" in fitted[0].notes.ambient
         if not a_fact and (again := timed(problem, ranking.best)) is not problem:
-            problem, ranking = again, rank(again, candidates, unseen_tracks)
+            problem, ranking = again, rank(again, candidates, unseen_tracks, ranking.best)
         plan = experiment.next_experiment(problem, *experiment.question(ranking))
         findings = _findings(problem, ranking, unseen_tracks, boat, note, plan)
     except (np.linalg.LinAlgError, FloatingPointError) as error:

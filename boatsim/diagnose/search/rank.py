@@ -12,7 +12,7 @@ from boatsim.diagnose.free_runs import free_runs
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
-from boatsim.diagnose.search.screen import handed_over, joined, screen, starts
+from boatsim.diagnose.search.screen import checked, handed_over, joined, screen, starts
 from boatsim.diagnose.spread import widened
 from boatsim.diagnose.tried import called
 
@@ -25,6 +25,7 @@ MANY = 6  # but no more of them than this
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
 SURE, SURE_RANDOM = 2.0, 1.65  # standard errors by which unseen errors must grow; a random force predicts nothing
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
+CLEAR = 4.0  # prices that an effect gains by the curvature at a fit, from where it needs no fit without it to stay
 RIVALS = 3  # fitted in the place of what was named
 UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
 WORTH = 4.0  # [nats] that an effect must gain by itself,
@@ -69,21 +70,22 @@ class Ranking:
         return told_from(float(self.best.evidence - self.recalibrated.evidence))
 
 
-def rank(problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] = ()) -> Ranking:
+def rank(
+    problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] = (), begin: Fit | None = None
+) -> Ranking:
     """Forward selection over the candidates, the incumbent converged before each comparison, members exchanged.
 
-    Where far more stays unexplained than an effect explains, the tool does not stand for that effect; nor does it where
-    free runs over `unseen` recordings get worse by it.
+    It begins with nothing, or with the set of another fit. Where far more stays unexplained than an effect explains, it
+    is not stood for; nor is one by which free runs over `unseen` recordings get worse.
     """
     progress.info("fitting the vessel as written to %d recordings", len(problem.tracks))
     nominal, recalibrated = baseline(problem)
     progress.info("trying %d entries of the library", len(candidates))
     search = _Search(problem, candidates, recalibrated)
-    best, named = search.settled(search.selected(recalibrated))
+    best, named = search.settled(search.selected(search.begun(begin) if begin else recalibrated))
+    while search.little(best):
+        best, named = search.settled(search.stood_for(best))
     progress.info("judging what is left over")
-    while left_over(problem, best) > search.told_from(best) and (little := search.dwarfed(best, named)):
-        search.banned.add(little)
-        best, named = search.settled(search.without(best, little))
     while named and unseen and (worse := misled(problem, search, best, unseen)):
         search.banned.add(worse)
         best, named = search.settled(search.selected(search.without(best, worse)))
@@ -125,7 +127,8 @@ class _Search:
         self.problem, self.candidates, self.base = problem, candidates, base
         self.fits: dict[frozenset[str], Fit] = {frozenset(): base}
         self.looks: dict[frozenset[str], dict[str, Fit]] = {}
-        self.full: set[tuple[frozenset[str], str]] = set()  # looks that were followed by a fit in full
+        self.kept: set[tuple[frozenset[str], str]] = set()  # looks that were compared with what the filter says,
+        self.full: set[tuple[frozenset[str], str]] = set()  # and followed by a fit in full
         self.banned: set[str] = set()
         self.random = {e.name for e in problem.program.suspects if type(e).random}
         self.price = price(len(candidates))
@@ -142,10 +145,17 @@ class _Search:
             if self.gained(tried, best) < max(self.price, SLIGHT * self.explained(best)):
                 break
             name = max(tried, key=lambda n: tried[n].evidence)
-            best = self.pruned(self.converged(tried[name]))
+            further = self.pruned(self.converged(tried[name]))
+            if set(further.suspects) == set(best.suspects):
+                break  # the newest made way again
+            best = further
             gain = best.evidence - self.base.evidence
             progress.info("best so far: %s (%.0f nats)", ", ".join(map(called, best.suspects)), gain)
         return best
+
+    def begun(self, other: Fit) -> Fit:
+        """The set of a fit to the same recordings with other levels, fitted anew."""
+        return self.converged(replace(other, levels=self.base.levels, evidence=-np.inf))
 
     @staticmethod
     def gained(tried: Mapping[str, Fit], best: Fit) -> float:
@@ -171,40 +181,57 @@ class _Search:
         """The fit of a set without one of its members."""
         return self.converged(reduced(self.problem, best, name))
 
-    def tried(self, best: Fit) -> dict[str, Fit]:
-        """Every other candidate on top of a set, less those found to mislead."""
-        return {n: f for n, f in self.looked(best).items() if n not in self.banned}
+    def tried(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+        """Other candidates on top of a set, all or `among` some, less those found to mislead."""
+        return {n: f for n, f in self.looked(best, among).items() if n not in self.banned}
 
-    def looked(self, best: Fit) -> dict[str, Fit]:
-        """Every other candidate on top of a set: a quick look at all, those in front fitted in full."""
+    def looked(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+        """Other candidates on top of a set: a quick look at all, or `among` some, those in front fitted in full."""
         key = frozenset(best.suspects)
-        if key not in self.looks:
-            rest = [n for n in self.candidates if n not in best.suspects]
-            self.looks[key] = screen(self.problem, best, rest)
-        tried = self.looks[key]
-        allowed = {n: f for n, f in tried.items() if n not in self.banned}
-        for _ in range(MANY):  # a look may promise too much: what is in front then is judged anew after each fit
+        known = self.looks.setdefault(key, {})
+        rest = [n for n in among or self.candidates if n not in best.suspects and n not in known]
+        if rest:
+            known |= screen(self.problem, best, rest)
+        allowed = {n: f for n, f in known.items() if n not in self.banned}
+        fits = 0
+        while fits < MANY:  # a look may promise too much: what is in front then is judged anew after each fit
             hopeful = {n: f for n, f in allowed.items() if f.evidence > best.evidence}
             ahead = [n for n in _front(hopeful, best) if (key, n) not in self.full]
             if not ahead:
                 break
-            self.full.add((key, ahead[0]))
-            allowed[ahead[0]] = tried[ahead[0]] = self.fitted(best, ahead[0], tried[ahead[0]])
-        return tried
+            name, look = ahead[0], known[ahead[0]]
+            honest = look if (key, name) in self.kept or name in self.random else checked(self.problem, best, look)
+            self.kept.add((key, name))
+            if honest is look:
+                self.full.add((key, name))
+                fits += 1
+                honest = self.fitted(best, name, look)
+            allowed[name] = known[name] = honest
+        return known
 
     def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
-        """A candidate fitted in full from its quick look; where that leaves much over, from each of its starts."""
+        """A candidate fitted in full from its quick look; where that leaves much over, from the best of its starts."""
         found = fit(self.problem, look)
         effect = next(e for e in self.problem.program.suspects if e.name == name)
         begun = starts(self.problem, effect)
         if len(begun) == 1 or type(effect).random or left_over(self.problem, found) < UNKNOWN:
             return found
-        others = [fit(self.problem, handed_over(joined(self.problem, best, name, s), effect)) for s in begun]
-        return max((found, *others), key=lambda f: f.evidence)
+        others = [handed_over(joined(self.problem, best, name, s), effect) for s in begun]
+        other = max((descend(self.problem, o, 2, SETTLED) for o in others), key=lambda f: f.evidence)
+        return max(found, fit(self.problem, other), key=lambda f: f.evidence)
+
+    def hopeful(self, best: Fit) -> list[str]:
+        """Candidates that may gain on top of a set: those that gained on top of one that it contains."""
+        key = frozenset(best.suspects)
+        looks = {k: x for k, x in self.looks.items() if k <= key}
+        gained = {n for k, x in looks.items() for n, f in x.items() if f.evidence > self.fits[k].evidence}
+        return [n for n in self.candidates if n in gained]
 
     def pruned(self, best: Fit) -> Fit:
         """Without the earlier effects that the newest one has made needless."""
         for name in best.suspects[:-1]:
+            if worth(best, name) > CLEAR * self.price:
+                continue
             without = self.without(best, name)
             if without.evidence > best.evidence - self.price:
                 best = without
@@ -236,11 +263,20 @@ class _Search:
         beside = SLIGHT * (self.explained(best) - named.gain)
         return named.gain < max(WORTH, beside) or named.shared < self.price or not self.there(best, named.name)
 
-    def dwarfed(self, best: Fit, named: Sequence[Named]) -> str:
-        """The least of the effects that take away next to nothing of the force that nothing explains; "" for none."""
-        share = {n.name: float(np.min(best.levels.force / self.without(best, n.name).levels.force)) for n in named}
-        little = [n for n in named if share[n.name] > DWARFED]
-        return min(little, key=lambda n: n.gain).name if little else ""
+    def stood_for(self, best: Fit) -> Fit:
+        """A set without those members, found to mislead, that are little beside what nothing explains."""
+        while little := self.little(best):
+            self.banned.add(little)
+            best = self.without(best, little)
+        return best
+
+    def little(self, best: Fit) -> str:
+        """Where much is left over the member of least gain that takes away next to nothing of that force; or ""."""
+        if left_over(self.problem, best) < self.told_from(best):
+            return ""
+        rest = {n: self.without(best, n) for n in best.suspects}
+        little = [n for n, f in rest.items() if np.min(best.levels.force / f.levels.force) > DWARFED]
+        return max(little, key=lambda n: rest[n].evidence) if little else ""
 
     def there(self, best: Fit, name: str) -> bool:
         """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it."""
@@ -255,7 +291,7 @@ class _Search:
         """Gain of one effect on top of the others, and how its rivals do in its place."""
         without = self.without(best, name)
         gain = best.evidence - without.evidence
-        others = {n: f for n, f in self.tried(without).items() if n not in best.suspects}
+        others = {n: f for n, f in self.tried(without, self.hopeful(without)).items() if n not in best.suspects}
         rivals = {n: self.converged(others[n]) for n in _front(others, without)[:RIVALS]}
         gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
         weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
@@ -287,6 +323,13 @@ def told_from(explained: float) -> float:
 def together(gains: Sequence[float]) -> float:
     """Nats that one of several entries gains, whichever: the evidence that any is there, but for how many there are."""
     return float(np.logaddexp.reduce(np.array(gains, dtype=float)))
+
+
+def worth(best: Fit, name: str) -> float:
+    """Nats that a member gains by the curvature at a fit: half the square of its distance from not acting, in sds."""
+    own = [i for i, f in enumerate(best.free) if f.effect == name and not f.relative]
+    off = best.theta[own] - np.array([best.free[i].mean for i in own])
+    return 0.5 * float(off @ np.linalg.solve(best.covariance[np.ix_(own, own)], off)) if own else 0.0
 
 
 def _front(tried: Mapping[str, Fit], base: Fit) -> list[str]:

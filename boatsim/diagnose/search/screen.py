@@ -13,6 +13,9 @@ from boatsim.diagnose.problem import Fit, Problem
 from boatsim.physics.base import Array, Effect, Unsteady
 
 ROUNDS = 3  # Gauss-Newton steps of a suspect
+NEARER = 4  # points at which a look is scored anew, each half as far from nothing missing,
+HONEST, SMALL_LIE = 0.5, 3.0  # where the filter sees less than this share of what it promised, or so many nats less
+TRIED = 2  # starts of a suspect from which a step is taken
 HALVINGS, TOO_STRONG = 8, 30.0  # of a start that lies this far below nothing missing [nats]
 SMALL = 0.1  # where a suspect without starts of its own begins, in prior sds
 SWELL_SHARE = 0.7  # of the fitted latent force that a random force is tried with; the latent force keeps as much
@@ -25,6 +28,16 @@ class Begin:
     columns: Array  # (rows, F) derivatives of the whitened errors by its parameters
     slope: Array  # (F,) gradient that held gains show where there is none
     score: float
+    white: Array  # (rows,) whitened errors
+    factor: Array  # (F, F) inverse of the information on its parameters, in units of their prior sds
+
+    def promise(self, white: Array) -> float:
+        """Nats that some multiple of a change of the errors gains, beside all that the fit has free itself."""
+        mark = white - self.white
+        along = self.columns.T @ mark
+        length = float(mark @ mark - along @ (self.factor @ along))
+        slope = float(self.white @ mark - along @ (self.factor @ (self.columns.T @ self.white)))
+        return 0.5 * slope**2 / length if np.isfinite(length) and length > 0.0 else -np.inf
 
 
 def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, Fit]:
@@ -37,10 +50,31 @@ def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, 
     space = Space(base.free)
     off = known.T @ white + (base.theta - space.mean) / space.sd
     score = log_prior(base.free, base.theta) - 0.5 * float(white @ white)
-    begin = Begin(known, off, score)
+    begin = Begin(
+        known, off, score, white, np.asarray(np.linalg.inv(np.eye(len(off)) + known.T @ known), dtype=np.float64)
+    )
     effects = {e.name: e for e in problem.program.suspects}
     tried = {n: _look(problem, base, effects[n], begin) for n in candidates if not type(effects[n]).random}
     return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if type(effects[n]).random}
+
+
+def checked(problem: Problem, base: Fit, look: Fit) -> Fit:
+    """A look itself where the filter, its gains made anew, agrees; else the best of points nearer to `base`, scored."""
+    on = problem.program.switches(look.suspects)
+    at_base = problem.likelihood(base.free, base.theta, problem.program.switches(base.suspects), base.levels)
+    at_base += log_prior(base.free, base.theta)
+    promised = look.evidence - base.evidence
+    fitted = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
+    nothing = np.array([fitted.get((f.effect, f.name), f.mean) for f in look.free])
+    theta, best = look.theta, look
+    for i in range(NEARER):
+        gain = problem.likelihood(look.free, theta, on, look.levels) + log_prior(look.free, theta) - at_base
+        if i == 0 and (gain > HONEST * promised or gain > promised - SMALL_LIE):
+            return look
+        if i == 0 or gain > best.evidence - base.evidence:
+            best = replace(look, theta=theta, evidence=base.evidence + min(gain, promised))
+        theta = 0.5 * (theta + nothing)
+    return best
 
 
 def _half_determinant(J: Array) -> float:
@@ -84,8 +118,12 @@ def handed_over(start: Fit, effect: Effect) -> Fit:
 
 
 def _look(problem: Problem, base: Fit, effect: Effect, begin: Begin) -> Fit:
-    """One suspect: a first step from each of its starts, the best of them followed further."""
+    """One suspect: a first step from those of its starts that promise most, the best of them followed further."""
     begun = [handed_over(joined(problem, base, effect.name, s), effect) for s in starts(problem, effect)]
+    if len(begun) > TRIED:
+        on = problem.program.switches(begun[0].suspects)
+        begun.sort(key=lambda b: -begin.promise(problem.whitened(b.free, Space(b.free).clipped(b.theta), on, b.levels)))
+        begun = begun[:TRIED]
     first = [_step(problem, b, begin, ROUNDS if len(begun) == 1 else 1) for b in begun]
     best = max(first, key=lambda f: f[1])
     if len(begun) > 1:
