@@ -18,8 +18,9 @@ from boatsim.diagnose.locate.region_tests import Evidence, joint
 from boatsim.diagnose.locate.regions import Region, regions
 from boatsim.diagnose.locate.rhythm import rhythm
 from boatsim.diagnose.locate.smoothing import information, running_average, variance_of_average
+from boatsim.diagnose.locate.structure import structure
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.rank import baseline
+from boatsim.diagnose.search.rank import UNKNOWN, baseline, left_over
 from boatsim.diagnose.tried import library_for
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -29,6 +30,7 @@ from boatsim.recordings.table import Notes, Recording
 # ---- a linear Gaussian chain whose posterior is written out densely
 
 DT, TAU, RMS, NOISE, N = 0.2, 1.3, 0.7, 0.05, 40
+FIRST = 3.0 * RMS  # a recording may begin rougher than it goes on
 LATENT = slice(2, 3)
 
 
@@ -51,7 +53,7 @@ def chain() -> Chain:
     moved = F.copy()
     F[2, 2] = decay = np.exp(-DT / TAU)
     Q = np.diag([0.0, 0.0, RMS**2 * (1.0 - decay**2)])
-    first = np.diag([0.3**2, 0.5**2, RMS**2])
+    first = np.diag([0.3**2, 0.5**2, FIRST**2])
     # dense prior over all rows, then the posterior of Gaussian conditioning
     prior = np.zeros((3 * N, 3 * N))
     block = first
@@ -106,7 +108,8 @@ def test_information_on_a_known_force_is_that_of_the_measurements() -> None:
     y = np.random.default_rng(1).multivariate_normal(np.zeros(N), CHAIN.spread)
     S = shapes()
     found = (CHAIN.finds @ y)[:, None]
-    learnt, score = information(S, found, CHAIN.times, CHAIN.covariances, CHAIN.gains, LATENT, np.array([RMS]), TAU)
+    prior = np.array([RMS]), np.array([FIRST]), TAU
+    learnt, score = information(S, found, CHAIN.times, CHAIN.covariances, CHAIN.gains, LATENT, *prior)
     seen = CHAIN.responds @ S[:, 0]  # what each shape does to the positions
     weight = np.linalg.inv(CHAIN.spread)
     assert learnt == pytest.approx(seen.T @ weight @ seen, rel=1e-6, abs=1e-9)
@@ -116,7 +119,7 @@ def test_information_on_a_known_force_is_that_of_the_measurements() -> None:
 def evidence(y: Array) -> Evidence:
     S = shapes()
     named = {n: (S[..., k],) for k, n in enumerate(("sine", "square", "decay"))}
-    arguments = CHAIN.times, CHAIN.covariances, CHAIN.gains, LATENT, np.array([RMS]), TAU
+    arguments = CHAIN.times, CHAIN.covariances, CHAIN.gains, LATENT, np.array([RMS]), np.array([FIRST]), TAU
     return Evidence.of(named, (CHAIN.finds @ y)[:, None], *arguments)
 
 
@@ -358,3 +361,28 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
     problem = Problem([track(rec, program)], nominal_levels(ship, [rec]), {"damping": 0.05, "restoring": 0.02})
     found = baseline(problem)[1]
     assert [r.variable for r in regions(problem, found)][: 1 if name else None] == ([name] if name else [])
+
+
+# ---- structure in what is left over
+
+
+def test_what_is_left_of_a_boat_that_lacks_nothing_goes_with_nothing() -> None:
+    p = [structure(*laid(*(sail(f"run_{k}", seed + k, nothing)[0] for k in range(2)))) for seed in range(60, 72, 2)]
+    assert all(not s.likely and s.tried > 100 for s in p)
+
+
+@pytest.mark.parametrize(
+    ("axis", "goes_with", "weak"),
+    [
+        ("sway", "the sine of heading", lambda t, y: 0.03 * np.sin(y[2])),
+        ("yaw", "twice the heading", lambda t, y: 0.006 * np.cos(2.0 * y[2])),
+        ("surge", "it acts in 24.9 to 29.9 s of run_0", lambda t, y: 0.045 * (25.0 < t < 30.0)),
+    ],
+)
+def test_a_force_below_the_tolerated_one_is_seen_by_what_it_goes_with(axis: str, goes_with: str, weak: Any) -> None:
+    i = ("surge", "sway", "yaw").index(axis)
+    runs = [sail(f"run_{k}", 80 + k, lambda t, y, c, k=k: np.eye(3)[i] * weak(t + 100.0 * k, y))[0] for k in range(2)]
+    problem, found = laid(*runs)
+    seen = structure(problem, found)
+    assert seen.axis == axis and goes_with in seen.goes_with and seen.p_value < 1e-3
+    assert left_over(problem, found) < UNKNOWN  # whose rms alone would pass

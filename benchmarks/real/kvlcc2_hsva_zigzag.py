@@ -10,8 +10,8 @@ from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, track
 from boatsim.diagnose.fit import converge, descend
-from boatsim.diagnose.free_runs import free_runs
-from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.free_runs import errors, free_runs
+from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.report import show
 
 NAME = "kvlcc2_hsva_zigzag"
@@ -20,11 +20,6 @@ HORIZON = 60.0  # [s] of a free run: ten lengths, about one period of a zig-zag
 MODELS = ("recalibrated", "patched")
 GOALS = {"heading_rms_rad": 0.5, "position_rms_m": 0.35}  # of the recalibrated linear model
 UNITS = {"heading_rms_rad": ("heading [deg]", 57.29578), "position_rms_m": ("position [m]", 1.0)}
-
-
-def errors(problem: Problem, fits: dict[str, Fit], tracks: list[Track]) -> dict[str, dict[str, float]]:
-    """Rms errors of free runs by family and model."""
-    return errors(free_runs(problem, fits, tracks, HORIZON))
 
 
 def cells(found: dict[str, dict[str, float]]) -> list[str]:
@@ -71,7 +66,7 @@ def print_left_out(found: Diagnosis, tracks: list[Track]) -> None:
         before, after = (
             converge(problem, descend(problem, f, 4, 0.1)) for f in (found.ranking.recalibrated, found.ranking.best)
         )
-        unseen = errors(problem, dict(zip(MODELS, (before, after), strict=True)), [out])
+        unseen = errors(free_runs(problem, dict(zip(MODELS, (before, after), strict=True)), [out], HORIZON))
         ahead = [n + (unseen[f]["patched"] < unseen[f]["recalibrated"]) for n, f in zip(ahead, UNITS, strict=True)]
         rows.append([out.name, *cells(unseen)])
     header = ["left out", *(c for what, _ in UNITS.values() for c in (f"recalibrated {what}", "patched", "ratio"))]

@@ -121,7 +121,7 @@ class Track:
         means, covariances, transitions, predicted = keep
         gains = np.zeros_like(transitions)
         self.program.module.smooth(
-            means, covariances, transitions, predicted, gains, self._jolts(values, on, levels) ** 2, self.times,
+            means, covariances, transitions, predicted, gains, self.jolts(values, on, levels)[0] ** 2, self.times,
             levels.time_constant,
             values, on,
         )  # fmt: skip
@@ -171,12 +171,14 @@ class Track:
         acting = (e for i, e in enumerate(self.program.effects) if isinstance(e, Unsteady) and on[i])
         return any(values[self.program.index(e.name, n)] > 0.0 for e in acting for n in type(e).strength)
 
-    def _jolts(self, values: Array, on: Array, levels: Levels) -> Array:
-        """Rms of the latent force on a hull of these values (NQ,): what would shake the hull as written as much.
+    def jolts(self, values: Array, on: Array, levels: Levels) -> tuple[Array, Array]:
+        """Rms of the latent force on a hull of these values (NQ,), and that of the first row.
 
-        Were it the force itself, any mass added would calm the water, and be believed for that alone.
+        It is what would shake the hull as written as much: were it the force itself, any mass added would calm the
+        water, and be believed for that alone.
         """
-        return np.asarray(levels.force * inertia_of(self.program, values, on) / self.inertia)
+        force = np.asarray(levels.force * inertia_of(self.program, values, on) / self.inertia)
+        return force, np.maximum(force, levels.begins)
 
     def _pass(
         self, values: Array, on: Array, levels: Levels, full: bool, keep: tuple[Array, ...] | None, fresh: bool = True
@@ -187,8 +189,7 @@ class Track:
         for c, code in enumerate(self.codes):
             if code < nq:
                 covariance[code, code] = noise[c]
-        force = self._jolts(values, on, levels)
-        begins = np.maximum(force, levels.begins)
+        force, begins = self.jolts(values, on, levels)
         for i in range(nq):
             covariance[2 * nq + i, 2 * nq + i] = begins[i] ** 2
             if covariance[nq + i, nq + i] == 0.0:

@@ -34,12 +34,12 @@ class Evidence:
     @classmethod
     def of(
         cls, shapes: Mapping[str, Sequence[Array]], found: Array, times: Array, covariances: Array, gains: Array,
-        part: slice, rms: Array, time_constant: float,
+        part: slice, rms: Array, first: Array, time_constant: float,
     ) -> "Evidence":  # fmt: skip
         """Evidence of one recording: shapes (N, axes) of every idea, the rest as in `smoothing.information`."""
         ends = np.cumsum([0, *(len(s) for s in shapes.values())]).tolist()
         S = np.stack([s for each in shapes.values() for s in each], axis=-1)
-        learnt, score = information(S, found, times, covariances, gains, part, rms, time_constant)
+        learnt, score = information(S, found, times, covariances, gains, part, rms, first, time_constant)
         at = {n: slice(a, b) for n, a, b in zip(shapes, ends, ends[1:], strict=False)}
         return cls(at, learnt, score, np.einsum("nka,nkb->kab", S, S), len(times))
 

@@ -48,12 +48,13 @@ def _evidence(problem: Problem, found: Fit) -> tuple[Evidence, dict[str, Callabl
     on, latent = problem.program.switches(found.suspects), slice(2 * nq, 3 * nq)
     evidence, sentences = [], []
     for track in problem.tracks:
-        z, covariances, gains = track.smoothed_with_gains(problem.values(track, found.free, found.theta), on, levels)
+        values = problem.values(track, found.free, found.theta)
+        z, covariances, gains = track.smoothed_with_gains(values, on, levels)
         states = np.ascontiguousarray(z[:, : 2 * nq])
         parts = coefficient_forces(problem, found, track, states)
         tried = ideas(track, states, _damping(problem, found, parts))
         shapes = {KNOWN: tuple(parts)} | {i.variable: i.shapes for i in tried}
-        prior = levels.force, levels.time_constant
+        prior = *track.jolts(values, on, levels), levels.time_constant
         evidence.append(Evidence.of(shapes, z[:, latent], track.times, covariances, gains, latent, *prior))
         sentences.append({i.variable: i.sentence for i in tried})
     names = [n for n in sentences[0] if all(n in s for s in sentences)]

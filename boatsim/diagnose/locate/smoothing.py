@@ -42,18 +42,37 @@ def _first(n: int, rows: int) -> NDArray[np.int64]:
 
 
 def information(
-    shapes: Array, found: Array, times: Array, covariances: Array, gains: Array, part: slice, rms: Array,
+    shapes: Array, found: Array, times: Array, covariances: Array, gains: Array, part: slice, rms: Array, first: Array,
     time_constant: float,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Fisher information (S, S) and score (S,) of the factors of forces `shapes` (N, k, S) in the recording.
 
     The latent force `found` (N, k) was smoothed without them. Its prior covariance C is Ornstein-Uhlenbeck's with `rms`
-    (k,), so C^-1 is tridiagonal; P are the smoothed covariances. Of a force s that was there, the smoother finds K s,
-    K = 1 - P C^-1, and what it finds by chance has covariance K C. So the likelihood of a force S b is that of a
-    linear model with score S' C^-1 found and information S' C^-1 K S: generalised least squares without inverting.
+    (k,), that of the first row `first` (k,), so C^-1 is tridiagonal; P are the smoothed covariances. Of a force s that
+    was there, the smoother finds K s, K = 1 - P C^-1, and what it finds by chance has covariance K C. So the likelihood
+    of a force S b is that of a linear model with score S' C^-1 found and information S' C^-1 K S: generalised least
+    squares without inverting.
     """
+    weights, seen = _weighed(shapes, times, covariances, gains, part, rms, first, time_constant)
+    return np.einsum("nka,nkb->ab", weights, seen), np.einsum("nka,nk->a", weights, found)
+
+
+def information_alone(
+    shapes: Array, found: Array, times: Array, covariances: Array, gains: Array, part: slice, rms: Array, first: Array,
+    time_constant: float,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Information (S,) on and score (S,) of each factor of `information` as if it were the only one."""
+    weights, seen = _weighed(shapes, times, covariances, gains, part, rms, first, time_constant)
+    return np.einsum("nka,nka->a", weights, seen), np.einsum("nka,nk->a", weights, found)
+
+
+def _weighed(
+    shapes: Array, times: Array, covariances: Array, gains: Array, part: slice, rms: Array, first: Array,
+    time_constant: float,
+) -> tuple[Array, Array]:  # fmt: skip
+    """C^-1 S and K S (N, k, S) of `information`."""
     weights = np.zeros((len(times), covariances.shape[1], shapes.shape[2]))
-    weights[:, part] = _precision(shapes, times, time_constant) / (rms**2)[:, None]
+    weights[:, part] = _precision(shapes, times, time_constant, (rms / first) ** 2) / (rms**2)[:, None]
     ahead = weights.copy()  # P_i w_i + G_i (the same of all later rows)
     before = np.zeros_like(weights)  # G_i-1' ... of all earlier rows
     ahead[-1] = covariances[-1] @ weights[-1]
@@ -62,14 +81,16 @@ def information(
     for i in range(1, len(times)):
         before[i] = gains[i - 1].T @ (before[i - 1] + weights[i - 1])
     seen = shapes - (ahead + covariances @ before)[:, part]
-    weights = weights[:, part]
-    return np.einsum("nka,nkb->ab", weights, seen), np.einsum("nka,nk->a", weights, found)
+    return weights[:, part], seen
 
 
-def _precision(values: Array, times: Array, time_constant: float) -> Array:
-    """Inverse correlation matrix of an Ornstein-Uhlenbeck process times values (N, ...)."""
+def _precision(values: Array, times: Array, time_constant: float, first: Array) -> Array:
+    """Inverse correlation matrix of an Ornstein-Uhlenbeck process times values (N, k, ...).
+
+    `first` (k,) is the usual variance over that of the first row.
+    """
     decay = np.exp(-np.diff(times) / time_constant).reshape(-1, *([1] * (values.ndim - 1)))
     fresh = (values[1:] - decay * values[:-1]) / (1.0 - decay**2)
-    out = np.concatenate([values[:1], fresh])
+    out = np.concatenate([values[:1] * first.reshape(-1, *([1] * (values.ndim - 2))), fresh])
     out[:-1] -= decay * fresh
     return out

@@ -9,6 +9,7 @@ from boatsim.control.base import wrap
 from boatsim.diagnose.free_runs import FreeRun, errors
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate.regions import regions
+from boatsim.diagnose.locate.structure import Structure
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import words as report_words
 from boatsim.diagnose.report.entries import (
@@ -19,6 +20,7 @@ from boatsim.diagnose.report.entries import (
     FitEntry,
     NextEntry,
     ParameterEntry,
+    StructureEntry,
 )
 from boatsim.diagnose.search.rank import Named, Ranking
 from boatsim.diagnose.tried import called
@@ -74,8 +76,20 @@ def compose(
     }
     if ranking.unknown:
         answer["unknown"]["rest"] = locate.strength(problem, left)
+    if ranking.structure.likely:
+        answer["unknown"]["structure"] = _structure(ranking.structure)
     answer["sentence"] = report_words.sentence(answer, meanings(problem.program.suspects))
     return answer
+
+
+def _structure(found: Structure) -> StructureEntry:
+    return {
+        "axis": found.axis,
+        "goes_with": found.goes_with,
+        "gain_nats": round(found.gain, 3),
+        "p_value": float(f"{found.p_value:.2g}"),
+        "tried": found.tried,
+    }
 
 
 def meanings(suspects: Iterable[Effect]) -> dict[str, str]:

@@ -32,6 +32,16 @@ class EffectEntry(Acting):
     parameters: dict[str, ParameterEntry]  # by name with unit
 
 
+class StructureEntry(TypedDict):
+    """What the force left over goes with."""
+
+    axis: str
+    goes_with: str  # in words
+    gain_nats: float
+    p_value: float  # corrected for all that were tried
+    tried: int
+
+
 class UnknownEntry(TypedDict):
     """Whether something is missing that no entry of the library explains."""
 
@@ -39,6 +49,7 @@ class UnknownEntry(TypedDict):
     gain_nats: float
     told_from_nats: float  # the gain from which it is flagged: more where entries explained much
     rest: NotRequired[dict[str, "StrengthEntry"]]  # force that the named effects leave over, where something is missing
+    structure: NotRequired[StructureEntry]  # where that force goes with something, be it weak
 
 
 class CandidateEntry(TypedDict):

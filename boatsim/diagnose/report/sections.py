@@ -8,11 +8,12 @@ from itertools import groupby
 import numpy as np
 
 from boatsim.diagnose.free_runs import FreeRun
+from boatsim.diagnose.locate.structure import FACTOR
 from boatsim.diagnose.next.experiment import WORTH
 from boatsim.diagnose.report import figures, taken
 from boatsim.diagnose.report.answer import SHAPE
 from boatsim.diagnose.report.blocks import Block, Figures, Heading, Items, Section, Table, Text, without_empty
-from boatsim.diagnose.report.entries import EffectEntry, Family
+from boatsim.diagnose.report.entries import EffectEntry, Family, StructureEntry
 from boatsim.diagnose.report.findings import Findings, Missing
 from boatsim.diagnose.report.words import (
     UNTRIED,
@@ -31,7 +32,7 @@ from boatsim.diagnose.report.words import (
     spread,
     tried,
 )
-from boatsim.diagnose.search.rank import ALIKE, UNKNOWN_FACTOR
+from boatsim.diagnose.search.rank import ALIKE
 
 INTERVALS = 24  # flagged ones that a table shows; diagnosis.json has all
 PICTURES = 6  # runs whose missing force is drawn; the strongest ones
@@ -139,12 +140,15 @@ def _what(f: Findings) -> Iterator[Block]:
         yield Text(f"{capital(UNTRIED)}.")
     elif unknown["flag"]:
         yield Heading("Something that no entry of the library explains", f"gain {nats(unknown['gain_nats'])} nats")
-        yield Text(
-            f"After the best set of entries, a random force of {UNKNOWN_FACTOR:g} times the tolerated size is not "
-            f"enough: the recordings call for more, by {nats(unknown['gain_nats'])} nats (said from "
-            f"{nats(unknown['told_from_nats'])} on: more where entries explain much, for no law is quite nature's). "
-            "Where and when it acts is shown below."
-        )
+        if unknown["gain_nats"] > unknown["told_from_nats"]:
+            yield Text(
+                f"After the best set of entries, a random force of {FACTOR:g} times the tolerated size is not "
+                f"enough: the recordings call for more, by {nats(unknown['gain_nats'])} nats (said from "
+                f"{nats(unknown['told_from_nats'])} on: more where entries explain much, for no law is quite "
+                "nature's). Where and when it acts is shown below."
+            )
+        if "structure" in unknown:
+            yield Text(f"{capital(_structure(unknown['structure']))}.")
     elif not f.answer["effects"]:
         yield Text(
             "No entry of the library explains the recordings clearly better than the vessel as it is. What may still "
@@ -155,6 +159,15 @@ def _what(f: Findings) -> Iterator[Block]:
 def _taken(f: Findings) -> Iterator[Block]:
     if lines := taken.in_words(f.answer):
         yield Items(tuple(("", capital(f"{line}.")) for line in lines))
+
+
+def _structure(s: StructureEntry) -> str:
+    """What the force left over goes with."""
+    sure = "one in a million" if s["p_value"] < 1e-6 else f"one in {number(1.0 / s['p_value'], 1)}"
+    return (
+        f"the force left over in {s['axis']} goes with {s['goes_with']}: a force along with it gains "
+        f"{nats(s['gain_nats'])} nats, and of {s['tried']} things tried one does so by chance {sure} times"
+    )
 
 
 def _beside(words: str) -> str:

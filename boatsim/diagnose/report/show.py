@@ -8,8 +8,9 @@ import numpy as np
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import descend
 from boatsim.diagnose.free_runs import errors, free_runs
+from boatsim.diagnose.locate.structure import FACTOR
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.rank import UNKNOWN_FACTOR, Ranking
+from boatsim.diagnose.search.rank import Ranking
 from boatsim.recordings.table import Recording
 
 MODELS = ("nominal", "recalibrated", "patched")
@@ -91,11 +92,11 @@ def remarks(
                     f"On unseen data what was added does not help in {what}: {found['patched'] * scale:.3g} {unit}, "
                     f"the recalibrated boat {found['recalibrated'] * scale:.3g} {unit}."
                 )
-    if ranking.unknown:
+    if ranking.left_over > ranking.told_from:
         why = "none of the entries tried accounts for it" if ranking.first else "nothing was tried to account for it"
         out.append(
             "A force larger than the tolerated one stays unexplained after all this "
-            f"({ranking.left_over:.0f} nats beyond {UNKNOWN_FACTOR:g} times the ambient force): "
+            f"({ranking.left_over:.0f} nats beyond {FACTOR:g} times the ambient force): "
             f"{why}."
         )
     for track in fitted:

@@ -190,7 +190,11 @@ def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
     physics = [_clause(e, words or {}) for e in effects if e["kind"] != "measurement"]
     measured = [_clause(e, words or {}) for e in effects if e["kind"] == "measurement"]
     unknown = answer["verdict"] == "unknown"
-    parts = [f"something is missing that no entry of the library explains{_sizes(answer)}"] if unknown else []
+    parts = (
+        [f"something is missing that no entry of the library explains{_sizes(answer)}{_with(answer)}"]
+        if unknown
+        else []
+    )
     if physics:
         count = COUNTS[len(physics)] if len(physics) < len(COUNTS) else f"{len(physics)} things"
         parts.append(f"the model leaves out {count}: {_clauses(physics)}")
@@ -224,6 +228,12 @@ def _sizes(answer: Answer) -> str:
     axes = answer["unknown"].get("rest") or answer["where"]["axes"]
     sizes = [f"{quantity(a['rms'], a['unit'], digits=2)} rms in {axis}" for axis, a in axes.items()]
     return f" ({listed(sizes)})" if sizes else ""
+
+
+def _with(answer: Answer) -> str:
+    """What it goes with, if with anything."""
+    found = answer["unknown"].get("structure")
+    return f", which in {found['axis']} goes with {found['goes_with']}" if found else ""
 
 
 def _clause(effect: EffectEntry, words: Mapping[str, str]) -> str:

@@ -10,6 +10,7 @@ from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
 from boatsim.diagnose.free_runs import free_runs
 from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.locate.structure import FACTOR, Structure, structure
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.screen import checked, handed_over, joined, screen, starts
@@ -27,7 +28,6 @@ SURE, SURE_RANDOM = 2.0, 1.65  # standard errors by which unseen errors must gro
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
 CLEAR = 4.0  # prices that an effect gains by the curvature at a fit, from where it needs no fit without it to stay
 RIVALS = 3  # fitted in the place of what was named
-UNKNOWN_FACTOR = 1.5  # what is left is judged against this many times the ambient force
 WORTH = 4.0  # [nats] that an effect must gain by itself,
 DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
 UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library,
@@ -58,11 +58,17 @@ class Ranking:
     first: dict[str, float]  # gain of every suspect alone over the recalibrated nominal [nats]
     last: dict[str, Fit]  # every suspect not named, on top of the best set
     left_over: float  # [nats] that a force beyond the tolerated one gains after the best set
+    structure: Structure  # what goes best with the force left over
 
     @property
     def unknown(self) -> bool:
         """Whether something is left that no entry of the library explains."""
-        return bool(self.left_over > self.told_from)
+        return bool(self.left_over > self.told_from) or self.structured
+
+    @property
+    def structured(self) -> bool:
+        """Whether what is left over, however weak, goes with something."""
+        return self.structure.likely and self.structure.gain > self.told_from
 
     @property
     def told_from(self) -> float:
@@ -92,7 +98,8 @@ def rank(
     left = left_over(problem, best)
     tried = search.looked(best)
     first = {n: f.evidence - search.base.evidence for n, f in search.looked(search.base).items()}
-    return Ranking(nominal, search.base, widened(problem, best), named, first, tried, left)
+    goes_with = structure(problem, best)
+    return Ranking(nominal, search.base, widened(problem, best), named, first, tried, left, goes_with)
 
 
 def misled(problem: Problem, search: "_Search", best: Fit, unseen: Sequence[Track]) -> str:
@@ -343,6 +350,6 @@ def _front(tried: Mapping[str, Fit], base: Fit) -> list[str]:
 def left_over(problem: Problem, best: Fit) -> float:
     """Nats that the latent force gains beyond the tolerated level: what nothing in the library explains."""
     on = problem.program.switches(best.suspects)
-    held = replace(best.levels, force=np.minimum(best.levels.force, UNKNOWN_FACTOR * problem.ambient.force))
+    held = replace(best.levels, force=np.minimum(best.levels.force, FACTOR * problem.ambient.force))
     free = problem.likelihood(best.free, best.theta, on, best.levels)
     return free - problem.likelihood(best.free, best.theta, on, held)
