@@ -18,7 +18,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Effect, Release, Wandering
 from boatsim.physics.vessel import Vessel
 
-LONG = 3000  # rows of all runs from which several runs are followed at a time
+LONG = 6000  # rows of all runs times freedoms from which several runs are followed at a time
 T = TypeVar("T")
 
 
@@ -181,7 +181,8 @@ class Problem:
 
     def _each(self, of: Callable[[Track], T]) -> list[T]:
         """Something of every run, several at a time where they are long: compiled passes leave other threads alone."""
-        if len(self.tracks) == 1 or sum(len(t.times) for t in self.tracks) < LONG:
+        rows = sum(len(t.times) for t in self.tracks)
+        if len(self.tracks) == 1 or rows * self.program.module.NQ < LONG:
             return [of(t) for t in self.tracks]
         return list(_threads(os.getpid()).map(of, self.tracks))
 

@@ -32,7 +32,8 @@ WORTH = 4.0  # [nats] that an effect must gain by itself,
 DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
 UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library,
 SLIGHT = 0.025  # of what the others explain, below which an effect may be what their laws are off by
-INEXACT = 0.05  # and so much of what was explained: nature's laws are never quite the entries'
+INEXACT = 0.05  # and so much of what was explained: nature's laws are never quite the entries',
+ALONG = 0.02  # less of it for a force that goes with something
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,8 @@ class Ranking:
     @property
     def structured(self) -> bool:
         """Whether what is left over, however weak, goes with something."""
-        return self.structure.likely and self.structure.gain > self.told_from
+        explained = float(self.best.evidence - self.recalibrated.evidence)
+        return self.structure.likely and self.structure.gain > told_from(explained, ALONG)
 
     @property
     def told_from(self) -> float:
@@ -322,9 +324,9 @@ def price(number: int) -> float:
     return ODDS + float(np.log(max(number, 1)))
 
 
-def told_from(explained: float) -> float:
+def told_from(explained: float, inexact: float = INEXACT) -> float:
     """Nats left over from which something is missing that the library has not, where its entries explained so many."""
-    return UNKNOWN + INEXACT * max(explained, 0.0)
+    return UNKNOWN + inexact * max(explained, 0.0)
 
 
 def together(gains: Sequence[float]) -> float:
