@@ -21,6 +21,10 @@ FACTOR = 1.5  # of the tolerated force: what is left over is judged against this
 STRETCHES = 8  # parts of a run in which a force may act
 SMALL = 1e-9  # of the largest information on an axis, below which a feature says nothing
 TURNING = ("roll", "pitch", "yaw")
+PLACES = {
+    "surge": "how far north or south she is", "sway": "how far east or west she is", "heave": "how deep she floats",
+    "roll": "the roll angle", "pitch": "the trim",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -99,9 +103,9 @@ def _features(track: Track, states: Array, lasting: float) -> Iterator[tuple[str
         for what, angle in (("heading", psi), ("twice the heading", 2.0 * psi)):
             yield f"the cosine of {what}", np.cos(angle)
             yield f"the sine of {what}", np.sin(angle)
-    for axis, where in (("surge", "north or south"), ("sway", "east or west"), ("roll", "roll"), ("pitch", "trim")):
+    for axis, place in PLACES.items():
         if axis in axes:
-            yield f"how far {where} she is", states[:, axes.index(axis)] - states[:, axes.index(axis)].mean()
+            yield place, states[:, axes.index(axis)] - states[:, axes.index(axis)].mean()
     since = (t - t[0]) / (t[-1] - t[0])
     for run in (track.name, ""):
         of = f" of {run}" if run else ""
