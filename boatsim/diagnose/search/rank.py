@@ -26,7 +26,7 @@ MANY = 6  # but no more of them than this
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
 SURE, SURE_RANDOM = 2.0, 1.65  # standard errors by which unseen errors must grow; a random force predicts nothing
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
-CLEAR = 4.0  # prices that an effect gains by the curvature at a fit, from where it needs no fit without it to stay
+CLEAR = 40.0  # prices that an effect is worth by the curvature at a fit, from where it stays without a fit without it
 RIVALS = 3  # fitted in the place of what was named
 WORTH = 4.0  # [nats] that an effect must gain by itself,
 DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
@@ -335,7 +335,10 @@ def together(gains: Sequence[float]) -> float:
 
 
 def worth(best: Fit, name: str) -> float:
-    """Nats that a member gains by the curvature at a fit: half the square of its distance from not acting, in sds."""
+    """Nats that a member gains by the curvature at a fit: half the square of its distance from not acting, in sds.
+
+    That is far more than it gains where the latent force may take its place, which a curvature knows nothing of.
+    """
     own = [i for i, f in enumerate(best.free) if f.effect == name and not f.relative]
     off = best.theta[own] - np.array([best.free[i].mean for i in own])
     return 0.5 * float(off @ np.linalg.solve(best.covariance[np.ix_(own, own)], off)) if own else 0.0

@@ -1,0 +1,76 @@
+"""The search: a look's promise against dense least squares, looks the filter does not bear out, runs side by side."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_locate import laid, push, sail
+
+from boatsim.diagnose import problem as problems
+from boatsim.diagnose.fit import fit
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search.rank import worth
+from boatsim.diagnose.search.screen import HONEST, Begin, checked, screen
+from boatsim.physics.base import Array
+
+
+def a_third_more_astern(t: float, y: Array, command: Array) -> Array:
+    return np.asarray(-0.33 * push(np.minimum(command[:2], 0.0), command[2:]))
+
+
+@pytest.fixture(scope="module")
+def weak() -> tuple[Problem, Fit]:
+    return laid(*(sail(f"run_{k}", 40 + k, a_third_more_astern)[0] for k in range(2)))
+
+
+def test_a_start_promises_what_least_squares_gains_by_a_multiple_of_it_beside_all_that_is_free() -> None:
+    rng = np.random.default_rng(3)
+    known, white, mark = rng.standard_normal((50, 4)), rng.standard_normal(50), rng.standard_normal(50)
+    begin = Begin(known, np.zeros(4), 0.0, white, np.linalg.inv(np.eye(4) + known.T @ known))
+
+    def cost(A: Array) -> float:
+        """Of the best fit, with the priors of what was free before."""
+        prior = np.zeros((4, A.shape[1]))
+        prior[:, :4] = np.eye(4)
+        b = np.concatenate([-white, np.zeros(4)])
+        rows = np.vstack([A, prior])
+        return 0.5 * float(np.sum((rows @ np.linalg.lstsq(rows, b, rcond=None)[0] - b) ** 2))
+
+    gain = cost(known) - cost(np.column_stack([known, mark]))
+    assert begin.promise(white + mark) == pytest.approx(gain, rel=1e-9)
+    assert begin.promise(white - 7.0 * mark) == pytest.approx(gain, rel=1e-9)  # whatever its size
+
+
+def test_a_look_that_the_filter_bears_out_stays_and_one_that_it_does_not_comes_nearer(
+    weak: tuple[Problem, Fit],
+) -> None:
+    problem, base = weak
+    look = screen(problem, base, ["weak_reverse"])["weak_reverse"]
+    assert look.evidence > base.evidence + 10.0
+    assert checked(problem, base, look) is look
+    own = np.array([f.effect == "weak_reverse" for f in look.free])
+    mean = np.array([f.mean for f in look.free])
+    wild = replace(look, theta=np.where(own, mean - 2.5 * (look.theta - mean), look.theta))  # strong, the wrong way
+    honest = checked(problem, base, wild)
+    assert honest is not wild and honest.evidence - base.evidence < HONEST * (wild.evidence - base.evidence)
+
+
+def test_a_member_is_worth_less_than_its_curvature_says_and_what_does_nothing_little(weak: tuple[Problem, Fit]) -> None:
+    problem, base = weak
+    looks = screen(problem, base, ["weak_reverse", "steady_force"])
+    found = fit(problem, looks["weak_reverse"])
+    assert worth(found, "weak_reverse") > found.evidence - base.evidence > 100.0  # the latent force takes its place
+    both = fit(problem, screen(problem, found, ["steady_force"])["steady_force"])
+    assert worth(both, "steady_force") < 10.0 and worth(both, "nothing of the kind") == 0.0
+
+
+def test_runs_followed_side_by_side_say_what_they_say_one_after_the_other(
+    weak: tuple[Problem, Fit], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem, base = weak
+    on, said = problem.program.switches(), []
+    for rows in (0, 10**9):
+        monkeypatch.setattr(problems, "LONG", rows)
+        found = problem.likelihood(base.free, base.theta, on, base.levels)
+        said.append((found, problem.whitened(base.free, 1.01 * base.theta, on, base.levels)))
+    assert said[0][0] == said[1][0] and (said[0][1] == said[1][1]).all()
