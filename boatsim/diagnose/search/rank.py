@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnose import rules
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
 from boatsim.diagnose.free_runs import free_runs
@@ -26,7 +25,6 @@ HALF = 0.5  # and those with this share of its gain
 MANY = 6  # but no more of them than this
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
 SURE, SURE_RANDOM = 2.0, 1.65  # standard errors by which unseen errors must grow; a random force predicts nothing
-SURE_ONE = 3.0  # the same where one of several is to go, since each of them is asked
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
 CLEAR = 40.0  # prices that an effect is worth by the curvature at a fit, from where it stays without a fit without it
 RIVALS = 3  # fitted in the place of what was named
@@ -96,11 +94,9 @@ def rank(
     while search.little(best):
         best, named = search.settled(search.stood_for(best))
     progress.info("judging what is left over")
-    while unseen and misled(problem, search, best, unseen):
-        while worse := misled(problem, search, best, unseen):
-            search.banned.add(worse)
-            best = search.without(best, worse)
-        best, named = search.settled(search.selected(best))
+    while named and unseen and (worse := misled(problem, search, best, unseen)):
+        search.banned.add(worse)
+        best, named = search.settled(search.selected(search.without(best, worse)))
     left = left_over(problem, best)
     tried = search.looked(best)
     first = {n: f.evidence - search.base.evidence for n, f in search.looked(search.base).items()}
@@ -109,26 +105,16 @@ def rank(
 
 
 def misled(problem: Problem, search: "_Search", best: Fit, unseen: Sequence[Track]) -> str:
-    """The effect without which free runs over unseen recordings are best, where that is clear; or "".
-
-    That is so where with all they are worse than with none, or with all worse than without that one.
-    """
-    if not best.suspects:
-        return ""
-    usual = rules.horizon(problem.program.vessel)
-    horizon = min(problem.horizon, usual, max(float(np.ptp(t.times)) for t in unseen))
+    """The effect without which free runs over unseen recordings are best, if with all they are worse than with none."""
+    horizon = min(problem.horizon, max(float(np.ptp(t.times)) for t in unseen))
     fits = {"none": search.base, "all": best} | {n: search.without(best, n) for n in best.suspects}
-    stretches = free_runs(problem, fits, unseen, horizon)
-    found = {n: carries.squares(stretches, n) for n in fits}
-    if not found["none"]:
-        return ""
-    misfit = {n: carries.misfit(found[n], found["none"]) for n in best.suspects}
+    first = free_runs(problem, {n: fits[n] for n in ("none", "all")}, unseen, horizon)
+    none = carries.squares(first, "none")
     sure = SURE_RANDOM if search.random & set(best.suspects) else SURE
-    worse = list(best.suspects) if carries.grew(found["none"], found["all"], sure) else []
-    if len(best.suspects) > 1:
-        whole = carries.misfit(found["all"], found["none"])
-        worse += [n for n in best.suspects if misfit[n] < whole and carries.grew(found[n], found["all"], SURE_ONE)]
-    return min(worse, key=lambda n: misfit[n]) if worse else ""
+    if not none or not carries.grew(none, carries.squares(first, "all"), sure):
+        return ""
+    rest = free_runs(problem, {n: fits[n] for n in best.suspects}, unseen, horizon)
+    return min(best.suspects, key=lambda n: carries.misfit(carries.squares(rest, n), none))
 
 
 def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:
