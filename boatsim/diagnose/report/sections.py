@@ -163,10 +163,11 @@ def _taken(f: Findings) -> Iterator[Block]:
 
 def _structure(s: StructureEntry) -> str:
     """What the force left over goes with."""
-    sure = "one in a million" if s["p_value"] < 1e-6 else f"one in {number(1.0 / s['p_value'], 1)}"
+    often = "a million" if s["p_value"] < 1e-6 else number(1.0 / s["p_value"], 1)
     return (
-        f"the force left over in {s['axis']} goes with {s['goes_with']}: a force along with it gains "
-        f"{nats(s['gain_nats'])} nats, and of {s['tried']} things tried one does so by chance {sure} times"
+        f"what is left over in {s['axis']} goes with {s['goes_with']}: a force along with it gains "
+        f"{nats(s['gain_nats'])} nats. Of the {s['tried']} things tried one would do so by accident once in {often} "
+        "recordings"
     )
 
 
