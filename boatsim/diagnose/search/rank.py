@@ -190,16 +190,15 @@ class _Search:
         """The fit of a set without one of its members."""
         return self.converged(reduced(self.problem, best, name))
 
-    def tried(self, best: Fit, among: Sequence[str] | None = None) -> dict[str, Fit]:
+    def tried(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
         """Other candidates on top of a set, all or `among` some, less those found to mislead."""
         return {n: f for n, f in self.looked(best, among).items() if n not in self.banned}
 
-    def looked(self, best: Fit, among: Sequence[str] | None = None) -> dict[str, Fit]:
+    def looked(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
         """Other candidates on top of a set: a quick look at all, or `among` some, those in front fitted in full."""
         key = frozenset(best.suspects)
         known = self.looks.setdefault(key, {})
-        tried = self.candidates if among is None else among
-        rest = [n for n in tried if n not in best.suspects and n not in known]
+        rest = [n for n in among or self.candidates if n not in best.suspects and n not in known]
         if rest:
             known |= screen(self.problem, best, rest)
         allowed = {n: f for n, f in known.items() if n not in self.banned}
