@@ -230,7 +230,10 @@ class _Search:
         return max(found, fit(self.problem, other), key=lambda f: f.evidence)
 
     def hopeful(self, best: Fit) -> list[str]:
-        """Candidates that may gain on top of a set: those that gained on top of one that it contains."""
+        """Candidates that may gain on top of a set: those that gained on top of one that it contains.
+
+        None where no such set was looked at, as at the beginning of a second pass: all are looked at then.
+        """
         key = frozenset(best.suspects)
         looks = {k: x for k, x in self.looks.items() if k <= key}
         gained = {n for k, x in looks.items() for n, f in x.items() if f.evidence > self.fits[k].evidence}
