@@ -18,7 +18,7 @@ from boatsim.diagnose.locate.region_tests import Evidence, joint
 from boatsim.diagnose.locate.regions import Region, regions
 from boatsim.diagnose.locate.rhythm import rhythm
 from boatsim.diagnose.locate.smoothing import information, running_average, variance_of_average
-from boatsim.diagnose.locate.structure import structure
+from boatsim.diagnose.locate.structure import features, structure
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.rank import UNKNOWN, baseline, left_over
 from boatsim.diagnose.tried import library_for
@@ -386,3 +386,12 @@ def test_a_force_below_the_tolerated_one_is_seen_by_what_it_goes_with(axis: str,
     seen = structure(problem, found)
     assert seen.axis == axis and goes_with in seen.goes_with and seen.p_value < 1e-3
     assert left_over(problem, found) < UNKNOWN  # whose rms alone would pass
+
+
+def test_stretches_are_told_by_the_clock_of_the_recording() -> None:
+    """A later part of a recording does not begin at 0 s."""
+    recording, _ = sail("run_0", 80, nothing)
+    problem, _ = laid(replace(recording, t=recording.t + 100.0))
+    (followed,) = problem.tracks
+    told = dict(features(followed, np.ones((ROWS, 6)), 1.0))
+    assert "time: it acts in 100 to 105 s of run_0" in told and "time: it acts in 135 to 140 s of run_0" in told

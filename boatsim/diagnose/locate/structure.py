@@ -64,6 +64,8 @@ def structure(problem: Problem, found: Fit) -> Structure:
             score[key] = score.get(key, 0.0) + s
     largest = {a: max(i for (axis, _), i in known.items() if axis == a) for a in axes}
     gain = {k: 0.5 * score[k] ** 2 / i for k, i in known.items() if i > SMALL * largest[k[0]]}
+    if not gain:
+        return Structure(axes[0], "nothing", 0.0, 1.0, 0)
     axis, name = max(gain, key=lambda k: gain[k])
     best = gain[axis, name]
     return Structure(axis, name, best, min(1.0, len(gain) * float(chdtrc(1, 2.0 * best))), len(gain))
@@ -112,9 +114,8 @@ def _features(track: Track, states: Array, lasting: float) -> Iterator[tuple[str
         yield f"the time since the beginning{of}", since - 0.5
         for k in range(STRETCHES):
             within = (since >= k / STRETCHES) & (since < (k + 1) / STRETCHES)
-            span = (
-                f"{t[-1] * k / STRETCHES:.3g} to {t[-1] * (k + 1) / STRETCHES:.3g} s" if run else f"part {k + 1} of 8"
-            )
+            begin, end = t[0] + (t[-1] - t[0]) * np.array([k, k + 1]) / STRETCHES
+            span = f"{begin:.3g} to {end:.3g} s" if run else f"part {k + 1} of {STRETCHES}"
             yield f"time: it acts in {span}{of or ' of every run'}", within.astype(float)
 
 
