@@ -106,6 +106,17 @@ def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: fl
     assert ends[0] == pytest.approx(ends[1], abs=1e-4)  # [m], [rad]; an arrival missed by 10 ms moves it by 0.01
 
 
+def test_a_delay_of_a_ship_outlasts_commands_that_change_at_every_step() -> None:
+    """A sine sent anew every 20 ms, 6 s late: 300 commands are on their way; remembered in means 77 ms long."""
+    late, memory, step, shown = CommandDelay(delay=6.0).values(), np.zeros(CommandDelay.slots), 0.02, []
+    times = step * np.arange(1500)
+    for given in np.sin(0.5 * times):
+        passed = CommandDelay.channel.py_func(Course(given, given, given), 0.0, 0.0, memory, 0, step, late)
+        shown.append(passed.middle)
+    after = times > 6.5
+    assert np.array(shown)[after] == pytest.approx(np.sin(0.5 * (times[after] - 6.0)), abs=0.5 * 0.077)
+
+
 def test_a_drive_that_is_dead_over_all_of_its_span_is_refused_in_a_line() -> None:
     with pytest.raises(BadInput, match=r"^drive_map\.dead = 60; allowed is less than its span, 50$"):
         DriveMap(span=50.0, dead=60.0)

@@ -1,5 +1,6 @@
 """What a recording shows and the boat did not do: clocks, cameras, compasses, antennas; and forces without a cause."""
 
+from dataclasses import replace
 from itertools import combinations
 from math import cos, pi, sin
 from pathlib import Path
@@ -9,11 +10,13 @@ import numpy as np
 import pytest
 from real_boat import FURTHER, Real, recorded, waves
 from scipy import signal
+from scipy.interpolate import CubicSpline
 
 from boatsim.diagnose import analysis
 from boatsim.physics.base import Shown, motion
 from boatsim.physics.effects.camera_scale import CameraScale
 from boatsim.physics.effects.heading_deviation import HeadingDeviation, HeadingOffset
+from boatsim.physics.effects.late_fixes import LateFixes
 from boatsim.physics.effects.position_frame_error import PositionFrameError
 from boatsim.physics.effects.wave_forcing import WaveForcing, law
 from boatsim.recordings import table as recording
@@ -112,6 +115,33 @@ def test_an_antenna_off_the_mass_centre_and_a_turned_compass_are_told_apart(tmp_
     assert set(found) == {"heading_offset", "position_frame_error"}
     assert found["heading_offset"]["offset_rad"]["value"] == pytest.approx(0.12, abs=0.02)
     assert found["position_frame_error"]["forward_m"]["value"] == pytest.approx(0.25, abs=0.03)
+
+
+def test_fixes_older_than_their_headings_are_named_with_their_age(tmp_path: Path) -> None:
+    """Positions of a receiver that takes 0.1 s, beside a compass that takes none."""
+    (tmp_path / "recording.toml").write_text('[facts]\nposition_fix = "gnss"\n')
+    files = []
+    for seed in (1, 2, 3):
+        run = recorded(Real(), seed)
+        was = np.maximum(run.t - 0.1, run.t[0])
+        signals = run.signals | {n: CubicSpline(run.t, run[n])(was) for n in ("x_m", "y_m")}
+        files.append(tmp_path / f"{seed}.csv")
+        recording.write_csv(replace(run, signals=signals), files[-1])
+    answer = analysis.diagnose(files[:2], files[2:], "trial_boat").findings.answer
+    assert answer["verdict"] == "named", answer["sentence"]
+    (effect,) = answer["effects"]
+    found = effect["parameters"]["latency_s"]
+    assert effect["name"] == "late_fixes" and abs(found["value"] - 0.1) < 3.5 * found["sd"] < 0.03
+
+
+def test_fixes_of_a_steady_turn_are_shown_where_she_was() -> None:
+    """On a circle of 2 m at 1 m/s, 0.4 s late: the chord for the arc is off by 1e-3 of it."""
+    radius, speed, late = 2.0, 1.0, 0.4
+    rate = speed / radius
+    now = TRUE._replace(x=0.0, y=0.0, psi=0.3, u=speed, v=0.0, r=rate)
+    was = [radius * (sin(0.3 - rate * late) - sin(0.3)), -radius * (cos(0.3 - rate * late) - cos(0.3))]
+    seen = shown(LateFixes(latency=late), now)
+    assert [seen.x, seen.y] == pytest.approx(was, abs=2e-3 * speed * late) and seen[2:] == now[2:]
 
 
 def test_irregular_waves_are_named_with_their_frequency(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
 from boatsim.diagnose.log.held_fixes import without_repeats
+from boatsim.diagnose.log.outlying_fixes import without_outliers
 from boatsim.diagnose.log.position_frame import in_one_frame
 from boatsim.diagnose.log.steering_sense import steered
 from boatsim.diagnose.next import experiment
@@ -94,7 +95,7 @@ def diagnose(
     boats = [boat for _, boat in opened]
     if len({(b.file, b.freedoms) for b in boats}) > 1:
         raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}")
-    thin = [without_repeats(r.thinned(rules.rate(b))) for r, b in opened]
+    thin = [without_outliers(without_repeats(r.thinned(rules.rate(b))), b) for r, b in opened]
     named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
     fitted, unseen, note = show.split(named[: len(runs)], named[len(runs) :])
     remarks = tuple(dict.fromkeys(m for r in thin for m in r.remarks))

@@ -84,8 +84,8 @@ def fit_noise(problem: Problem, found: Fit, sweeps: int = 3) -> Fit:
     x = np.concatenate([np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)])
     score(x, fresh=True)
     x = _climbed(score, x, 0.6, 1)
-    score(x, fresh=True)
-    return replace(found, levels=levels(_coordinate_search(score, x, 0.42, sweeps - 1)))
+    begin = score(x, fresh=True)
+    return replace(found, levels=levels(_coordinate_search(score, x, begin, 0.42, sweeps - 1)[1]))
 
 
 def fit_time_constant(problem: Problem, found: Fit) -> Levels:
@@ -102,7 +102,7 @@ def fit_time_constant(problem: Problem, found: Fit) -> Levels:
 
     problem.likelihood(found.free, found.theta, on, found.levels)
     begin = np.append(np.log(found.levels.force), np.log(found.levels.time_constant))
-    return levels(_coordinate_search(score, begin, 0.7, 2))
+    return levels(_coordinate_search(score, begin, score(begin), 0.7, 2)[1])
 
 
 def _roughness(problem: Problem, family: str) -> float:
@@ -120,17 +120,20 @@ def _climbed(score: Callable[[Array], float], x: Array, step: float, sweeps: int
     """Coordinate searches with the first step as long as one gains much: a level may lie far from where it begins."""
     before = score(x)
     for _ in range(CLIMBS):
-        x = _coordinate_search(score, x, step, sweeps)
-        after = score(x)
+        after, x = _coordinate_search(score, x, before, step, sweeps)
         if after < before + FLAT:
             break
         before = after
     return x
 
 
-def _coordinate_search(score: Callable[[Array], float], x: Array, step: float, sweeps: int) -> Array:
-    """Maximise a smooth score one coordinate at a time: a parabola through three points, then the best of four."""
-    best = score(x)
+def _coordinate_search(
+    score: Callable[[Array], float], x: Array, best: float, step: float, sweeps: int
+) -> tuple[float, Array]:
+    """Maximise a smooth score, `best` at x, one coordinate at a time: a parabola through three points, then the best.
+
+    The score found and where.
+    """
     for _ in range(sweeps):
         for j in range(len(x)):
             e = np.zeros(len(x))
@@ -145,4 +148,4 @@ def _coordinate_search(score: Callable[[Array], float], x: Array, step: float, s
             options += [(above, x + e), (below, x - e)]
             best, x = max(options, key=lambda o: o[0])
         step *= 0.7
-    return x
+    return best, x

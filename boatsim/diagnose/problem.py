@@ -15,7 +15,7 @@ from boatsim.diagnose import rules
 from boatsim.diagnose.excursion import excursion
 from boatsim.diagnose.filter import BODY, Levels, Track
 from boatsim.errors import BadInput
-from boatsim.physics.base import Array, Channel, Effect, Release, Wandering
+from boatsim.physics.base import Array, Channel, Effect, Param, Release, Wandering
 from boatsim.physics.vessel import Vessel
 
 LONG = 6000  # rows of all runs times freedoms from which several runs are followed at a time
@@ -139,10 +139,10 @@ class Problem:
                 axis_is_free = not about.axis or about.axis in self.program.vessel.freedoms
                 if about.fit and axis_is_free and self._on_board(effect, name) and (acts := self._acts(effect, name)):
                     sd = about.spread * self.scale(effect, name)
-                    searched = type(effect).random
+                    low, high = self._bounds(about)
                     free.append(
                         Free(
-                            effect.name, name, acts.at, about.absent, sd, about.low, about.high, False, searched,
+                            effect.name, name, acts.at, about.absent, sd, low, high, False, type(effect).random,
                             about.how, acts.weights,
                         )
                     )  # fmt: skip
@@ -184,7 +184,9 @@ class Problem:
         rows = sum(len(t.times) for t in self.tracks)
         if len(self.tracks) == 1 or rows * self.program.module.NQ < LONG:
             return [of(t) for t in self.tracks]
-        return list(_threads(os.getpid()).map(of, self.tracks))
+        longest = sorted(range(len(self.tracks)), key=lambda i: -len(self.tracks[i].times))  # or all wait for it
+        begun = {i: _threads(os.getpid()).submit(of, self.tracks[i]) for i in longest}
+        return [begun[i].result() for i in range(len(self.tracks))]
 
     def scale(self, effect: Effect, name: str) -> float:
         """How much larger a parameter may be than on the boat for which effects state their priors, by its unit.
@@ -199,6 +201,11 @@ class Problem:
         if name in type(effect).thresholds and unit != "rad" and (largest := excursion(self.tracks, effect)):
             return largest
         return scale_of(unit, self.program.vessel)
+
+    def _bounds(self, about: Param) -> tuple[float, float]:
+        """Between which values a parameter is sought: what a file may say, and what can be on a boat of this size."""
+        low, high = (end * scale_of(about.unit, self.program.vessel) for end in about.within)
+        return max(low, about.low), min(high, about.high)
 
     def _on_board(self, effect: Effect, parameter: str) -> bool:
         """Whether there is an actuator on the side to which a channel effect's parameter belongs, if it is of one."""

@@ -26,6 +26,7 @@ class Param(NamedTuple):
     follows: str = ""  # left unset: the vessel's "linear_damping.surge" or "vessel.body.mass"; "?" ends an optional one
     releases: tuple[str, ...] = ()  # "linear_damping.surge", "body.mass": numbers of the vessel that may be off,
     how: str = "sets"  # or "scales" or "shifts": what a released number undergoes
+    within: tuple[float, float] = (-math.inf, math.inf)  # beyond which no fit believes it, stated as the spread is
 
 
 def param(
@@ -43,6 +44,7 @@ def param(
     follows: str = "",
     releases: tuple[str, ...] = (),
     how: str = "sets",
+    within: tuple[float, float] = (-math.inf, math.inf),
 ) -> N:
     """Dataclass field of a checked number; `nominal` may be UNSET.
 
@@ -50,7 +52,7 @@ def param(
     """
     if fit and not spread > 0.0:
         raise ValueError(f"a parameter with fit=True needs a spread, its prior sd ({words})")
-    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows, releases, how)
+    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows, releases, how, within)
     return field(default=nominal, metadata={"param": about})
 
 
@@ -64,11 +66,20 @@ def factor(
     )  # fmt: skip
 
 
-def shift(*releases: str, words: str, unit: str, spread: float, low: float, high: float, axis: str = "") -> float:
+def shift(
+    *releases: str,
+    words: str,
+    unit: str,
+    spread: float,
+    low: float,
+    high: float,
+    axis: str = "",
+    within: tuple[float, float] = (-math.inf, math.inf),
+) -> float:
     """Field of a `Release`: numbers of the vessel that may be off by one addend."""
     return param(
         0.0, low=low, high=high, unit=unit, words=words, fit=True, spread=spread, axis=axis, releases=releases,
-        how="shifts",
+        how="shifts", within=within,
     )  # fmt: skip
 
 

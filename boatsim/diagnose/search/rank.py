@@ -180,11 +180,21 @@ class _Search:
         return float(best.evidence - self.base.evidence)
 
     def converged(self, start: Fit) -> Fit:
-        """The fit of a set, kept: made from `start` unless it was made before."""
+        """The fit of a set, kept: made from `start` unless it was made before from one no worse."""
         key = frozenset(start.suspects)
-        if key not in self.fits:
-            self.fits[key] = converge(self.problem, start)
+        known = self.fits.get(key)
+        if known is None or start.evidence > known.evidence + SETTLED:
+            found = converge(self.problem, start)
+            if known is not None and found.evidence > known.evidence + SETTLED:
+                self.forget(key)
+            self.fits[key] = max(found, known or found, key=lambda f: f.evidence)
         return self.fits[key]
+
+    def forget(self, key: frozenset[str]) -> None:
+        """What was looked at on top of a set was compared with a fit that was not its best: look again."""
+        self.looks.pop(key, None)
+        self.kept = {x for x in self.kept if x[0] != key}
+        self.full = {x for x in self.full if x[0] != key}
 
     def without(self, best: Fit, name: str) -> Fit:
         """The fit of a set without one of its members."""
@@ -303,8 +313,14 @@ class _Search:
         """Gain of one effect on top of the others, and how its rivals do in its place."""
         without = self.without(best, name)
         gain = best.evidence - without.evidence
-        others = {n: f for n, f in self.tried(without, self.hopeful(without)).items() if n not in best.suspects}
-        rivals = {n: self.converged(others[n]) for n in _front(others, without)[:RIVALS]}
+        key = frozenset(without.suspects)
+        self.looks.setdefault(key, {})[name] = best  # the others are compared with what it gains itself
+        self.full.add((key, name))
+        tried = self.tried(without, self.hopeful(without))
+        others = {n: f for n, f in tried.items() if n not in best.suspects}
+        near = [n for n in _front(tried, without) if n in others][:RIVALS]
+        next_best = max(others, key=lambda n: others[n].evidence, default=None)
+        rivals = {n: self.converged(others[n]) for n in near} or ({next_best: others[next_best]} if next_best else {})
         gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
         weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
         order = sorted(gains, key=lambda n: -gains[n])

@@ -23,4 +23,6 @@ class ClockOffset(Measurement):
     late: ClassVar = late
     starts: ClassVar = ({"pose_late": 0.2}, {"pose_late": -0.2}, {"pose_late": -0.5})
 
-    pose_late: float = param(0.0, low=-2.0, high=2.0, unit="s", words="poses late by", fit=True, spread=0.4)
+    pose_late: float = param(
+        0.0, low=-60.0, high=60.0, unit="s", words="poses late by", fit=True, spread=0.4, within=(-2.0, 2.0)
+    )

@@ -10,14 +10,20 @@ from boatsim.physics.base import Array, Channel, Course, mean_of, param
 from boatsim.physics.kinds.channel import DELAYS
 
 SAME = 1e-9  # [s] instants this close are one
-HISTORY = 80  # commands remembered of each actuator: one every 20 ms for the longest delay
+HISTORY = 80  # commands remembered of each actuator: one every 20 ms for a delay of 1.6 s
 
 
 @njit(inline="always")
-def remember(x: float, memory: Array, at: int, dt: float) -> int:
-    """Add a command held for dt to the ring of (command, duration) pairs behind memory[at]; index of the newest."""
+def remember(x: float, memory: Array, at: int, dt: float, delay: float) -> int:
+    """Add a command held for dt to the ring of (command, duration) pairs behind memory[at]; index of the newest.
+
+    Commands that change too often for the ring to reach back as far as the delay are remembered by their mean.
+    """
     newest = int(memory[at])
-    if x != memory[at + 1 + 2 * newest]:
+    held, lasted = memory[at + 1 + 2 * newest], memory[at + 2 + 2 * newest]
+    if x != held and 0.0 < lasted < delay / (HISTORY - 2):
+        memory[at + 1 + 2 * newest] = (held * lasted + x * dt) / (lasted + dt)
+    elif x != held:
         newest = (newest + 1) % HISTORY
         memory[at] = newest
         memory[at + 1 + 2 * newest] = x
@@ -30,7 +36,7 @@ def remember(x: float, memory: Array, at: int, dt: float) -> int:
 def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
     """Mean command of the time window that is `delay` old: exact, for no step reaches beyond a change."""
     given = mean_of(x)
-    i = remember(given, memory, at, dt)
+    i = remember(given, memory, at, dt, q.delay)
     if q.delay <= 0.0:
         return x
     left, age, total, held = dt, 0.0, 0.0, given  # age [s] at the end of the step, walking back in time
@@ -95,4 +101,6 @@ class CommandDelay(Channel):
     passes: ClassVar = passes
     starts: ClassVar = ({"delay": 0.1},)
 
-    delay: float = param(0.0, low=0.0, high=1.6, unit="s", words="command to effect", fit=True, spread=0.5)
+    delay: float = param(
+        0.0, low=0.0, high=60.0, unit="s", words="command to effect", fit=True, spread=0.5, within=(0.0, 1.6)
+    )

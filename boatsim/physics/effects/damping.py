@@ -149,7 +149,13 @@ class LateralCentreShift(Release):
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4 (Y_r, N_v)"
 
     shift: float = shift(
-        "linear_damping.sway_at", words="positive forward", unit="m", spread=0.1, low=-200.0, high=200.0
+        "linear_damping.sway_at",
+        words="positive forward",
+        unit="m",
+        spread=0.1,
+        low=-200.0,
+        high=200.0,
+        within=(-0.6, 0.6),
     )
 
 

@@ -43,8 +43,10 @@ class ExtraMass(Inertia, Force):
     strength: ClassVar = ("mass",)
     starts: ClassVar = ({"mass": 0.7, "x": 0.2}, {"mass": 0.7, "x": -0.2})
 
-    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="its mass", fit=True, spread=1.5)
-    x: float = param(0.0, low=-250.0, high=250.0, unit="m", words="positive forward", fit=True, spread=0.3)
+    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="its mass", fit=True, spread=1.5, within=(0.0, 4.6))
+    x: float = param(
+        0.0, low=-250.0, high=250.0, unit="m", words="positive forward", fit=True, spread=0.3, within=(-0.6, 0.6)
+    )
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class Payload(Release):
 
     mass: float = shift(
         "body.mass", "body.roll_inertia", "body.pitch_inertia", "body.yaw_inertia", words="more than stated",
-        unit="kg", spread=1.5, low=-1e9, high=1e9,
+        unit="kg", spread=1.5, low=-1e9, high=1e9, within=(-2.3, 4.6),
     )  # fmt: skip
 
     def changes(self, vessel: Boat) -> list[Change]:

@@ -34,7 +34,9 @@ class MassCentreShift(Inertia, Force):
     inertia: ClassVar = inertia
     law: ClassVar = law
 
-    shift: float = param(0.0, low=-200.0, high=200.0, unit="m", words="positive forward", fit=True, spread=0.1)
+    shift: float = param(
+        0.0, low=-200.0, high=200.0, unit="m", words="positive forward", fit=True, spread=0.1, within=(-0.6, 0.6)
+    )
     hull_mass: float = param(
         UNSET,
         low=0.0,

@@ -91,4 +91,6 @@ class GustOffCentre(Release):
     shown_by: ClassVar[str] = "the same manoeuvre with the disturbance from another side"
     source: ClassVar[str] = "Y. Huang and Z. Ji, Autonomous boat dynamics, eq. 7, with a lever"
 
-    arm: float = shift("gust.arm", words="lever that is missing", unit="m", spread=0.1, low=-200.0, high=200.0)
+    arm: float = shift(
+        "gust.arm", words="lever that is missing", unit="m", spread=0.1, low=-200.0, high=200.0, within=(-1.2, 1.2)
+    )

@@ -7,6 +7,8 @@ from numba import njit
 
 from boatsim.physics.base import Force, Wrench, param, preset, wrench
 
+TWICE = (-9.2, 9.2)  # [kg] of a boat of 4.6 kg: no hull moves more water with it than twice its own mass
+
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
@@ -24,8 +26,8 @@ class SwayYawCoupling(Force):
     source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 6"
     law: ClassVar = law
 
-    sway: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="-Y_ur", fit=True, spread=5.0)
-    yaw: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="-N_uv", fit=True, spread=5.0)
+    sway: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="-Y_ur", fit=True, spread=5.0, within=TWICE)
+    yaw: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="-N_uv", fit=True, spread=5.0, within=TWICE)
     mass: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="X_vr")
 
 

@@ -38,9 +38,23 @@ class Wind(Force):
     )
     toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where it blows to", fit=True, spread=3.0)
     arm: float = param(
-        0.0, low=-200.0, high=200.0, unit="m", words="side force acts this far forward", fit=True, spread=0.1
+        0.0,
+        low=-200.0,
+        high=200.0,
+        unit="m",
+        words="side force acts this far forward",
+        fit=True,
+        spread=0.1,
+        within=(-0.6, 0.6),
     )
     swing: float = param(
-        0.0, low=-200.0, high=200.0, unit="m", words="further forward with the wind from astern", fit=True, spread=0.1
+        0.0,
+        low=-200.0,
+        high=200.0,
+        unit="m",
+        words="further forward with the wind from astern",
+        fit=True,
+        spread=0.1,
+        within=(-0.6, 0.6),
     )
     end_on: float = param(0.5, low=0.0, high=2.0, unit="", words="end-on force per beam-on force")
