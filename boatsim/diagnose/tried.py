@@ -18,6 +18,7 @@ from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, check_bindings
 
 FURTHER = "further_"  # in front of the name of an entry of which the vessel has one already
+REORDERED = "reordered_"  # of one that acts on the other side of an actuator's own lag than it usually does
 
 
 @dataclass(frozen=True)
@@ -65,12 +66,25 @@ def library_for(
             left_out[called] = f"shows as {' or '.join(kind.told_by)} does; --library {called} tries it"
             continue
         left_out.pop(called, None)
-        effect = placed(kind, vessel, known, table)
-        entries[effect.name] = effect
-        if why := reasons.get(called) or ruled_out(kind.ruled_out_by, known) or _unseen(kind, columns):
-            left_out[effect.name] = why
+        for effect in _either_side(placed(kind, vessel, known, table), vessel):
+            entries[effect.name] = effect
+            if why := reasons.get(called) or ruled_out(kind.ruled_out_by, known) or _unseen(kind, columns):
+                left_out[effect.name] = why
     check_bindings(replace(vessel, effects=(*vessel.effects, *entries.values())), f"{vessel.name}: library")
     return Library(tuple(entries.values()), left_out, idle)
+
+
+def _either_side(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
+    """An entry, and the same on the other side of an actuator of the vessel that takes its time, where it may be there.
+
+    A dead band of the command and one of the shaft differ only where a lag lies between them.
+    """
+    if not isinstance(effect, Channel) or not type(effect).either_side:
+        return (effect,)
+    slow = (e for e in vessel.effects if isinstance(e, Channel) and type(e).slots and e.standing == 0)
+    if not any(set(vessel.targets(e)) & set(vessel.targets(effect)) for e in slow):
+        return (effect,)
+    return effect, replace(effect, name=REORDERED + effect.name, other_side=True)
 
 
 def _tables(vessel: Vessel, own: Sequence[str]) -> Iterator[tuple[Mapping[str, object], Path, bool]]:
@@ -146,13 +160,12 @@ def less(library: Library, without: Sequence[str]) -> tuple[str, ...]:
     for name in without:
         if name not in there and name not in names("effect"):
             raise BadInput(unknown_name("--without", name, there))
-    out = {FURTHER + n for n in without} | set(without)
-    return tuple(n for n in there if n not in out)
+    return tuple(n for n in there if n not in without and called(n) not in without)
 
 
 def called(name: str) -> str:
     """What an answer calls an entry, be the vessel's own the same idea or not."""
-    return name.removeprefix(FURTHER)
+    return name.removeprefix(REORDERED).removeprefix(FURTHER)
 
 
 def with_stated_errors(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:

@@ -72,7 +72,7 @@ class Composition:
     @cached_property
     def _order(self) -> list[int]:
         """Effects by stage, else as they stand."""
-        return sorted(range(len(self.effects)), key=lambda i: type(self.effects[i]).stage)
+        return sorted(range(len(self.effects)), key=lambda i: self.effects[i].standing)
 
     @cached_property
     def memory_size(self) -> int:

@@ -24,7 +24,7 @@ from boatsim.diagnose.report.entries import (
 )
 from boatsim.diagnose.search.rank import Named, Ranking
 from boatsim.diagnose.tried import called
-from boatsim.physics.base import Effect
+from boatsim.physics.base import Channel, Effect
 
 ONE_SIDED_95 = 1.645  # [sd]
 SHAPE = 0.05  # nature's law is never quite the entry's: an sd holds this share of what was found [rad for directions]
@@ -142,10 +142,12 @@ def _effect(problem: Problem, best: Fit, named: Named) -> EffectEntry:
 def _words(best: Fit, effect: Effect) -> str:
     """What an effect says; the other way round where what it takes away was added."""
     kind = type(effect)
-    if not kind.words_above:
-        return kind.words
-    strength = next(f for f in best.free if f.effect == effect.name and not f.relative)
-    return kind.words_above if best.value(effect.name, strength.name)[0] > 1.0 else kind.words
+    strength = next((f for f in best.free if f.effect == effect.name and not f.relative), None)
+    above = strength is not None and kind.words_above and best.value(effect.name, strength.name)[0] > 1.0
+    words = kind.words_above if above else kind.words
+    if isinstance(effect, Channel) and effect.other_side:
+        words += ", in the actuator and not in its command" if kind.stage < 0 else ", already in the command"
+    return words
 
 
 def _parameter(best: Fit, effect: Effect, name: str) -> ParameterEntry:
@@ -160,7 +162,8 @@ def _parameter(best: Fit, effect: Effect, name: str) -> ParameterEntry:
         sd = float(np.hypot(sd, SHAPE))
     shown = wrap(value) if about.unit == "rad" else value
     entry: ParameterEntry = {"value": shown, "sd": sd, "unit": about.unit}
-    ends = [end for end in (about.low, about.high) if end != about.absent]
+    bounds = next((f.low, f.high) for f in best.free if f.effect == effect.name and f.name == name)
+    ends = [end for end in bounds if end != about.absent]
     if any(abs(value - end) <= AT_BOUND * abs(end) for end in ends):
         entry["at_bound"] = True
     return entry
@@ -172,10 +175,11 @@ def _candidates(ranking: Ranking) -> list[CandidateEntry]:
     gains = np.array([0.0, *(ranking.first[n] for n in names)])
     weights = np.exp(gains - gains.max())
     weights /= weights.sum()
-    return [
-        {"name": called(n), "gain_nats": round(float(g), 2), "probability": round(float(w), 4)}
-        for n, g, w in zip(names, gains[1:], weights[1:], strict=True)
-    ]
+    found: dict[str, CandidateEntry] = {}  # of an idea that was tried in two places the better one
+    for n, g, w in zip(names, gains[1:], weights[1:], strict=True):
+        entry: CandidateEntry = {"name": called(n), "gain_nats": round(float(g), 2), "probability": round(float(w), 4)}
+        found.setdefault(called(n), entry)
+    return list(found.values())
 
 
 def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:

@@ -10,7 +10,7 @@ from tomlkit.items import InlineTable, Table
 
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.files import replacing
-from boatsim.physics.base import Change, Effect, Release
+from boatsim.physics.base import Change, Channel, Effect, Release
 from boatsim.physics.content import address, find, vessel_address
 from boatsim.physics.vessel import Body, Vessel, added, effect_from, overlaid
 
@@ -46,7 +46,9 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
         elif effect.name in settings:
             told = {n: getattr(effect, n) for names in type(effect).facts.values() for n in names}
             named = {} if effect.name == type(effect).idea() else {"name": effect.name}
-            bound = {"on": list(effect.on)} if effect.on else {}
+            bound: dict[str, object] = {"on": list(effect.on)} if effect.on else {}
+            if isinstance(effect, Channel) and effect.other_side:
+                bound["other_side"] = True
             table = _effect_table(_address(type(effect), vessel), named | bound | told | settings[effect.name])
             table.add(tomlkit.nl())
             document["effect"].append(table)

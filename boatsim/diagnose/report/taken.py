@@ -16,8 +16,9 @@ def add(answer: Answer, problem: Problem, library: Library, tried: Sequence[str]
     """Put it into the answer; entries of the library that are not among those tried the user took out."""
     taken_out = {n: "--without" for n in library.tried if n not in tried}
     reasons = dict(library.left_out) | taken_out
-    left_out: list[LeftOutEntry] = [{"name": called(n), "reason": why} for n, why in sorted(reasons.items())]
-    answer["tried"] = sorted(called(n) for n in tried)
+    by_idea = {called(n): why for n, why in sorted(reasons.items())}
+    left_out: list[LeftOutEntry] = [{"name": n, "reason": why} for n, why in by_idea.items()]
+    answer["tried"] = sorted({called(n) for n in tried})
     answer["left_out"] = left_out
     answer["facts"] = dict(problem.tracks[0].facts)
     answer["rules"] = _rules(problem, len(tried))

@@ -208,7 +208,8 @@ class _Search:
         """Other candidates on top of a set: a quick look at all, or `among` some, those in front fitted in full."""
         key = frozenset(best.suspects)
         known = self.looks.setdefault(key, {})
-        rest = [n for n in among or self.candidates if n not in best.suspects and n not in known]
+        ideas = {called(n) for n in best.suspects}
+        rest = [n for n in among or self.candidates if called(n) not in ideas and n not in known]
         if rest:
             known |= screen(self.problem, best, rest)
         allowed = {n: f for n, f in known.items() if n not in self.banned}
@@ -313,18 +314,16 @@ class _Search:
         """Gain of one effect on top of the others, and how its rivals do in its place."""
         without = self.without(best, name)
         gain = best.evidence - without.evidence
-        key = frozenset(without.suspects)
-        self.looks.setdefault(key, {})[name] = best  # the others are compared with what it gains itself
-        self.full.add((key, name))
-        tried = self.tried(without, self.hopeful(without))
+        tried = self.tried(without, [n for n in self.hopeful(without) if n != name])
         others = {n: f for n, f in tried.items() if n not in best.suspects}
-        near = [n for n in _front(tried, without) if n in others][:RIVALS]
-        next_best = max(others, key=lambda n: others[n].evidence, default=None)
-        rivals = {n: self.converged(others[n]) for n in near} or ({next_best: others[next_best]} if next_best else {})
+        front = {n: others[n] for n in _front(others, without)[:RIVALS]}
+        key = frozenset(without.suspects)
+        poor = {n for n, f in front.items() if (key, n) in self.full and f.evidence < without.evidence + HALF * gain}
+        rivals = {n: f if n in poor else self.converged(f) for n, f in front.items()}
         gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
         weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
         order = sorted(gains, key=lambda n: -gains[n])
-        tied = tuple(n for n in order if gains[n] > gain - ALIKE)[:3]
+        tied = tuple(n for n in order if gains[n] > gain - ALIKE and called(n) != called(name))[:3]
         return Named(
             name,
             gain,

@@ -21,7 +21,7 @@ def remember(x: float, memory: Array, at: int, dt: float, delay: float) -> int:
     """
     newest = int(memory[at])
     held, lasted = memory[at + 1 + 2 * newest], memory[at + 2 + 2 * newest]
-    if x != held and 0.0 < lasted < delay / (HISTORY - 2):
+    if x != held and 0.0 < lasted < delay / HISTORY:
         memory[at + 1 + 2 * newest] = (held * lasted + x * dt) / (lasted + dt)
     elif x != held:
         newest = (newest + 1) % HISTORY

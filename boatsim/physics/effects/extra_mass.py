@@ -54,7 +54,7 @@ class Payload(Release):
     """Mass spread over the hull like its own; the deeper draught that comes with it is an error of the added mass."""
 
     needs: ClassVar = ("surge", "sway")  # a hull that only rolls shows no more than the ratio of moment to inertia
-    words: ClassVar[str] = "the whole boat is heavier than stated"
+    words: ClassVar[str] = "the whole boat is heavier than stated, or all that drives and brakes it is weaker alike"
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = ExtraMass.source
     strength: ClassVar = ("mass",)

@@ -36,6 +36,7 @@ class SteeringBacklash(Channel):
     acts_on: ClassVar[str] = "angle"
     slots: ClassVar[int] = 1
     stage: ClassVar[int] = COMMANDS
+    either_side: ClassVar[bool] = True
     channel: ClassVar = channel
     thresholds: ClassVar = {"width": (0.07, 0.3)}
 

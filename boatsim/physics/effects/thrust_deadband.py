@@ -29,6 +29,7 @@ class ThrustDeadband(Channel):
     shown_by: ClassVar[str] = "slow runs at several small thrust levels"
     acts_on: ClassVar[str] = "thrust"
     stage: ClassVar[int] = COMMANDS
+    either_side: ClassVar[bool] = True
     channel: ClassVar = channel
     thresholds: ClassVar = {"width": (0.02, 0.1, 0.3)}
 

@@ -31,6 +31,7 @@ class WeakReverse(Channel):
     source: ClassVar[str] = "J. A. Bayless 2017, Appendix H (motor calibration 0.70)"
     acts_on: ClassVar[str] = "thrust|shaft"
     stage: ClassVar[int] = DEEDS
+    either_side: ClassVar[bool] = True
     channel: ClassVar = channel
 
     astern_factor: float = param(

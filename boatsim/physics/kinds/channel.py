@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from boatsim.errors import BadInput
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 from boatsim.physics.signals import Course
 
@@ -57,15 +58,25 @@ class Channel(Kind):
     laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes")
     acts_on: ClassVar[str] = "thrust"  # roles (a|b) of the signals it acts on where `on` names none; "": all
     slots: ClassVar[int] = 0
+    either_side: ClassVar[bool] = False  # of the actuator that follows: some have it in the command, some in the deed
     pause: ClassVar[Callable[..., float] | None] = None
     passes: ClassVar[Callable[..., float] | None] = None
     channel: ClassVar[Callable[..., Course]]
 
     fed_by: Sequence[str] = field(default=(), kw_only=True)  # commands that feed the channels in `on`, one for each
+    other_side: bool = field(default=False, kw_only=True)  # of the actuator than is usual, for what may be on either
 
     def __post_init__(self) -> None:
         super().__post_init__()
         object.__setattr__(self, "fed_by", (self.fed_by,) if isinstance(self.fed_by, str) else tuple(self.fed_by))
+        if self.other_side not in ((False, True) if type(self).either_side else (False,)):
+            allowed = "true or false" if type(self).either_side else "false: it has its place"
+            raise BadInput(f"{self.name}: other_side = {self.other_side!r}; allowed is {allowed}")
+
+    @property
+    def standing(self) -> int:
+        """Before or behind the actuator that follows, by its stage or the other way round."""
+        return (DEEDS if type(self).stage < 0 else COMMANDS) if self.other_side else type(self).stage
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:

@@ -155,6 +155,11 @@ class Effect(Checked):
             raise BadInput(f"{vessel.name}: {self.name} needs a vessel with {owner}")
         return own
 
+    @property
+    def standing(self) -> int:
+        """Where it stands in the program: those with less come first."""
+        return type(self).stage
+
     def seeded(self, seed: int) -> Self:
         """The effect with its random course, if it has one, drawn from a scenario's seed."""
         return self
