@@ -21,11 +21,13 @@ from boatsim.physics.effects.damping import LateralCentreShift, LinearDamping
 from boatsim.physics.effects.extra_mass import ExtraMass
 from boatsim.physics.effects.mass_centre_shift import MassCentreShift
 from boatsim.physics.effects.prop_walk import PropWalk
+from boatsim.physics.effects.propeller import Propeller
 from boatsim.physics.effects.steering_backlash import SteeringBacklash
 from boatsim.physics.effects.tether import Tether
 from boatsim.physics.effects.thrust_deadband import ThrustDeadband
 from boatsim.physics.effects.thruster import Thruster
 from boatsim.physics.effects.wall_effect import WallEffect
+from boatsim.physics.program import Program
 from boatsim.recordings import table as recording
 
 BOAT = vessel.load("trial_boat")
@@ -72,6 +74,24 @@ def test_delay_says_when_the_next_command_arrives() -> None:
     CommandDelay.channel(Course(0.5, 0.5, 0.5), 1.0, 0.0, memory, 0, dt, values)
     assert CommandDelay.pause(0.5, memory, 0, values) == np.inf  # nothing is on its way
     assert CommandDelay.pause(0.7, memory, 0, values) == 0.12
+
+
+def test_what_rides_on_thrusters_rides_on_propellers_by_their_rate() -> None:
+    """The Otter's propellers at 50 rad/s ahead and astern: prop walk goes by k n |n|, as at thrusters."""
+    otter = vessel.load("otter")
+    port, starboard = (e for e in otter.effects if isinstance(e, Propeller))
+    walk = PropWalk(side_force_per_thrust=0.2, ahead_share=0.5).completed(otter)
+    program = Program(otter, suspects=(walk,))
+    act, still = np.zeros(program.held_size), np.zeros(2 * program.module.NQ)
+    sent = program.command_array({"n_port_radps": 50.0, "n_starboard_radps": -50.0})
+    off, on = program.switches(), program.switches(["prop_walk"])
+    program.module.settle(sent, np.zeros(program.memory_size), program.values(), off, act)
+    values = np.concatenate([program.values(), program.body])
+    first = np.int64(0)
+    forces = [np.array(program.module.forces(0.0, still, act, first, values, switches)) for switches in (off, on)]
+    Y = 0.2 * 2500.0 * (0.5 * port.ahead - starboard.astern)
+    assert (forces[1] - forces[0])[1] == pytest.approx(Y, rel=1e-6)
+    assert "thrust_loss_with_speed" in library_for(otter).tried and "shaft_deadband" in library_for(otter).tried
 
 
 def test_play_follows_a_triangle_with_the_loop_of_its_width() -> None:

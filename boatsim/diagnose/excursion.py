@@ -25,10 +25,15 @@ def excursion(tracks: Sequence[Track], effect: Effect) -> float:
 
 
 def bound(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
-    """Channels on which an entry acts: an actuator's, or those of the vessel's effect whose numbers it releases."""
+    """Channels on which an entry acts: an actuator's, or those of the vessel's effect whose numbers it releases.
+
+    Of several that such an effect takes, those in the unit of the entry's thresholds: a rudder's angle, not its shaft.
+    """
     if isinstance(effect, Channel):
         return vessel.targets(effect)
     if not isinstance(effect, Release):
         return ()
+    units = {type(effect).params()[n].unit for n in type(effect).thresholds}
     owners = (vessel.effect(c.owner) for c in effect.changes(vessel) if c.owner != "body")
-    return tuple(n for owner in owners if owner for n in vessel.bound(owner).values() if isinstance(n, str))
+    signals = ((type(owner).roles[role], n) for owner in owners if owner for role, n in vessel.bound(owner).items())
+    return tuple(n for role, n in signals if isinstance(n, str) and role.unit in units)

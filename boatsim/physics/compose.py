@@ -46,7 +46,7 @@ class Composition:
         own = self._values(number)
         if type(effect).rides:
             carriers = [self.effects.index(e) for e in self.vessel.ridden(effect)]
-            return [Site(number, own, (self._signals(i), self._values(i))) for i in carriers]
+            return [Site(number, own, (self._carried(i, type(effect).rides), self._values(i))) for i in carriers]
         return [Site(number, own, (self._signals(number),) if type(effect).roles else ())]
 
     def targets(self, number: int) -> Sequence[str]:
@@ -106,6 +106,12 @@ class Composition:
                     held = isinstance(channel, str)
                     texts.append(self._signal(f"{part}_{channel}" if held else of(float(channel or 0.0))))
         return f"S{i}({', '.join(texts)})"
+
+    def _carried(self, i: int, idea: str) -> str:
+        """Signals of an instance that is ridden on, as those of the idea that the rider knows."""
+        if type(self.effects[i]).idea() == idea:
+            return self._signals(i)
+        return f"as_{idea}{i}({self._signals(i)}, {self._values(i)})"
 
     def _signal(self, bound: str | float | None) -> str:
         """A held signal by its place, a fixed one by its number."""

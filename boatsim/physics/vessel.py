@@ -170,8 +170,8 @@ class Vessel:
         return [e.name for e in self.effects if name in (e.name, type(e).idea())]
 
     def all_of(self, idea: str) -> list[Effect]:
-        """The vessel's own effects of one idea, in the order of its file."""
-        return [e for e in self.effects if type(e).idea() == idea]
+        """The vessel's own effects that are one idea, by name or besides their own, in the order of its file."""
+        return [e for e in self.effects if type(e).idea() == idea or hasattr(type(e), f"as_{idea}")]
 
     @staticmethod
     def stated(effect: Effect) -> Mapping[str, str | float]:

@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
 from boatsim.diagnose.free_runs import free_runs
-from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.levels import calm_prior, fit_noise
 from boatsim.diagnose.locate.structure import FACTOR, Structure, structure
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
@@ -28,6 +28,7 @@ SURE, SURE_RANDOM = 2.0, 1.65  # standard errors by which unseen errors must gro
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
 CLEAR = 40.0  # prices that an effect is worth by the curvature at a fit, from where it stays without a fit without it
 RIVALS = 3  # fitted in the place of what was named
+CALMER = (0.5, 0.25, 0.1, 0.03)  # shares of the force levels of a fit with which the water may be calmer
 WORTH = 4.0  # [nats] that an effect must gain by itself,
 DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
 UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library,
@@ -284,7 +285,23 @@ class _Search:
     def weak(self, best: Fit, named: Named) -> bool:
         """Whether a member gains too little to be named."""
         beside = SLIGHT * (self.explained(best) - named.gain)
-        return named.gain < max(WORTH, beside) or named.shared < self.price or not self.there(best, named.name)
+        if named.gain < max(WORTH, beside) or named.shared < self.price or not self.there(best, named.name):
+            return True
+        if named.name in self.random:
+            return False
+        return named.gain + self.calmer(best) - self.calmer(self.without(best, named.name)) < WORTH
+
+    def calmer(self, found: Fit) -> float:
+        """Nats that a fit would gain if water calmer than usual were no less likely.
+
+        It is no merit of a law that it keeps the hull still where nothing moves it, as more damping does.
+        """
+        on, fits = self.problem.program.switches(found.suspects), [found.levels]
+        fits += [replace(found.levels, force=share * found.levels.force) for share in CALMER]
+        first, *calm = (
+            self.problem.likelihood(found.free, found.theta, on, levels, i == 0) for i, levels in enumerate(fits)
+        )
+        return max(first, *calm) - first - calm_prior(self.problem, found.levels)
 
     def stood_for(self, best: Fit) -> Fit:
         """A set without those members, found to mislead, that are little beside what nothing explains."""

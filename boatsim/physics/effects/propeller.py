@@ -6,14 +6,27 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Force, Role, Wrench, param
-from boatsim.physics.effects.thruster import at_mount
+from boatsim.physics.effects.thruster import Thruster, at_mount
+
+TOLD = Thruster.signals_type()
+
+
+@njit(inline="always")
+def thrust(n: float, q: Any) -> float:
+    """K n |n|, with another k astern."""
+    return float((q.ahead if n > 0.0 else q.astern) * n * abs(n))
 
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """T = k n |n|, with another k astern."""
-    k = q.ahead if s.shaft > 0.0 else q.astern
-    return at_mount(q.gain * k * s.shaft * abs(s.shaft), s, q)
+    """T (cos a, sin a) at (x, y, z)."""
+    return at_mount(q.gain * thrust(s.shaft, q), s, q)
+
+
+@njit(inline="always")
+def as_thruster(s: Any, q: Any) -> Any:
+    """What a thruster is told that pushes as much."""
+    return TOLD(thrust(s.shaft, q), s.angle, s.cos_angle, s.sin_angle)
 
 
 @dataclass(frozen=True)
@@ -30,6 +43,7 @@ class Propeller(Force):
         "angle": Role("rad", "where it pushes, 0 ahead, positive to starboard", fixed=0.0),
     }
     law: ClassVar = law
+    as_thruster: ClassVar = as_thruster
 
     ahead: float = param(1.0, low=0.0, high=1e9, unit="N s^2/rad^2", words="k ahead")
     astern: float = param(1.0, low=0.0, high=1e9, unit="N s^2/rad^2", words="k astern")

@@ -1,11 +1,11 @@
-"""Thrust deadband: small commands do not turn the propeller, and larger ones lack what it takes."""
+"""Thrust and shaft deadband: small commands do not turn the propeller, and larger ones lack what it takes."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, param
+from boatsim.physics.base import Array, Channel, Course, param, preset
 from boatsim.physics.kinds.channel import COMMANDS
 
 
@@ -34,3 +34,12 @@ class ThrustDeadband(Channel):
     thresholds: ClassVar = {"width": (0.02, 0.1, 0.3)}
 
     width: float = param(0.0, low=0.0, high=1e7, unit="N", words="half width", fit=True, spread=0.1)
+
+
+ShaftDeadband = preset(
+    ThrustDeadband,
+    "ShaftDeadband",
+    words="small commands do not turn the shaft and all rates are less by a constant",
+    acts_on="shaft",
+    frees={"width": {"high": 1e4, "unit": "1/s", "words": "half width, in the unit of the command", "spread": 0.1}},
+)

@@ -23,11 +23,12 @@ class Force(Kind):
     """Memoryless force: compiled `law(motion, values) -> Wrench`.
 
     With `roles` the law takes the bound signals as a third argument; an effect that `rides` on an idea is called once
-    for each of its instances, with that one's signals and values.
+    for each of its instances, with that one's signals and values. An idea that is another besides (a propeller is a
+    thruster) gives its signals as that one's by a compiled function `as_` and that one's name, of its own two.
     """
 
     parts: ClassVar = (WRENCH,)
-    laws: ClassVar[tuple[str, ...]] = ("law",)
+    laws: ClassVar[tuple[str, ...]] = ("law", "as_thruster")
     of_air: ClassVar[bool] = False  # a force of the air, which a run logs apart
     anchored: ClassVar[str] = ""  # what it holds on to beside the water: "the air", "walls"; empty: nothing
     law: ClassVar[Callable[..., Wrench]]
