@@ -13,6 +13,7 @@ from alike import slow
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnose import analysis
+from boatsim.diagnose.excursion import bound
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Course, Effect, Wrench, mean_of, motion
@@ -24,7 +25,7 @@ from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
 from boatsim.physics.effects.planing_lag import PlaningLag
 from boatsim.physics.effects.rate_limit import SteeringRateLimit
 from boatsim.physics.effects.righting_arm import MetacentricHeightError, RightingArm
-from boatsim.physics.effects.rudder import Rudder
+from boatsim.physics.effects.rudder import Rudder, RudderStall
 from boatsim.physics.effects.speed_scaled_steering import SpeedScaledSteering
 from boatsim.physics.effects.steering_drag import SteeringDrag
 from boatsim.physics.effects.sway_yaw_coupling import SpeedLossInTurn
@@ -35,6 +36,11 @@ from boatsim.recordings.table import Notes, Recording
 
 SHIP = vessel.load("kvlcc2")
 TURN, HELM = {"u": 0.8, "v": 0.15, "r": -0.06}, 0.4  # of the 7 m model, to port
+
+
+def test_a_stall_is_sought_among_rudder_angles_and_not_among_shaft_rates() -> None:
+    """An MMG rudder is told angle and shaft; the threshold is an angle."""
+    assert bound(vessel.load("kvlcc2_mmg"), RudderStall()) == ("delta_rad",)
 
 
 def signals(kind: type[Effect], **given: float) -> Any:

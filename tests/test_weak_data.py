@@ -54,6 +54,24 @@ NOTHING_TO_SEE = {
 }
 
 
+@pytest.mark.slow
+def test_still_water_is_no_evidence_of_more_damping(tmp_path: Path) -> None:
+    """An Otter that lies still in water far calmer than is tolerated; instruments of 6 mm and 4 mrad alone."""
+    files = []
+    for seed in (1, 2):
+        rng, t = np.random.default_rng(seed), np.arange(0.0, 40.0, 0.15)
+        place = rng.standard_normal((6, len(t))) * np.array([[0.006], [0.006], [0.006], [0.004], [0.004], [0.004]])
+        columns = ("x_m", "y_m", "z_m", "phi_rad", "theta_rad", "psi_rad")
+        signals = dict(zip(columns, place, strict=True))
+        signals |= {
+            n: rng.uniform(-0.4, 0.4, len(t)) for n in ("n_port_radps", "n_starboard_radps")
+        }  # next to no thrust
+        files.append(tmp_path / f"{seed}.csv")
+        write_csv(Recording(str(seed), t, signals, Notes()), files[-1])
+    found = analysis.diagnose(files[:1], files[1:], "otter").findings.answer
+    assert found["verdict"] == "nothing_missing" and not named(found), found["sentence"]
+
+
 @pytest.mark.parametrize("case", NOTHING_TO_SEE)
 def test_nothing_is_named_where_nothing_is_missing(case: str, tmp_path: Path) -> None:
     found = answer(NOTHING_TO_SEE[case](), tmp_path)

@@ -18,7 +18,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Effect, Param, Release, Wandering
 from boatsim.physics.vessel import Vessel
 
-LONG = 6000  # rows of all runs times freedoms from which several runs are followed at a time
+LONG = 54_000  # rows of all runs times the cube of the freedoms from which several runs are followed at a time
 T = TypeVar("T")
 
 
@@ -182,7 +182,7 @@ class Problem:
     def _each(self, of: Callable[[Track], T]) -> list[T]:
         """Something of every run, several at a time where they are long: compiled passes leave other threads alone."""
         rows = sum(len(t.times) for t in self.tracks)
-        if len(self.tracks) == 1 or rows * self.program.module.NQ < LONG:
+        if len(self.tracks) == 1 or rows * self.program.module.NQ**3 < LONG:
             return [of(t) for t in self.tracks]
         longest = sorted(range(len(self.tracks)), key=lambda i: -len(self.tracks[i].times))  # or all wait for it
         begun = {i: _threads(os.getpid()).submit(of, self.tracks[i]) for i in longest}
