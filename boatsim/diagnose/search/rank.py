@@ -136,6 +136,7 @@ class _Search:
     def __init__(self, problem: Problem, candidates: tuple[str, ...], base: Fit) -> None:
         self.problem, self.candidates, self.base = problem, candidates, base
         self.fits: dict[frozenset[str], Fit] = {frozenset(): base}
+        self.promised: dict[frozenset[str], float] = {}
         self.looks: dict[frozenset[str], dict[str, Fit]] = {}
         self.kept: set[tuple[frozenset[str], str]] = set()  # looks that were compared with what the filter says,
         self.full: set[tuple[frozenset[str], str]] = set()  # and followed by a fit in full
@@ -183,8 +184,9 @@ class _Search:
     def converged(self, start: Fit) -> Fit:
         """The fit of a set, kept: made from `start` unless it was made before from one no worse."""
         key = frozenset(start.suspects)
-        known = self.fits.get(key)
-        if known is None or start.evidence > known.evidence + SETTLED:
+        known, promised = self.fits.get(key), self.promised.get(key, -np.inf)
+        if known is None or start.evidence > max(known.evidence, promised) + SETTLED:
+            self.promised[key] = start.evidence  # a look may promise more than a fit keeps, but once only
             found = converge(self.problem, start)
             if known is not None and found.evidence > known.evidence + SETTLED:
                 self.forget(key)
