@@ -50,8 +50,8 @@ def outlying(t: Array, values: Array, finest: float, longest: float) -> NDArray[
     t, y, step = t[there], values[there], float(np.median(np.diff(t)))
     if len(t) <= 2 * max(BEFORE, longest / step):
         return away
-    led = y[1:-1] + (y[1:-1] - y[:-2]) * ((t[2:] - t[1:-1]) / (t[1:-1] - t[:-2]))[:, None]
-    leap = SURE * max(0.5 * float(np.quantile(np.abs(y[2:] - led).max(axis=1), MOST)), finest)
+    expected = y[1:-1] + (y[1:-1] - y[:-2]) * ((t[2:] - t[1:-1]) / (t[1:-1] - t[:-2]))[:, None]
+    leap = SURE * max(0.5 * float(np.quantile(np.abs(y[2:] - expected).max(axis=1), MOST)), finest)
     wide = max(1, round(0.5 * longest / step))
     bent = np.abs(y[2 * wide :] - 2.0 * y[wide:-wide] + y[: -2 * wide]).max(axis=1)
     quick = QUICK * float(np.median(bent)) / (wide * step) ** 2
