@@ -365,13 +365,14 @@ class _Search:
         rivals = {n: f if n in poor else self.converged(f) for n, f in front.items()}
         gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
         weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
+        same = np.array([False, True, *(called(n) == called(name) for n in gains)])  # on either side of an actuator
         order = sorted(gains, key=lambda n: -gains[n])
         tied = tuple(n for n in order if gains[n] > gain - ALIKE and called(n) != called(name))[:3]
         return Named(
             name,
             gain,
             together([gain, *gains.values()]),
-            float(weights[1] / weights.sum()),
+            float(weights[same].sum() / weights.sum()),
             tied,
             {n: rivals[n] for n in order},
         )
