@@ -18,7 +18,8 @@ from boatsim.diagnose.next.course import Course, laid, walls
 from boatsim.diagnose.next.manoeuvres import menu
 from boatsim.diagnose.problem import Fit, Problem, scale_of
 from boatsim.diagnose.report.entries import NextEntry
-from boatsim.diagnose.search.rank import ALIKE, Ranking
+from boatsim.diagnose.search.rank import ALIKE, Named, Ranking
+from boatsim.diagnose.tried import called
 from boatsim.physics.base import Array
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
@@ -82,7 +83,7 @@ def question(ranking: Ranking) -> tuple[Fit, dict[str, Fit]]:
     """
     tied = [n for n in ranking.named if n.tied_with] or sorted(ranking.named, key=lambda n: n.probability)[:1]
     if tied:
-        rivals = {r: n.rivals[r] for n in tied for r in n.tied_with or list(n.rivals)[:1]}
+        rivals = {r: n.rivals[r] for n in tied for r in n.tied_with or others(n)[:1]}
         return ranking.best, rivals
     order = sorted(ranking.last, key=lambda n: -ranking.last[n].evidence)
     hints = [n for n in order if ranking.last[n].evidence > ranking.best.evidence + HINT]
@@ -142,6 +143,11 @@ def _quoted(text: str) -> str:
 
 
 # ---- what a manoeuvre would tell
+
+
+def others(named: Named) -> list[str]:
+    """Rivals that are another idea, not the same on the other side of an actuator."""
+    return [r for r in named.rivals if called(r) != called(named.name)]
 
 
 def expected(problem: Problem, track: Track, winner: Fit, rivals: Mapping[str, Fit]) -> dict[str, float]:
