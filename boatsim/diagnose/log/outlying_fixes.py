@@ -47,8 +47,10 @@ def outlying(t: Array, values: Array, finest: float, longest: float) -> NDArray[
     """
     there = np.flatnonzero(np.isfinite(values).all(axis=1))
     away = np.zeros(len(t), dtype=np.bool_)
+    if len(there) <= 2 * BEFORE:
+        return away
     t, y, step = t[there], values[there], float(np.median(np.diff(t)))
-    if len(t) <= 2 * max(BEFORE, longest / step):
+    if len(t) <= 2 * longest / step:
         return away
     expected = y[1:-1] + (y[1:-1] - y[:-2]) * ((t[2:] - t[1:-1]) / (t[1:-1] - t[:-2]))[:, None]
     leap = SURE * max(0.5 * float(np.quantile(np.abs(y[2:] - expected).max(axis=1), MOST)), finest)
