@@ -38,7 +38,7 @@ def test_a_vessel_file_that_states_one_is_told_so(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("errors", "taken"),
     [
-        ({0.5: 0.99, 1.0: 1.0, 2.0: 1.1}, 1.0),  # not clearly better
+        ({0.5: 0.96, 1.0: 1.0, 2.0: 1.1}, 1.0),  # not clearly better
         ({0.25: 0.99, 0.5: 0.9, 1.0: 1.0, 2.0: 0.8}, 0.5),
         ({0.25: 0.8, 0.5: 0.9, 1.0: 1.0, 2.0: 1.1}, 0.25),
         ({0.5: 1.1, 1.0: 1.0, 2.0: 0.9, 4.0: 0.8}, 4.0),
@@ -48,11 +48,17 @@ def test_a_vessel_file_that_states_one_is_told_so(tmp_path: Path) -> None:
 def test_it_is_halved_or_doubled_as_long_as_that_predicts_clearly_better(
     errors: dict[float, float], taken: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(correlation_time, "halves_error", lambda problem, found, seconds: errors[seconds])
+    monkeypatch.setattr(correlation_time, "halves_errors", lambda problem, found, seconds: np.full(9, errors[seconds]))
     problem: Any = SimpleNamespace(ambient=SimpleNamespace(time_constant=1.0))
     named: Any = SimpleNamespace(suspects=("wind",))
     assert correlation_time.correlation_time(problem, named) == taken
     assert correlation_time.correlation_time(problem, SimpleNamespace(suspects=())) == 1.0  # type: ignore[arg-type]
+
+
+def test_what_swings_from_run_to_run_is_not_clearly_less() -> None:
+    before = np.full(8, 0.01)
+    assert correlation_time.clearly_less(0.9 * before, before)
+    assert not correlation_time.clearly_less(0.9 * before * np.exp(0.3 * (-1.0) ** np.arange(8)), before)
 
 
 def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> None:

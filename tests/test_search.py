@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from test_locate import laid, push, sail
 
-from boatsim.diagnose import problem as problems
 from boatsim.diagnose.fit import fit
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.rank import worth
@@ -62,15 +61,3 @@ def test_a_member_is_worth_less_than_its_curvature_says_and_what_does_nothing_li
     assert worth(found, "weak_reverse") > found.evidence - base.evidence > 100.0  # the latent force takes its place
     both = fit(problem, screen(problem, found, ["steady_force"])["steady_force"])
     assert worth(both, "steady_force") < 10.0 and worth(both, "nothing of the kind") == 0.0
-
-
-def test_runs_followed_side_by_side_say_what_they_say_one_after_the_other(
-    weak: tuple[Problem, Fit], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    problem, base = weak
-    on, said = problem.program.switches(), []
-    for rows in (0, 10**9):
-        monkeypatch.setattr(problems, "LONG", rows)
-        found = problem.likelihood(base.free, base.theta, on, base.levels)
-        said.append((found, problem.whitened(base.free, 1.01 * base.theta, on, base.levels)))
-    assert said[0][0] == said[1][0] and (said[0][1] == said[1][1]).all()

@@ -9,10 +9,12 @@ the one that is taken. The recordings on which the other benchmarks judge are no
 import sys
 from pathlib import Path
 
+import numpy as np
+
 from benchmarks.real import blueboat_lake, kvlcc2_hsva_zigzag, kvlcc2_marin_free
 from benchmarks.real.common import runs_of, table
 from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.correlation_time import STEPS, correlation_time, halves_error
+from boatsim.diagnose.correlation_time import STEPS, correlation_time, halves_errors
 from boatsim.diagnose.filter import noise_of, nominal_levels, track
 from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.search.rank import selection
@@ -46,7 +48,8 @@ def main() -> None:
         _, chosen = selection(problem, tuple(e.name for e in problem.program.suspects))
         usual, taken = problem.ambient.time_constant, correlation_time(problem, chosen)
         ladder = [usual * 2.0**step for step in range(-STEPS, STEPS + 1)]
-        rows = [[f"{x:.2g}", f"{halves_error(problem, chosen, x):.4g}", "*" if x == taken else ""] for x in ladder]
+        errors = [float(np.exp(np.mean(np.log(halves_errors(problem, chosen, x))))) for x in ladder]
+        rows = [[f"{x:.2g}", f"{e:.4g}", "*" if x == taken else ""] for x, e in zip(ladder, errors, strict=True)]
         title = f"{name}: with the usual {usual:.2g} s {problem.program.vessel.name} lacks {', '.join(chosen.suspects)}"
         table(title, ["time constant [s]", "error of the other half", "taken"], rows)
 

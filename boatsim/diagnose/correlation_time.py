@@ -8,6 +8,7 @@ named included. The usual value of a hull of this length is halved, or doubled, 
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import log, sqrt
 
 import numpy as np
 
@@ -15,9 +16,11 @@ from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import fit
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.physics.base import Array
 
 STEPS = 2  # halvings or doublings at most
-CLEARLY = 0.98  # error per error before, below which a step is taken
+CLEARLY = 0.95  # error per error before, below which a step is taken: five per cent, as anywhere that free runs judge,
+SURE = 2.0  # and by so many standard errors over the free runs: where they swing about that much, it says nothing
 
 
 def timed(problem: Problem, found: Fit) -> Problem:
@@ -33,14 +36,14 @@ def correlation_time(problem: Problem, found: Fit) -> float:
     usual = problem.ambient.time_constant
     if not found.suspects:
         return usual  # it leaves nothing to the latent force that coefficients could explain
-    at_usual = halves_error(problem, found, usual)
+    at_usual = halves_errors(problem, found, usual)
     for factor in (0.5, 2.0):
-        seconds, error = usual, at_usual
+        seconds, errors = usual, at_usual
         for _ in range(STEPS):
-            further = halves_error(problem, found, factor * seconds)
-            if not further < CLEARLY * error:
+            further = halves_errors(problem, found, factor * seconds)
+            if not clearly_less(further, errors):
                 break
-            seconds, error = factor * seconds, further
+            seconds, errors = factor * seconds, further
         if seconds != usual:
             return seconds
     return usual
@@ -62,8 +65,18 @@ def part(track: Track, begin: int, end: int) -> Track:
     return replace(track, times=times, measured=measured, commands=commands)
 
 
-def halves_error(problem: Problem, start: Fit, seconds: float) -> float:
-    """Geometric mean of the rms of position [m] and heading or roll [rad]: each half by a fit of the other half."""
+def clearly_less(errors: Array, before: Array) -> bool:
+    """Whether the errors of free runs (S,) are clearly less than they were, run by run."""
+    ratio = np.log(errors / before)
+    scatter = SURE * float(np.std(ratio, ddof=1)) / sqrt(len(ratio)) if len(ratio) > 1 else 0.0
+    return bool(np.mean(ratio) < min(log(CLEARLY), -scatter))
+
+
+def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
+    """Error of each free run (S,), that of every half by a fit of the other half.
+
+    It is the geometric mean of the rms of position [m] and of heading or roll [rad].
+    """
     ambient = problem.ambient.lasting(seconds)
     begin = replace(start, levels=start.levels.lasting(seconds), evidence=-np.inf)
     first, second = halves(problem.tracks)
@@ -72,4 +85,4 @@ def halves_error(problem: Problem, start: Fit, seconds: float) -> float:
     for fitted, unseen in ((first, second), (second, first)):
         rest = Problem(fitted, ambient, problem.uncertainty, horizon)
         stretches += free_runs(rest, {"": fit(rest, begin)}, unseen, horizon)
-    return float(np.exp(np.mean([np.log(found[""]) for found in errors(stretches).values()])))
+    return np.array([np.exp(np.mean([np.log(f[""]) for f in errors([s]).values()])) for s in stretches])

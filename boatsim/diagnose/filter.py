@@ -23,7 +23,8 @@ FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into 
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
 FIT_STEP = 0.17  # [s] the same in the filter of a boat of 1.2 m, which is corrected at every sample
 START = 3.0  # tolerated forces by which actuators on their way, or a hand's push, may act when a recording begins
-SMOOTH = 0.3  # [rad] of the hull's quickest oscillation that one goes: Runge-Kutta's phase is then off by 2e-5 rad
+LATE = 0.007  # [rad] of phase by which Runge-Kutta is off when an oscillation of the hull has died out
+RINGING = 0.01  # of critical damping: an oscillation that dies out more slowly is corrected before it has
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
@@ -67,9 +68,9 @@ class Track:
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
 
     def __post_init__(self) -> None:
-        self.rate, swings = quickest(self.program, self.values, self.commands[0])
+        self.rate, smooth = quickest(self.program, self.values, self.commands[0])
         usual = FIT_STEP * rules.froude_time(self.program.vessel)
-        self.step = min(usual, STEADY / max(self.rate, 1e-9), SMOOTH / max(swings, 1e-9))
+        self.step = min(usual, STEADY / max(self.rate, 1e-9), smooth)
         self.inertia = inertia_of(self.program, self.values, self.program.switches())
         nq = self.program.module.NQ
         self.start, self.spread = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq))
@@ -267,7 +268,10 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
 
 
 def quickest(program: Program, values: Array, command: Array) -> tuple[float, float]:
-    """Rates of the nominal hull at rest: at which its quickest motion dies out [1/s], at which it swings [rad/s]."""
+    """Of the nominal hull at rest: rate at which its quickest motion dies out [1/s], step that follows its swings [s].
+
+    Runge-Kutta's phase is off by (w h)^5 / 120 a step.
+    """
     code, on = program.module, program.switches()
     nq = code.NQ
     k, act, memory = np.zeros(code.K), np.zeros(program.held_size), np.zeros(program.memory_size)
@@ -276,9 +280,11 @@ def quickest(program: Program, values: Array, command: Array) -> tuple[float, fl
     slopes = np.zeros((nq, 2 * nq))
     code.slopes(0.0, np.zeros(2 * nq), act, values, on, k, np.zeros(nq), slopes)
     if not np.isfinite(slopes).all():
-        return 0.0, 0.0
+        return 0.0, np.inf
     whole = np.block([[np.zeros((nq, nq)), np.eye(nq)], [slopes]])
-    return float(np.abs(np.linalg.eigvals(slopes[:, nq:])).max()), float(np.linalg.eigvals(whole).imag.max())
+    swings = [x for x in np.linalg.eigvals(whole) if x.imag > 0.0]
+    smooth = [(120.0 * LATE * max(-x.real / x.imag, RINGING)) ** 0.25 / x.imag for x in swings]
+    return float(np.abs(np.linalg.eigvals(slopes[:, nq:])).max()), float(min(smooth, default=np.inf))
 
 
 def inertia_of(program: Program, values: Array, on: Array) -> Array:

@@ -6,15 +6,15 @@ from math import erf, log, sqrt
 import numpy as np
 
 from boatsim.diagnose.filter import Levels
-from boatsim.diagnose.levels import fit_force, force_prior
+from boatsim.diagnose.levels import FINE, ROUGH, fit_force, force_prior
 from boatsim.diagnose.problem import Fit, Free, Problem
 from boatsim.physics.base import Array
 
 SETTLED = 0.3  # [nats] a refit that gains less changes nothing
 HALVINGS = 6  # of the way from a start at which the boat runs away to the boat with nothing missing
+TRUSTED = 0.5  # share of what a step promised that it must gain for derivatives to be learnt from it
 SHORT = 0.1  # a step damped this much goes but part of the way, so that it does as promised says nothing
 TINY = 1e-300  # variance of what is known exactly
-NEW_SWEEPS = 3  # rounds in which a new random force takes over from the latent one
 
 
 def fit(problem: Problem, found: Fit, settled: bool = False) -> Fit:
@@ -23,7 +23,7 @@ def fit(problem: Problem, found: Fit, settled: bool = False) -> Fit:
     new = any(f.searched and v == f.sd**2 for f, v in zip(found.free, variance, strict=True))  # never fitted
     if not new and not settled:
         found = descend(problem, found, iterations=4, enough=SETTLED)
-    found = fit_force(problem, found, sweeps=NEW_SWEEPS if new else 1)
+    found = fit_force(problem, found, FINE if new else ROUGH)
     return descend(problem, found, iterations=3, enough=0.1)
 
 
@@ -115,7 +115,11 @@ def cut_off(free: Sequence[Free], theta: Array, covariance: Array) -> float:
 
 
 def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit:
-    """Gauss-Newton on prior and whitened prediction errors from `found`, bounds kept; covariance and evidence."""
+    """Gauss-Newton on prior and whitened prediction errors from `found`, bounds kept; covariance and evidence.
+
+    Derivatives are taken where it begins, and after a step learnt from what it changed (Broyden 1965): only where one
+    does not do as these promised are they taken anew.
+    """
     free, levels, space = found.free, found.levels, Space(found.free)
     on = problem.program.switches(found.suspects)
     theta = space.clipped(found.theta)
@@ -124,14 +128,16 @@ def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit
         return problem.likelihood(free, x, on, levels) + log_prior(free, x)
 
     best, damping = score(theta), 1e-3
-    J = np.zeros((1, len(free)))
+    J, besides, known = np.zeros((1, len(free))), np.zeros(len(free)), False
     for _ in range(iterations):
         white = problem.white()  # at theta: the last pass was a full one there
-        if problem.stiff:
-            J, g = slopes(problem, free, score, best, theta, space)
-        else:
-            J = jacobian(problem, free, theta, on, levels, white)
-            g = -(J.T @ white) - (theta - space.mean) / space.sd
+        if not known:
+            if problem.stiff:
+                J, besides = slopes(problem, free, score, best, theta, space)
+                besides += J.T @ white + (theta - space.mean) / space.sd
+            else:
+                J = jacobian(problem, free, theta, on, levels, white)
+        g = besides - J.T @ white - (theta - space.mean) / space.sd
         step, gain = None, 0.0
         for _ in range(5):
             trial = space.stepped(theta, J, g, damping)
@@ -142,16 +148,30 @@ def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit
             damping = max(damping, 1e-2) * 10.0
         if step is None:
             score(theta)
-            break
-        kept = damping < SHORT and as_promised(gain, space.promised(J, g, theta, step))
+            if not known:
+                break
+            known = False  # what the last steps taught was wrong
+            continue
+        promised = space.promised(J, g, theta, step)
+        kept = damping < SHORT and as_promised(gain, promised)
+        moved = (step - theta) / space.sd
         theta, best, damping = step, best + gain, damping / 10.0
-        if gain < enough or kept:
+        if (gain < enough or kept) and (not known or promised < enough):
             break
+        known = gain > TRUSTED * promised
+        if known:
+            J = learnt(J, problem.white() - white, moved)
     information = np.eye(len(free)) + J.T @ J
     information[np.diag_indices(len(free))] += _curvature(problem, free, theta, on, levels)
     covariance = space.covariance(information)
     evidence = best - 0.5 * float(np.linalg.slogdet(information)[1]) + force_prior(problem, levels)
     return Fit(found.suspects, free, theta, covariance, levels, evidence + cut_off(free, theta, covariance))
+
+
+def learnt(J: Array, change: Array, step: Array) -> Array:
+    """Derivatives by theta / sd that agree with the change of the errors over a step, and else differ least from J."""
+    length = float(step @ step)
+    return J + np.outer((change - J @ step) / length, step) if length > 0.0 else J
 
 
 def slopes(

@@ -1,17 +1,17 @@
 """Fits how noisy sensors and water are: sensor noise, level and correlation time of the latent force."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
+from boatsim.diagnose.climb import climbed
 from boatsim.diagnose.filter import Levels
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.physics.base import Array, Wandering
 
 FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above the ambient level
 SENSOR_PRIOR = 0.4  # sd of log noise about the stated one
-CLIMBS, FLAT = 8, 2.0  # rounds in which levels are sought, as long as one gains more nats than this
+ROUGH, FINE = 2.0, 0.3  # [nats] that levels are near enough their best, once more and for a first fit
 LEAST = 1 / 10  # of the tolerated force, which a level is at least: no law is better than that
 TIME_PRIOR = 0.7  # sd of log time constant
 
@@ -33,7 +33,7 @@ def _forces(problem: Problem, logs: Array) -> Array:
     return np.maximum(np.exp(logs), LEAST * problem.ambient.force)
 
 
-def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) -> Fit:
+def fit_force(problem: Problem, found: Fit, enough: float = ROUGH) -> Fit:
     """A hypothesis with the latent-force level of each axis refitted, and with it the spectra it has (`searched`).
 
     Where the error of an instrument wanders, the noise of the instruments with them: it was fitted without that error.
@@ -66,11 +66,11 @@ def fit_force(problem: Problem, found: Fit, step: float = 0.5, sweeps: int = 1) 
     problem.likelihood(found.free, found.theta, on, found.levels)
     noise = np.log([found.levels.sensors[f] for f in families])
     begin = np.concatenate([found.theta[searched] / sd, noise, np.log(found.levels.force)])
-    levels, theta = placed(_climbed(score, begin, step, sweeps))
+    levels, theta = placed(climbed(score, begin, 0.5, enough)[1])
     return replace(found, levels=levels, theta=theta)
 
 
-def fit_noise(problem: Problem, found: Fit, sweeps: int = 3) -> Fit:
+def fit_noise(problem: Problem, found: Fit) -> Fit:
     """A hypothesis with sensor noise and latent-force levels fitted, parameters as they are."""
     families = sorted({f for t in problem.tracks for f in t.families})
     n = len(problem.ambient.force)
@@ -89,9 +89,9 @@ def fit_noise(problem: Problem, found: Fit, sweeps: int = 3) -> Fit:
 
     x = np.concatenate([np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)])
     score(x, fresh=True)
-    x = _climbed(score, x, 0.6, 1)
-    begin = score(x, fresh=True)
-    return replace(found, levels=levels(_coordinate_search(score, x, begin, 0.42, sweeps - 1)[1]))
+    _, x = climbed(score, x, 0.6, ROUGH)
+    score(x, fresh=True)
+    return replace(found, levels=levels(climbed(score, x, 0.4, FINE)[1]))
 
 
 def fit_time_constant(problem: Problem, found: Fit) -> Levels:
@@ -99,16 +99,17 @@ def fit_time_constant(problem: Problem, found: Fit) -> Levels:
     on = problem.program.switches(found.suspects)
 
     def levels(x: Array) -> Levels:
-        return replace(found.levels, force=np.exp(x[:-1]), time_constant=float(np.exp(x[-1])))
+        lasting = found.levels.lasting(float(np.exp(x[1])))
+        return replace(lasting, force=lasting.force * np.exp(x[0]))
 
     def score(x: Array) -> float:
-        prior = -0.5 * ((x[-1] - np.log(problem.ambient.time_constant)) / TIME_PRIOR) ** 2
+        prior = -0.5 * ((x[1] - np.log(problem.ambient.time_constant)) / TIME_PRIOR) ** 2
         likelihood = problem.likelihood(found.free, found.theta, on, levels(x), fresh=False)
         return likelihood + force_prior(problem, levels(x)) + float(prior)
 
     problem.likelihood(found.free, found.theta, on, found.levels)
-    begin = np.append(np.log(found.levels.force), np.log(found.levels.time_constant))
-    return levels(_coordinate_search(score, begin, score(begin), 0.7, 2)[1])
+    begin = np.array([0.0, np.log(found.levels.time_constant)])
+    return levels(climbed(score, begin, 0.7, FINE)[1])
 
 
 def _roughness(problem: Problem, family: str) -> float:
@@ -120,38 +121,3 @@ def _roughness(problem: Problem, family: str) -> float:
             if f == family and len(y) > 8:
                 found.append(np.diff(y, 3) ** 2 / 20.0)
     return float(np.sqrt(np.median(np.concatenate(found)) / 0.455)) if found else 0.0
-
-
-def _climbed(score: Callable[[Array], float], x: Array, step: float, sweeps: int) -> Array:
-    """Coordinate searches with the first step as long as one gains much: a level may lie far from where it begins."""
-    before = score(x)
-    for _ in range(CLIMBS):
-        after, x = _coordinate_search(score, x, before, step, sweeps)
-        if after < before + FLAT:
-            break
-        before = after
-    return x
-
-
-def _coordinate_search(
-    score: Callable[[Array], float], x: Array, best: float, step: float, sweeps: int
-) -> tuple[float, Array]:
-    """Maximise a smooth score, `best` at x, one coordinate at a time: a parabola through three points, then the best.
-
-    The score found and where.
-    """
-    for _ in range(sweeps):
-        for j in range(len(x)):
-            e = np.zeros(len(x))
-            e[j] = step
-            above, below = score(x + e), score(x - e)
-            curve = above - 2.0 * best + below
-            shift = 0.5 * step * (below - above) / curve if curve < -1e-9 else (step if above > below else -step)
-            e[j] = float(np.clip(shift, -2.0 * step, 2.0 * step))
-            options = [(best, x), (score(x + e), x + e)]
-            e = np.zeros(len(x))
-            e[j] = step
-            options += [(above, x + e), (below, x - e)]
-            best, x = max(options, key=lambda o: o[0])
-        step *= 0.7
-    return best, x

@@ -1,13 +1,10 @@
 """What is to be fitted: recordings on one program, the coefficients and suspects that are free, and a fit of them."""
 
-import os
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
-from functools import cache
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,15 +14,6 @@ from boatsim.diagnose.filter import BODY, Levels, Track
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Effect, Param, Release, Wandering
 from boatsim.physics.vessel import Vessel
-
-LONG = 54_000  # rows of all runs times the cube of the freedoms from which several runs are followed at a time
-T = TypeVar("T")
-
-
-@cache
-def _threads(process: int) -> ThreadPoolExecutor:
-    """As many threads as this process has processors; those of a parent are not a forked child's."""
-    return ThreadPoolExecutor(len(os.sched_getaffinity(process)))
 
 
 @dataclass(frozen=True)
@@ -173,20 +161,11 @@ class Problem:
 
     def likelihood(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels, fresh: bool = True) -> float:
         """Log likelihood of all runs; not `fresh`: linearised where the last fresh one was, for other levels."""
-        return sum(self._each(lambda t: t.likelihood(self.values(t, free, theta), on, levels, fresh)))
+        return sum(t.likelihood(self.values(t, free, theta), on, levels, fresh) for t in self.tracks)
 
     def whitened(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> Array:
         """Whitened prediction errors of all runs with the gains of the last `likelihood`."""
-        return np.concatenate(self._each(lambda t: t.whitened(self.values(t, free, theta), on, levels)))
-
-    def _each(self, of: Callable[[Track], T]) -> list[T]:
-        """Something of every run, several at a time where they are long: compiled passes leave other threads alone."""
-        rows = sum(len(t.times) for t in self.tracks)
-        if len(self.tracks) == 1 or rows * self.program.module.NQ**3 < LONG:
-            return [of(t) for t in self.tracks]
-        longest = sorted(range(len(self.tracks)), key=lambda i: -len(self.tracks[i].times))  # or all wait for it
-        begun = {i: _threads(os.getpid()).submit(of, self.tracks[i]) for i in longest}
-        return [begun[i].result() for i in range(len(self.tracks))]
+        return np.concatenate([t.whitened(self.values(t, free, theta), on, levels) for t in self.tracks])
 
     def scale(self, effect: Effect, name: str) -> float:
         """How much larger a parameter may be than on the boat for which effects state their priors, by its unit.

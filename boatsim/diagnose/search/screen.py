@@ -16,6 +16,7 @@ ROUNDS = 3  # Gauss-Newton steps of a suspect
 NEARER = 4  # points at which a look is scored anew, each half as far from nothing missing,
 HONEST, SMALL_LIE = 0.5, 3.0  # where the filter sees less than this share of what it promised, or so many nats less
 TRIED = 2  # starts of a suspect from which a step is taken
+LITTLE = 0.3  # [nats] promised at most, a suspect is not followed further
 HALVINGS, TOO_STRONG = 8, 30.0  # of a start that lies this far below nothing missing [nats]
 SMALL = 0.1  # where a suspect without starts of its own begins, in prior sds
 SWELL_SHARE = 0.7  # of the fitted latent force that a random force is tried with; the latent force keeps as much
@@ -113,7 +114,8 @@ def handed_over(start: Fit, effect: Effect) -> Fit:
     for own, f in enumerate(start.free):
         if f.effect == effect.name and f.how == "scales" and not f.relative and f.at in coefficients:
             coefficient = coefficients[f.at]
-            theta[own], theta[coefficient] = theta[coefficient], start.free[coefficient].mean
+            theta[own] = np.clip(theta[coefficient], f.low, f.high)
+            theta[coefficient] /= theta[own]
     return replace(start, theta=theta)
 
 
@@ -163,9 +165,13 @@ def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit,
         for _ in range(3):
             g = off - J.T @ white - (theta - space.mean) / space.sd
             trial = space.stepped(theta, J, g, damping)
+            promised = space.promised(J, g, theta, trial)
+            if promised >= 0.0 and score + promised < begin.score + LITTLE:  # taken at its word: it is nothing
+                theta, score, kept = trial, score + promised, True
+                break
             after, value = look(trial)
             if np.isfinite(value) and value > score:
-                kept = as_promised(value - score, space.promised(J, g, theta, trial))
+                kept = as_promised(value - score, promised)
                 theta, white, gain, score = trial, after, value - score, value
                 break
             damping = max(damping, 1e-2) * 10.0

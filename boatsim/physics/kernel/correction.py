@@ -24,10 +24,10 @@ def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int, ny
     for b in range(ny):
         if row[b] != 0.0:
             for a in range(n):
-                Ph[a] += P[a, b] * row[b]
+                Ph[a] += P[b, a] * row[b]
     if own >= 0:
         for a in range(n):
-            Ph[a] += P[a, own]
+            Ph[a] += P[own, a]
         variance += Ph[own]
     for b in range(ny):
         variance += row[b] * Ph[b]

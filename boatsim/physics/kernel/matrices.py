@@ -38,14 +38,15 @@ def multiply(A: Array, B: Array, out: Array, n: int) -> None:
 
 @lean
 def carry(F: Array, P: Array, work: Array, n: int) -> None:
-    """P = F P F', symmetric, in place."""
+    """P = F P F', symmetric, in place. Most of F's rows for forces are zero, and rows are added up in one go each."""
     multiply(F, P, work, n)
     for i in range(n):
-        for j in range(i + 1):
-            x = 0.0
-            for k in range(n):
-                x += work[i, k] * F[j, k]
-            P[i, j] = P[j, i] = x
+        for j in range(i):
+            work[i, j], work[j, i] = work[j, i], work[i, j]
+    multiply(F, work, P, n)
+    for i in range(n):
+        for j in range(i):
+            P[j, i] = P[i, j]
 
 
 @lean
