@@ -20,7 +20,8 @@ from boatsim.diagnose.locate.rhythm import rhythm
 from boatsim.diagnose.locate.smoothing import information, running_average, variance_of_average
 from boatsim.diagnose.locate.structure import features, structure
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.rank import UNKNOWN, baseline, left_over
+from boatsim.diagnose.search.evidence import UNKNOWN, left_over
+from boatsim.diagnose.search.rank import baseline
 from boatsim.diagnose.tried import library_for
 from boatsim.physics import vessel
 from boatsim.physics.base import Array

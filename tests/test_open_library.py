@@ -8,7 +8,7 @@ import pytest
 from boatsim.diagnose import analysis
 from boatsim.diagnose.rules import sensed_noise, tolerated_force
 from boatsim.diagnose.search.carries import grew, misfit
-from boatsim.diagnose.search.rank import price, together
+from boatsim.diagnose.search.evidence import price, together
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording
 

@@ -8,7 +8,7 @@ from test_locate import laid, push, sail
 
 from boatsim.diagnose.fit import fit
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.rank import worth
+from boatsim.diagnose.search.evidence import worth
 from boatsim.diagnose.search.screen import HONEST, Begin, checked, screen
 from boatsim.physics.base import Array
 

@@ -21,7 +21,8 @@ from boatsim.diagnose.fit import converge
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import show
-from boatsim.diagnose.search.rank import Ranking, price, rank
+from boatsim.diagnose.search.evidence import price
+from boatsim.diagnose.search.rank import Ranking, rank
 from boatsim.diagnose.search.screen import screen
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel

@@ -35,7 +35,7 @@ from benchmarks.real.common import table
 from benchmarks.real.thesis_runs import TESTS, WINDY, Bench, Knob
 from benchmarks.real.thesis_score import CLIP, SCALE, J
 from boatsim.diagnose.fit import Space, log_prior
-from boatsim.diagnose.search.rank import ALIKE
+from boatsim.diagnose.search.settle import ALIKE
 from boatsim.physics.base import Array
 
 ENOUGH = 4.0  # [nats] an effect must gain to be named

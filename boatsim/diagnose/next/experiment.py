@@ -18,7 +18,8 @@ from boatsim.diagnose.next.course import Course, laid, walls
 from boatsim.diagnose.next.manoeuvres import menu
 from boatsim.diagnose.problem import Fit, Problem, scale_of
 from boatsim.diagnose.report.entries import NextEntry
-from boatsim.diagnose.search.rank import ALIKE, Named, Ranking
+from boatsim.diagnose.search.rank import Ranking
+from boatsim.diagnose.search.settle import ALIKE, Named
 from boatsim.diagnose.tried import called
 from boatsim.physics.base import Array
 from boatsim.physics.content import vessel_address

@@ -22,7 +22,8 @@ from boatsim.diagnose.report.entries import (
     ParameterEntry,
     StructureEntry,
 )
-from boatsim.diagnose.search.rank import Named, Ranking
+from boatsim.diagnose.search.rank import Ranking
+from boatsim.diagnose.search.settle import Named
 from boatsim.diagnose.tried import called
 from boatsim.physics.base import Channel, Effect
 

@@ -32,7 +32,7 @@ from boatsim.diagnose.report.words import (
     spread,
     tried,
 )
-from boatsim.diagnose.search.rank import ALIKE
+from boatsim.diagnose.search.settle import ALIKE
 
 INTERVALS = 24  # flagged ones that a table shows; diagnosis.json has all
 PICTURES = 6  # runs whose missing force is drawn; the strongest ones

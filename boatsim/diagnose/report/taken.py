@@ -8,7 +8,7 @@ from boatsim.diagnose.locate.hull_forces import full_thrust
 from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.report.entries import AmbientEntry, Answer, LeftOutEntry, RulesEntry
 from boatsim.diagnose.report.words import listed, number, plain, quantity
-from boatsim.diagnose.search.rank import price
+from boatsim.diagnose.search.evidence import price
 from boatsim.diagnose.tried import Library, called
 
 

@@ -1,0 +1,60 @@
+"""Forward selection: suspects added one by one, each time the one by which the evidence rises most."""
+
+import logging
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from boatsim.diagnose.problem import Fit
+from boatsim.diagnose.search.evidence import together, worth
+from boatsim.diagnose.search.sets import Sets
+from boatsim.diagnose.tried import called
+
+progress = logging.getLogger("boatsim.diagnose")
+MOST = 8  # effects in one answer: further ones would have next to no data of their own
+LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
+CLEAR = 40.0  # prices that an effect is worth by the curvature at a fit, from where it stays without a fit without it
+SLIGHT = 0.025  # of what the others explain, below which an effect may be what their laws are off by
+
+
+def selected(sets: Sets, best: Fit) -> Fit:
+    """The best set from one on: suspects added one by one, earlier ones dropped that a newer one makes needless."""
+    for _ in range(2 * MOST):  # additions and prunings together
+        tried = sets.tried(best)
+        if not tried or len(best.suspects) == MOST:
+            break
+        laws = {n: f for n, f in tried.items() if n not in sets.random}
+        if _gained(laws, best) > max(sets.price, LAWFUL * _gained(tried, best)):
+            tried = laws  # a random force can stand for a law, a law hardly for it
+        if _gained(tried, best) < max(sets.price, SLIGHT * sets.explained(best)):
+            break
+        name = max(tried, key=lambda n: tried[n].evidence)
+        further = _pruned(sets, sets.converged(tried[name]))
+        if set(further.suspects) == set(best.suspects):
+            break  # the newest made way again
+        best = further
+        gain = best.evidence - sets.base.evidence
+        progress.info("best so far: %s (%.0f nats)", ", ".join(map(called, best.suspects)), gain)
+    return best
+
+
+def begun(sets: Sets, other: Fit) -> Fit:
+    """The set of a fit to the same recordings with other levels, fitted anew."""
+    return sets.converged(replace(other, levels=sets.base.levels, evidence=-np.inf))
+
+
+def _gained(tried: Mapping[str, Fit], best: Fit) -> float:
+    """Nats that one of several entries gains on top of a set, whichever."""
+    return together([f.evidence - best.evidence for f in tried.values()]) if tried else -np.inf
+
+
+def _pruned(sets: Sets, best: Fit) -> Fit:
+    """Without the earlier effects that the newest one has made needless."""
+    for name in best.suspects[:-1]:
+        if worth(best, name) > CLEAR * sets.price:
+            continue
+        without = sets.without(best, name)
+        if without.evidence > best.evidence - sets.price:
+            best = without
+    return best

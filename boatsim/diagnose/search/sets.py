@@ -1,0 +1,104 @@
+"""Sets of suspects: the fit of each, made once, and how every other suspect does on top of it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search.evidence import UNKNOWN, front, left_over, price
+from boatsim.diagnose.search.screen import checked, handed_over, joined, screen, starts
+from boatsim.diagnose.tried import called
+
+MANY = 6  # suspects on top of a set that are fitted in full at most
+
+
+class Sets:
+    """Fits of sets of suspects."""
+
+    def __init__(self, problem: Problem, candidates: tuple[str, ...], base: Fit) -> None:
+        self.problem, self.candidates, self.base = problem, candidates, base
+        self.fits: dict[frozenset[str], Fit] = {frozenset(): base}
+        self.promised: dict[frozenset[str], float] = {}
+        self.looks: dict[frozenset[str], dict[str, Fit]] = {}
+        self.kept: set[tuple[frozenset[str], str]] = set()  # looks that were compared with what the filter says,
+        self.full: set[tuple[frozenset[str], str]] = set()  # and followed by a fit in full
+        self.banned: set[str] = set()
+        self.random = {e.name for e in problem.program.suspects if type(e).random}
+        self.price = price(len(candidates))
+
+    def explained(self, best: Fit) -> float:
+        """Nats that a set gains over the recalibrated vessel."""
+        return float(best.evidence - self.base.evidence)
+
+    def converged(self, start: Fit) -> Fit:
+        """The fit of a set, kept: made from `start` unless it was made before from one no worse."""
+        key = frozenset(start.suspects)
+        known, promised = self.fits.get(key), self.promised.get(key, -np.inf)
+        if known is None or start.evidence > max(known.evidence, promised) + SETTLED:
+            self.promised[key] = start.evidence  # a look may promise more than a fit keeps, but once only
+            found = converge(self.problem, start)
+            if known is not None and found.evidence > known.evidence + SETTLED:
+                self.forget(key)
+            self.fits[key] = max(found, known or found, key=lambda f: f.evidence)
+        return self.fits[key]
+
+    def forget(self, key: frozenset[str]) -> None:
+        """What was looked at on top of a set was compared with a fit that was not its best: look again."""
+        self.looks.pop(key, None)
+        self.kept = {x for x in self.kept if x[0] != key}
+        self.full = {x for x in self.full if x[0] != key}
+
+    def without(self, best: Fit, name: str) -> Fit:
+        """The fit of a set without one of its members."""
+        return self.converged(reduced(self.problem, best, name))
+
+    def tried(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+        """Other candidates on top of a set, all or `among` some, less those found to mislead."""
+        return {n: f for n, f in self.looked(best, among).items() if n not in self.banned}
+
+    def looked(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
+        """Other candidates on top of a set: a quick look at all, or `among` some, those in front fitted in full."""
+        key = frozenset(best.suspects)
+        known = self.looks.setdefault(key, {})
+        ideas = {called(n) for n in best.suspects}
+        rest = [n for n in among or self.candidates if called(n) not in ideas and n not in known]
+        if rest:
+            known |= screen(self.problem, best, rest)
+        allowed = {n: f for n, f in known.items() if n not in self.banned}
+        fits = 0
+        while fits < MANY:  # a look may promise too much: what is in front then is judged anew after each fit
+            hopeful = {n: f for n, f in allowed.items() if f.evidence > best.evidence}
+            ahead = [n for n in front(hopeful, best) if (key, n) not in self.full]
+            if not ahead:
+                break
+            name, look = ahead[0], known[ahead[0]]
+            honest = look if (key, name) in self.kept or name in self.random else checked(self.problem, best, look)
+            self.kept.add((key, name))
+            if honest is look:
+                self.full.add((key, name))
+                fits += 1
+                honest = self.fitted(best, name, look)
+            allowed[name] = known[name] = honest
+        return known
+
+    def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
+        """A candidate fitted in full from its quick look; where that leaves much over, from the best of its starts."""
+        found = fit(self.problem, look)
+        effect = next(e for e in self.problem.program.suspects if e.name == name)
+        begun = starts(self.problem, effect)
+        if len(begun) == 1 or type(effect).random or left_over(self.problem, found) < UNKNOWN:
+            return found
+        others = [handed_over(joined(self.problem, best, name, s), effect) for s in begun]
+        other = max((descend(self.problem, o, 2, SETTLED) for o in others), key=lambda f: f.evidence)
+        return max(found, fit(self.problem, other), key=lambda f: f.evidence)
+
+    def hopeful(self, best: Fit) -> list[str]:
+        """Candidates that may gain on top of a set: those that gained on top of one that it contains.
+
+        None where no such set was looked at, as at the beginning of a second pass: all are looked at then.
+        """
+        key = frozenset(best.suspects)
+        looks = {k: x for k, x in self.looks.items() if k <= key}
+        gained = {n for k, x in looks.items() for n, f in x.items() if f.evidence > self.fits[k].evidence}
+        return [n for n in self.candidates if n in gained]

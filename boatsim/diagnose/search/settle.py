@@ -1,0 +1,111 @@
+"""Which members of a set are named: what each gains on top of the others, and how its rivals do in its place."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from boatsim.diagnose.fit import SETTLED
+from boatsim.diagnose.levels import calm_prior
+from boatsim.diagnose.problem import Fit
+from boatsim.diagnose.search.evidence import HALF, front, together
+from boatsim.diagnose.search.select import SLIGHT, selected
+from boatsim.diagnose.search.sets import Sets
+from boatsim.diagnose.tried import called
+
+ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
+RIVALS = 3  # fitted in the place of what was named
+CALMER = (0.5, 0.25, 0.1, 0.03)  # shares of the force levels of a fit with which the water may be calmer
+WORTH = 4.0  # [nats] that an effect must gain by itself
+
+
+@dataclass(frozen=True)
+class Named:
+    """An effect the data call for."""
+
+    name: str
+    gain: float  # [nats] on top of the others named
+    shared: float  # [nats] that it and its rivals gain together: that one of them is there, whichever
+    probability: float
+    tied_with: tuple[str, ...]  # look-alikes, at most three
+    rivals: Mapping[str, Fit]  # fits with the next best suspects in its place
+
+
+def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
+    """The set without members that gain too little on top of the others, and what is to be said of the rest.
+
+    A member in whose place another does better makes way for it, unless that leads back to where it was.
+    """
+    seen = set()
+    while True:
+        seen.add(frozenset(best.suspects))
+        named = tuple(_named(sets, best, n) for n in best.suspects)
+        rivals = [(n.name, r, f) for n in named for r, f in n.rivals.items()]
+        fair = [f for name, rival, f in rivals if name in sets.random or rival not in sets.random]
+        better = [f for f in fair if f.evidence > best.evidence + SETTLED]
+        further = selected(sets, max(better, key=lambda f: f.evidence)) if better else best
+        if frozenset(further.suspects) not in seen:
+            best = further
+            continue
+        weak = [n for n in named if _weak(sets, best, n)]
+        if not weak:
+            return best, named
+        best = sets.without(best, min(weak, key=lambda n: n.gain).name)
+
+
+def _weak(sets: Sets, best: Fit, named: Named) -> bool:
+    """Whether a member gains too little to be named."""
+    beside = SLIGHT * (sets.explained(best) - named.gain)
+    if named.gain < max(WORTH, beside) or named.shared < sets.price or not _there(sets, best, named.name):
+        return True
+    if named.name in sets.random:
+        return False
+    return named.gain + _calmer(sets, best) - _calmer(sets, sets.without(best, named.name)) < WORTH
+
+
+def _calmer(sets: Sets, found: Fit) -> float:
+    """Nats that a fit would gain if water calmer than usual were no less likely.
+
+    It is no merit of a law that it keeps the hull still where nothing moves it, as more damping does.
+    """
+    on, fits = sets.problem.program.switches(found.suspects), [found.levels]
+    fits += [replace(found.levels, force=share * found.levels.force) for share in CALMER]
+    first, *calm = (
+        sets.problem.likelihood(found.free, found.theta, on, levels, i == 0) for i, levels in enumerate(fits)
+    )
+    return max(first, *calm) - first - calm_prior(sets.problem, found.levels)
+
+
+def _there(sets: Sets, best: Fit, name: str) -> bool:
+    """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it."""
+    kind = next(type(e) for e in sets.problem.program.suspects if e.name == name)
+    params = {n: p for n, p in kind.params().items() if n in (kind.strength or kind.params())}
+    own = (f.name for f in best.free if f.effect == name and not f.relative)
+    fitted = {n: params[n].absent for n in own if n in params}
+    found = {n: best.value(name, n) for n in fitted}
+    return not found or any(abs(x - fitted[n]) > sd for n, (x, sd) in found.items())
+
+
+def _named(sets: Sets, best: Fit, name: str) -> Named:
+    """Gain of one effect on top of the others, and how its rivals do in its place."""
+    without = sets.without(best, name)
+    gain = best.evidence - without.evidence
+    tried = sets.tried(without, [n for n in sets.hopeful(without) if n != name])
+    others = {n: f for n, f in tried.items() if n not in best.suspects}
+    ahead = {n: others[n] for n in front(others, without)[:RIVALS]}
+    key = frozenset(without.suspects)
+    poor = {n for n, f in ahead.items() if (key, n) in sets.full and f.evidence < without.evidence + HALF * gain}
+    rivals = {n: f if n in poor else sets.converged(f) for n, f in ahead.items()}
+    gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
+    weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
+    same = np.array([False, True, *(called(n) == called(name) for n in gains)])  # on either side of an actuator
+    order = sorted(gains, key=lambda n: -gains[n])
+    tied = tuple(n for n in order if gains[n] > gain - ALIKE and called(n) != called(name))[:3]
+    return Named(
+        name,
+        gain,
+        together([gain, *gains.values()]),
+        float(weights[same].sum() / weights.sum()),
+        tied,
+        {n: rivals[n] for n in order},
+    )

@@ -1,0 +1,78 @@
+"""What recordings that no fit has seen say of a set: which of its members mislead there."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from boatsim.diagnose.filter import Track
+from boatsim.diagnose.free_runs import free_runs
+from boatsim.diagnose.problem import Fit
+from boatsim.diagnose.search import carries
+from boatsim.diagnose.search.evidence import left_over, told_from
+from boatsim.diagnose.search.sets import Sets
+from boatsim.diagnose.search.settle import Named
+
+SURE, SURE_RANDOM = 2.0, 1.65  # standard errors by which unseen errors must grow; a random force predicts nothing
+DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
+
+
+def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
+    """The effect without which free runs over unseen recordings are best, if with all they are worse than with none."""
+    problem, horizon = sets.problem, _horizon(sets, unseen)
+    fits = {"none": sets.base, "all": best} | {n: sets.without(best, n) for n in best.suspects}
+    first = free_runs(problem, {n: fits[n] for n in ("none", "all")}, unseen, horizon)
+    none = carries.squares(first, "none")
+    sure = SURE_RANDOM if sets.random & set(best.suspects) else SURE
+    if not none or not carries.grew(none, carries.squares(first, "all"), sure):
+        return ""
+    rest = free_runs(problem, {n: fits[n] for n in best.suspects}, unseen, horizon)
+    return min(best.suspects, key=lambda n: carries.misfit(carries.squares(rest, n), none))
+
+
+def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> Fit | None:
+    """A set with a law in the place of a random force, if by it free runs over unseen recordings get clearly better.
+
+    The random force, which foretells nothing and fits whatever sways, is then found to mislead.
+    """
+    horizon = _horizon(sets, unseen, carries.FEWEST)
+    for one in (n for n in named if n.name in sets.random):
+        base = sets.without(best, one.name).evidence + sets.price
+        laws = {n: f for n, f in one.rivals.items() if n not in sets.random and f.evidence > base}
+        if not laws:
+            continue
+        stretches = free_runs(sets.problem, {"": best, **laws}, unseen, horizon)
+        by_chance = carries.squares(stretches, "")
+        better = [f for n, f in laws.items() if carries.grew(carries.squares(stretches, n), by_chance, SURE_RANDOM)]
+        if better:
+            sets.banned.add(one.name)
+            return max(better, key=lambda f: f.evidence)
+    return None
+
+
+def stood_for(sets: Sets, best: Fit, unseen: Sequence[Track]) -> Fit:
+    """A set without those members, found to mislead, that are little beside what nothing explains."""
+    while name := _little(sets, best, unseen):
+        sets.banned.add(name)
+        best = sets.without(best, name)
+    return best
+
+
+def _little(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
+    """The member of least gain among those that may but stand for a part of what nothing explains; or "".
+
+    Much is left over, it takes next to nothing of that force away, and unseen recordings do not ask for it either.
+    """
+    if left_over(sets.problem, best) < told_from(sets.explained(best)):
+        return ""
+    rest = {n: sets.without(best, n) for n in best.suspects}
+    little = [n for n, f in rest.items() if np.min(best.levels.force / f.levels.force) > DWARFED]
+    if little and unseen:
+        stretches = free_runs(sets.problem, {"": best} | {n: rest[n] for n in little}, unseen, _horizon(sets, unseen))
+        errors = carries.squares(stretches, "")
+        little = [n for n in little if not carries.grew(errors, carries.squares(stretches, n), SURE)]
+    return max(little, key=lambda n: rest[n].evidence) if little else ""
+
+
+def _horizon(sets: Sets, unseen: Sequence[Track], parts: int = 1) -> float:
+    """Length [s] of free runs: the usual one, unless the longest recording holds not so many of them."""
+    return min(sets.problem.horizon, max(float(np.ptp(t.times)) for t in unseen) / parts)
