@@ -76,6 +76,7 @@ class Track:
         self.start, self.spread = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq))
         self._gains = np.zeros((*self.measured.shape, self.program.module.NZ))
         self._linear = np.zeros((len(self.times), 3 * nq, 3 * nq))
+        self._steps = np.full(len(self.times), self.step)
         self._scale, self._white = np.zeros(self.measured.shape), np.zeros(self.measured.shape)
         for c, code in enumerate(self.codes):
             good = np.isfinite(self.measured[:, c])
@@ -86,6 +87,8 @@ class Track:
                 far = gap > np.arange(len(t))
                 speed = (y[gap] - y)[far] / (t[gap] - t)[far]
                 self.spread[nq + code, nq + code] = float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
+                # not known any better for that, but a filter linearised at rest loses a boat with much drag at once
+                self.start[nq + code] = speed[0] if far.any() else 0.0
         level = [nq + i for i, axis in enumerate(axes_of(self.program.vessel)) if axis in ("surge", "sway")]
         for i in level:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
             self.spread[i, i] = max(self.spread[j, j] for j in level)
@@ -198,7 +201,7 @@ class Track:
         means, covariances, transitions, predicted = keep or NOTHING
         found = self.program.module.kalman(
             self.times, self.measured, self.codes, self.commands, self.step, body_of(values), values, on,
-            force**2, levels.time_constant, noise, self.start, covariance, full, fresh, self._linear,
+            force**2, levels.time_constant, noise, self.start, covariance, full, fresh, self._linear, self._steps,
             self._gains, self._scale, self._white, keep is not None, means, covariances, transitions, predicted,
         )  # fmt: skip
         return float(found)

@@ -13,6 +13,7 @@ FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above th
 SENSOR_PRIOR = 0.4  # sd of log noise about the stated one
 ROUGH, FINE = 2.0, 0.3  # [nats] that levels are near enough their best, once more and for a first fit
 LEAST = 1 / 10  # of the tolerated force, which a level is at least: no law is better than that
+LOOSER = 10  # times that the force is raised e-fold until the filter follows a recording
 TIME_PRIOR = 0.7  # sd of log time constant
 
 
@@ -88,7 +89,10 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
         return likelihood + force_prior(problem, levels(x)) + prior
 
     x = np.concatenate([np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)])
-    score(x, fresh=True)
+    for _ in range(LOOSER):  # where the boat as written runs away from what was recorded
+        if np.isfinite(score(x, fresh=True)):
+            break
+        x[:n] += 1.0
     _, x = climbed(score, x, 0.6, ROUGH)
     score(x, fresh=True)
     return replace(found, levels=levels(climbed(score, x, 0.4, FINE)[1]))

@@ -36,6 +36,8 @@ from .run import SHORTEST, actuate_in_place, least_after, settle, until_bend
 # not plain integers: those count as types, and what is called with several would be compiled for each
 NY, CALM = np.int64(2 * NQ), np.int64(3 * NQ)
 NZ = np.int64(CALM + (2 * NQ if HAS_SWELL else 0) + (NQ if HAS_WANDER else 0))
+STEADY = 1.4  # a step in time constants of the quickest motion: half of what Runge-Kutta bears
+LEAST = 0.01  # of an interval, which a step is at least: a boat quicker than that has run away
 INVERT = 10  # rounds of the inversion of what the instruments show, which is never far from the truth
 
 
@@ -69,8 +71,11 @@ def predict(
 @lean
 def transition(
     t: float, h: float, z: Array, act: Array, p: Array, on: Any, k: Array, force: Array, F: Array, A: Array, B: Array,
-) -> None:  # fmt: skip
-    """Linearised transition F of motion and lasting forces over h: exponential of the Jacobian of the accelerations."""
+) -> float:  # fmt: skip
+    """Linearised transition F of motion and lasting forces over h: exponential of the Jacobian of the accelerations.
+
+    Returns the rate at which the quickest motion dies out there [1/s].
+    """
     for i in range(CALM):
         for j in range(CALM):
             A[i, j] = 0.0
@@ -78,7 +83,11 @@ def transition(
         A[i, NQ + i] = 1.0
     slopes(t, z, act, p, on, k, force, A[NQ:NY])
     force_slopes(z, k, A, np.int64(NQ), NY)
+    rate = 0.0
+    for i in range(NQ, NY):
+        rate = max(rate, abs(A[i, i]))
     exponential(A, h, F, B, CALM)
+    return rate
 
 
 @lean
@@ -258,16 +267,18 @@ def arrived(y: Array, h: float, tau: float, s: Swell, w: Wander, m: int, n: int,
 @compiled
 def kalman(
     times: Array, measured: Array, codes: Any, commands: Array, max_step: float, body: Array, p: Array, on: Any,
-    sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, full: bool, fresh: bool, linear: Array, gains: Array,
-    scale: Array, white: Array, keep: bool, means: Array, covariances: Array, transitions: Array, predicted: Array,
+    sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, full: bool, fresh: bool, linear: Array, steps: Array,
+    gains: Array, scale: Array, white: Array, keep: bool, means: Array, covariances: Array, transitions: Array,
+    predicted: Array,
 ) -> float:  # fmt: skip
     """One pass. measured (N, C), nan where missing; noise (C,) and sigma (NQ,) are variances of sensors and force.
 
     full: compute gains (N, C, n) and inverse innovation sd `scale` (N, C), 0 where missing, both less for an outlier;
-    otherwise reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM); otherwise take it from there.
+    otherwise reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM) and the longest steps (N,) that follow
+    the quickest motion in `steps`; otherwise take both from there.
     white (N, C) gets the whitened innovations. keep: store what the smoother needs. Returns log likelihood.
     """
-    k, act, memory = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY)
+    k, act, memory, remembered = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY), np.zeros(MEMORY)
     constants(body, p, on, k)
     settle(commands[0], memory, p, on, act)
     s, w, lateness = swell(p, on), wander(p, on), late(p, on)
@@ -286,11 +297,21 @@ def kalman(
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
         felt(z, h, s, m, y, force)
-        held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, force, act)
+        before = held
+        copy(memory, remembered)
+        held = predict(times, i, lateness, held, y, commands, memory, steps[i], p, on, k, force, act)
         if full:  # linearised about the state before, with the actuators of this interval
             if fresh:
-                transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, work, work2)
+                rate = transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, work, work2)
                 copy_square(F, linear[i], CALM)
+                longest = max(min(max_step, STEADY / max(rate, 1e-9)), LEAST * h)
+                if longest < 0.5 * steps[i]:  # too long for what is so quick: once more
+                    steps[i] = longest
+                    felt(z, h, s, m, y, force)
+                    copy(remembered, memory)
+                    held = predict(times, i, lateness, before, y, commands, memory, longest, p, on, k, force, act)
+                if i + 1 < len(times):
+                    steps[i + 1] = longest
             else:
                 copy_square(linear[i], F, CALM)
             spread(F, h, tau, s, w, m, n, sigma, P, work2)
