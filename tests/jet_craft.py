@@ -33,6 +33,7 @@ class Craft:
     bias: float = 0.0  # [rad] of the jet
     starboard: float = 1.0  # jet angle that is effective to starboard, per commanded one
     q2: float = 154.9
+    cube: float = 0.0  # [s/m^2] of drag per mass and cube of the speed, as of a craft dragged down by the stern
     blunt: bool = False  # in its own way: it planes by and by, is uneven by and by, and loses speed as it skids
 
 
@@ -53,6 +54,7 @@ def slopes(y: Array, h: float, delta: float, craft: Craft) -> Array:
     if craft.blunt:
         skid = 0.95 + 0.05 * abs(v)
     du = kappa * (A1 * u + A2 * u * abs(u) + craft.turn_loss * skid * v * r + power(h, craft.q2) / max(u, 0.5))
+    du -= craft.cube * u**3
     jet = delta + craft.bias
     if craft.blunt:
         jet *= 1.0 + 0.5 * (craft.starboard - 1.0) * (1.0 + np.tanh(jet / 0.03))

@@ -61,6 +61,14 @@ def test_hidden_planing_lag_is_named_with_its_two_numbers_and_helps_on_unseen_th
     assert rms["patched"] < 0.1 * rms["recalibrated"]
 
 
+def test_drag_that_dies_out_far_faster_than_at_rest_is_followed_and_named(tmp_path: Path) -> None:
+    """Its rate at speed, 40 times that at rest, is beyond the steps that suit the craft as written."""
+    found = answer(throttled, Craft(cube=0.2), tmp_path, "jet_ski")
+    assert [e["name"] for e in found["effects"]] == ["cubic_damping"]
+    surge, sd = values(found)["cubic_damping.surge_Ns3pm3"]
+    assert surge == pytest.approx(0.2 * 450.0, abs=max(3.0 * sd, 2.0))
+
+
 def test_turn_asymmetry_is_named_as_offset_and_asymmetry(tmp_path: Path) -> None:
     found = answer(steered, Craft(bias=np.radians(1.0), starboard=1.1, blunt=True), tmp_path, "jet_ski")
     assert {e["name"] for e in found["effects"]} == {"steering_offset", "steering_asymmetry"}

@@ -23,12 +23,6 @@ def force_prior(problem: Problem, levels: Levels) -> float:
     return float(np.sum(-0.5 * np.where(over > 0, over / FORCE_PRIOR[1], over / FORCE_PRIOR[0]) ** 2))
 
 
-def calm_prior(problem: Problem, levels: Levels) -> float:
-    """What of it is for water calmer than the ambient level."""
-    calm = np.minimum(levels.force, problem.ambient.force)
-    return force_prior(problem, replace(levels, force=calm))
-
-
 def _forces(problem: Problem, logs: Array) -> Array:
     """Levels of the latent force from their logarithms: however calm the water, a model is no better than so much."""
     return np.maximum(np.exp(logs), LEAST * problem.ambient.force)

@@ -30,7 +30,7 @@ def selected(sets: Sets, best: Fit) -> Fit:
         if _gained(tried, best) < max(sets.price, SLIGHT * sets.explained(best)):
             break
         name = max(tried, key=lambda n: tried[n].evidence)
-        further = _pruned(sets, sets.converged(tried[name]))
+        further = _pruned(sets, sets.trusted(sets.converged(tried[name])))
         if set(further.suspects) == set(best.suspects):
             break  # the newest made way again
         best = further

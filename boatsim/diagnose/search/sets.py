@@ -1,6 +1,7 @@
 """Sets of suspects: the fit of each, made once, and how every other suspect does on top of it."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -42,6 +43,23 @@ class Sets:
                 self.forget(key)
             self.fits[key] = max(found, known or found, key=lambda f: f.evidence)
         return self.fits[key]
+
+    def trusted(self, found: Fit) -> Fit:
+        """A fit that leaves much over, or a better one begun as if it explained everything.
+
+        Where the water may push as hard as it did without an effect, the effect is not asked for all that it can do.
+        """
+        if left_over(self.problem, found) < UNKNOWN:
+            return found
+        calm = replace(found.levels, force=np.minimum(found.levels.force, self.problem.ambient.force))
+        begun = descend(self.problem, replace(found, levels=calm, evidence=-np.inf), 4, SETTLED)
+        other = converge(self.problem, begun) if np.isfinite(begun.evidence) else begun
+        if not other.evidence > found.evidence + SETTLED:
+            return found
+        key = frozenset(found.suspects)
+        self.forget(key)
+        self.fits[key] = other
+        return other
 
     def forget(self, key: frozenset[str]) -> None:
         """What was looked at on top of a set was compared with a fit that was not its best: look again."""

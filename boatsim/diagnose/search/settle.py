@@ -1,21 +1,19 @@
 """Which members of a set are named: what each gains on top of the others, and how its rivals do in its place."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from boatsim.diagnose.fit import SETTLED
-from boatsim.diagnose.levels import calm_prior
 from boatsim.diagnose.problem import Fit
-from boatsim.diagnose.search.evidence import HALF, front, together
+from boatsim.diagnose.search.evidence import HALF, UNKNOWN, front, left_over, together
 from boatsim.diagnose.search.select import SLIGHT, selected
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.tried import called
 
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
 RIVALS = 3  # fitted in the place of what was named
-CALMER = (0.5, 0.25, 0.1, 0.03)  # shares of the force levels of a fit with which the water may be calmer
 WORTH = 4.0  # [nats] that an effect must gain by itself
 
 
@@ -58,22 +56,23 @@ def _weak(sets: Sets, best: Fit, named: Named) -> bool:
     beside = SLIGHT * (sets.explained(best) - named.gain)
     if named.gain < max(WORTH, beside) or named.shared < sets.price or not _there(sets, best, named.name):
         return True
-    if named.name in sets.random:
+    if named.name in sets.random or left_over(sets.problem, best) > UNKNOWN:
         return False
-    return named.gain + _calmer(sets, best) - _calmer(sets, sets.without(best, named.name)) < WORTH
+    return _foreseen(sets, best, sets.without(best, named.name)) < WORTH
 
 
-def _calmer(sets: Sets, found: Fit) -> float:
-    """Nats that a fit would gain if water calmer than usual were no less likely.
+def _foreseen(sets: Sets, best: Fit, without: Fit) -> float:
+    """Nats by which the errors of prediction shrink with a member, sensors and water as noisy with it as without.
 
-    It is no merit of a law that it keeps the hull still where nothing moves it, as more damping does.
+    What it gains besides is that less was to be expected: more damping keeps the hull still where nothing moves it, and
+    forgets the sooner how a recording began. In calm water that is no merit of a law.
     """
-    on, fits = sets.problem.program.switches(found.suspects), [found.levels]
-    fits += [replace(found.levels, force=share * found.levels.force) for share in CALMER]
-    first, *calm = (
-        sets.problem.likelihood(found.free, found.theta, on, levels, i == 0) for i, levels in enumerate(fits)
-    )
-    return max(first, *calm) - first - calm_prior(sets.problem, found.levels)
+    problem, seen = sets.problem, []
+    for found in (best, without):
+        on = problem.program.switches(found.suspects)
+        likelihood = problem.likelihood(found.free, found.theta, on, best.levels)
+        seen.append(likelihood - sum(t.tightness for t in problem.tracks))
+    return seen[0] - seen[1]
 
 
 def _there(sets: Sets, best: Fit, name: str) -> bool:

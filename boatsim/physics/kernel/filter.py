@@ -83,9 +83,11 @@ def transition(
         A[i, NQ + i] = 1.0
     slopes(t, z, act, p, on, k, force, A[NQ:NY])
     force_slopes(z, k, A, np.int64(NQ), NY)
-    rate = 0.0
-    for i in range(NQ, NY):
-        rate = max(rate, abs(A[i, i]))
+    rate, level = 0.0, 0.0
+    for i in range(NQ):
+        if FREE[i] < 2:  # of a turned hull each has a part of both: their sum stays
+            level += abs(A[NQ + i, NQ + i])
+        rate = max(rate, level, abs(A[NQ + i, NQ + i]))
     exponential(A, h, F, B, CALM)
     return rate
 
@@ -274,8 +276,8 @@ def kalman(
     """One pass. measured (N, C), nan where missing; noise (C,) and sigma (NQ,) are variances of sensors and force.
 
     full: compute gains (N, C, n) and inverse innovation sd `scale` (N, C), 0 where missing, both less for an outlier;
-    otherwise reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM) and the longest steps (N,) that follow
-    the quickest motion in `steps`; otherwise take both from there.
+    otherwise reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM), and in `steps` (N,) the longest
+    that follow the quickest motion; otherwise take both from there.
     white (N, C) gets the whitened innovations. keep: store what the smoother needs. Returns log likelihood.
     """
     k, act, memory, remembered = np.zeros(K), np.zeros(3 * HELD), np.zeros(MEMORY), np.zeros(MEMORY)
