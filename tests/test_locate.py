@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pushed_boat import BOAT, COMMANDS, DAMPING, RATE, ROWS, Missing, laid, push, sail
 from scipy.integrate import odeint
 from scipy.linalg import expm
 from scipy.stats import kstest
@@ -19,7 +20,7 @@ from boatsim.diagnose.locate.regions import Region, regions
 from boatsim.diagnose.locate.rhythm import rhythm
 from boatsim.diagnose.locate.smoothing import information, running_average, variance_of_average
 from boatsim.diagnose.locate.structure import features, structure
-from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.search.evidence import UNKNOWN, left_over
 from boatsim.diagnose.search.rank import baseline
 from boatsim.diagnose.tried import library_for
@@ -160,56 +161,11 @@ def test_rhythm_has_the_period_that_was_put_in_and_white_or_rough_errors_have_no
     assert rhythm([(t[:6], np.zeros((6, 1)))]) is None
 
 
-# ---- the trial boat from an integrator that shares no code with the tool
-
-BOAT = vessel.load("trial_boat")
-M, IZ, A11, A22, A66 = 4.6, 0.6, 0.3, 9.0, 0.7  # kg, kg m^2
-DAMPING, X_MOTOR, Y_MOTOR = np.array([3.0, 10.0, 1.0]), -0.6, 0.19
-RATE, ROWS = 6.0, 240
-COMMANDS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
-Missing = Callable[[float, Array, Array], Array]  # t, (x, y, psi, u, v, r), commands -> X, Y, N
-
-
-def push(thrust: Array, steer: Array) -> Array:
-    X, Y = thrust * np.cos(steer), thrust * np.sin(steer)
-    return np.array([X.sum(), Y.sum(), X_MOTOR * Y.sum() + Y_MOTOR * (X[0] - X[1])])
-
-
-def sail(name: str, seed: int, missing: Missing, facts: dict[str, Any] | None = None) -> tuple[Recording, Array]:
-    """A recording of the trial boat under a further force, and that force at every row."""
-    rng = np.random.default_rng(seed)
-    levels = np.column_stack([rng.uniform(-0.9, 0.9, (ROWS // 8, 2)), rng.uniform(-0.6, 0.6, (ROWS // 8, 2))])
-    commands = np.repeat(levels, 8, axis=0)
-
-    def slope(y: Array, t: float, command: Array) -> list[float]:
-        u, v, r = y[3:]
-        X, Y, moment = push(command[:2], command[2:]) - DAMPING * y[3:] + missing(t, y, command)
-        c, s = np.cos(y[2]), np.sin(y[2])
-        du, dv = (X + M * v * r) / (M + A11), (Y - M * u * r) / (M + A22)
-        return [u * c - v * s, u * s + v * c, r, du, dv, moment / (IZ + A66)]
-
-    t, y, poses, forces = np.arange(ROWS) / RATE, np.zeros(6), [], []
-    for now, command in zip(t, commands, strict=True):
-        poses.append(y[:3])
-        fine = np.linspace(now, now + 1 / RATE, 5)
-        path = odeint(slope, y, fine, args=(command,), rtol=1e-7, atol=1e-9)
-        forces.append(np.mean([missing(a, b, command) for a, b in zip(fine, path, strict=True)], axis=0))
-        y = path[-1]
-    seen = np.array(poses) + rng.standard_normal((ROWS, 3)) * [0.003, 0.003, 0.012]
-    signals = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True)) | dict(zip(COMMANDS, commands.T, strict=True))
-    return Recording(name, t, signals, Notes(vessel="trial_boat", facts=facts or {})), np.array(forces)
+# ---- the trial boat
 
 
 def nothing(t: float, y: Array, command: Array) -> Array:
     return np.zeros(3)
-
-
-def laid(*recordings: Recording) -> tuple[Problem, Fit]:
-    program = Program(BOAT, library_for(BOAT).entries)
-    problem = Problem(
-        [track(r, program) for r in recordings], nominal_levels(BOAT, recordings), {"damping": 0.05, "thrust": 0.05}
-    )
-    return problem, baseline(problem)[1]
 
 
 def found_in(missing: Missing, facts: dict[str, Any] | None = None) -> dict[str, Region]:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_locate import laid, push, sail
+from pushed_boat import laid, push, sail
 
 from boatsim.diagnose.fit import fit
 from boatsim.diagnose.problem import Fit, Problem

@@ -1,0 +1,74 @@
+"""How fits are found: a climb without a gradient, derivatives learnt from steps, filter steps that follow the boat."""
+
+import numpy as np
+import pytest
+from jet_craft import Craft, sailed
+
+from boatsim.diagnose.climb import climbed
+from boatsim.diagnose.filter import nominal_levels, track, under_way
+from boatsim.diagnose.fit import learnt
+from boatsim.diagnose.tried import library_for
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+
+TOP = np.array([2.0, -1.0, 0.3])
+BEND = np.array([[40.0, 12.0, 0.0], [12.0, 30.0, -5.0], [0.0, -5.0, 20.0]])
+
+
+def hill(x: Array) -> float:
+    return float(-0.5 * (x - TOP) @ BEND @ (x - TOP))
+
+
+def test_a_climb_ends_near_the_top_and_says_how_high_it_is() -> None:
+    best, x = climbed(hill, np.zeros(3), 0.5, 0.3)
+    assert best == pytest.approx(hill(x)) and best > -0.3
+    assert x == pytest.approx(TOP, abs=0.15)
+
+
+def test_at_the_top_each_coordinate_is_looked_at_once() -> None:
+    asked = []
+
+    def score(x: Array) -> float:
+        asked.append(x.copy())
+        return hill(x)
+
+    climbed(score, TOP, 0.5, 0.01)
+    assert len(asked) == 1 + 3 * len(TOP)  # where it begins; then a step on either side and the parabola's top
+
+
+def test_what_never_rises_is_left_where_it_is() -> None:
+    best, x = climbed(lambda x: -np.inf if x.any() else 1.0, np.zeros(2), 0.5, 0.3)
+    assert best == 1.0 and not x.any()
+
+
+def test_derivatives_learnt_from_a_step_agree_with_it_and_stay_across_it() -> None:
+    rng = np.random.default_rng(0)
+    J, true, step = rng.standard_normal((7, 3)), rng.standard_normal((7, 3)), np.array([0.2, -0.1, 0.4])
+    found = learnt(J, true @ step, step)
+    assert found @ step == pytest.approx(true @ step)
+    across = np.array([1.0, 2.0, 0.0])  # at right angles to the step
+    assert found @ across == pytest.approx(J @ across)
+    assert (learnt(J, np.zeros(7), np.zeros(3)) == J).all()
+
+
+def test_a_recording_begins_under_way_only_where_its_speed_stands_out_from_its_noise() -> None:
+    rng = np.random.default_rng(1)
+    assert under_way(4.0 + 0.1 * rng.standard_normal(50)) == pytest.approx(4.0, abs=0.4)
+    assert under_way(0.1 * rng.standard_normal(50)) == 0.0
+    assert under_way(np.array([])) == 0.0
+
+
+def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shorter_steps_do() -> None:
+    boat = vessel.load("jet_ski")
+    run = sailed(Craft(cube=0.2), np.repeat([2.0, 6.0, 3.0], 50), np.zeros(150), 5.0)
+    program = Program(boat, library_for(boat).entries)
+    said = []
+    for share in (1.0, 0.1):
+        laid = track(run, program)
+        laid.step *= share
+        values = laid.values.copy()
+        values[program.index("cubic_damping", "surge")] = 90.0  # 15 /s at 5 m/s; at rest the craft has less than 1 /s
+        levels = nominal_levels(boat, [run])
+        said.append(laid.likelihood(values, program.switches(("cubic_damping",)), levels))
+    assert np.isfinite(said).all() and said[0] == pytest.approx(said[1], abs=3.0)
