@@ -79,6 +79,7 @@ class Track:
         self._linear = np.zeros((len(self.times), 3 * nq, 3 * nq))
         self._steps = np.full(len(self.times), self.step)
         self._scale, self._white = np.zeros(self.measured.shape), np.zeros(self.measured.shape)
+        level = [nq + i for i, axis in enumerate(axes_of(self.program.vessel)) if axis in ("surge", "sway")]
         for c, code in enumerate(self.codes):
             good = np.isfinite(self.measured[:, c])
             if code < nq and good.any():
@@ -88,8 +89,8 @@ class Track:
                 far = gap > np.arange(len(t))
                 speed = (y[gap] - y)[far] / (t[gap] - t)[far]
                 self.spread[nq + code, nq + code] = float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
-                self.start[nq + code] = under_way(speed)
-        level = [nq + i for i, axis in enumerate(axes_of(self.program.vessel)) if axis in ("surge", "sway")]
+                if nq + code in level:
+                    self.start[nq + code] = under_way(speed)
         for i in level:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
             self.spread[i, i] = max(self.spread[j, j] for j in level)
 

@@ -127,16 +127,19 @@ def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit
     def score(x: Array) -> float:
         return problem.likelihood(free, x, on, levels) + log_prior(free, x)
 
+    def derived(white: Array) -> tuple[Array, Array]:
+        """Derivatives of the errors at theta, and what the score has of slope besides, by the gains."""
+        if not problem.stiff:
+            return jacobian(problem, free, theta, on, levels, white), np.zeros(len(free))
+        J, g = slopes(problem, free, score, best, theta, space)
+        return J, g + J.T @ white + (theta - space.mean) / space.sd
+
     best, damping = score(theta), 1e-3
     J, besides, known = np.zeros((1, len(free))), np.zeros(len(free)), False
     for _ in range(iterations):
         white = problem.white()  # at theta: the last pass was a full one there
         if not known:
-            if problem.stiff:
-                J, besides = slopes(problem, free, score, best, theta, space)
-                besides += J.T @ white + (theta - space.mean) / space.sd
-            else:
-                J = jacobian(problem, free, theta, on, levels, white)
+            J, besides = derived(white)
         g = besides - J.T @ white - (theta - space.mean) / space.sd
         step, gain = None, 0.0
         for _ in range(5):
@@ -161,6 +164,8 @@ def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit
         known = gain > TRUSTED * promised
         if known:
             J = learnt(J, problem.white() - white, moved)
+    if known:  # spreads are those of derivatives taken, not learnt
+        J, _ = derived(problem.white())
     information = np.eye(len(free)) + J.T @ J
     information[np.diag_indices(len(free))] += _curvature(problem, free, theta, on, levels)
     covariance = space.covariance(information)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnose.fit import SETTLED
+from boatsim.diagnose.fit import SETTLED, log_prior
 from boatsim.diagnose.problem import Fit
 from boatsim.diagnose.search.evidence import HALF, UNKNOWN, front, left_over, together
 from boatsim.diagnose.search.select import SLIGHT, selected
@@ -62,7 +62,7 @@ def _weak(sets: Sets, best: Fit, named: Named) -> bool:
 
 
 def _foreseen(sets: Sets, best: Fit, without: Fit) -> float:
-    """Nats by which the errors of prediction shrink with a member, sensors and water as noisy with it as without.
+    """Nats by which a member makes what was recorded likelier, sensors and water as noisy with it as without.
 
     What it gains besides is that less was to be expected: more damping keeps the hull still where nothing moves it, and
     forgets the sooner how a recording began. In calm water that is no merit of a law.
@@ -71,7 +71,8 @@ def _foreseen(sets: Sets, best: Fit, without: Fit) -> float:
     for found in (best, without):
         on = problem.program.switches(found.suspects)
         likelihood = problem.likelihood(found.free, found.theta, on, best.levels)
-        seen.append(likelihood - sum(t.tightness for t in problem.tracks))
+        tightness = sum(t.tightness for t in problem.tracks)
+        seen.append(likelihood - tightness + log_prior(found.free, found.theta))
     return seen[0] - seen[1]
 
 
