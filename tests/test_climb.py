@@ -5,7 +5,7 @@ import pytest
 from jet_craft import Craft, sailed
 
 from boatsim.diagnose.climb import climbed
-from boatsim.diagnose.filter import nominal_levels, track, under_way
+from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.fit import learnt
 from boatsim.diagnose.tried import library_for
 from boatsim.physics import vessel
@@ -50,13 +50,6 @@ def test_derivatives_learnt_from_a_step_agree_with_it_and_stay_across_it() -> No
     across = np.array([1.0, 2.0, 0.0])  # at right angles to the step
     assert found @ across == pytest.approx(J @ across)
     assert (learnt(J, np.zeros(7), np.zeros(3)) == J).all()
-
-
-def test_a_recording_begins_under_way_only_where_its_speed_stands_out_from_its_noise() -> None:
-    rng = np.random.default_rng(1)
-    assert under_way(4.0 + 0.1 * rng.standard_normal(50)) == pytest.approx(4.0, abs=0.4)
-    assert under_way(0.1 * rng.standard_normal(50)) == 0.0
-    assert under_way(np.array([])) == 0.0
 
 
 def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shorter_steps_do() -> None:

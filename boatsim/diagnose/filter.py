@@ -23,7 +23,6 @@ FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into 
 MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
 FIT_STEP = 0.17  # [s] the same in the filter of a boat of 1.2 m, which is corrected at every sample
 START = 3.0  # tolerated forces by which actuators on their way, or a hand's push, may act when a recording begins
-CLEARLY = 2.0  # rms changes of a speed from row to row that it must be to be one at which a boat is under way
 LATE = 0.007  # [rad] of phase by which Runge-Kutta is off when an oscillation of the hull has died out
 RINGING = 0.01  # of critical damping: an oscillation that dies out more slowly is corrected before it has
 STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
@@ -79,7 +78,6 @@ class Track:
         self._linear = np.zeros((len(self.times), 3 * nq, 3 * nq))
         self._steps = np.full(len(self.times), self.step)
         self._scale, self._white = np.zeros(self.measured.shape), np.zeros(self.measured.shape)
-        level = [nq + i for i, axis in enumerate(axes_of(self.program.vessel)) if axis in ("surge", "sway")]
         for c, code in enumerate(self.codes):
             good = np.isfinite(self.measured[:, c])
             if code < nq and good.any():
@@ -89,8 +87,7 @@ class Track:
                 far = gap > np.arange(len(t))
                 speed = (y[gap] - y)[far] / (t[gap] - t)[far]
                 self.spread[nq + code, nq + code] = float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
-                if nq + code in level:
-                    self.start[nq + code] = under_way(speed)
+        level = [nq + i for i, axis in enumerate(axes_of(self.program.vessel)) if axis in ("surge", "sway")]
         for i in level:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
             self.spread[i, i] = max(self.spread[j, j] for j in level)
 
@@ -294,15 +291,6 @@ def quickest(program: Program, values: Array, command: Array) -> tuple[float, fl
     swings = [x for x in np.linalg.eigvals(whole) if x.imag > 0.0]
     smooth = [(120.0 * LATE * max(-x.real / x.imag, RINGING)) ** 0.25 / x.imag for x in swings]
     return float(np.abs(np.linalg.eigvals(slopes[:, nq:])).max()), float(min(smooth, default=np.inf))
-
-
-def under_way(speed: Array) -> float:
-    """The speed (N,) at which a recording begins, 0 where it changes by about as much from row to row.
-
-    It is not known any better for that, but a filter linearised at rest loses a boat with much drag at once.
-    """
-    change = float(np.sqrt(np.mean(np.diff(speed) ** 2))) if len(speed) > 1 else np.inf
-    return float(speed[0]) if len(speed) and abs(speed[0]) > CLEARLY * change else 0.0
 
 
 def inertia_of(program: Program, values: Array, on: Array) -> Array:

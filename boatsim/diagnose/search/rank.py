@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import converge, descend
@@ -72,10 +72,11 @@ def rank(
     while unseen and (law := lawful(sets, best, named, unseen)):
         best, named = settled(sets, selected(sets, law))
     first = {n: f.evidence - sets.base.evidence for n, f in sets.looked(sets.base).items()}
-    return Ranking(
-        nominal, sets.base, widened(problem, best), named, first, sets.looked(best), left_over(problem, best),
-        structure(problem, best),
-    )  # fmt: skip
+    last = sets.looked(best)
+    for name in sets.banned & last.keys():  # what was found to mislead is no hint
+        last[name] = replace(last[name], evidence=min(last[name].evidence, best.evidence))
+    left = left_over(problem, best)
+    return Ranking(nominal, sets.base, widened(problem, best), named, first, last, left, structure(problem, best))
 
 
 def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:

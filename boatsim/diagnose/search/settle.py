@@ -58,7 +58,10 @@ def _weak(sets: Sets, best: Fit, named: Named) -> bool:
         return True
     if named.name in sets.random or left_over(sets.problem, best) > UNKNOWN:
         return False
-    return _foreseen(sets, best, sets.without(best, named.name)) < WORTH
+    calm = _foreseen(sets, best, sets.without(best, named.name)) < WORTH
+    if calm:
+        sets.banned.add(named.name)
+    return calm
 
 
 def _foreseen(sets: Sets, best: Fit, without: Fit) -> float:
