@@ -16,11 +16,11 @@ from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import fit
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search.carries import WORSE
 from boatsim.physics.base import Array
 
 STEPS = 2  # halvings or doublings at most
-CLEARLY = 0.95  # error per error before, below which a step is taken: five per cent, as anywhere that free runs judge,
-SURE = 2.0  # and by so many standard errors over the free runs: where they swing about that much, it says nothing
+SURE = 2.0  # standard errors over the free runs by which errors must fall: where they swing as much, it says nothing
 
 
 def timed(problem: Problem, found: Fit) -> Problem:
@@ -66,10 +66,10 @@ def part(track: Track, begin: int, end: int) -> Track:
 
 
 def clearly_less(errors: Array, before: Array) -> bool:
-    """Whether the errors of free runs (S,) are clearly less than they were, run by run."""
+    """Whether the errors of free runs (S,) are clearly less than they were, run by run: as `carries` judges growth."""
     ratio = np.log(errors / before)
     scatter = SURE * float(np.std(ratio, ddof=1)) / sqrt(len(ratio)) if len(ratio) > 1 else 0.0
-    return bool(np.mean(ratio) < min(log(CLEARLY), -scatter))
+    return bool(np.mean(ratio) < min(-log(WORSE), -scatter))
 
 
 def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:

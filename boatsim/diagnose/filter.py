@@ -66,6 +66,7 @@ class Track:
     inertia: Array = field(init=False)  # (NQ,) of the hull as written, with its water, axis by axis [kg, kg m^2]
     start: Array = field(init=False)  # (n,) first state
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
+    rates: Array = field(init=False)  # (NQ,) at which the recording begins, about which the filter is linearised first
 
     def __post_init__(self) -> None:
         self.rate, smooth = quickest(self.program, self.values, self.commands[0])
@@ -73,7 +74,7 @@ class Track:
         self.step = min(usual, STEADY / max(self.rate, 1e-9), smooth)
         self.inertia = inertia_of(self.program, self.values, self.program.switches())
         nq = self.program.module.NQ
-        self.start, self.spread = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq))
+        self.start, self.spread, self.rates = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq)), np.zeros(nq)
         self._gains = np.zeros((*self.measured.shape, self.program.module.NZ))
         self._linear = np.zeros((len(self.times), 3 * nq, 3 * nq))
         self._steps = np.full(len(self.times), self.step)
@@ -87,6 +88,7 @@ class Track:
                 far = gap > np.arange(len(t))
                 speed = (y[gap] - y)[far] / (t[gap] - t)[far]
                 self.spread[nq + code, nq + code] = float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
+                self.rates[code] = speed[0] if far.any() else 0.0
         level = [nq + i for i, axis in enumerate(axes_of(self.program.vessel)) if axis in ("surge", "sway")]
         for i in level:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
             self.spread[i, i] = max(self.spread[j, j] for j in level)
@@ -204,8 +206,9 @@ class Track:
         means, covariances, transitions, predicted = keep or NOTHING
         found = self.program.module.kalman(
             self.times, self.measured, self.codes, self.commands, self.step, body_of(values), values, on,
-            force**2, levels.time_constant, noise, self.start, covariance, full, fresh, self._linear, self._steps,
-            self._gains, self._scale, self._white, keep is not None, means, covariances, transitions, predicted,
+            force**2, levels.time_constant, noise, self.start, covariance, self.rates, full, fresh, self._linear,
+            self._steps, self._gains, self._scale, self._white, keep is not None, means, covariances, transitions,
+            predicted,
         )  # fmt: skip
         return float(found)
 

@@ -45,38 +45,37 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         if frozenset(further.suspects) not in seen:
             best = further
             continue
-        weak = [n for n in named if _weak(sets, best, n)]
-        if not weak:
+        little = [n for n in named if _little(sets, best, n)]
+        calm = [n for n in named if n not in little and not _foreseen(sets, best, n)]
+        if not little and not calm:
             return best, named
-        best = sets.without(best, min(weak, key=lambda n: n.gain).name)
+        out = min(little + calm, key=lambda n: n.gain)
+        if out in calm:
+            sets.banned.add(out.name)
+        best = sets.without(best, out.name)
 
 
-def _weak(sets: Sets, best: Fit, named: Named) -> bool:
+def _little(sets: Sets, best: Fit, named: Named) -> bool:
     """Whether a member gains too little to be named."""
     beside = SLIGHT * (sets.explained(best) - named.gain)
-    if named.gain < max(WORTH, beside) or named.shared < sets.price or not _there(sets, best, named.name):
-        return True
-    if named.name in sets.random or left_over(sets.problem, best) > UNKNOWN:
-        return False
-    calm = _foreseen(sets, best, sets.without(best, named.name)) < WORTH
-    if calm:
-        sets.banned.add(named.name)
-    return calm
+    return named.gain < max(WORTH, beside) or named.shared < sets.price or not _there(sets, best, named.name)
 
 
-def _foreseen(sets: Sets, best: Fit, without: Fit) -> float:
-    """Nats by which a member makes what was recorded likelier, sensors and water as noisy with it as without.
+def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
+    """Whether a member makes what was recorded likelier, sensors and water as noisy with it as without.
 
     What it gains besides is that less was to be expected: more damping keeps the hull still where nothing moves it, and
-    forgets the sooner how a recording began. In calm water that is no merit of a law.
+    forgets the sooner how a recording began. In calm water that is no merit of a law; a random force is that merit.
     """
     problem, seen = sets.problem, []
-    for found in (best, without):
+    if named.name in sets.random or left_over(problem, best) > UNKNOWN:
+        return True
+    for found in (best, sets.without(best, named.name)):
         on = problem.program.switches(found.suspects)
         likelihood = problem.likelihood(found.free, found.theta, on, best.levels)
         tightness = sum(t.tightness for t in problem.tracks)
         seen.append(likelihood - tightness + log_prior(found.free, found.theta))
-    return seen[0] - seen[1]
+    return not seen[0] - seen[1] < WORTH
 
 
 def _there(sets: Sets, best: Fit, name: str) -> bool:

@@ -5,8 +5,8 @@ from typing import Any
 
 from numba import njit
 
-# Called by people or from several functions, kept on disk; other threads go on meanwhile.
-compiled = njit(error_model="numpy", cache=True, nogil=True)
+# Called by people or from several functions, kept on disk.
+compiled = njit(error_model="numpy", cache=True)
 # The same for what allocates no arrays, nor do the laws in it: numba counts no references then, which it does with
 # locked instructions at every assignment of an array, for longer than the laws themselves take.
 lean = njit(error_model="numpy", cache=True, _nrt=False)

@@ -266,15 +266,76 @@ def arrived(y: Array, h: float, tau: float, s: Swell, w: Wander, m: int, n: int,
             z[a], z[a + 1] = f11 * z[a] + f12 * z[a + 1], f21 * z[a] + f22 * z[a + 1]
 
 
+@lean
+def across(F: Array, z: Array, about: Array, y: Array) -> None:
+    """To y, where the motion `about` leads, what the motion of state z differs by along the transition F."""
+    for a in range(NY):
+        for b in range(NY):
+            y[a] += F[a, b] * (z[b] - about[b])
+
+
+@lean
+def follow(
+    times: Array, i: int, lateness: float, row: int, z: Array, y: Array, commands: Array, memory: Array,
+    remembered: Array, max_step: float, steps: Array, p: Array, on: Any, k: Array, force: Array, act: Array, s: Swell,
+    m: int, F: Array, A: Array, B: Array,
+) -> int:  # fmt: skip
+    """`predict`, with the transition F linearised about the state z before, with the actuators of this interval.
+
+    In steps that follow the quickest motion there: those that suited the row before may be too long. Fills steps[i] and
+    a first guess for the row after; `remembered` is room for the actuators' memory.
+    """
+    h = times[i] - times[i - 1]
+    if i == 1:
+        steps[i] = max_step
+    copy(memory, remembered)
+    last = predict(times, i, lateness, row, y, commands, memory, steps[i], p, on, k, force, act)
+    rate = transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, A, B)
+    longest = max(min(max_step, STEADY / max(rate, 1e-9)), LEAST * h)
+    if longest < 0.5 * steps[i]:
+        steps[i] = longest
+        felt(z, h, s, m, y, force)
+        copy(remembered, memory)
+        last = predict(times, i, lateness, row, y, commands, memory, longest, p, on, k, force, act)
+    if i + 1 < len(times):
+        steps[i + 1] = longest
+    return last
+
+
+@lean
+def correct(
+    measured: Array, codes: Any, p: Array, on: Any, noise: Array, full: bool, m: int, n: int, z: Array, P: Array,
+    H: Array, row: Array, Ph: Array, outliers: Array, gains: Array, scale: Array, white: Array,
+) -> float:  # fmt: skip
+    """Correct z, and P if `full`, by one row of the recording (C,); returns what it adds to the log likelihood."""
+    likelihood = 0.0
+    if full:
+        look(z, codes, H, p, on)
+    for c in range(len(measured)):
+        if np.isnan(measured[c]):
+            scale[c] = white[c] = 0.0
+            continue
+        error = measured[c] - observe(z, codes[c], H[c], row, p, on)
+        own = np.int64(-1)
+        if n > m and codes[c] < NQ:
+            own = m + codes[c]
+            error -= z[own]
+        likelihood += take(
+            error, row, noise[c], full, outliers[c:], z, P, Ph, n, NY, own, gains[c], scale[c:], white[c:]
+        )
+    return likelihood
+
+
 @compiled
 def kalman(
     times: Array, measured: Array, codes: Any, commands: Array, max_step: float, body: Array, p: Array, on: Any,
-    sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, full: bool, fresh: bool, linear: Array, steps: Array,
-    gains: Array, scale: Array, white: Array, keep: bool, means: Array, covariances: Array, transitions: Array,
-    predicted: Array,
+    sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, rates: Array, full: bool, fresh: bool,
+    linear: Array, steps: Array, gains: Array, scale: Array, white: Array, keep: bool, means: Array,
+    covariances: Array, transitions: Array, predicted: Array,
 ) -> float:  # fmt: skip
     """One pass. measured (N, C), nan where missing; noise (C,) and sigma (NQ,) are variances of sensors and force.
 
+    rates (NQ,): earth-axes rates about which the first interval is linearised, where z0 and P0 know little of them.
     full: compute gains (N, C, n) and inverse innovation sd `scale` (N, C), 0 where missing, both less for an outlier;
     otherwise reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM), and in `steps` (N,) the longest
     that follow the quickest motion; otherwise take both from there.
@@ -289,52 +350,40 @@ def kalman(
     begin(z0, P0, m, n, s, w, z, P)
     undistorted(z, p, on)
     F, row, work, work2 = np.zeros((NZ, NZ)), np.zeros(NZ), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
-    y, force, Ph, H = np.zeros(NY), np.zeros(NQ), np.zeros(NZ), np.zeros((len(codes), NY))
-    likelihood, outliers = 0.0, np.zeros(measured.shape[1])
-    held = np.int64(0)  # a plain 0 would have `predict` compiled twice
+    y, force, about = np.zeros(NY), np.zeros(NQ), np.zeros(NZ)
+    Ph, H, outliers = np.zeros(NZ), np.zeros((len(codes), NY)), np.zeros(len(codes))
+    likelihood, held = 0.0, np.int64(0)  # a plain 0 would have `predict` compiled twice
     if keep:
         copy(z, means[0])
         copy(z, predicted[0])
         copy_square(P, covariances[0], NZ)
     for i in range(1, len(times)):
         h = times[i] - times[i - 1]
-        felt(z, h, s, m, y, force)
-        before = held
-        copy(memory, remembered)
-        held = predict(times, i, lateness, held, y, commands, memory, steps[i], p, on, k, force, act)
-        if full:  # linearised about the state before, with the actuators of this interval
-            if fresh:
-                rate = transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, work, work2)
-                copy_square(F, linear[i], CALM)
-                longest = max(min(max_step, STEADY / max(rate, 1e-9)), LEAST * h)
-                if longest < 0.5 * steps[i]:  # too long for what is so quick: once more
-                    steps[i] = longest
-                    felt(z, h, s, m, y, force)
-                    copy(remembered, memory)
-                    held = predict(times, i, lateness, before, y, commands, memory, longest, p, on, k, force, act)
-                if i + 1 < len(times):
-                    steps[i + 1] = longest
-            else:
+        copy(z, about)
+        if i == 1:
+            copy(rates, about[NQ:NY])
+        felt(about, h, s, m, y, force)
+        if full and fresh:
+            held = follow(
+                times, i, lateness, held, about, y, commands, memory, remembered, max_step, steps, p, on, k, force,
+                act, s, m, F, work, work2,
+            )  # fmt: skip
+            copy_square(F, linear[i], CALM)
+        else:
+            held = predict(times, i, lateness, held, y, commands, memory, steps[i], p, on, k, force, act)
+            if full or i == 1:
                 copy_square(linear[i], F, CALM)
+        if i == 1:
+            across(F, z, about, y)
+        if full:
             spread(F, h, tau, s, w, m, n, sigma, P, work2)
         arrived(y, h, tau, s, w, m, n, z)
         if keep:
             copy(z, predicted[i])
             copy_square(F, transitions[i], NZ)
-        if full:
-            look(z, codes, H, p, on)
-        for c in range(measured.shape[1]):
-            if np.isnan(measured[i, c]):
-                scale[i, c] = white[i, c] = 0.0
-                continue
-            error = measured[i, c] - observe(z, codes[c], H[c], row, p, on)
-            own = np.int64(-1)
-            if n > m and codes[c] < NQ:
-                own = m + codes[c]
-                error -= z[own]
-            likelihood += take(
-                error, row, noise[c], full, outliers[c:], z, P, Ph, n, NY, own, gains[i, c], scale[i, c:], white[i, c:]
-            )
+        likelihood += correct(
+            measured[i], codes, p, on, noise, full, m, n, z, P, H, row, Ph, outliers, gains[i], scale[i], white[i]
+        )
         if keep:
             copy(z, means[i])
             copy_square(P, covariances[i], NZ)

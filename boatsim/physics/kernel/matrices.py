@@ -38,7 +38,7 @@ def multiply(A: Array, B: Array, out: Array, n: int) -> None:
 
 @lean
 def carry(F: Array, P: Array, work: Array, n: int) -> None:
-    """P = F P F', symmetric, in place. Most of F's rows for forces are zero, and rows are added up in one go each."""
+    """P = F P F', symmetric, in place; F's many zeros are passed over."""
     multiply(F, P, work, n)
     for i in range(n):
         for j in range(i):
