@@ -25,7 +25,8 @@ FIT_STEP = 0.17  # [s] the same in the filter of a boat of 1.2 m, which is corre
 START = 3.0  # tolerated forces by which actuators on their way, or a hand's push, may act when a recording begins
 LATE = 0.007  # [rad] of phase by which Runge-Kutta is off when an oscillation of the hull has died out
 RINGING = 0.01  # of critical damping: an oscillation that dies out more slowly is corrected before it has
-STEADY = 0.7  # a step of the filter in time constants of the hull's quickest motion: less than Runge-Kutta's 2.8
+ROUNDS, NEAR = 4, 0.1  # times that a recording is smoothed, until the rates it begins with move by less of their sd
+AT_REST = 0.7  # a step of the filter in time constants of the hull's quickest motion there: less than Runge-Kutta's 2.8
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
 # [kg], [m], [kg m^2] numbers of the body at the end of a track's values, as in `Program.body`
@@ -71,7 +72,7 @@ class Track:
     def __post_init__(self) -> None:
         self.rate, smooth = quickest(self.program, self.values, self.commands[0])
         usual = FIT_STEP * rules.froude_time(self.program.vessel)
-        self.step = min(usual, STEADY / max(self.rate, 1e-9), smooth)
+        self.step = min(usual, AT_REST / max(self.rate, 1e-9), smooth)
         self.inertia = inertia_of(self.program, self.values, self.program.switches())
         nq = self.program.module.NQ
         self.start, self.spread, self.rates = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq)), np.zeros(nq)
@@ -123,17 +124,24 @@ class Track:
         return means, covariances
 
     def smoothed_with_gains(self, values: Array, on: Array, levels: Levels) -> tuple[Array, Array, Array]:
-        """`smoothed` with the smoother's gains G (N, n, n): the errors of rows i < j covary by G_i ... G_j-1 P_j."""
-        n, dim = len(self.times), self.program.module.NZ
+        """`smoothed` with the smoother's gains G (N, n, n): the errors of rows i < j covary by G_i ... G_j-1 P_j.
+
+        Linearised about the rates it finds for the first row, where the filter has but a guess of them.
+        """
+        n, dim, nq = len(self.times), self.program.module.NZ, self.program.module.NQ
         keep = np.zeros((n, dim)), np.zeros((n, dim, dim)), np.zeros((n, dim, dim)), np.zeros((n, dim))
-        self._pass(values, on, levels, True, keep)
         means, covariances, transitions, predicted = keep
-        gains = np.zeros_like(transitions)
-        self.program.module.smooth(
-            means, covariances, transitions, predicted, gains, self.jolts(values, on, levels)[0] ** 2, self.times,
-            levels.time_constant,
-            values, on,
-        )  # fmt: skip
+        gains, rates = np.zeros_like(transitions), self.rates
+        for _ in range(ROUNDS):
+            self._pass(values, on, levels, True, keep, rates=rates)
+            self.program.module.smooth(
+                means, covariances, transitions, predicted, gains, self.jolts(values, on, levels)[0] ** 2, self.times,
+                levels.time_constant, values, on,
+            )  # fmt: skip
+            before, rates = rates, means[0, nq : 2 * nq].copy()
+            sd = np.sqrt(np.maximum(np.diag(covariances[0])[nq : 2 * nq], 0.0))
+            if (np.abs(rates - before) <= NEAR * sd).all():
+                break
         return means, covariances, gains
 
     def free_runs(self, values: Array, on: Array, levels: Levels, horizon: float) -> list[tuple[int, Array]]:
@@ -190,8 +198,9 @@ class Track:
         return force, np.maximum(force, levels.begins)
 
     def _pass(
-        self, values: Array, on: Array, levels: Levels, full: bool, keep: tuple[Array, ...] | None, fresh: bool = True
-    ) -> float:
+        self, values: Array, on: Array, levels: Levels, full: bool, keep: tuple[Array, ...] | None, fresh: bool = True,
+        rates: Array | None = None,
+    ) -> float:  # fmt: skip
         nq = self.program.module.NQ
         noise = np.array([(levels.sensors[f] * self.noise_scale[f]) ** 2 for f in self.families])
         covariance = self.spread.copy()
@@ -204,9 +213,10 @@ class Track:
             if covariance[nq + i, nq + i] == 0.0:
                 covariance[nq + i, nq + i] = 1.0
         means, covariances, transitions, predicted = keep or NOTHING
+        rates = self.rates if rates is None else rates
         found = self.program.module.kalman(
             self.times, self.measured, self.codes, self.commands, self.step, body_of(values), values, on,
-            force**2, levels.time_constant, noise, self.start, covariance, self.rates, full, fresh, self._linear,
+            force**2, levels.time_constant, noise, self.start, covariance, rates, full, fresh, self._linear,
             self._steps, self._gains, self._scale, self._white, keep is not None, means, covariances, transitions,
             predicted,
         )  # fmt: skip
