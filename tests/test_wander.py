@@ -30,7 +30,7 @@ def laid_at_rest(x: Array, every: float) -> tuple[Program, Track]:
 def likelihood(x: Array, every: float, rms: float) -> float:
     """Of a boat that lies as good as fast, with this wander in x."""
     program, laid = laid_at_rest(x, every)
-    laid.start[:], laid.spread[:] = 0.0, 1e-18
+    laid.start[:], laid.spread[:], laid.rates[:] = 0.0, 1e-18, 0.0
     laid.measured[:, 1:] = np.nan
     laid.spread[6:9, 6:9] = 0.0
     values = laid.values.copy()

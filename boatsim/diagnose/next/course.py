@@ -63,7 +63,7 @@ def _track(problem: Problem, name: str, times: Array, commands: Array, shown: Ar
     first, nq = problem.tracks[0], problem.program.module.NQ
     measured = np.ascontiguousarray(shown[:, first.codes])
     track = replace(first, name=name, times=times, measured=measured, commands=commands)
-    track.start[:nq], track.start[nq : 2 * nq] = shown[0, :nq], start[nq:]
+    track.start[:nq], track.start[nq : 2 * nq], track.rates[:] = shown[0, :nq], start[nq:], start[nq:]
     return track
 
 

@@ -13,7 +13,7 @@ from boatsim.diagnose.search.evidence import left_over, told_from
 from boatsim.diagnose.search.select import begun, selected
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.search.settle import Named, settled
-from boatsim.diagnose.search.unseen import lawful, misled, stood_for
+from boatsim.diagnose.search.unseen import lawful, misled, stood_for, told
 from boatsim.diagnose.spread import widened
 
 progress = logging.getLogger("boatsim.diagnose")
@@ -71,6 +71,7 @@ def rank(
         best, named = settled(sets, selected(sets, sets.without(best, worse)))
     while unseen and (law := lawful(sets, best, named, unseen)):
         best, named = settled(sets, selected(sets, law))
+    named = told(sets, best, named, unseen) if unseen else named
     first = {n: f.evidence - sets.base.evidence for n, f in sets.looked(sets.base).items()}
     last = sets.looked(best)
     for name in sets.banned & last.keys():  # what was found to mislead is no hint

@@ -97,17 +97,16 @@ def _named(sets: Sets, best: Fit, name: str) -> Named:
     ahead = {n: others[n] for n in front(others, without)[:RIVALS]}
     key = frozenset(without.suspects)
     poor = {n for n, f in ahead.items() if (key, n) in sets.full and f.evidence < without.evidence + HALF * gain}
-    rivals = {n: f if n in poor else sets.converged(f) for n, f in ahead.items()}
+    return beside(name, best, without, {n: f if n in poor else sets.converged(f) for n, f in ahead.items()})
+
+
+def beside(name: str, best: Fit, without: Fit, rivals: Mapping[str, Fit]) -> Named:
+    """What is to be said of a member of a set, given the fit without it and those of its rivals in its place."""
+    gain = best.evidence - without.evidence
     gains = {n: f.evidence - without.evidence for n, f in rivals.items()}
     weights = np.exp(np.array([0.0, gain, *gains.values()]) - max(gain, 0.0, *gains.values()))
     same = np.array([False, True, *(called(n) == called(name) for n in gains)])  # on either side of an actuator
     order = sorted(gains, key=lambda n: -gains[n])
     tied = tuple(n for n in order if gains[n] > gain - ALIKE and called(n) != called(name))[:3]
-    return Named(
-        name,
-        gain,
-        together([gain, *gains.values()]),
-        float(weights[same].sum() / weights.sum()),
-        tied,
-        {n: rivals[n] for n in order},
-    )
+    probability = float(weights[same].sum() / weights.sum())
+    return Named(name, gain, together([gain, *gains.values()]), probability, tied, {n: rivals[n] for n in order})

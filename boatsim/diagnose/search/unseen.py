@@ -10,9 +10,10 @@ from boatsim.diagnose.problem import Fit
 from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.evidence import left_over, told_from
 from boatsim.diagnose.search.sets import Sets
-from boatsim.diagnose.search.settle import Named
+from boatsim.diagnose.search.settle import ALIKE, Named, beside
 
-SURE, SURE_RANDOM = 2.0, 1.65  # standard errors by which unseen errors must grow; a random force predicts nothing
+SURE = 2.0  # standard errors by which unseen errors must grow,
+SURE_RANDOM = 1.65  # and where it is but between look-alikes, or one is a random force, which foretells nothing
 DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
 
 
@@ -30,23 +31,39 @@ def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
 
 
 def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> Fit | None:
-    """A set with a law in the place of a random force, if by it free runs over unseen recordings get clearly better.
+    """A set with a law in the place of a random force, or of its look-alike, if unseen recordings ask for it.
 
-    The random force, which foretells nothing and fits whatever sways, is then found to mislead.
+    Free runs over them must get clearly better by it. What makes way, such as a random force, which foretells nothing
+    and fits whatever sways, is then found to mislead.
     """
     horizon = _horizon(sets, unseen, carries.FEWEST)
-    for one in (n for n in named if n.name in sets.random):
-        base = sets.without(best, one.name).evidence + sets.price
-        laws = {n: f for n, f in one.rivals.items() if n not in sets.random and f.evidence > base}
+    for one in named:
+        least = best.evidence - ALIKE
+        if one.name in sets.random:
+            least = sets.without(best, one.name).evidence + sets.price
+        laws = {n: f for n, f in one.rivals.items() if n not in sets.random and f.evidence > least}
         if not laws:
             continue
         stretches = free_runs(sets.problem, {"": best, **laws}, unseen, horizon)
-        by_chance = carries.squares(stretches, "")
-        better = [f for n, f in laws.items() if carries.grew(carries.squares(stretches, n), by_chance, SURE_RANDOM)]
+        as_named = carries.squares(stretches, "")
+        better = [f for n, f in laws.items() if carries.grew(carries.squares(stretches, n), as_named, SURE_RANDOM)]
         if better:
             sets.banned.add(one.name)
             return max(better, key=lambda f: f.evidence)
     return None
+
+
+def told(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> tuple[Named, ...]:
+    """What is named, told from those rivals by which free runs over unseen recordings get clearly worse."""
+    horizon, found = _horizon(sets, unseen, carries.FEWEST), []
+    for one in named:
+        alike = {n: f for n, f in one.rivals.items() if f.evidence > best.evidence - ALIKE}
+        stretches = free_runs(sets.problem, {"": best, **alike}, unseen, horizon) if alike else []
+        as_named = carries.squares(stretches, "")
+        worse = {n for n in alike if carries.grew(as_named, carries.squares(stretches, n), SURE_RANDOM)}
+        rest = {n: f for n, f in one.rivals.items() if n not in worse}
+        found.append(beside(one.name, best, sets.without(best, one.name), rest) if worse else one)
+    return tuple(found)
 
 
 def stood_for(sets: Sets, best: Fit, unseen: Sequence[Track]) -> Fit:
