@@ -14,6 +14,7 @@ from boatsim.diagnose.tried import called
 
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
 RIVALS = 3  # fitted in the place of what was named
+TOLD = 0.1  # of what was allowed before the data, within which they tell a parameter
 WORTH = 4.0  # [nats] that an effect must gain by itself
 
 
@@ -79,13 +80,20 @@ def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
 
 
 def _there(sets: Sets, best: Fit, name: str) -> bool:
-    """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it."""
+    """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it.
+
+    It acts too where recordings tell another of its parameters than those which are zero without it: a craft that never
+    comes near the speed from which it planes shows by how much it is held back, not that speed.
+    """
     kind = next(type(e) for e in sets.problem.program.suspects if e.name == name)
-    params = {n: p for n, p in kind.params().items() if n in (kind.strength or kind.params())}
-    own = (f.name for f in best.free if f.effect == name and not f.relative)
-    fitted = {n: params[n].absent for n in own if n in params}
-    found = {n: best.value(name, n) for n in fitted}
-    return not found or any(abs(x - fitted[n]) > sd for n, (x, sd) in found.items())
+    own = {f.name: f for f in best.free if f.effect == name and not f.relative}
+    params, found = kind.params(), {n: best.value(name, n) for n in own}
+    strength = [n for n in own if n in (kind.strength or params)]
+    return (
+        not strength
+        or any(abs(found[n][0] - params[n].absent) > found[n][1] for n in strength)
+        or any(found[n][1] < TOLD * own[n].sd for n in own if n not in strength)
+    )
 
 
 def _named(sets: Sets, best: Fit, name: str) -> Named:
