@@ -10,6 +10,8 @@ from boatsim.diagnose.fit import fit
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.evidence import worth
 from boatsim.diagnose.search.screen import HONEST, Begin, checked, screen
+from boatsim.diagnose.search.sets import Sets
+from boatsim.diagnose.search.settle import there
 from boatsim.physics.base import Array
 
 
@@ -61,3 +63,17 @@ def test_a_member_is_worth_less_than_its_curvature_says_and_what_does_nothing_li
     assert worth(found, "weak_reverse") > found.evidence - base.evidence > 100.0  # the latent force takes its place
     both = fit(problem, screen(problem, found, ["steady_force"])["steady_force"])
     assert worth(both, "steady_force") < 10.0 and worth(both, "nothing of the kind") == 0.0
+
+
+@pytest.mark.parametrize("least_sd, acts", [(0.001, True), (0.25, False)])
+def test_an_effect_acts_where_recordings_tell_a_number_of_it_whatever_they_leave_of_its_strength(
+    weak: tuple[Problem, Fit], least_sd: float, acts: bool
+) -> None:
+    """A craft that never comes near the speed from which it planes: how far it is held back is seen, the speed not."""
+    problem, base = weak
+    free = problem.parameters(("planing_lag",))
+    at = {f.name: i for i, f in enumerate(free) if f.effect == "planing_lag"}
+    theta, sd = np.array([f.mean for f in free]), np.array([f.sd for f in free])
+    theta[at["full_speed"]], theta[at["least"]], sd[at["least"]] = sd[at["full_speed"]], 0.5, least_sd
+    found = replace(base, suspects=("planing_lag",), free=free, theta=theta, covariance=np.diag(sd**2))
+    assert there(Sets(problem, ("planing_lag",), base), found, "planing_lag") is acts

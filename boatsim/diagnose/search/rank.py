@@ -66,12 +66,12 @@ def rank(
     while (stood := stood_for(sets, best, unseen)) is not best:
         best, named = settled(sets, stood)
     progress.info("judging what is left over")
-    while named and unseen and (worse := misled(sets, best, unseen)):
+    while named and (worse := misled(sets, best, unseen)):
         sets.banned.add(worse)
         best, named = settled(sets, selected(sets, sets.without(best, worse)))
-    while unseen and (law := lawful(sets, best, named, unseen)):
+    while law := lawful(sets, best, named, unseen):
         best, named = settled(sets, selected(sets, law))
-    named = told(sets, best, named, unseen) if unseen else named
+    named = told(sets, best, named, unseen)
     first = {n: f.evidence - sets.base.evidence for n, f in sets.looked(sets.base).items()}
     last = sets.looked(best)
     for name in sets.banned & last.keys():  # what was found to mislead is no hint

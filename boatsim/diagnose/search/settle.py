@@ -59,7 +59,7 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
 def _little(sets: Sets, best: Fit, named: Named) -> bool:
     """Whether a member gains too little to be named."""
     beside = SLIGHT * (sets.explained(best) - named.gain)
-    return named.gain < max(WORTH, beside) or named.shared < sets.price or not _there(sets, best, named.name)
+    return named.gain < max(WORTH, beside) or named.shared < sets.price or not there(sets, best, named.name)
 
 
 def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
@@ -79,7 +79,7 @@ def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
     return not seen[0] - seen[1] < WORTH
 
 
-def _there(sets: Sets, best: Fit, name: str) -> bool:
+def there(sets: Sets, best: Fit, name: str) -> bool:
     """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it.
 
     It acts too where recordings tell another of its parameters than those which are zero without it: a craft that never

@@ -67,29 +67,29 @@ def told(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track])
 
 
 def stood_for(sets: Sets, best: Fit, unseen: Sequence[Track]) -> Fit:
-    """A set without those members, found to mislead, that are little beside what nothing explains."""
-    while name := _little(sets, best, unseen):
-        sets.banned.add(name)
-        best = sets.without(best, name)
-    return best
+    """A set without those members, found to mislead, that may but stand for a part of what nothing explains.
 
-
-def _little(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
-    """The member of least gain among those that may but stand for a part of what nothing explains; or "".
-
-    Much is left over, it takes next to nothing of that force away, and unseen recordings do not ask for it either.
+    Much is left over, they take next to nothing of that force away, and unseen recordings do not ask for them either:
+    free runs over these get no worse without them all.
     """
-    if left_over(sets.problem, best) < told_from(sets.explained(best)):
-        return ""
-    rest = {n: sets.without(best, n) for n in best.suspects}
-    little = [n for n, f in rest.items() if np.min(best.levels.force / f.levels.force) > DWARFED]
-    if little and unseen:
-        stretches = free_runs(sets.problem, {"": best} | {n: rest[n] for n in little}, unseen, _horizon(sets, unseen))
-        errors = carries.squares(stretches, "")
-        little = [n for n in little if not carries.grew(errors, carries.squares(stretches, n), SURE)]
-    return max(little, key=lambda n: rest[n].evidence) if little else ""
+    whole: dict[str, list[float]] = {}
+    while not left_over(sets.problem, best) < told_from(sets.explained(best)):
+        rest = {n: sets.without(best, n) for n in best.suspects}
+        little = [n for n, f in rest.items() if np.min(best.levels.force / f.levels.force) > DWARFED]
+        if little:
+            fits = {n: rest[n] for n in little} | ({} if whole else {"": best})
+            stretches = free_runs(sets.problem, fits, unseen, _horizon(sets, unseen))
+            whole = whole or carries.squares(stretches, "")
+            little = [n for n in little if not carries.grew(whole, carries.squares(stretches, n), SURE)]
+        if not little:
+            break
+        name = max(little, key=lambda n: rest[n].evidence)
+        sets.banned.add(name)
+        best = rest[name]
+    return best
 
 
 def _horizon(sets: Sets, unseen: Sequence[Track], parts: int = 1) -> float:
     """Length [s] of free runs: the usual one, unless the longest recording holds not so many of them."""
-    return min(sets.problem.horizon, max(float(np.ptp(t.times)) for t in unseen) / parts)
+    longest = max((float(np.ptp(t.times)) for t in unseen), default=0.0)
+    return min(sets.problem.horizon, longest / parts)

@@ -1,0 +1,69 @@
+"""What recordings that no fit has seen say: which look-alikes they rule out, which members they stand by."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pushed_boat import laid, push, sail
+
+from boatsim.diagnose.filter import Track, track
+from boatsim.diagnose.fit import fit
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search.screen import screen
+from boatsim.diagnose.search.sets import Sets
+from boatsim.diagnose.search.settle import beside
+from boatsim.diagnose.search.unseen import lawful, stood_for, told
+from boatsim.physics.base import Array
+
+Laid = tuple[Problem, Fit, Fit, list[Track]]
+
+
+def a_third_less_astern(t: float, y: Array, command: Array) -> Array:
+    return np.asarray(-0.33 * push(np.minimum(command[:2], 0.0), command[2:]))
+
+
+@pytest.fixture(scope="module")
+def weak() -> Laid:
+    """Two runs with weak thrust astern, the fit that says so, and a third run."""
+    problem, base = laid(*(sail(f"run_{k}", 50 + k, a_third_less_astern)[0] for k in range(2)))
+    found = fit(problem, screen(problem, base, ["weak_reverse"])["weak_reverse"])
+    return problem, base, found, [track(sail("unseen", 60, a_third_less_astern)[0], problem.program)]
+
+
+def sets_of(problem: Problem, base: Fit, *fits: Fit) -> Sets:
+    sets = Sets(problem, ("weak_reverse", "steady_force", "wave_forcing"), base)
+    sets.fits |= {frozenset(f.suspects): f for f in fits}
+    return sets
+
+
+def as_likely(problem: Problem, base: Fit, found: Fit, name: str) -> Fit:
+    """An entry that does next to nothing, but is said to be as likely on the fitted runs."""
+    return replace(screen(problem, base, [name])[name], evidence=found.evidence + 1.0)
+
+
+@pytest.mark.parametrize("name", ["steady_force", "wave_forcing"])
+def test_a_look_alike_without_which_unseen_runs_are_foreseen_better_is_none(weak: Laid, name: str) -> None:
+    problem, base, found, unseen = weak
+    sets, rival = sets_of(problem, base, found), as_likely(problem, base, found, name)
+    one = beside("weak_reverse", found, base, {name: rival})
+    assert one.tied_with == (name,) and one.probability < 0.5
+    (sure,) = told(sets, found, [one], unseen)
+    assert not sure.tied_with and sure.probability > 0.99 and not sure.rivals
+    (kept,) = told(sets, found, [one], [])
+    assert kept.tied_with == (name,)  # nothing unseen, nothing told
+
+
+def test_a_law_by_which_unseen_runs_are_foreseen_better_takes_the_place_of_its_look_alike(weak: Laid) -> None:
+    problem, base, found, unseen = weak
+    wrong = as_likely(problem, base, found, "steady_force")
+    sets = sets_of(problem, base, found, wrong)
+    one = beside("steady_force", wrong, base, {"weak_reverse": found})
+    assert lawful(sets, wrong, [one], unseen) is found and sets.banned == {"steady_force"}
+
+
+def test_what_unseen_runs_ask_for_is_stood_for_however_much_is_left_over(weak: Laid) -> None:
+    problem, base, found, unseen = weak
+    levels = replace(found.levels, force=50.0 * problem.ambient.force)  # as if nothing took any force away
+    much, none = replace(found, levels=levels), replace(base, levels=levels)
+    sets = sets_of(problem, none, much)
+    assert stood_for(sets, much, unseen) is much
