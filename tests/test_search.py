@@ -9,7 +9,7 @@ from pushed_boat import laid, push, sail
 from boatsim.diagnose.fit import fit
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.evidence import worth
-from boatsim.diagnose.search.screen import HONEST, Begin, checked, screen
+from boatsim.diagnose.search.screen import Begin, checked, screen
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.search.settle import there
 from boatsim.physics.base import Array
@@ -42,7 +42,7 @@ def test_a_start_promises_what_least_squares_gains_by_a_multiple_of_it_beside_al
     assert begin.promise(white - 7.0 * mark) == pytest.approx(gain, rel=1e-9)  # whatever its size
 
 
-def test_a_look_that_the_filter_bears_out_stays_and_one_that_it_does_not_comes_nearer(
+def test_a_look_that_the_filter_bears_out_stays_and_from_one_that_it_does_not_it_steps_on(
     weak: tuple[Problem, Fit],
 ) -> None:
     problem, base = weak
@@ -53,7 +53,8 @@ def test_a_look_that_the_filter_bears_out_stays_and_one_that_it_does_not_comes_n
     mean = np.array([f.mean for f in look.free])
     wild = replace(look, theta=np.where(own, mean - 2.5 * (look.theta - mean), look.theta))  # strong, the wrong way
     honest = checked(problem, base, wild)
-    assert honest is not wild and honest.evidence - base.evidence < HONEST * (wild.evidence - base.evidence)
+    assert honest is not wild and honest.theta[own] == pytest.approx(look.theta[own], abs=0.2)  # from the wrong side
+    assert honest.evidence - base.evidence == pytest.approx(look.evidence - base.evidence, rel=0.2)
 
 
 def test_a_member_is_worth_less_than_its_curvature_says_and_what_does_nothing_little(weak: tuple[Problem, Fit]) -> None:

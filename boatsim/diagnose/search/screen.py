@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.diagnose.excursion import excursion
 from boatsim.diagnose.filter import axes_of
-from boatsim.diagnose.fit import Space, as_promised, cut_off, jacobian, log_prior
+from boatsim.diagnose.fit import SETTLED, Space, as_promised, cut_off, descend, jacobian, log_prior
 from boatsim.diagnose.levels import force_prior
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.physics.base import Array, Effect, Unsteady
@@ -15,6 +15,7 @@ from boatsim.physics.base import Array, Effect, Unsteady
 ROUNDS = 3  # Gauss-Newton steps of a suspect
 NEARER = 4  # points at which a look is scored anew, each half as far from nothing missing,
 HONEST, SMALL_LIE = 0.5, 3.0  # where the filter sees less than this share of what it promised, or so many nats less
+FURTHER = 2  # steps from the best of these
 TRIED = 2  # starts of a suspect from which a step is taken
 LITTLE = 0.3  # [nats] promised at most, a suspect is not followed further
 HALVINGS, TOO_STRONG = 8, 30.0  # of a start that lies this far below nothing missing [nats]
@@ -60,7 +61,11 @@ def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, 
 
 
 def checked(problem: Problem, base: Fit, look: Fit) -> Fit:
-    """A look itself where the filter, its gains made anew, agrees; else the best of points nearer to `base`, scored."""
+    """A look itself where the filter, its gains made anew, agrees; else steps from the best of points nearer `base`.
+
+    A look may go wrong where gains held no longer suit the boat, as where much mass is missing: what seems little from
+    where the filter bears it out may still gain most.
+    """
     on = problem.program.switches(look.suspects)
     at_base = problem.likelihood(base.free, base.theta, problem.program.switches(base.suspects), base.levels)
     at_base += log_prior(base.free, base.theta)
@@ -75,7 +80,8 @@ def checked(problem: Problem, base: Fit, look: Fit) -> Fit:
         if i == 0 or gain > best.evidence - base.evidence:
             best = replace(look, theta=theta, evidence=base.evidence + min(gain, promised))
         theta = 0.5 * (theta + nothing)
-    return best
+    further = descend(problem, best, FURTHER, SETTLED)
+    return further if further.evidence > best.evidence else best
 
 
 def _half_determinant(J: Array) -> float:
