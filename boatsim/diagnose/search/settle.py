@@ -66,10 +66,11 @@ def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
     """Whether a member makes what was recorded likelier, sensors and water as noisy with it as without.
 
     What it gains besides is that less was to be expected: more damping keeps the hull still where nothing moves it, and
-    forgets the sooner how a recording began. In calm water that is no merit of a law; a random force is that merit.
+    forgets the sooner how a recording began. In calm water that is no merit of a law. Where a random force acts, which
+    takes up what a law foresaw, the water is not calm.
     """
     problem, seen = sets.problem, []
-    if named.name in sets.random or left_over(problem, best) > UNKNOWN:
+    if sets.random & set(best.suspects) or left_over(problem, best) > UNKNOWN:
         return True
     for found in (best, sets.without(best, named.name)):
         on = problem.program.switches(found.suspects)
