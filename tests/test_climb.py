@@ -75,5 +75,23 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     program = Program(boat, library_for(boat).entries)
     laid = track(run, program)
     means, covariances = laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))
+    assert laid.rates[0] == pytest.approx(24.0, abs=1.5)  # of noisy fixes a second apart
     speed, sd = means[0, program.module.NQ], covariances[0, program.module.NQ, program.module.NQ] ** 0.5
     assert speed == pytest.approx(24.0, abs=4.0 * sd) and sd < 0.5
+    laid.rates[:] = 0.0
+    assert laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))[0][0, 4] == pytest.approx(
+        speed, abs=0.1 * sd
+    )  # however wrong the guess
+
+
+def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> None:
+    boat = vessel.load("jet_ski")
+    run = sailed(Craft(), np.full(100, 4.0), np.repeat([0.1, -0.1], 50), 24.0)
+    for name in ("x_m", "y_m"):
+        del run.signals[name]
+    run.signals["psi_rad"] = run.signals["psi_rad"] + 2.0
+    program = Program(boat, library_for(boat).entries)
+    laid = track(run, program)
+    assert laid.rates[:2] == pytest.approx([24.0 * np.cos(2.0), 24.0 * np.sin(2.0)], abs=0.5)
+    means, _ = laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))
+    assert np.hypot(*means[0, 4:6]) == pytest.approx(24.0, abs=0.3)

@@ -76,7 +76,7 @@ def test_a_concealed_bilge_keel_is_told_from_a_wrong_metacentric_height(
 # ---- the ship under way: linear sway, yaw and roll at constant speed, section 2 of the thesis
 
 G, RHO, STEP = 9.81, 1025.0, 0.5  # [m/s^2], [kg/m^3], [s] of the autopilot
-NEAR = radians(0.2)  # of where it is to go the machine's valve closes
+NEAR = radians(0.2)  # [rad] from its demand within which the machine's valve closes
 L, T, MASS, GM = 30.8, 4.04, 572e3, 1.268  # Eastward Ho, full load: [m], [m], [kg], [m]
 SWAY, YAW, ROLL = 1.851 * MASS, 1.586 * MASS * (L / 4) ** 2, 1.2 * MASS * 3.50094**2  # water included
 ARM = (3.38 - T / 2) * 0.851 * MASS  # [kg m] m_y z_H

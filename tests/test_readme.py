@@ -21,6 +21,7 @@ import pytest
 from typer.testing import CliRunner
 
 from benchmarks import trials
+from benchmarks.practice import __main__ as practice
 from benchmarks.real import common
 from boatsim.cli import app
 
@@ -191,6 +192,7 @@ TRIALS = {  # as a row of the README begins -> rows of the benchmark that give i
     "visible pairs": ["visible pairs"],
     "wrong names": ["wrong names"],
     "visible unknown causes": ["visible unknown cause flagged, pilot"],
+    "unknown causes flagged": ["visible unknown cause flagged, pilot", "visible unknown cause flagged, concealed"],
     "known cause": ["known cause"],
     "skill on unseen runs": ["held-out skill"],
     "true parameters": ["true parameters", "median error"],
@@ -201,11 +203,27 @@ TRIALS = {  # as a row of the README begins -> rows of the benchmark that give i
 @pytest.mark.skipif(not LONG or not trials.SHARED.is_dir(), reason="many minutes; needs trials beside the repository")
 def test_the_table_of_the_trials_is_what_the_benchmark_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["trials", "--unknowns", "--jobs", "1", "--out", str(tmp_path)])
+    compare_trials("**On boats with concealed effects**")
+
+
+@pytest.mark.skipif(not LONG, reason="many minutes")
+def test_the_table_of_five_other_vessels_is_what_the_benchmarks_print(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = str(tmp_path / "made")
+    monkeypatch.setattr(sys, "argv", ["practice", "--out", made])
+    practice.main()
+    monkeypatch.setattr(sys, "argv", ["trials", made, "--jobs", "1", "--out", str(tmp_path / "out")])
+    compare_trials("**On five other vessels**")
+
+
+def compare_trials(heading: str) -> None:
+    """A table of trials with what the benchmark prints for them all, which is before what it prints by vessel."""
     said = io.StringIO()
     with contextlib.redirect_stdout(said):
         trials.main()
     lines = [line.strip() for line in said.getvalue().splitlines()]
-    for cells in table_below("**On boats with concealed effects**"):
+    for cells in table_below(heading):
         (labels,) = (found for begin, found in TRIALS.items() if cells[0].startswith(begin))
         printed = []
         for label in labels:

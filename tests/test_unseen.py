@@ -9,6 +9,8 @@ from pushed_boat import laid, push, sail
 from boatsim.diagnose.filter import Track, track
 from boatsim.diagnose.fit import fit
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search import carries
+from boatsim.diagnose.search import unseen as asked
 from boatsim.diagnose.search.screen import screen
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.search.settle import beside
@@ -61,9 +63,27 @@ def test_a_law_by_which_unseen_runs_are_foreseen_better_takes_the_place_of_its_l
     assert lawful(sets, wrong, [one], unseen) is found and sets.banned == {"steady_force"}
 
 
-def test_what_unseen_runs_ask_for_is_stood_for_however_much_is_left_over(weak: Laid) -> None:
+def test_a_look_alike_that_foresees_as_much_stays_one(weak: Laid) -> None:
     problem, base, found, unseen = weak
-    levels = replace(found.levels, force=50.0 * problem.ambient.force)  # as if nothing took any force away
+    sets, twin = sets_of(problem, base, found), replace(found, evidence=found.evidence - 1.0)
+    one = beside("weak_reverse", found, base, {"steady_force": twin})
+    (kept,) = told(sets, found, [one], unseen)
+    assert kept.tied_with == ("steady_force",)
+    assert lawful(sets, found, [one], unseen) is None and not sets.banned
+
+
+def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for(
+    weak: Laid, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem, base, found, unseen = weak
+    monkeypatch.setattr(asked, "left_over", lambda problem, best: 1000.0)
+    levels = replace(found.levels, force=50.0 * problem.ambient.force)  # as if nothing took any of it away
     much, none = replace(found, levels=levels), replace(base, levels=levels)
     sets = sets_of(problem, none, much)
-    assert stood_for(sets, much, unseen) is much
+    assert stood_for(sets, much, unseen) is much and not sets.banned
+    assert stood_for(sets, much, []) is none and sets.banned == {"weak_reverse"}
+
+
+def test_free_runs_of_a_boat_that_runs_away_have_grown() -> None:
+    sound, away = {"position_rms_m": [1.0, 1.0, 1.0]}, {"position_rms_m": [1.0, np.inf, 1.0]}
+    assert carries.grew(sound, away, 2.0) and not carries.grew(away, sound, 2.0) and not carries.grew(away, away, 2.0)

@@ -80,6 +80,11 @@ class Track:
         self._linear = np.zeros((len(self.times), 3 * nq, 3 * nq))
         self._steps = np.full(len(self.times), self.step)
         self._scale, self._white = np.zeros(self.measured.shape), np.zeros(self.measured.shape)
+        self._begin(nq)
+
+    def _begin(self, nq: int) -> None:
+        """Where the recording begins, and how fast, by the positions that it shows and, of others, by their rates."""
+        axes = axes_of(self.program.vessel)
         for c, code in enumerate(self.codes):
             good = np.isfinite(self.measured[:, c])
             if code < nq and good.any():
@@ -90,9 +95,15 @@ class Track:
                 speed = (y[gap] - y)[far] / (t[gap] - t)[far]
                 self.spread[nq + code, nq + code] = float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
                 self.rates[code] = speed[0] if far.any() else 0.0
-        level = [nq + i for i, axis in enumerate(axes_of(self.program.vessel)) if axis in ("surge", "sway")]
+            elif code >= nq and code - nq not in self.codes and good.any():
+                y, i = self.measured[good, c], code - nq
+                self.rates[i], self.spread[code, code] = y[0], float(np.mean(y**2)) + 1e-8
+        level = [i for i, axis in enumerate(axes) if axis in ("surge", "sway")]
+        if len(level) == 2 and "yaw" in axes and not set(level) & set(self.codes.tolist()):  # from the hull's axes
+            (u, v), psi = self.rates[level], self.start[axes.index("yaw")]
+            self.rates[level] = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
         for i in level:  # earth-axes velocities share one spread: the heading at the start is anybody's guess
-            self.spread[i, i] = max(self.spread[j, j] for j in level)
+            self.spread[nq + i, nq + i] = max(self.spread[nq + j, nq + j] for j in level)
 
     @property
     def stiff(self) -> bool:

@@ -223,8 +223,9 @@ def _where(f: Findings) -> Iterator[Block]:
         every = where["intervals"]
         longest = sorted(every, key=lambda i: i["from_s"] - i["to_s"])[:INTERVALS]
         rows = [[i["run"], i["axis"], f"{i['from_s']:.1f}", f"{i['to_s']:.1f}"] for i in every if i in longest]
-        header, most = ["run", "axis", "from [s]", "to [s]"], f"The {len(rows)} longest of {len(every)}"
-        title = f"{'All ' + str(len(every)) if len(every) == len(rows) else most} flagged intervals"
+        header = ["run", "axis", "from [s]", "to [s]"]
+        most = f"All {len(every)}" if len(every) == len(rows) else f"The {len(rows)} longest of {len(every)}"
+        title = "The one flagged interval" if len(every) == 1 else f"{most} flagged intervals"
         yield Table(title, header, rows, (1,), folded=True)
 
 

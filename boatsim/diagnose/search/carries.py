@@ -25,9 +25,11 @@ def squares(stretches: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
 def grew(before: Mapping[str, Sequence[float]], after: Mapping[str, Sequence[float]], sure: float) -> bool:
     """Whether the error of any family grew, by so many standard errors of its mean over the runs."""
     for family, old in before.items():
-        rise = np.array(after[family]) - np.array(old)
-        if len(rise) < FEWEST:
+        if len(old) < FEWEST or not np.isfinite(old).all():
             continue
+        rise = np.array(after[family]) - np.array(old)
+        if not np.isfinite(rise).all():  # the boat runs away
+            return True
         scatter = sure * rise.std(ddof=1) / np.sqrt(len(rise))
         if rise.mean() > max(scatter, (WORSE**2 - 1.0) * np.mean(old)):
             return True

@@ -56,7 +56,8 @@ def rank(
     """Forward selection over the candidates, the incumbent converged before each comparison, members exchanged.
 
     It begins with nothing, or with the set of another fit. Where far more stays unexplained than an effect explains, it
-    is not stood for; nor is one by which free runs over `unseen` recordings get worse.
+    is not stood for; nor is one by which free runs over `unseen` recordings get worse. They
+    decide between look-alikes.
     """
     progress.info("fitting the vessel as written to %d recordings", len(problem.tracks))
     nominal, recalibrated = baseline(problem)

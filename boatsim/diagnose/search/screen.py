@@ -36,9 +36,10 @@ class Begin:
     def promise(self, white: Array) -> float:
         """Nats that some multiple of a change of the errors gains, beside all that the fit has free itself."""
         mark = white - self.white
-        along = self.columns.T @ mark
-        length = float(mark @ mark - along @ (self.factor @ along))
-        slope = float(self.white @ mark - along @ (self.factor @ (self.columns.T @ self.white)))
+        with np.errstate(over="ignore", invalid="ignore"):  # a boat that runs away promises nothing
+            along = self.columns.T @ mark
+            length = float(mark @ mark - along @ (self.factor @ along))
+            slope = float(self.white @ mark - along @ (self.factor @ (self.columns.T @ self.white)))
         return 0.5 * slope**2 / length if np.isfinite(length) and length > 0.0 else -np.inf
 
 
@@ -81,7 +82,7 @@ def checked(problem: Problem, base: Fit, look: Fit) -> Fit:
             best = replace(look, theta=theta, evidence=base.evidence + min(gain, promised))
         theta = 0.5 * (theta + nothing)
     further = descend(problem, best, FURTHER, SETTLED)
-    return further if further.evidence > best.evidence else best
+    return further if np.isfinite(further.evidence) else best
 
 
 def _half_determinant(J: Array) -> float:

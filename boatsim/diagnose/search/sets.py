@@ -10,6 +10,7 @@ from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.evidence import UNKNOWN, front, left_over, price
 from boatsim.diagnose.search.screen import checked, handed_over, joined, screen, starts
 from boatsim.diagnose.tried import called
+from boatsim.physics.base import Unsteady
 
 MANY = 6  # suspects on top of a set that are fitted in full at most
 
@@ -26,6 +27,7 @@ class Sets:
         self.full: set[tuple[frozenset[str], str]] = set()  # and followed by a fit in full
         self.banned: set[str] = set()
         self.random = {e.name for e in problem.program.suspects if type(e).random}
+        self.unsteady = {e.name for e in problem.program.suspects if isinstance(e, Unsteady)}  # of them, forces
         self.price = price(len(candidates))
 
     def explained(self, best: Fit) -> float:

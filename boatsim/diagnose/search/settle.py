@@ -58,19 +58,19 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
 
 def _little(sets: Sets, best: Fit, named: Named) -> bool:
     """Whether a member gains too little to be named."""
-    beside = SLIGHT * (sets.explained(best) - named.gain)
-    return named.gain < max(WORTH, beside) or named.shared < sets.price or not there(sets, best, named.name)
+    slight = SLIGHT * (sets.explained(best) - named.gain)
+    return named.gain < max(WORTH, slight) or named.shared < sets.price or not there(sets, best, named.name)
 
 
 def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
     """Whether a member makes what was recorded likelier, sensors and water as noisy with it as without.
 
     What it gains besides is that less was to be expected: more damping keeps the hull still where nothing moves it, and
-    forgets the sooner how a recording began. In calm water that is no merit of a law. Where a random force acts, which
-    takes up what a law foresaw, the water is not calm.
+    forgets the sooner how a recording began. In calm water that is no merit of a law. Where an unsteady force
+    acts, which takes up what a law foresaw, the water is not calm.
     """
     problem, seen = sets.problem, []
-    if sets.random & set(best.suspects) or left_over(problem, best) > UNKNOWN:
+    if named.name in sets.random or sets.unsteady & set(best.suspects) or left_over(problem, best) > UNKNOWN:
         return True
     for found in (best, sets.without(best, named.name)):
         on = problem.program.switches(found.suspects)
@@ -83,8 +83,9 @@ def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
 def there(sets: Sets, best: Fit, name: str) -> bool:
     """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it.
 
-    It acts too where recordings tell another of its parameters than those which are zero without it: a craft that never
-    comes near the speed from which it planes shows by how much it is held back, not that speed.
+    It acts too where recordings tell, to within `TOLD` of what was allowed, another of its parameters than those which
+    are zero without it: a craft that never comes near the speed from which it planes shows by how much it is held back,
+    not that speed. (The rhythm of a random force is told by what little of it there seems to be.)
     """
     kind = next(type(e) for e in sets.problem.program.suspects if e.name == name)
     own = {f.name: f for f in best.free if f.effect == name and not f.relative}
@@ -93,7 +94,8 @@ def there(sets: Sets, best: Fit, name: str) -> bool:
     return (
         not strength
         or any(abs(found[n][0] - params[n].absent) > found[n][1] for n in strength)
-        or any(found[n][1] < TOLD * own[n].sd for n in own if n not in strength)
+        or not kind.random
+        and any(found[n][1] < TOLD * own[n].sd for n in own if n not in strength)
     )
 
 

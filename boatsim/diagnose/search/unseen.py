@@ -1,4 +1,4 @@
-"""What recordings that no fit has seen say of a set: which of its members mislead there."""
+"""What recordings that no fit has seen say of a set: which of its members mislead there, what is no look-alike."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.search.settle import ALIKE, Named, beside
 
 SURE = 2.0  # standard errors by which unseen errors must grow,
-SURE_RANDOM = 1.65  # and where it is but between look-alikes, or one is a random force, which foretells nothing
+SURE_BETWEEN = 1.65  # and where it is but between look-alikes, or one is a random force, which foretells nothing
 DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
 
 
@@ -23,7 +23,7 @@ def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
     fits = {"none": sets.base, "all": best} | {n: sets.without(best, n) for n in best.suspects}
     first = free_runs(problem, {n: fits[n] for n in ("none", "all")}, unseen, horizon)
     none = carries.squares(first, "none")
-    sure = SURE_RANDOM if sets.random & set(best.suspects) else SURE
+    sure = SURE_BETWEEN if sets.random & set(best.suspects) else SURE
     if not none or not carries.grew(none, carries.squares(first, "all"), sure):
         return ""
     rest = free_runs(problem, {n: fits[n] for n in best.suspects}, unseen, horizon)
@@ -31,7 +31,7 @@ def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
 
 
 def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> Fit | None:
-    """A set with a law in the place of a random force, or of its look-alike, if unseen recordings ask for it.
+    """A set with a law in the place of a random force, or of a law much like it, if unseen recordings ask for it.
 
     Free runs over them must get clearly better by it. What makes way, such as a random force, which foretells nothing
     and fits whatever sways, is then found to mislead.
@@ -46,7 +46,7 @@ def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track
             continue
         stretches = free_runs(sets.problem, {"": best, **laws}, unseen, horizon)
         as_named = carries.squares(stretches, "")
-        better = [f for n, f in laws.items() if carries.grew(carries.squares(stretches, n), as_named, SURE_RANDOM)]
+        better = [f for n, f in laws.items() if carries.grew(carries.squares(stretches, n), as_named, SURE_BETWEEN)]
         if better:
             sets.banned.add(one.name)
             return max(better, key=lambda f: f.evidence)
@@ -60,7 +60,7 @@ def told(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track])
         alike = {n: f for n, f in one.rivals.items() if f.evidence > best.evidence - ALIKE}
         stretches = free_runs(sets.problem, {"": best, **alike}, unseen, horizon) if alike else []
         as_named = carries.squares(stretches, "")
-        worse = {n for n in alike if carries.grew(as_named, carries.squares(stretches, n), SURE_RANDOM)}
+        worse = {n for n in alike if carries.grew(as_named, carries.squares(stretches, n), SURE_BETWEEN)}
         rest = {n: f for n, f in one.rivals.items() if n not in worse}
         found.append(beside(one.name, best, sets.without(best, one.name), rest) if worse else one)
     return tuple(found)
@@ -78,7 +78,7 @@ def stood_for(sets: Sets, best: Fit, unseen: Sequence[Track]) -> Fit:
         little = [n for n, f in rest.items() if np.min(best.levels.force / f.levels.force) > DWARFED]
         if little:
             fits = {n: rest[n] for n in little} | ({} if whole else {"": best})
-            stretches = free_runs(sets.problem, fits, unseen, _horizon(sets, unseen))
+            stretches = free_runs(sets.problem, fits, unseen, _horizon(sets, unseen, carries.FEWEST))
             whole = whole or carries.squares(stretches, "")
             little = [n for n in little if not carries.grew(whole, carries.squares(stretches, n), SURE)]
         if not little:
