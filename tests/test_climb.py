@@ -68,7 +68,7 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
 
 
 def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on() -> None:
-    """The filter knows nothing of the speed it begins at; linearised at rest it was 7 m/s off."""
+    """The filter knows nothing of the speed it begins at; linearised at rest it went far astray."""
     boat, craft = vessel.load("jet_ski"), Craft()
     run = sailed(craft, np.full(100, 4.0), np.repeat([0.1, -0.1], 50), 24.0)
     del run.signals["u_mps"]

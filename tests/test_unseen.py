@@ -44,7 +44,7 @@ def as_likely(problem: Problem, base: Fit, found: Fit, name: str) -> Fit:
 
 
 @pytest.mark.parametrize("name", ["steady_force", "wave_forcing"])
-def test_a_look_alike_without_which_unseen_runs_are_foreseen_better_is_none(weak: Laid, name: str) -> None:
+def test_a_look_alike_by_which_unseen_runs_are_foreseen_worse_is_none(weak: Laid, name: str) -> None:
     problem, base, found, unseen = weak
     sets, rival = sets_of(problem, base, found), as_likely(problem, base, found, name)
     one = beside("weak_reverse", found, base, {name: rival})

@@ -66,7 +66,7 @@ def part(track: Track, begin: int, end: int) -> Track:
 
 
 def clearly_less(errors: Array, before: Array) -> bool:
-    """Whether the errors of free runs (S,) are clearly less than they were, run by run: as `carries` judges growth."""
+    """Whether the errors of free runs (S,) are clearly less than they were, in the mean of their logs."""
     ratio = np.log(errors / before)
     scatter = SURE * float(np.std(ratio, ddof=1)) / sqrt(len(ratio)) if len(ratio) > 1 else 0.0
     return bool(np.mean(ratio) < min(-log(WORSE), -scatter))

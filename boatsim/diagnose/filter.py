@@ -67,7 +67,7 @@ class Track:
     inertia: Array = field(init=False)  # (NQ,) of the hull as written, with its water, axis by axis [kg, kg m^2]
     start: Array = field(init=False)  # (n,) first state
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
-    rates: Array = field(init=False)  # (NQ,) at which the recording begins, about which the filter is linearised first
+    rates: Array = field(init=False)  # (NQ,) it begins at, of earth axes: the filter is linearised about them first
 
     def __post_init__(self) -> None:
         self.rate, smooth = quickest(self.program, self.values, self.commands[0])
