@@ -7,6 +7,7 @@ are several (their recording.toml names them; `python -m benchmarks.practice` ma
 
 - a trial is exact if every true effect is named and nothing else; an effect counts if it is visible (adds more than
   6 nats in the program that made the trials);
+- a name is wrong unless it is true, or the answer says that it cannot be told from a true one;
 - held-out skill is 1 where the patched boat follows run_3 as closely as the fitted true structure, 0 where it is no
   better than the recalibrated nominal;
 - coverage is the share of true parameters within two stated standard deviations, over exact answers;
@@ -91,6 +92,13 @@ def said_of(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
     return {n if n in truth else same.get(n, n) for n in said} | ({"unknown"} if found["unknown"]["flag"] else set())
 
 
+def meant_by(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
+    """The same, a name that the answer says it cannot tell from a true one taken for that one."""
+    truth, said = truth_of(answer), said_of(answer, found)
+    tied = {e["name"]: truth & set(e["tied_with"]) for e in found["effects"] if found["verdict"] == "ambiguous"}
+    return {n if n in truth else next(iter(tied.get(n, ())), n) for n in said}
+
+
 def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:
     """Errors of the parameters that can be compared, in stated standard deviations."""
     out = []
@@ -142,7 +150,9 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
     }
     said = {n: said_of(answers[n], found[n]) for n in found}
     exact = {n: said[n] == truth_of(answers[n]) for n in found}
-    wrong = {n: said[n] - truth_of(answers[n]) - {"unknown"} for n in found}
+    meant = {n: meant_by(answers[n], found[n]) for n in found}
+    fair = {n: meant[n] == truth_of(answers[n]) and len(said[n]) == len(meant[n]) for n in found}
+    wrong = {n: meant[n] - truth_of(answers[n]) - {"unknown"} for n in found}
     concealed = [n for n in visible["single"] if answers[n]["concealed"]]
     known = [*kind["none"], *kind["single"], *kind["pair"]]
     unknown = {c: [n for n in visible["unknown"] if answers[n]["concealed"] is c] for c in (False, True)}
@@ -150,6 +160,7 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
         "false alarms among nothing-missing trials": share([bool(said[n]) for n in kind["none"]]),
         "visible single effects, exactly named": share([exact[n] for n in visible["single"]]),
         "  of these concealed by the tracker": share([exact[n] for n in concealed]),
+        "  exactly named, or told to be tied": share([fair[n] for n in visible["single"]]),
         "visible pairs, both named and nothing else": share([exact[n] for n in visible["pair"]]),
         "wrong names (none, singles, pairs)": share([bool(wrong[n]) for n in known]),
         "visible unknown cause flagged, pilot": share(["unknown" in said[n] for n in unknown[False]]),

@@ -377,6 +377,7 @@ def test_case_3_a_heavier_boat_is_named_with_its_deeper_draught(tmp_path: Path) 
     found = named(answer)
     assert answer["verdict"] == "named" and found.keys() == {"payload", "added_mass_error"}
     assert found["payload"]["mass_kg"] == pytest.approx(2.0, rel=0.15)
+    assert found["payload"]["force_per_mass"] == pytest.approx(7.0 / 9.0, rel=0.05)
     assert found["added_mass_error"]["sway_factor"] == pytest.approx(0.0521**2 / 0.045**2, rel=0.1)
 
 

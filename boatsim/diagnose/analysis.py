@@ -214,5 +214,6 @@ def _findings(
         compose(problem, ranking, forces, left, stretches, held_out, horizon, experiment.entry(plan, NEXT)),
         vessel.name, tuple(t.name for t in problem.tracks), held_out, note, missing, tuple(stretches),
         tuple(show.remarks(parts, problem.tracks, errors(stretches), ranking)), coefficients,
-        (table,) if table[2] else (), meanings(problem.program.suspects), experiment.steps(plan),
+        (table,) if table[2] else (), meanings(problem.program.suspects, problem.program.vessel),
+        experiment.steps(plan),
     )  # fmt: skip

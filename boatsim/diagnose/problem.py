@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import NamedTuple
@@ -117,6 +118,12 @@ class Problem:
         self.horizon = horizon or rules.horizon(self.program.vessel)
         self.nuisances = self._nuisances()
         self.links = self._links()
+
+    def on(self, tracks: Sequence[Track]) -> "Problem":
+        """The same question to other recordings."""
+        other = copy(self)
+        other.tracks = list(tracks)
+        return other
 
     def parameters(self, suspects: Sequence[str]) -> tuple[Free, ...]:
         """Coefficients of the nominal, then everything that the suspects let be fitted, in their order."""

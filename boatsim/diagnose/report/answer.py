@@ -26,6 +26,7 @@ from boatsim.diagnose.search.rank import Ranking
 from boatsim.diagnose.search.settle import Named
 from boatsim.diagnose.tried import called
 from boatsim.physics.base import Channel, Effect
+from boatsim.physics.vessel import Vessel
 
 ONE_SIDED_95 = 1.645  # [sd]
 SHAPE = 0.05  # nature's law is never quite the entry's: an sd holds this share of what was found [rad for directions]
@@ -79,7 +80,7 @@ def compose(
         answer["unknown"]["rest"] = locate.strength(problem, left)
     if ranking.structure.likely:
         answer["unknown"]["structure"] = _structure(ranking.structure)
-    answer["sentence"] = report_words.sentence(answer, meanings(problem.program.suspects))
+    answer["sentence"] = report_words.sentence(answer, meanings(problem.program.suspects, problem.program.vessel))
     return answer
 
 
@@ -93,11 +94,13 @@ def _structure(found: Structure) -> StructureEntry:
     }
 
 
-def meanings(suspects: Iterable[Effect]) -> dict[str, str]:
-    """What each entry says, by name, and each of its fitted parameters, by "entry.parameter" as in the answer."""
+def meanings(suspects: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
+    """What each entry says, by name, and each of its parameters and ratios, by "entry.parameter" as in the answer."""
     there = [(called(e.name), type(e)) for e in suspects]
     fitted = ((entry, name, p) for entry, kind in there for name, p in kind.params().items() if p.fit)
-    return {n: k.words for n, k in there} | {f"{n}.{key_of(name, p.unit)}": p.words for n, name, p in fitted}
+    ratios = ((called(e.name), key, words) for e in suspects for key, (_, words) in e.ratios(vessel).items())
+    of_parameters = {f"{n}.{key_of(name, p.unit)}": p.words for n, name, p in fitted}
+    return {n: k.words for n, k in there} | of_parameters | {f"{n}.{key}": words for n, key, words in ratios}
 
 
 def key_of(name: str, unit: str) -> str:
@@ -136,8 +139,27 @@ def _effect(problem: Problem, best: Fit, named: Named) -> EffectEntry:
             key_of(f.name, kind.params()[f.name].unit): _parameter(best, effect, f.name)
             for f in best.free
             if f.effect == named.name and not f.relative
-        },
+        }
+        | _ratios(problem.program.vessel, best, effect),
     }
+
+
+def _ratios(vessel: Vessel, best: Fit, effect: Effect) -> dict[str, ParameterEntry]:
+    """What its parameters come to where recordings tell no more than a ratio."""
+    own = {f.name: f for f in best.free if f.effect == effect.name and not f.relative}
+    fitted = {n: best.value(effect.name, n)[0] for n in own}
+
+    def ratios(name: str, step: float) -> dict[str, tuple[float, str]]:
+        moved = np.clip(fitted[name] + step, own[name].low, own[name].high)
+        return effect.having(fitted | {name: float(moved)}).ratios(vessel)
+
+    found = effect.having(fitted).ratios(vessel)
+    variance = dict.fromkeys(found, 0.0)
+    for name in fitted if found else ():
+        sd = _parameter(best, effect, name)["sd"]
+        low, high = ratios(name, -0.5 * sd), ratios(name, 0.5 * sd)
+        variance = {key: v + (high[key][0] - low[key][0]) ** 2 for key, v in variance.items()}
+    return {key: {"value": x, "sd": float(np.sqrt(variance[key])), "unit": ""} for key, (x, _) in found.items()}
 
 
 def _words(best: Fit, effect: Effect) -> str:

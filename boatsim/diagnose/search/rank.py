@@ -13,7 +13,7 @@ from boatsim.diagnose.search.evidence import left_over, told_from
 from boatsim.diagnose.search.select import begun, selected
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.search.settle import Named, settled
-from boatsim.diagnose.search.unseen import lawful, misled, stood_for, told
+from boatsim.diagnose.search.unseen import lawful, misled, refuted, stood_for, told
 from boatsim.diagnose.spread import widened
 
 progress = logging.getLogger("boatsim.diagnose")
@@ -56,8 +56,8 @@ def rank(
     """Forward selection over the candidates, the incumbent converged before each comparison, members exchanged.
 
     It begins with nothing, or with the set of another fit. Where far more stays unexplained than an effect explains, it
-    is not stood for; nor is one by which free runs over `unseen` recordings get worse. They
-    decide between look-alikes.
+    is not stood for; nor is one by which free runs over `unseen` recordings get worse, or by which these become
+    unlikelier. They decide between look-alikes.
     """
     progress.info("fitting the vessel as written to %d recordings", len(problem.tracks))
     nominal, recalibrated = baseline(problem)
@@ -67,7 +67,7 @@ def rank(
     while (stood := stood_for(sets, best, unseen)) is not best:
         best, named = settled(sets, stood)
     progress.info("judging what is left over")
-    while named and (worse := misled(sets, best, unseen)):
+    while named and (worse := misled(sets, best, unseen) or refuted(sets, best, unseen)):
         sets.banned.add(worse)
         best, named = settled(sets, selected(sets, sets.without(best, worse)))
     while law := lawful(sets, best, named, unseen):

@@ -1,11 +1,13 @@
 """What recordings that no fit has seen say of a set: which of its members mislead there, what is no look-alike."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.free_runs import free_runs
+from boatsim.diagnose.levels import fit_force, force_prior
 from boatsim.diagnose.problem import Fit
 from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.evidence import left_over, told_from
@@ -30,11 +32,38 @@ def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
     return min(best.suspects, key=lambda n: carries.misfit(carries.squares(rest, n), none))
 
 
+def refuted(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
+    """The effect by which unseen recordings become unlikelier than without it, if clearly so: it does not carry over.
+
+    That asks of each row what the rows before foretell, and so of more than free runs do.
+    """
+    whole = foretold(sets, best, unseen)
+    gains = {n: whole - foretold(sets, sets.without(best, n), unseen) for n in best.suspects}
+    worst = min(gains, key=lambda n: gains[n], default="")
+    return worst if worst and gains[worst] < -told_from(sets.explained(best)) else ""
+
+
+def foretold(sets: Sets, found: Fit, unseen: Sequence[Track]) -> float:
+    """Log likelihood [nats] of unseen recordings by a fit to others, the water as rough as it is there."""
+    problem = sets.problem.on(unseen)
+    there = fit_force(problem, found)
+    on = problem.program.switches(there.suspects)
+    return problem.likelihood(there.free, there.theta, on, there.levels) + force_prior(problem, there.levels)
+
+
+def with_unseen(sets: Sets, best: Fit, rivals: Mapping[str, Fit], unseen: Sequence[Track]) -> dict[str, Fit]:
+    """Rivals of a member of a set with the evidence that they have beside it on all recordings, unseen ones too."""
+    own = foretold(sets, best, unseen)
+    if not np.isfinite(own):  # the boat runs away
+        return dict(rivals)
+    return {n: replace(f, evidence=f.evidence + foretold(sets, f, unseen) - own) for n, f in rivals.items()}
+
+
 def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> Fit | None:
     """A set with a law in the place of a random force, or of a law much like it, if unseen recordings ask for it.
 
-    Free runs over them must get clearly better by it. What makes way, such as a random force, which foretells nothing
-    and fits whatever sways, is then found to mislead.
+    Free runs over them must get clearly better by it, or all recordings together be clearly likelier. What makes way,
+    such as a random force, which foretells nothing and fits whatever sways, is then found to mislead.
     """
     horizon = _horizon(sets, unseen, carries.FEWEST)
     for one in named:
@@ -46,7 +75,9 @@ def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track
             continue
         stretches = free_runs(sets.problem, {"": best, **laws}, unseen, horizon)
         as_named = carries.squares(stretches, "")
-        better = [f for n, f in laws.items() if carries.grew(carries.squares(stretches, n), as_named, SURE_BETWEEN)]
+        ahead = {n for n, f in with_unseen(sets, best, laws, unseen).items() if f.evidence > best.evidence + ALIKE}
+        ahead |= {n for n in laws if carries.grew(carries.squares(stretches, n), as_named, SURE_BETWEEN)}
+        better = [laws[n] for n in ahead]
         if better:
             sets.banned.add(one.name)
             return max(better, key=lambda f: f.evidence)
@@ -54,15 +85,16 @@ def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track
 
 
 def told(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> tuple[Named, ...]:
-    """What is named, told from those rivals by which free runs over unseen recordings get clearly worse."""
+    """What is named, told from its rivals by all recordings: by evidence, and by unseen free runs that get worse."""
     horizon, found = _horizon(sets, unseen, carries.FEWEST), []
     for one in named:
-        alike = {n: f for n, f in one.rivals.items() if f.evidence > best.evidence - ALIKE}
+        rivals = with_unseen(sets, best, one.rivals, unseen)
+        alike = {n: f for n, f in rivals.items() if f.evidence > best.evidence - ALIKE}
         stretches = free_runs(sets.problem, {"": best, **alike}, unseen, horizon) if alike else []
         as_named = carries.squares(stretches, "")
         worse = {n for n in alike if carries.grew(as_named, carries.squares(stretches, n), SURE_BETWEEN)}
-        rest = {n: f for n, f in one.rivals.items() if n not in worse}
-        found.append(beside(one.name, best, sets.without(best, one.name), rest) if worse else one)
+        rest = {n: f for n, f in rivals.items() if n not in worse}
+        found.append(beside(one.name, best, sets.without(best, one.name), rest))
     return tuple(found)
 
 

@@ -73,3 +73,8 @@ class Payload(Release):
         body = vessel.body
         inertias = ((f"body.{n}", getattr(body, n)) for n in ("roll_inertia", "pitch_inertia", "yaw_inertia"))
         return {place: inertia / body.mass for place, inertia in inertias if inertia is not None}
+
+    def ratios(self, vessel: Boat) -> dict[str, tuple[float, str]]:
+        """Force to mass: a heavier hull moves as one that all its forces move less."""
+        meaning = "of what the file has: no motion tells mass and forces apart, only a balance does"
+        return {"force_per_mass": (vessel.body.mass / (vessel.body.mass + self.mass), meaning)}

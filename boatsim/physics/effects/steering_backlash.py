@@ -8,6 +8,8 @@ from numba import njit
 from boatsim.physics.base import Array, Channel, Course, param
 from boatsim.physics.kinds.channel import COMMANDS
 
+LONG = 1e3  # [s] a command held for so long was given before anyone looked
+
 
 @njit(inline="always")
 def pushed(y: float, x: float, half: float) -> float:
@@ -17,8 +19,8 @@ def pushed(y: float, x: float, half: float) -> float:
 
 @njit(inline="always")
 def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
-    """Pushed along by the command's course."""
-    half = 0.5 * q.width
+    """Pushed along by the command's course; where in its play it hung before anyone looked, its middle is likeliest."""
+    half = 0.5 * q.width if dt < LONG else 0.0
     begin = pushed(memory[at], x.begin, half)
     middle = pushed(begin, x.middle, half)
     memory[at] = pushed(middle, x.end, half)

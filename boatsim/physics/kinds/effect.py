@@ -131,6 +131,10 @@ class Effect(Checked):
                 raise BadInput(f"{vessel.name}: {self.name} needs {missing}: {where}")
         return replace(own.having(dict.fromkeys(own._left(), 0.0)), filled=frozenset(self._left()) | self.filled)
 
+    def ratios(self, vessel: "Boat") -> dict[str, tuple[float, str]]:
+        """What recordings really tell where a parameter is but one way to put it: name -> value, meaning in words."""
+        return {}
+
     def rules(self, vessel: "Boat") -> dict[str, float]:
         """Parameters by a rule of the effect's own, for those that nobody states; what follows is filled in before."""
         return {}
