@@ -19,8 +19,8 @@ def pushed(y: float, x: float, half: float) -> float:
 
 @njit(inline="always")
 def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
-    """Pushed along by the command's course; where in its play it hung before anyone looked, its middle is likeliest."""
-    half = 0.5 * q.width if dt < LONG else 0.0
+    """Pushed along by the command's course; where it hung in its play before anyone looked is a number of its own."""
+    half = 0.5 * q.width * (1.0 if dt < LONG else q.behind)
     begin = pushed(memory[at], x.begin, half)
     middle = pushed(begin, x.middle, half)
     memory[at] = pushed(middle, x.end, half)
@@ -41,5 +41,10 @@ class SteeringBacklash(Channel):
     either_side: ClassVar[bool] = True
     channel: ClassVar = channel
     thresholds: ClassVar = {"width": (0.07, 0.3)}
+    strength: ClassVar = ("width",)
 
     width: float = param(0.0, low=0.0, high=0.8, unit="rad", words="total play", fit=True, spread=0.2)
+    behind: float = param(
+        0.0, low=0.0, high=1.0, unit="", fit=True, spread=0.5,
+        words="how far the first angle is behind: 0 in the middle of the play, 1 as come from straight ahead",
+    )  # fmt: skip
