@@ -13,6 +13,7 @@ from boatsim.physics.effects.command_delay import CommandDelay
 from boatsim.physics.effects.drive_map import DriveMap
 from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.servo import Servo
+from boatsim.physics.effects.steering_backlash import SteeringBacklash
 from boatsim.physics.program import Program
 from boatsim.simulate.engine import Engine
 
@@ -120,3 +121,19 @@ def test_a_delay_of_a_ship_outlasts_commands_that_change_at_every_step() -> None
 def test_a_drive_that_is_dead_over_all_of_its_span_is_refused_in_a_line() -> None:
     with pytest.raises(BadInput, match=r"^drive_map\.dead = 60; allowed is less than its span, 50$"):
         DriveMap(span=50.0, dead=60.0)
+
+
+@pytest.mark.parametrize(("behind", "first"), [(0.0, 0.3), (0.5, 0.25), (1.0, 0.2)])
+def test_play_begins_where_it_is_said_to_hang_and_is_whole_from_then_on(behind: float, first: float) -> None:
+    """0.2 rad of play under a first command of 0.3 rad: half of it is between its middle and its end."""
+    q = SteeringBacklash(width=0.2, behind=behind).values()
+    memory = np.zeros(1)
+
+    def angle(command: float, seconds: float) -> float:
+        return float(SteeringBacklash.channel.py_func(Course(*[command] * 3), 0.0, 0.0, memory, 0, seconds, q).end)
+
+    for _ in range(3):  # as actuators are settled
+        angle(0.3, 1e4)
+    assert angle(0.3, STEP) == pytest.approx(first)
+    assert angle(0.5, STEP) == pytest.approx(0.4) and angle(0.45, STEP) == pytest.approx(0.4)
+    assert angle(0.2, STEP) == pytest.approx(0.3)

@@ -14,7 +14,7 @@ from boatsim.diagnose.search import unseen as asked
 from boatsim.diagnose.search.screen import screen
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.search.settle import beside
-from boatsim.diagnose.search.unseen import lawful, stood_for, told
+from boatsim.diagnose.search.unseen import foretold, lawful, refuted, stood_for, told
 from boatsim.physics.base import Array
 
 Laid = tuple[Problem, Fit, Fit, list[Track]]
@@ -50,7 +50,7 @@ def test_a_look_alike_by_which_unseen_runs_are_foreseen_worse_is_none(weak: Laid
     one = beside("weak_reverse", found, base, {name: rival})
     assert one.tied_with == (name,) and one.probability < 0.5
     (sure,) = told(sets, found, [one], unseen)
-    assert not sure.tied_with and sure.probability > 0.99 and not sure.rivals
+    assert not sure.tied_with and sure.probability > 0.99
     (kept,) = told(sets, found, [one], [])
     assert kept.tied_with == (name,)  # nothing unseen, nothing told
 
@@ -87,3 +87,37 @@ def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for
 def test_free_runs_of_a_boat_that_runs_away_have_grown() -> None:
     sound, away = {"position_rms_m": [1.0, 1.0, 1.0]}, {"position_rms_m": [1.0, np.inf, 1.0]}
     assert carries.grew(sound, away, 2.0) and not carries.grew(away, sound, 2.0) and not carries.grew(away, away, 2.0)
+
+
+def said(problem: Problem, found: Fit, factor: float) -> Fit:
+    """A fit that says another factor of the thrust astern."""
+    at = next(i for i, f in enumerate(found.free) if f.effect == "weak_reverse")
+    theta = found.theta.copy()
+    theta[at] = factor
+    return replace(found, theta=theta)
+
+
+def test_an_effect_by_which_unseen_runs_become_unlikelier_does_not_carry_over(weak: Laid) -> None:
+    problem, base, found, unseen = weak
+    sets = sets_of(problem, base, found)
+    assert refuted(sets, found, unseen) == ""
+    assert refuted(sets, said(problem, found, 1.5), unseen) == "weak_reverse"  # stronger astern, where it is weaker
+
+
+def test_what_unseen_runs_say_of_a_law_hangs_little_on_how_rough_the_water_was_before(weak: Laid) -> None:
+    problem, base, found, unseen = weak
+    sets, rough = sets_of(problem, base), replace(found, levels=replace(found.levels, force=5.0 * found.levels.force))
+    by_law = foretold(sets, found, unseen) - foretold(sets, said(problem, found, 1.0), unseen)
+    assert abs(foretold(sets, rough, unseen) - foretold(sets, found, unseen)) < 0.2 * by_law
+
+
+def test_a_rival_that_is_behind_on_the_fitted_runs_only_is_a_look_alike(weak: Laid) -> None:
+    problem, base, found, unseen = weak
+    wrong = said(problem, found, 0.9)
+    gap = foretold(sets_of(problem, base), found, unseen) - foretold(sets_of(problem, base), wrong, unseen)
+    assert gap > 6.0
+    rival = replace(found, evidence=wrong.evidence - gap)  # as far behind there as it is ahead on the unseen run
+    one = beside("weak_reverse", wrong, base, {"steady_force": rival})
+    assert not one.tied_with
+    (all_told,) = told(sets_of(problem, base, wrong), wrong, [one], unseen)
+    assert all_told.tied_with == ("steady_force",)
