@@ -189,6 +189,7 @@ TRIALS = {  # as a row of the README begins -> rows of the benchmark that give i
     "false alarms": ["false alarms"],
     "visible single effects": ["visible single effects"],
     "of these concealed": ["of these concealed"],
+    "exactly named": ["exactly named"],
     "visible pairs": ["visible pairs"],
     "wrong names": ["wrong names"],
     "visible unknown causes": ["visible unknown cause flagged, pilot"],

@@ -35,12 +35,22 @@ def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
 def refuted(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
     """The effect by which unseen recordings become unlikelier than without it, if clearly so: it does not carry over.
 
-    That asks of each row what the rows before foretell, and so of more than free runs do.
+    That asks of each row what the rows before foretell. Free runs over them must not ask for it all the same, as they
+    may where unseen recordings go beyond the fitted ones.
     """
-    whole = foretold(sets, best, unseen)
-    gains = {n: whole - foretold(sets, sets.without(best, n), unseen) for n in best.suspects}
-    worst = min(gains, key=lambda n: gains[n], default="")
-    return worst if worst and gains[worst] < -told_from(sets.explained(best)) else ""
+    whole, rest = foretold(sets, best, unseen), {n: sets.without(best, n) for n in best.suspects}
+    gains = {n: whole - foretold(sets, f, unseen) for n, f in rest.items()}
+    doubtful = [n for n in gains if gains[n] < -told_from(sets.explained(best))]
+    if not doubtful:
+        return ""
+    fits = {"": best, **{n: rest[n] for n in doubtful}}
+    stretches = free_runs(sets.problem, fits, unseen, _horizon(sets, unseen))
+    as_named = carries.squares(stretches, "")
+    needless = [
+        n for n in doubtful
+        if not as_named or carries.misfit(carries.squares(stretches, n), as_named) < carries.WORSE**2
+    ]  # fmt: skip
+    return min(needless, key=lambda n: gains[n], default="")
 
 
 def foretold(sets: Sets, found: Fit, unseen: Sequence[Track]) -> float:
