@@ -87,7 +87,7 @@ def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track
         as_named = carries.squares(stretches, "")
         ahead = {n for n, f in with_unseen(sets, best, laws, unseen).items() if f.evidence > best.evidence + ALIKE}
         ahead |= {n for n in laws if carries.grew(carries.squares(stretches, n), as_named, SURE_BETWEEN)}
-        better = [laws[n] for n in ahead]
+        better = [f for n, f in laws.items() if n in ahead]
         if better:
             sets.banned.add(one.name)
             return max(better, key=lambda f: f.evidence)
