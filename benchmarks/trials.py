@@ -96,7 +96,7 @@ def meant_by(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
     """The same, a name that the answer says it cannot tell from a true one taken for that one."""
     truth, said = truth_of(answer), said_of(answer, found)
     tied = {e["name"]: truth & set(e["tied_with"]) for e in found["effects"] if found["verdict"] == "ambiguous"}
-    return {n if n in truth else next(iter(tied.get(n, ())), n) for n in said}
+    return {n if n in truth else min(tied.get(n, ()), default=n) for n in said}
 
 
 def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:

@@ -99,7 +99,8 @@ def told(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track])
     horizon, found = _horizon(sets, unseen, carries.FEWEST), []
     for one in named:
         rivals = with_unseen(sets, best, one.rivals, unseen)
-        alike = {n: f for n, f in rivals.items() if f.evidence > best.evidence - ALIKE}
+        least = best.evidence - ALIKE
+        alike = {n: f for n, f in rivals.items() if max(f.evidence, one.rivals[n].evidence) > least}
         stretches = free_runs(sets.problem, {"": best, **alike}, unseen, horizon) if alike else []
         as_named = carries.squares(stretches, "")
         worse = {n for n in alike if carries.grew(as_named, carries.squares(stretches, n), SURE_BETWEEN)}
