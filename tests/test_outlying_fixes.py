@@ -8,7 +8,7 @@ import pytest
 from answers import diagnosed, nothing_missing
 from real_boat import Real, recorded
 
-from boatsim.diagnose.log.outlying_fixes import outlying, without_outliers
+from boatsim.diagnose.log.outlying_fixes import begins_astray, outlying, without_outliers
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording
 
@@ -48,3 +48,14 @@ def test_what_a_boat_can_do_is_no_leap(noise: float) -> None:
 def test_a_diagnosis_is_not_misled_by_bursts(tmp_path: Path) -> None:
     runs = [astray(recorded(Real(), s), 0.5) for s in (1, 2, 3)]
     nothing_missing(diagnosed(runs, tmp_path, "trial_boat"))
+
+
+def test_a_recording_that_begins_with_a_fix_astray_begins_a_row_later(tmp_path: Path) -> None:
+    """The filter starts from the first fix: one that is off gave the hull other damping (Eastward Ho, 36 noise sds)."""
+    runs, boat = [recorded(Real(), s) for s in (1, 2, 3)], vessel.load("trial_boat")
+    assert [begins_astray(r, boat) for r in runs] == [0, 0, 0]
+    first = [astray(runs[0], 0.2, slice(0, 1)), astray(runs[1], -0.2, slice(0, 2)), runs[2]]
+    assert [begins_astray(r, boat) for r in first] == [1, 2, 0]
+    begun = without_outliers(first[1], boat)
+    assert begun.t[0] == runs[1].t[2] and "its first 2 rows" in begun.remarks[0]
+    nothing_missing(diagnosed(first, tmp_path, "trial_boat"))

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnose.rules import FINEST, froude_time
+from boatsim.diagnose.rules import FINEST, froude_time, sensed_noise
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -19,11 +19,19 @@ QUICK = 1.5  # and usual accelerations that the boat may have had meanwhile
 BEFORE = 6  # fixes from which the speed is told,
 SLACK = 0.1  # of a leap by which that speed may mislead with every further step
 STAYS, LOOKED = 4, 200  # fixes for which it must stay where it came back to; rows that are looked at
+BEHIND = 8  # fixes by whose course one is judged with which a recording begins,
+ASTRAY, FEW = 6.0, 3  # sds by which it is off; such rows at most
+NOTHING = np.zeros(0)
 MOST = 0.95  # share of the prediction errors that are no leaps; of a normal variable it lies within two sds
 
 
 def without_outliers(recording: Recording, vessel: Vessel) -> Recording:
     """The recording without fixes and headings that leap away and come back (nan); a remark says how many."""
+    if late := begins_astray(recording, vessel):
+        kept = recording.between(float(recording.t[late]), float(recording.t[-1]))
+        where, span = recording.path or recording.name, f"{late} row{'s' if late > 1 else ''}"
+        remark = f"{where}: its first {span} lie off the course of those behind: not used"
+        recording = replace(kept, remarks=(*kept.remarks, remark))
     signals, remarks = dict(recording.signals), list(recording.remarks)
     longest = LONGEST * froude_time(vessel)
     for names, unit in ((("x_m", "y_m"), vessel.length), (("psi_rad",), 1.0)):
@@ -38,6 +46,29 @@ def without_outliers(recording: Recording, vessel: Vessel) -> Recording:
             )
             signals |= {n: np.where(away, np.nan, signals[n]) for n in names}
     return replace(recording, signals=signals, remarks=tuple(remarks))
+
+
+def begins_astray(recording: Recording, vessel: Vessel) -> int:
+    """First row, `FEW` at most, from which on no fix is off the course of the `BEHIND` rows behind it.
+
+    A filter starts from the first fix, so it has nothing by which to doubt that one.
+    """
+    for row in reversed(range(FEW)):
+        t = recording.t[row : row + BEHIND + 1] - recording.t[row]
+        astray = False
+        for name, family in (("x_m", "position_sd_m"), ("y_m", "position_sd_m"), ("psi_rad", "heading_sd_rad")):
+            y = recording.signals.get(name, NOTHING)[row : row + BEHIND + 1]
+            if len(y) <= BEHIND or not np.isfinite(y).all():
+                continue
+            powers = np.vander(t[1:], 3)  # of a parabola, whose last coefficient is where it began
+            inverse = np.linalg.inv(powers.T @ powers)
+            course = inverse @ (powers.T @ y[1:])
+            off = float(np.sqrt(np.sum((y[1:] - powers @ course) ** 2) / (BEHIND - 3)))
+            sd = max(sensed_noise(vessel, [recording], family), off) * np.sqrt(1.0 + inverse[2, 2])
+            astray = astray or abs(y[0] - course[2]) > ASTRAY * sd
+        if astray:
+            return row + 1
+    return 0
 
 
 def outlying(t: Array, values: Array, finest: float, longest: float) -> NDArray[np.bool_]:

@@ -189,16 +189,41 @@ def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit,
 
 
 def _random_look(problem: Problem, base: Fit, effect: Effect) -> Fit:
-    """A random force, or the error of an instrument, takes over from the latent one; the best of its starts."""
+    """A random force, or the error of an instrument, takes over from the latent one; the best of its starts.
+
+    A force that sways one axis alone would be spoilt by the others: each axis is left out in turn.
+    """
     # linearised once; the determinant of what was free before is much the same with and without
     was = problem.likelihood(base.free, base.theta, problem.program.switches(base.suspects), base.levels)
     was += log_prior(base.free, base.theta) + force_prior(problem, base.levels)
-    tried = []
-    for at in random_starts(problem, base, effect):
+
+    def scored(at: Fit) -> Fit:
         on = problem.program.switches(at.suspects)
         score = problem.likelihood(at.free, at.theta, on, at.levels, fresh=False) + log_prior(at.free, at.theta)
-        tried.append(replace(at, evidence=base.evidence + score + force_prior(problem, at.levels) - was))
-    return max(tried, key=lambda f: f.evidence)
+        return replace(at, evidence=base.evidence + score + force_prior(problem, at.levels) - was)
+
+    best = max(map(scored, random_starts(problem, base, effect)), key=lambda f: f.evidence)
+    if isinstance(effect, Unsteady):
+        for i, axis in enumerate(axes_of(problem.program.vessel)):
+            best = max(best, scored(_still(best, base, effect.name, i, axis)), key=lambda f: f.evidence)
+        best = max(best, scored(_taken_over(problem, best, base)), key=lambda f: f.evidence)
+    return best
+
+
+def _still(at: Fit, base: Fit, name: str, i: int, axis: str) -> Fit:
+    """A start of a random force without a force along one axis, whose latent one is as it was."""
+    off = np.array([(f.effect, f.name) == (name, axis) for f in at.free])
+    force = at.levels.force.copy()
+    force[i] = base.levels.force[i]
+    theta = np.where(off, [f.mean for f in at.free], at.theta)
+    return replace(at, theta=theta, levels=replace(at.levels, force=force))
+
+
+def _taken_over(problem: Problem, at: Fit, base: Fit) -> Fit:
+    """A start of a random force where nothing else pushes along its axes but what is tolerated."""
+    takes = at.levels.force < base.levels.force
+    calm = np.minimum(at.levels.force, problem.ambient.force)
+    return replace(at, levels=replace(at.levels, force=np.where(takes, calm, at.levels.force)))
 
 
 def random_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.diagnose.fit import SETTLED, log_prior
 from boatsim.diagnose.problem import Fit
-from boatsim.diagnose.search.evidence import HALF, UNKNOWN, front, left_over, together
+from boatsim.diagnose.search.evidence import HALF, UNKNOWN, front, left_over, together, told_from
 from boatsim.diagnose.search.select import SLIGHT, selected
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.tried import called
@@ -16,6 +16,8 @@ ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
 RIVALS = 3  # fitted in the place of what was named
 TOLD = 0.1  # of what was allowed before the data, within which they tell a parameter
 WORTH = 4.0  # [nats] that an effect must gain by itself
+ALIKE_SHARE = 0.5  # of what two explain together, which each explains alone where they are much alike
+BETTER_SHAPE = 0.1  # of what two much alike explain together, below which one but mends the other's shape
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         if frozenset(further.suspects) not in seen:
             best = further
             continue
-        little = [n for n in named if _little(sets, best, n)]
+        little = [n for n in named if _little(sets, best, n) or _mends(sets, best, n)]
         calm = [n for n in named if n not in little and not _foreseen(sets, best, n)]
         if not little and not calm:
             return best, named
@@ -57,9 +59,27 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
 
 
 def _little(sets: Sets, best: Fit, named: Named) -> bool:
-    """Whether a member gains too little to be named."""
-    slight = SLIGHT * (sets.explained(best) - named.gain)
-    return named.gain < max(WORTH, slight) or named.shared < sets.price or not there(sets, best, named.name)
+    """Whether a member gains too little to be named: less than its price and what the laws of others may be off by."""
+    slight = SLIGHT * max(sets.explained(best) - named.gain, 0.0)
+    few = named.gain < WORTH + slight or named.shared < sets.price + slight
+    return few or not there(sets, best, named.name)
+
+
+def _mends(sets: Sets, best: Fit, named: Named) -> bool:
+    """Whether a member but mends the shape of another: each alone explains most of what both do, together little more.
+
+    A square and a cube of one speed may both be asked for where nature's law is neither.
+    """
+    if named.gain > told_from(sets.explained(best), BETTER_SHAPE):
+        return False
+    alone = sets.without(best, named.name)
+    for other in alone.suspects:
+        neither, instead = sets.without(alone, other), sets.without(best, other)
+        both = best.evidence - neither.evidence
+        alike = min(alone.evidence, instead.evidence) - neither.evidence > ALIKE_SHARE * both
+        if alike and named.gain < told_from(both, BETTER_SHAPE):
+            return True
+    return False
 
 
 def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
