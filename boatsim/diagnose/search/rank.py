@@ -9,6 +9,7 @@ from boatsim.diagnose.fit import converge, descend
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.locate.structure import Structure, structure
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search.energy import braking, waves_of
 from boatsim.diagnose.search.evidence import left_over, told_from
 from boatsim.diagnose.search.select import begun, selected
 from boatsim.diagnose.search.sets import Sets
@@ -41,8 +42,7 @@ class Ranking:
     @property
     def structured(self) -> bool:
         """Whether what is left over, however weak, goes with something."""
-        explained = float(self.best.evidence - self.recalibrated.evidence)
-        return self.structure.likely and self.structure.gain > told_from(explained, ALONG)
+        return told_apart(self.structure, float(self.best.evidence - self.recalibrated.evidence))
 
     @property
     def told_from(self) -> float:
@@ -67,18 +67,33 @@ def rank(
     while (stood := stood_for(sets, best, unseen)) is not best:
         best, named = settled(sets, stood)
     progress.info("judging what is left over")
-    while named and (worse := misled(sets, best, unseen) or refuted(sets, best, unseen)):
-        sets.banned.add(worse)
-        best, named = settled(sets, selected(sets, sets.without(best, worse)))
-    while law := lawful(sets, best, named, unseen):
-        best, named = settled(sets, selected(sets, law))
+    best, named = _judged(sets, best, named, unseen)
+    left, goes = left_over(problem, best), structure(problem, best)
+    while (waves := waves_of(sets, best)) and told_apart(goes, sets.explained(best)):
+        sets.banned.add(waves)  # a force that goes with something is a law, for which a random one but stood
+        best, named = settled(sets, selected(sets, sets.without(best, waves)))
+        left, goes = left_over(problem, best), structure(problem, best)
     named = told(sets, best, named, unseen)
     first = {n: f.evidence - sets.base.evidence for n, f in sets.looked(sets.base).items()}
     last = sets.looked(best)
     for name in sets.banned & last.keys():  # what was found to mislead is no hint
         last[name] = replace(last[name], evidence=min(last[name].evidence, best.evidence))
-    left = left_over(problem, best)
-    return Ranking(nominal, sets.base, widened(problem, best), named, first, last, left, structure(problem, best))
+    return Ranking(nominal, sets.base, widened(problem, best), named, first, last, left, goes)
+
+
+def _judged(sets: Sets, best: Fit, named: tuple[Named, ...], unseen: Sequence[Track]) -> tuple[Fit, tuple[Named, ...]]:
+    """The set without what physics or unseen recordings speak against, laws in place of what but sways like them."""
+    while named and (worse := braking(sets, best) or misled(sets, best, unseen) or refuted(sets, best, unseen)):
+        sets.banned.add(worse)
+        best, named = settled(sets, selected(sets, sets.without(best, worse)))
+    while law := lawful(sets, best, named, unseen):
+        best, named = settled(sets, selected(sets, law))
+    return best, named
+
+
+def told_apart(goes: Structure, explained: float) -> bool:
+    """Whether what is left over by a set that explained so many nats, however weak, goes with something."""
+    return goes.likely and goes.gain > told_from(explained, ALONG)
 
 
 def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:

@@ -1,17 +1,18 @@
 """Sets of suspects: the fit of each, made once, and how every other suspect does on top of it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
 from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.evidence import UNKNOWN, front, left_over, price
-from boatsim.diagnose.search.screen import checked, handed_over, joined, screen, starts
+from boatsim.diagnose.search.evidence import UNKNOWN, front, left_over, price, told_from
+from boatsim.diagnose.search.screen import FURTHER, checked, handed_over, joined, screen, starts
 from boatsim.diagnose.tried import called
 from boatsim.physics.base import Unsteady
 
+ASTRAY = 8.0  # [nats] that a look lies below the set it is on top of, from which it went wrong: numbers cost less
 MANY = 6  # suspects on top of a set that are fitted in full at most
 
 
@@ -86,6 +87,9 @@ class Sets:
         if rest:
             known |= screen(self.problem, best, rest)
         allowed = {n: f for n, f in known.items() if n not in self.banned}
+        if not among and all(f.evidence < best.evidence + self.price for f in allowed.values()):
+            allowed |= self._looked_again(best, allowed)
+            known |= allowed
         fits = 0
         while fits < MANY:  # a look may promise too much: what is in front then is judged anew after each fit
             hopeful = {n: f for n, f in allowed.items() if f.evidence > best.evidence}
@@ -101,6 +105,18 @@ class Sets:
                 honest = self.fitted(best, name, look)
             allowed[name] = known[name] = honest
         return known
+
+    def _looked_again(self, best: Fit, allowed: Mapping[str, Fit]) -> dict[str, Fit]:
+        """Where much is left over that no look promised to explain: those that went wrong, followed by the filter.
+
+        An effect may come in only as another makes way, as a current beside a wind that had stood for both.
+        """
+        key = frozenset(best.suspects)
+        wrong = [n for n, f in allowed.items() if f.evidence < best.evidence - ASTRAY and (key, n) not in self.kept]
+        if not wrong or left_over(self.problem, best) < told_from(self.explained(best)):
+            return {}
+        self.kept |= {(key, n) for n in wrong}
+        return {n: descend(self.problem, allowed[n], FURTHER, SETTLED) for n in wrong}
 
     def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
         """A candidate fitted in full from its quick look; where that leaves much over, from the best of its starts."""

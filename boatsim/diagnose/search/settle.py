@@ -17,7 +17,6 @@ RIVALS = 3  # fitted in the place of what was named
 TOLD = 0.1  # of what was allowed before the data, within which they tell a parameter
 WORTH = 4.0  # [nats] that an effect must gain by itself
 ALIKE_SHARE = 0.5  # of what two explain together, which each explains alone where they are much alike
-BETTER_SHAPE = 0.1  # of what two much alike explain together, below which one but mends the other's shape
 
 
 @dataclass(frozen=True)
@@ -70,14 +69,14 @@ def _mends(sets: Sets, best: Fit, named: Named) -> bool:
 
     A square and a cube of one speed may both be asked for where nature's law is neither.
     """
-    if named.gain > told_from(sets.explained(best), BETTER_SHAPE):
+    if named.gain > told_from(sets.explained(best)):
         return False
     alone = sets.without(best, named.name)
     for other in alone.suspects:
         neither, instead = sets.without(alone, other), sets.without(best, other)
         both = best.evidence - neither.evidence
         alike = min(alone.evidence, instead.evidence) - neither.evidence > ALIKE_SHARE * both
-        if alike and named.gain < told_from(both, BETTER_SHAPE):
+        if alike and named.gain < told_from(both):
             return True
     return False
 
