@@ -75,7 +75,7 @@ def test_engine_and_filter_agree_over_six_seconds(extra: list[dict[str, Any]], w
     assert set(acting) == laws  # a release is its coefficient's new value, in both
     times, out = ROW * np.arange(ROWS), np.full((1, ROWS, 6), np.nan)
     program.module.free_runs(
-        times, commands, MAX_STEP, program.body, program.values(), program.switches(acting), np.array([0]),
+        times, times, commands, MAX_STEP, program.body, program.values(), program.switches(acting), np.array([0]),
         np.array([ROWS - 1]), np.zeros((1, 6)), out,
     )  # fmt: skip
     off = np.abs(np.array(in_mujoco) - out[0, :, :3]).max(axis=0)

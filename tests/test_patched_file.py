@@ -51,8 +51,8 @@ def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
     start[0, nq - 1 :] = 0.02
     start[0, nq] = getattr(problem.program.vessel.effect("speed_hold"), "speed", 0.5)
     problem.program.module.free_runs(
-        track.times, track.commands, MAX_STEP, body_of(values), values, problem.program.switches(acting), np.array([0]),
-        np.array([ROWS - 1]), start, out,
+        track.times, track.given, track.orders, MAX_STEP, body_of(values), values, problem.program.switches(acting),
+        np.array([0]), np.array([ROWS - 1]), start, out,
     )  # fmt: skip
     return out[0]
 

@@ -1,6 +1,5 @@
 """Recordings: what is read comes back, every real set is readable, and a bad file gets one line that says where."""
 
-import io
 import math
 import tomllib
 import warnings
@@ -360,22 +359,3 @@ def test_no_recording_toml_ends_in_anything_but_notes_or_one_line(tmp_path, cont
         assert isinstance(read(path).notes, Notes)
     except BadInput as error:
         assert "\n" not in str(error)
-
-
-def test_nine_thousand_rows_are_read_in_a_fifth_of_a_second(tmp_path):
-    import time
-
-    text = io.StringIO()
-    np.savetxt(
-        text,
-        np.column_stack([0.02 * np.arange(9000), *(0.1 * np.random.default_rng(1).random((6, 9000)))]),
-        "%.5f",
-        ",",
-    )
-    path = file(tmp_path, "t_s,x_m,y_m,phi_rad,u_mps,v_mps,n_rps\n" + text.getvalue())
-    took = []
-    for _ in range(3):
-        start = time.perf_counter()
-        read(path)
-        took.append(time.perf_counter() - start)
-    assert min(took) < 0.2

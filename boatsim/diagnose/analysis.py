@@ -9,7 +9,7 @@ import numpy as np
 
 from boatsim.diagnose import rules
 from boatsim.diagnose.correlation_time import timed
-from boatsim.diagnose.filter import Track, axes_of, noise_of, nominal_levels, track
+from boatsim.diagnose.filter import Track, axes_of, noise_beside, noise_of, nominal_levels, track
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
@@ -123,7 +123,8 @@ def diagnose_recordings(
     there = {path: library_for(b, library, facts, columns) for path, b in known.items()}
     programs = {path: Program(b, there[path].entries) for path, b in known.items()}
     stated = noise_of(boat, fitted)
-    laid = [track(r, programs[r.path], stated) for r in (*fitted, *unseen)]
+    laid = [track(r, programs[r.path], stated) for r in fitted]
+    laid += [track(r, programs[r.path], stated, noise_beside(boat, fitted, r)) for r in unseen]
     uncertainty = rules.uncertainty(boat)
     check_taken_up(boat, uncertainty, f"{boat.file.parent.name}/{boat.file.name}: diagnosis")
     for r in (*fitted, *unseen):

@@ -62,7 +62,9 @@ def part(track: Track, begin: int, end: int) -> Track:
     times, measured, commands = (
         np.ascontiguousarray(x[begin:end]) for x in (track.times, track.measured, track.commands)
     )
-    return replace(track, times=times, measured=measured, commands=commands)
+    first = max(int(np.searchsorted(track.given, times[0], side="right")) - 1, 0)
+    given, orders = track.given[first:].copy(), track.orders[first:].copy()
+    return replace(track, times=times, measured=measured, commands=commands, given=given, orders=orders)
 
 
 def clearly_less(errors: Array, before: Array) -> bool:

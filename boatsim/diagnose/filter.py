@@ -31,6 +31,7 @@ GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
 # [kg], [m], [kg m^2] numbers of the body at the end of a track's values, as in `Program.body`
 BODY = ("mass", "centre_ahead", "centre_below", "roll_inertia", "pitch_inertia", "yaw_inertia")
+UNLIKE = 3.0  # times as noisy: recordings are of instruments unlike each other, not of one by chance
 MASS_ENTRIES = 12  # of `Mass`, the last of a pass' constants: its diagonal, axis by axis, comes first
 NOTHING = np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))  # where no pass is kept
 
@@ -60,17 +61,21 @@ class Track:
     families: tuple[str, ...]  # noise family of each channel
     signals: tuple[str, ...]
     codes: Array  # (C,) integers
-    commands: Array  # (N, K)
+    commands: Array  # (N, K) mean until the next row
     values: Array  # nominal parameters of this run, then the body's `BODY`
     noise_scale: Mapping[str, float]  # this recording's sensor noise per common one, by family
     facts: Mapping[str, Any] = field(default_factory=dict)  # what the recording's notes state besides
+    given: Array = field(default_factory=lambda: np.zeros(0))  # (M,) s, when commands change; empty: at its rows
+    orders: Array = field(default_factory=lambda: np.zeros((0, 0)))  # (M, K) what they are from then on
     inertia: Array = field(init=False)  # (NQ,) of the hull as written, with its water, axis by axis [kg, kg m^2]
     start: Array = field(init=False)  # (n,) first state
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
     rates: Array = field(init=False)  # (NQ,) it begins at, of earth axes: the filter is linearised about them first
 
     def __post_init__(self) -> None:
-        self.rate, smooth = quickest(self.program, self.values, self.commands[0])
+        if not len(self.given):
+            self.given, self.orders = changes(self.times, self.commands)
+        self.rate, smooth = quickest(self.program, self.values, self.orders[0])
         usual = FIT_STEP * rules.froude_time(self.program.vessel)
         self.step = min(usual, AT_REST / max(self.rate, 1e-9), smooth)
         self.inertia = inertia_of(self.program, self.values, self.program.switches())
@@ -169,7 +174,8 @@ class Track:
         states = np.ascontiguousarray(means[starts, : 2 * nq])
         self.program.module.free_runs(
             self.times,
-            self.commands,
+            self.given,
+            self.orders,
             MAX_STEP,
             body_of(values),
             values,
@@ -226,7 +232,7 @@ class Track:
         means, covariances, transitions, predicted = keep or NOTHING
         rates = self.rates if rates is None else rates
         found = self.program.module.kalman(
-            self.times, self.measured, self.codes, self.commands, self.step, body_of(values), values, on,
+            self.times, self.measured, self.codes, self.given, self.orders, self.step, body_of(values), values, on,
             force**2, levels.time_constant, noise, self.start, covariance, rates, full, fresh, self._linear,
             self._steps, self._gains, self._scale, self._white, keep is not None, means, covariances, transitions,
             predicted,
@@ -258,10 +264,16 @@ def axes_of(vessel: Vessel) -> tuple[str, ...]:
     return tuple(a for a in AXES if a in vessel.freedoms)
 
 
-def track(recording: Recording, program: Program, stated: Mapping[str, float] | None = None) -> Track:
+def track(
+    recording: Recording,
+    program: Program,
+    stated: Mapping[str, float] | None = None,
+    beside: Mapping[str, float] | None = None,
+) -> Track:
     """Lay a recording on a program; `stated` is the sensor noise all recordings share, where its own differs.
 
-    Raises BadInput if a column is missing that the vessel moves or is steered by, or if too few rows are left.
+    `beside` is how many times noisier than theirs its own instruments are, by family, where nobody states it. Raises
+    BadInput if a column is missing that the vessel moves or is steered by, or if too few rows are left.
     """
     vessel = program.vessel
     axes = axes_of(vessel)
@@ -279,7 +291,7 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     codes = np.array([axes.index(s.axis) + s.rate * len(axes) for s in found])
     measured = np.column_stack([recording.signals[s.column] for s in found])
     own = checked_noise(recording)
-    scale = {f: own.get(f, common) / common for f, common in (stated or NOISE | own).items()}
+    scale = {f: own.get(f, common) / common for f, common in (stated or NOISE | own).items()} | dict(beside or {})
     commands = (
         taken_rows(vessel, recording.signals, len(recording)) if vessel.commands else np.zeros((len(recording), 1))
     )
@@ -287,7 +299,7 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
     laid = Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
         tuple(s.noise for s in found), tuple(s.column for s in found), codes, np.ascontiguousarray(commands),
-        stated_values(program, facts), scale, facts,
+        stated_values(program, facts), scale, facts, *_orders_of(recording, vessel),
     )  # fmt: skip
     nq = len(axes)
     if "surge" in axes and (speed := float(np.sqrt(laid.spread[nq, nq]))) > FASTEST * np.sqrt(GRAVITY * vessel.length):
@@ -295,6 +307,20 @@ def track(recording: Recording, program: Program, stated: Mapping[str, float] | 
             f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of {vessel.length:g} m; are they in m?"
         )
     return laid
+
+
+def changes(times: Array, commands: Array) -> tuple[Array, Array]:
+    """Commands (M, K) with the times (M,) from which each is in force, those left out that repeat the one before."""
+    new = np.append(True, (np.diff(commands, axis=0) != 0.0).any(axis=1))
+    return np.ascontiguousarray(times[new]), np.ascontiguousarray(commands[new])
+
+
+def _orders_of(recording: Recording, vessel: Vessel) -> tuple[Array, Array]:
+    """Commands at their own times where a recording has them more often than in its rows, else empty."""
+    if recording.orders is None or not vessel.commands:
+        return np.zeros(0), np.zeros((0, 0))
+    t, signals = recording.orders.t, recording.orders.signals
+    return changes(t, taken_rows(vessel, signals, len(t)))
 
 
 def quickest(program: Program, values: Array, command: Array) -> tuple[float, float]:
@@ -359,6 +385,17 @@ def noise_of(vessel: Vessel, recordings: Sequence[Recording]) -> dict[str, float
     """
     told = {str(family): sd for family, sd in vessel.diagnosis.noise.items()} | checked_noise(recordings[0])
     return NOISE | {f: x for f in NOISE if (x := rules.sensed_noise(vessel, recordings, f))} | told
+
+
+def noise_beside(vessel: Vessel, recordings: Sequence[Recording], recording: Recording) -> dict[str, float]:
+    """How many times noisier than in others a recording's instruments are, by family, where it is many times or few.
+
+    An exact log and one by a camera must not be taken for equally good: a free run starts where its recording says.
+    """
+    families = [f for f in NOISE if f not in recording.notes.noise]
+    pairs = {f: [rules.sensed_noise(vessel, rs, f) for rs in ([recording], recordings)] for f in families}
+    ratios = {f: own / common for f, (own, common) in pairs.items() if own and common}
+    return {f: r for f, r in ratios.items() if not 1.0 / UNLIKE < r < UNLIKE}
 
 
 def checked_noise(recording: Recording) -> dict[str, float]:

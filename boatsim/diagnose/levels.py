@@ -13,6 +13,7 @@ FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above th
 SENSOR_PRIOR = 0.4  # sd of log noise about the stated one
 ROUGH, FINE = 2.0, 0.3  # [nats] that levels are near enough their best, once more and for a first fit
 LEAST = 1 / 10  # of the tolerated force, which a level is at least: no law is better than that
+QUIETEST = 1 / 10  # of the stated or sensed noise, which a sensor's is at least: no log is better than that
 LOOSER = 10  # times that the force is raised e-fold until the filter follows a recording
 TIME_PRIOR = 0.7  # sd of log time constant
 
@@ -47,7 +48,8 @@ def fit_force(problem: Problem, found: Fit, enough: float = ROUGH) -> Fit:
     def placed(x: Array) -> tuple[Levels, Array]:
         theta = found.theta.copy()
         theta[searched] = np.clip(x[:k] * sd, low, high)
-        sensors = dict(zip(families, np.exp(x[k:n]).tolist(), strict=True))
+        noise = np.maximum(np.exp(x[k:n]), QUIETEST * np.exp(stated))
+        sensors = dict(zip(families, noise.tolist(), strict=True))
         force = _forces(problem, x[n:])
         return replace(found.levels, force=force, sensors={**found.levels.sensors, **sensors}), theta
 
@@ -74,7 +76,8 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     rough = np.log([_roughness(problem, f) or problem.ambient.sensors[f] for f in families])
 
     def levels(x: Array) -> Levels:
-        sensors = {**problem.ambient.sensors, **dict(zip(families, np.exp(x[n:]).tolist(), strict=True))}
+        noise = np.maximum(np.exp(x[n:]), QUIETEST * np.exp(stated))
+        sensors = {**problem.ambient.sensors, **dict(zip(families, noise.tolist(), strict=True))}
         return replace(problem.ambient, force=_forces(problem, x[:n]), sensors=sensors)
 
     def score(x: Array, fresh: bool = False) -> float:

@@ -28,6 +28,20 @@ ROUNDING = 1e-3  # share of a channel's range by which a command rounded for the
 
 
 @dataclass(frozen=True)
+class Orders:
+    """Commands at their own times, each held until the next."""
+
+    t: Array  # (K,) s
+    signals: Mapping[str, Array]  # each (K,)
+
+    def between(self, from_s: float, to_s: float) -> "Orders":
+        """Those in force from one time to another."""
+        begin = max(int(np.searchsorted(self.t, from_s + 1e-9, side="right")) - 1, 0)
+        end = int(np.searchsorted(self.t, to_s + 1e-9, side="right"))
+        return Orders(self.t[begin:end], {k: v[begin:end] for k, v in self.signals.items()})
+
+
+@dataclass(frozen=True)
 class Recording:
     """One run of a boat, SI units, SNAME axes. Commands are held from their row to the next; headings unwrapped."""
 
@@ -37,6 +51,7 @@ class Recording:
     notes: Notes = field(default_factory=Notes)
     path: Path | None = None
     remarks: tuple[str, ...] = ()  # what was found in the files and not used, one line each
+    orders: Orders | None = None  # commands more often than in its rows; None: those of its rows
 
     def __len__(self) -> int:
         return len(self.t)
@@ -55,18 +70,24 @@ class Recording:
         if not inside.any():
             message = f"no rows from {from_s:g} to {to_s:g} s; it has {self.t[0]:g} to {self.t[-1]:g} s"
             raise refuse(self.path or Path(self.name), message, column="t_s")
-        return replace(self, t=self.t[inside], signals={k: v[inside] for k, v in self.signals.items()})
+        signals = {k: v[inside] for k, v in self.signals.items()}
+        orders = self.orders.between(from_s, to_s) if self.orders else None
+        return replace(self, t=self.t[inside], signals=signals, orders=orders)
 
     def thinned(self, rate: float) -> "Recording":
-        """Every n-th row, so that about `rate` rows a second are left, each with the mean command until the next."""
+        """Every n-th row, so that about `rate` rows a second are left, each with the mean command until the next.
+
+        The commands themselves stay at their own times, as its `orders`.
+        """
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         if n == 1:
             return self
         ends = np.append(np.arange(0, len(self.t), n), len(self.t))
         signals = {k: v[::n] for k, v in self.signals.items()}
-        for name in (k for k in signals if COMMAND.match(k)):
-            signals[name] = np.add.reduceat(self.signals[name], ends[:-1]) / np.diff(ends)
-        return replace(self, t=self.t[::n], signals=signals)
+        commands = {k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)}
+        for name, given in commands.items():
+            signals[name] = np.add.reduceat(given, ends[:-1]) / np.diff(ends)
+        return replace(self, t=self.t[::n], signals=signals, orders=self.orders or Orders(self.t, commands))
 
     def used(self) -> "Recording":
         """The part its notes name in `use`, or all of it."""

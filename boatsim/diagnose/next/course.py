@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnose.filter import FIT_STEP, Track, axes_of, body_of
+from boatsim.diagnose.filter import FIT_STEP, Track, axes_of, body_of, changes
 from boatsim.diagnose.next.manoeuvres import Manoeuvre
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -62,7 +62,8 @@ def _track(problem: Problem, name: str, times: Array, commands: Array, shown: Ar
     """What the sensors of the first recording would show (N, 2 NQ) of a course begun at a state, as a recording."""
     first, nq = problem.tracks[0], problem.program.module.NQ
     measured = np.ascontiguousarray(shown[:, first.codes])
-    track = replace(first, name=name, times=times, measured=measured, commands=commands)
+    given, orders = changes(times, commands)
+    track = replace(first, name=name, times=times, measured=measured, commands=commands, given=given, orders=orders)
     track.start[:nq], track.start[nq : 2 * nq], track.rates[:] = shown[0, :nq], start[nq:], start[nq:]
     return track
 
@@ -72,7 +73,7 @@ def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: 
     values = problem.values(problem.tracks[0], found.free, found.theta)
     out = np.full((1, len(times), len(start)), np.nan)
     problem.program.module.free_runs(
-        times, commands, FIT_STEP, body_of(values), values,
+        times, times, commands, FIT_STEP, body_of(values), values,
         problem.program.switches(found.suspects), np.array([0]), np.array([len(times) - 1]), start[None], out,
     )  # fmt: skip
     return np.asarray(out[0])

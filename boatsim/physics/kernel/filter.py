@@ -43,25 +43,26 @@ INVERT = 10  # rounds of the inversion of what the instruments show, which is ne
 
 @lean
 def predict(
-    times: Array, i: int, lateness: float, row: int, y: Array, commands: Array, memory: Array, max_step: float,
-    p: Array, on: Any, k: Array, force: Array, act: Array,
+    times: Array, i: int, lateness: float, row: int, y: Array, given: Array, commands: Array, memory: Array,
+    max_step: float, p: Array, on: Any, k: Array, force: Array, act: Array,
 ) -> int:  # fmt: skip
     """Carry y (2 NQ,) from row i - 1 to row i in place, the latent force constant.
 
-    The motion of row i happened `lateness` before its time; commands hold from their own times on. `row` is the last
-    command used so far; returns the one used last. No step reaches beyond a change of an actuator's signal.
+    The motion of row i happened `lateness` before its time; commands hold from the times on at which they were `given`.
+    `row` is the last command used so far; returns the one used last. No step reaches beyond a change of an actuator's
+    signal.
     """
     h = times[i] - times[i - 1]
     longest = h / max(1, int(np.ceil(h / max_step - 1e-9)))
     begin, done, least, before = times[i - 1] - lateness, 0.0, SHORTEST, 0.0
     while h - done > 1e-9:
-        while row + 1 < len(times) and times[row + 1] <= begin + done + 1e-9:
+        while row + 1 < len(given) and given[row + 1] <= begin + done + 1e-9:
             row += 1
         left = min(longest, h - done)
         dt = until_bend(commands[row], memory, left, least, p, on)
         least, before = least_after(dt, before, least), dt
-        if row + 1 < len(times):
-            dt = min(dt, times[row + 1] - begin - done)
+        if row + 1 < len(given):
+            dt = min(dt, given[row + 1] - begin - done)
         actuate_in_place(commands[row], memory, dt, p, on, act)
         step_in_place(begin + done, y, dt, act, p, on, k, force)
         done += dt
@@ -276,7 +277,7 @@ def across(F: Array, z: Array, about: Array, y: Array) -> None:
 
 @lean
 def follow(
-    times: Array, i: int, lateness: float, row: int, z: Array, y: Array, commands: Array, memory: Array,
+    times: Array, i: int, lateness: float, row: int, z: Array, y: Array, given: Array, commands: Array, memory: Array,
     remembered: Array, max_step: float, steps: Array, p: Array, on: Any, k: Array, force: Array, act: Array, s: Swell,
     m: int, F: Array, A: Array, B: Array,
 ) -> int:  # fmt: skip
@@ -289,14 +290,14 @@ def follow(
     if i == 1:
         steps[i] = max_step
     copy(memory, remembered)
-    last = predict(times, i, lateness, row, y, commands, memory, steps[i], p, on, k, force, act)
+    last = predict(times, i, lateness, row, y, given, commands, memory, steps[i], p, on, k, force, act)
     rate = transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, A, B)
     longest = max(min(max_step, STEADY / max(rate, 1e-9)), LEAST * h)
     if longest < 0.5 * steps[i]:
         steps[i] = longest
         felt(z, h, s, m, y, force)
         copy(remembered, memory)
-        last = predict(times, i, lateness, row, y, commands, memory, longest, p, on, k, force, act)
+        last = predict(times, i, lateness, row, y, given, commands, memory, longest, p, on, k, force, act)
     if i + 1 < len(times):
         steps[i + 1] = longest
     return last
@@ -328,13 +329,14 @@ def correct(
 
 @compiled
 def kalman(
-    times: Array, measured: Array, codes: Any, commands: Array, max_step: float, body: Array, p: Array, on: Any,
-    sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, rates: Array, full: bool, fresh: bool,
+    times: Array, measured: Array, codes: Any, given: Array, commands: Array, max_step: float, body: Array, p: Array,
+    on: Any, sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, rates: Array, full: bool, fresh: bool,
     linear: Array, steps: Array, gains: Array, scale: Array, white: Array, keep: bool, means: Array,
     covariances: Array, transitions: Array, predicted: Array,
 ) -> float:  # fmt: skip
     """One pass. measured (N, C), nan where missing; noise (C,) and sigma (NQ,) are variances of sensors and force.
 
+    commands (M, K): each row is in force from when it was given (M,).
     rates (NQ,): earth-axes rates about which the first interval is linearised, where z0 and P0 know little of them.
     full: compute gains (N, C, n) and inverse innovation sd `scale` (N, C), 0 where missing, both less for an outlier;
     otherwise reuse them. fresh: linearise, and keep it in `linear` (N, CALM, CALM), and in `steps` (N,) the longest
@@ -365,12 +367,12 @@ def kalman(
         felt(about, h, s, m, y, force)
         if full and fresh:
             held = follow(
-                times, i, lateness, held, about, y, commands, memory, remembered, max_step, steps, p, on, k, force,
-                act, s, m, F, work, work2,
+                times, i, lateness, held, about, y, given, commands, memory, remembered, max_step, steps, p, on, k,
+                force, act, s, m, F, work, work2,
             )  # fmt: skip
             copy_square(F, linear[i], CALM)
         else:
-            held = predict(times, i, lateness, held, y, commands, memory, steps[i], p, on, k, force, act)
+            held = predict(times, i, lateness, held, y, given, commands, memory, steps[i], p, on, k, force, act)
             if full or i == 1:
                 copy_square(linear[i], F, CALM)
         if i == 1:
@@ -424,8 +426,8 @@ def smooth(
 
 @compiled
 def free_runs(
-    times: Array, commands: Array, max_step: float, body: Array, p: Array, on: Any, starts: Any, ends: Any,
-    states: Array, out: Array,
+    times: Array, given: Array, commands: Array, max_step: float, body: Array, p: Array, on: Any, starts: Any,
+    ends: Any, states: Array, out: Array,
 ) -> None:  # fmt: skip
     """Free runs from row starts[j] to ends[j] out of states[j] (2 NQ,), driven by the commands alone.
 
@@ -442,13 +444,13 @@ def free_runs(
         rows[i - 1] = held
         for j in range(NY):
             y[j] = 0.0
-        held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, nothing, act)
+        held = predict(times, i, lateness, held, y, given, commands, memory, max_step, p, on, k, nothing, act)
     for run in range(len(starts)):
         copy(states[run], y)
         copy(saved[starts[run]], memory)
         held = rows[starts[run]]
         for i in range(starts[run], ends[run] + 1):
             if i > starts[run]:
-                held = predict(times, i, lateness, held, y, commands, memory, max_step, p, on, k, nothing, act)
+                held = predict(times, i, lateness, held, y, given, commands, memory, max_step, p, on, k, nothing, act)
             for code in range(NY):
                 out[run, i, code] = shows(y, code, p, on)
