@@ -18,12 +18,12 @@ EVERY, ROWS = 0.02, 1501  # [s]; 30 s
 
 
 def quick() -> tuple[Recording, Array]:
-    """The tool's own exact log at 50 Hz of a boat whose thrusts change every 40 ms, and its states (N, 6)."""
+    """The tool's own exact log at 50 Hz of a boat whose thrusts change every 40 ms, and twice as many states (N, 6)."""
     boat, rng = vessel.load("trial_boat"), np.random.default_rng(4)
     commands = np.repeat(rng.uniform(-0.6, 0.9, (ROWS // 2 + 1, len(boat.commands))), 2, axis=0)[:ROWS]
-    states = Twin(boat, EVERY).rollout([0.0] * 6, commands, EVERY)[:ROWS]
+    states = Twin(boat, EVERY / 2).rollout([0.0] * 6, np.repeat(commands, 2, axis=0), EVERY / 2)[: 2 * ROWS]
     t = EVERY * np.arange(ROWS)
-    pose = dict(zip(("x_m", "y_m", "psi_rad"), states[:, :3].T, strict=True))
+    pose = dict(zip(("x_m", "y_m", "psi_rad"), states[::2, :3].T, strict=True))
     return Recording("quick", t, pose | dict(zip(boat.commands, commands.T, strict=True))), states
 
 
@@ -33,11 +33,12 @@ def test_thinned_rows_keep_every_command_at_its_own_time() -> None:
     laid = track(run.thinned(5.0), Program(boat))
     assert len(laid.times) == ROWS // 10 + 1 and len(laid.given) == ROWS // 2 + 1
     n, out = len(laid.times), np.full((1, len(laid.times), 6), np.nan)
+    there = np.rint(laid.times / (EVERY / 2)).astype(int)
     laid.program.module.free_runs(
         laid.times, laid.given, laid.orders, MAX_STEP, body_of(laid.values), laid.values, laid.program.switches(),
-        np.array([0]), np.array([n - 1]), states[:1], out,
+        np.array([0]), np.array([n - 1]), states[there[:1]], out,
     )  # fmt: skip
-    assert np.abs(out[0, :, :3] - states[::10, :3]).max() < 1e-5
+    assert np.abs(out[0, :, :3] - states[there, :3]).max() < 1e-5
     part = run.thinned(5.0).between(10.0, 20.0)
     assert part.orders is not None and part.orders.t[0] <= 10.0 < part.orders.t[1] and part.orders.t[-1] <= 20.0
 
@@ -75,3 +76,22 @@ def test_how_noisy_an_unseen_log_is_does_not_hang_on_those_fitted() -> None:
     there = noise_beside(boat, [camera], exact)
     assert set(there) == {"position_sd_m"} and there["position_sd_m"] < 0.1
     assert noise_beside(boat, [exact], camera)["position_sd_m"] > 10.0
+
+
+def test_rows_left_out_are_averaged_and_bends_put_back() -> None:
+    """A tenth of the rows, each by the mean of ten: a tenth of the noise's variance, and the course itself."""
+    t = 0.02 * np.arange(2000)
+    course, noise = np.sin(2.0 * t), 0.01 * np.random.default_rng(5).standard_normal(len(t))
+    smooth = Recording("smooth", t, {"x_m": course}).thinned(5.0)
+    assert len(smooth) == 200 and smooth.t[0] == 0.09
+    assert np.abs(smooth["x_m"] - np.sin(2.0 * smooth.t))[2:-2].max() < 2e-4  # 7e-3 without
+    noisy = Recording("noisy", t, {"x_m": course + noise}).thinned(5.0)
+    off = (noisy["x_m"] - np.sin(2.0 * noisy.t))[2:-2]
+    assert 0.8 < off.std() * np.sqrt(10) / 0.01 < 1.3
+
+
+def test_a_fix_that_is_held_is_not_averaged_with_the_one_before() -> None:
+    t = 0.02 * np.arange(2000)
+    held = np.repeat(np.arange(40.0), 50)
+    thin = Recording("held", t, {"x_m": held, "psi_rad": 0.001 * t}).thinned(5.0)
+    assert set(thin["x_m"].tolist()) == set(range(40))

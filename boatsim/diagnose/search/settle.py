@@ -47,7 +47,8 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         if frozenset(further.suspects) not in seen:
             best = further
             continue
-        little = [n for n in named if _little(sets, best, n) or _mends(sets, best, n)]
+        rest = max(left_over(sets.problem, best), 0.0)
+        little = [n for n in named if _little(sets, best, n, rest) or _mends(sets, best, n)]
         calm = [n for n in named if n not in little and not _foreseen(sets, best, n)]
         if not little and not calm:
             return best, named
@@ -57,9 +58,12 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         best = sets.without(best, out.name)
 
 
-def _little(sets: Sets, best: Fit, named: Named) -> bool:
-    """Whether a member gains too little to be named: less than its price and what the laws of others may be off by."""
-    slight = SLIGHT * max(sets.explained(best) - named.gain, 0.0)
+def _little(sets: Sets, best: Fit, named: Named, rest: float) -> bool:
+    """Whether a member gains too little to be named: less than its price and what the laws of others may be off by.
+
+    One of the others is what nothing explains, where so much of it is left over: members may mend its edges too.
+    """
+    slight = SLIGHT * (max(sets.explained(best) - named.gain, 0.0) + rest)
     few = named.gain < WORTH + slight or named.shared < sets.price + slight
     return few or not there(sets, best, named.name)
 
@@ -102,6 +106,7 @@ def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
 def there(sets: Sets, best: Fit, name: str) -> bool:
     """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it.
 
+    Of a random one, whose size is all that is fitted, more than two.
     It acts too where recordings tell, to within `TOLD` of what was allowed, another of its parameters than those which
     are zero without it: a craft that never comes near the speed from which it planes shows by how much it is held back,
     not that speed. (The rhythm of a random force is told by what little of it there seems to be.)
@@ -112,7 +117,7 @@ def there(sets: Sets, best: Fit, name: str) -> bool:
     strength = [n for n in own if n in (kind.strength or params)]
     return (
         not strength
-        or any(abs(found[n][0] - params[n].absent) > found[n][1] for n in strength)
+        or any(abs(found[n][0] - params[n].absent) > (2.0 if kind.random else 1.0) * found[n][1] for n in strength)
         or not kind.random
         and any(found[n][1] < TOLD * own[n].sd for n in own if n not in strength)
     )
