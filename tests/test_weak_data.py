@@ -82,7 +82,7 @@ def test_nothing_is_named_where_nothing_is_missing(case: str, tmp_path: Path) ->
 def test_a_run_at_rest_excludes_outer_forces_alone(tmp_path: Path) -> None:
     """No upper limit is claimed for what shows only in motion or under commands."""
     limits = answer(still(3), tmp_path)["upper_limits"]
-    outer = {"wind", "current", "tether", "steady_force"}
+    outer = {"wind", "current", "tether", "steady_force", "wave_forcing"}
     assert {name for name, limit in limits.items() if limit} <= outer | {"damping_exponent"}  # without any at rest
     assert limits["wind"]["force_N"] < 0.1
 

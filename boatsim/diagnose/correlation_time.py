@@ -19,6 +19,7 @@ from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.carries import WORSE
 from boatsim.physics.base import Array
 
+EXACT = 1e-12  # [m, rad] an error of a free run is at least: of a log that never moves it is none
 STEPS = 2  # halvings or doublings at most
 SURE = 2.0  # standard errors over the free runs by which errors must fall: where they swing as much, it says nothing
 
@@ -87,4 +88,5 @@ def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
     for fitted, unseen in ((first, second), (second, first)):
         rest = Problem(fitted, ambient, problem.uncertainty, horizon)
         stretches += free_runs(rest, {"": fit(rest, begin)}, unseen, horizon)
-    return np.array([np.exp(np.mean([np.log(f[""]) for f in errors([s]).values()])) for s in stretches])
+    found = [np.maximum([f[""] for f in errors([s]).values()], EXACT) for s in stretches]
+    return np.array([np.exp(np.mean(np.log(each))) for each in found])

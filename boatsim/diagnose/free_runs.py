@@ -60,5 +60,12 @@ def errors(stretches: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
                 for n in signals
                 if n in s.channels["recorded"]
             ]
-            found[family][model] = float(np.sqrt(np.nanmean(np.concatenate(off) ** 2)))
+            found[family][model] = float(np.sqrt(mean_square(off)))
     return found
+
+
+def mean_square(off: Sequence[Array]) -> float:
+    """Of errors where anything was recorded; nan if nothing was."""
+    errors_there = np.concatenate(off)
+    errors_there = errors_there[~np.isnan(errors_there)]
+    return float(np.mean(errors_there**2)) if len(errors_there) else float("nan")

@@ -70,6 +70,7 @@ TO_WALL: tuple[Step, ...] = (
     (8, 0.4, 0.4, 0, 0), (6, 0, 0, 0, 0), (6, -0.5, -0.5, 0, 0), (8, 0.4, 0.4, 0, 0), (6, 0, 0, 0, 0),
     (6, -0.5, -0.5, 0, 0),
 )  # fmt: skip
+DIFFERENCE = 0.5  # share of the drive's limit on each side for a full steering angle, where no thruster turns
 RANDOM = {"quick": (1.0, 3.0), "slow": (4.0, 8.0)}  # [s] shortest and longest hold
 SHIP: dict[str, tuple[Step, ...]] = {  # about approach speed: shares of the drive in use, and of the rudder's limit
     "turning circles with two rudder angles": ((40, 1, 1, 0.4, 0.4), (40, 1, 1, -0.9, -0.9)),
@@ -153,6 +154,8 @@ def _level(vessel: Vessel, name: str, step: Step, in_use: dict[str, float] | Non
     """Value of one command in a step of a script, to three digits and inside its limits."""
     channel = vessel.commands[name]
     port, starboard = step[3:] if _turns(name) else step[1:3]
+    if not _turns(name) and not any(_turns(n) for n in vessel.commands):  # steered by pushing harder on one side
+        port, starboard = port + DIFFERENCE * step[3], starboard - DIFFERENCE * step[4]
     share = {-1: port, 0: 0.5 * (port + starboard), 1: starboard}[vessel.side(name)]
     limit = channel.high if share > 0 else -channel.low
     value = share * (in_use.get(name, 0.0) if in_use is not None and not _turns(name) else limit)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from boatsim.diagnose.free_runs import FAMILIES, FreeRun
+from boatsim.diagnose.free_runs import FAMILIES, FreeRun, mean_square
 
 FEWEST = 3  # free runs from which their scatter is known
 WORSE = 1.05  # ratio of rms errors from which they have grown
@@ -18,7 +18,7 @@ def squares(stretches: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
             recorded = s.channels["recorded"]
             off = [s.channels[model][n] - recorded[n] for n in signals if n in recorded]
             if off:
-                found.setdefault(family, []).append(float(np.nanmean(np.concatenate(off) ** 2)))
+                found.setdefault(family, []).append(mean_square(off))
     return found
 
 
