@@ -47,8 +47,7 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         if frozenset(further.suspects) not in seen:
             best = further
             continue
-        rest = max(left_over(sets.problem, best), 0.0)
-        little = [n for n in named if _little(sets, best, n, rest) or _mends(sets, best, n)]
+        little = [n for n in named if _little(sets, best, n) or _mends(sets, best, n)]
         calm = [n for n in named if n not in little and not _foreseen(sets, best, n)]
         if not little and not calm:
             return best, named
@@ -58,12 +57,9 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         best = sets.without(best, out.name)
 
 
-def _little(sets: Sets, best: Fit, named: Named, rest: float) -> bool:
-    """Whether a member gains too little to be named: less than its price and what the laws of others may be off by.
-
-    One of the others is what nothing explains, where so much of it is left over: members may mend its edges too.
-    """
-    slight = SLIGHT * (max(sets.explained(best) - named.gain, 0.0) + rest)
+def _little(sets: Sets, best: Fit, named: Named) -> bool:
+    """Whether a member gains too little to be named: less than its price and what the laws of others may be off by."""
+    slight = SLIGHT * max(sets.explained(best) - named.gain, 0.0)
     few = named.gain < WORTH + slight or named.shared < sets.price + slight
     return few or not there(sets, best, named.name)
 
