@@ -25,7 +25,8 @@ def written(folder: Path = OUT / NAME / "vessel" / NAME) -> Path:
         print(f"{NAME}: skipped, there is no ../shared/recordings/{NAME}/vessel.json")
         raise SystemExit
     folder.mkdir(parents=True, exist_ok=True)
-    shutil.copy(BLANKS / "hull.xml", folder)
+    for name in ("hull.xml", "turn.toml"):
+        shutil.copy(BLANKS / name, folder)
     blanks = Template((BLANKS / "vessel.toml.in").read_text(encoding="utf-8"))
     numbers = filled(json.loads(SOURCE.read_text(encoding="utf-8")))
     file = folder / "vessel.toml"
