@@ -21,27 +21,29 @@ from benchmarks.real.esso_osaka_vessel import NAME, SOURCE, written
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.filter import Track, noise_of, segments, track
-from boatsim.diagnose.fit import descend
+from boatsim.diagnose.fit import converge, descend, fit
 from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.log.outlying_fixes import without_outliers
 from boatsim.diagnose.problem import Fit, Free, Problem
 from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 FITTED, JUDGED = ("random", "zigzag"), ("turn", "berthing")
-UNSEEN = ("random_0806_1624_6", "zigzag_0731_1403")  # of the fitted days, for the diagnosis itself
-WINDOW = 150.0  # [s] of each run that the diagnosis is given, from its middle: of all rows it would take hours
+UNSEEN = ("random_0731_1248", "random_0806_1624_6", "zigzag_0731_1403")  # of the fitted days, for the diagnosis itself
+WINDOW = 300.0  # [s] of each run that the diagnosis is given at most, for the time it takes
 HORIZON = 60.0  # [s] of a free run
 MODELS = ("nominal", "recalibrated", "patched")
 GOALS = {"nominal": 0.75, "recalibrated": 0.9}  # position, patched over this one
 UNITS = {"position_rms_m": ("position [m]", np.sqrt(2.0)), "heading_rms_rad": ("heading [deg]", 57.29578)}
 NEAR_DIRECTION, NEAR_SIZE, SHARE = 30.0, 0.3, 0.75  # [deg], relative, of the runs
 WEATHER = ("force", "toward")  # of the wind: the rest says how the hull takes it
+ROUNDS = 3  # of ship and winds in turn
 STARTS = (0.0, 0.5 * np.pi, np.pi, -0.5 * np.pi)  # [rad] the wind may blow to
 USUAL = 0.5  # [N] of a breeze, to begin with
-SHORTEST = 10.0  # [s] of the rest of a run from which its wind is told
+SHORTEST = 15.0  # [s] of a stretch that is used
 SMOOTH, AROUND = 2.0, 5.0  # [s] over which a rate is taken; about a defect not compared
-LEAP = 0.1  # [m] in a row of 0.1 s: twice as fast as the ship ever goes
+LEAP, STEP = 0.1, 0.03  # [m], [rad] in a row of 0.1 s: twice as fast as the ship ever goes or turns
 LATE, SOON = 2.5, 0.2  # [s] before a leap back, and behind it, in which fixes are late: the longest gap is as long
 
 
@@ -53,7 +55,7 @@ class Checked:
     """How far positions, headings and recorded velocities of a run agree."""
 
     bridged: float  # share of rows whose fix was held over
-    leaps: int  # rows in which the position moves further than any ship
+    leaps: int  # rows in which position or heading moves further than the ship
     late_s: float  # recorded velocities behind the rates of x and y
     aft_m: float  # their point aft of the one whose x and y are recorded
     drift: float  # recorded sway velocity per that of x and y
@@ -98,20 +100,22 @@ def _derivative(n: int, dt: float) -> Array:
 
 
 def defects(d: Array) -> tuple[Array, Array]:
-    """Rows whose fix is bridged, rows from which the position leaps to the next (booleans)."""
-    steps = np.hypot(np.diff(d["x_m"], append=d["x_m"][-1]), np.diff(d["y_m"], append=d["y_m"][-1]))
-    return d["filled"] > 0.0, steps > LEAP
+    """Rows whose fix is bridged, rows from which position or heading leaps to the next (booleans)."""
+    moved = np.hypot(np.diff(d["x_m"], append=d["x_m"][-1]), np.diff(d["y_m"], append=d["y_m"][-1]))
+    turned = np.diff(d["psi_rad"], append=d["psi_rad"][-1]) - d["r_radps"] * np.diff(d["t_s"], append=d["t_s"][-1])
+    return d["filled"] > 0.0, (moved > LEAP) | (np.abs(turned) > STEP)
 
 
-def without_defects(recording: Recording, path: Path) -> Recording:
-    """The recording without fixes that are bridged, or late before a leap (nan)."""
+def sound(recording: Recording, path: Path, shortest: float) -> list[Recording]:
+    """Stretches of a recording between leaps, without fixes that are bridged, or late before the leap (nan)."""
     d = np.genfromtxt(path, delimiter=",", names=True)
-    bad, leaps = defects(d)
-    for t in d["t_s"][leaps]:
-        bad |= (d["t_s"] >= t - LATE) & (d["t_s"] <= t + SOON)
-    bad = bad[np.isin(d["t_s"], recording.t)]
-    fixes = {n: np.where(bad, np.nan, recording[n]) for n in ("x_m", "y_m", "psi_rad")}
-    return replace(recording, signals={**recording.signals, **fixes})
+    bridged, leaps = defects(d)
+    gone = bridged[np.searchsorted(d["t_s"], recording.t - 1e-6)]
+    fixes = {n: np.where(gone, np.nan, recording[n]) for n in ("x_m", "y_m", "psi_rad")}
+    whole = replace(recording, signals={**recording.signals, **fixes})
+    at = d["t_s"][leaps]
+    begins, ends = [whole.t[0], *(at + SOON)], [*(at - LATE), whole.t[-1]]
+    return [whole.between(float(a), float(b)) for a, b in zip(begins, ends, strict=True) if b - a >= shortest]
 
 
 def print_recordings(runs: Mapping[str, Path]) -> None:
@@ -123,10 +127,13 @@ def print_recordings(runs: Mapping[str, Path]) -> None:
         bridged = float(np.mean([c.bridged for c in found]))
         cells = (f"{100 * bridged:.1f} %", str(sum(c.leaps for c in found)), *(f"{x:.2f}" for x in middle))
         rows.append([kind, str(len(found)), *cells])
-    header = ["", "runs", "bridged", f"leaps > {LEAP:g} m", "u, v late [s]", "v's point aft [m]", "v / that of x, y"]
+    header = ["", "runs", "bridged", "leaps", "u, v late [s]", "v's point aft [m]", "v / that of x, y"]
     table("what is wrong with the recordings (medians over runs)", header, rows)
-    print("(fixes held over are bridged, and behind some of them the position leaps back; recorded u, v lag behind")
-    print(" x, y, and in turns they are those of another point of the ship: they are not used below)")
+    print("(fixes held over are bridged: left out; behind some of them position or heading leaps, by up to 10 deg that")
+    print(
+        " the yaw rate has not got: runs are cut there; recorded u, v lag behind x, y and are those of another point of"
+    )
+    print(" the ship in turns: not used)")
 
 
 # ---- wind, run by run
@@ -204,22 +211,30 @@ class Weather:
             values[self.problem.program.index("wind", name)] = getattr(wind, name)
         return replace(one, values=values)
 
-    def refit(self, tracks: Sequence[Track], winds: Sequence[Wind]) -> None:
-        """The ship again, each run in its own wind."""
-        on = self.problem.on([self.blown(t, w) for t, w in zip(tracks, winds, strict=True)])
-        found = descend(on, self._part(self.rest), 6, 0.1)
-        self.ship.theta[self.rest] = found.theta
+    def refit(self, runs: Sequence[Sequence[Track]]) -> None:
+        """The ship again, each run in its own wind, and the winds again."""
+        for _ in range(ROUNDS):
+            winds = [self.wind(tracks) for tracks in runs]
+            pairs = zip(runs, winds, strict=True)
+            on = self.problem.on([self.blown(t, wind) for tracks, wind in pairs for t in tracks])
+            found = fit(on, self._part(self.rest))
+            self.ship.theta[self.rest] = found.theta
+            self.ship = replace(self.ship, levels=found.levels)
 
     def free_runs(self, one: Track, wind: Wind) -> list[FreeRun]:
         """Free runs of the ship over a run in that wind."""
         return free_runs(self.problem, {"patched": self._part(self.rest)}, [self.blown(one, wind)], HORIZON)
 
 
-def around(recording: Recording, a: float, b: float) -> list[Recording]:
-    """What a run has before and behind a stretch."""
-    first, last, step = float(recording.t[0]), float(recording.t[-1]), float(recording.t[1] - recording.t[0])
-    ends = [(first, a - step), (b + step, last)]
-    return [recording.between(*e) for e in ends if e[1] - e[0] >= SHORTEST]
+def around(stretches: Sequence[Recording], a: float, b: float) -> list[Recording]:
+    """What stretches of a run lie before and behind one minute."""
+    out = []
+    for whole in stretches:
+        for begin, end in ((float(whole.t[0]), a), (b, float(whole.t[-1]))):
+            inside = (whole.t > begin - 1e-9) & (whole.t < end + 1e-9)
+            if inside.any() and float(np.ptp(whole.t[inside])) >= SHORTEST:
+                out.append(whole.between(begin, end))
+    return out
 
 
 def print_winds(found: Mapping[str, Wind]) -> None:
@@ -274,38 +289,48 @@ def with_model(stretches: Sequence[FreeRun], patched: Sequence[FreeRun]) -> list
     ]
 
 
-def in_rests_wind(weather: Weather, whole: Track, recording: Recording, laid: Laid) -> list[FreeRun]:
+def in_rests_wind(weather: Weather, whole: Track, stretches: Sequence[Recording], laid: Laid) -> list[FreeRun]:
     """Free runs over each minute of a run, in the wind found in the rest of that run."""
     out = []
     for a, b in zip(*segments(whole.times, HORIZON), strict=True):
-        rest = laid(around(recording, float(whole.times[a]), float(whole.times[b])))
+        rest = laid(around(stretches, float(whole.times[a]), float(whole.times[b])))
         found = weather.free_runs(whole, weather.wind(rest))
         out.append(next(s for s in found if s.start_s == whole.times[a]))
     return out
 
 
-def middle(recording: Recording) -> Recording:
-    """The part the diagnosis is given."""
-    centre = 0.5 * float(recording.t[0] + recording.t[-1])
-    return recording.between(centre - 0.5 * WINDOW, centre + 0.5 * WINDOW)
+@dataclass(frozen=True)
+class Opened:
+    """A run as a diagnosis takes it up: whole, and its sound stretches."""
+
+    whole: Recording
+    stretches: list[Recording]
+
+    @property
+    def longest(self) -> Recording:
+        """The first part of its longest stretch: what the diagnosis is given."""
+        found = max(self.stretches, key=lambda r: float(np.ptp(r.t)))
+        return found.between(float(found.t[0]), float(found.t[0]) + WINDOW)
 
 
-def opened(runs: Mapping[str, Path], vessel: str) -> tuple[dict[str, Recording], analysis.Vessel]:
-    """Every run as a diagnosis takes it up."""
-    found, boat = {}, None
+def opened(runs: Mapping[str, Path], vessel: str) -> tuple[dict[str, Opened], Vessel]:
+    """Every run, thinned."""
+    boat = analysis.vessel_for(next(iter(runs.values())), vessel, ())
+    rate, found = rules.rate(boat), {}
     for name, path in runs.items():
-        recording, boat = analysis.open_recording(path, vessel, ())
-        found[name] = without_outliers(without_defects(recording, path).thinned(rules.rate(boat)), boat)
-    assert boat is not None
+        recording, _ = analysis.open_recording(path, vessel, ())
+        parts = [r.thinned(rate) for r in sound(recording, path, SHORTEST)]
+        found[name] = Opened(without_outliers(recording.thinned(rate), boat), parts)
     return found, boat
 
 
-def diagnosed(recordings: Mapping[str, Recording], boat: analysis.Vessel) -> Diagnosis:
-    """What is missing, by the middle of each random and zig-zag run."""
-    parts = {n: middle(r) for n, r in recordings.items() if n.startswith(FITTED)}
-    fitted, unseen = [r for n, r in parts.items() if n not in UNSEEN], [parts[n] for n in UNSEEN]
-    boats = {r.path: boat for r in parts.values()}
-    note = f"kept unseen: {', '.join(UNSEEN)}; of each run its middle {WINDOW:g} s"
+def diagnosed(recordings: Mapping[str, Opened], boat: Vessel) -> Diagnosis:
+    """What is missing, by a stretch of each random and zig-zag run."""
+    some = {n: one for n, one in recordings.items() if n.startswith(FITTED)}
+    fitted = [one.longest for n, one in some.items() if n not in UNSEEN]
+    unseen = [replace(r, name=f"{n} from {r.t[0]:.0f} s") for n in UNSEEN for r in some[n].stretches]
+    boats = {r.path: boat for r in (*fitted, *unseen)}
+    note = f"kept unseen: {', '.join(UNSEEN)}; of the others the longest stretch without a leap, {WINDOW:g} s at most"
     return analysis.diagnose_recordings(fitted, unseen, boats, note, horizon=HORIZON)
 
 
@@ -328,25 +353,23 @@ def main() -> None:
     found = diagnosed(recordings, boat)
     report(found, NAME)
     print_named(found)
-    whole = list(recordings.values())
-    stated = noise_of(boat, whole)
+    stated = noise_of(boat, [r for one in recordings.values() for r in one.stretches])
 
     def laid(some: Sequence[Recording]) -> list[Track]:
         return [track(r, found.problem.program, stated) for r in some]
 
-    tracks = dict(zip(recordings, laid(whole), strict=True))
-    fitted = [t for n, t in tracks.items() if n.startswith(FITTED)]
-    judged = {n: t for n, t in tracks.items() if n.startswith(JUDGED)}
-    problem = Problem(fitted, found.problem.ambient, found.problem.uncertainty, HORIZON)
+    tracks = {n: laid(one.stretches) for n, one in recordings.items()}
+    fitted = {n: some for n, some in tracks.items() if n.startswith(FITTED)}
+    judged = {n: laid([one.whole])[0] for n, one in recordings.items() if n.startswith(JUDGED)}
+    problem = Problem([t for some in fitted.values() for t in some], found.problem.ambient, found.problem.uncertainty)
     ranking = found.ranking
-    recalibrated = descend(problem, ranking.recalibrated, 6, 0.1)
+    recalibrated = converge(problem, ranking.recalibrated)
     weather = Weather(problem, ranking.best)
-    weather.refit(fitted, [weather.wind([t]) for t in fitted])
-    print_winds({n: weather.wind([t]) for n, t in tracks.items()})
-    before = free_runs(
-        problem, {"nominal": ranking.nominal, "recalibrated": recalibrated}, list(judged.values()), HORIZON
-    )
-    after = [s for n, t in judged.items() for s in in_rests_wind(weather, t, recordings[n], laid)]
+    weather.refit(list(fitted.values()))
+    print_winds({n: weather.wind(some) for n, some in tracks.items()})
+    fits = {"nominal": ranking.nominal, "recalibrated": recalibrated}
+    before = free_runs(problem, fits, list(judged.values()), HORIZON)
+    after = [s for n, t in judged.items() for s in in_rests_wind(weather, t, recordings[n].stretches, laid)]
     print_judged(with_model(before, after), f"fitted on {' and '.join(FITTED)} runs, judged on {' and '.join(JUDGED)}")
     print(f"\n{time.perf_counter() - begin:.0f} s")
 
