@@ -36,6 +36,7 @@ HORIZON = 60.0  # [s] of a free run
 MODELS = ("nominal", "recalibrated", "patched")
 GOALS = {"nominal": 0.75, "recalibrated": 0.9}  # position, patched over this one
 UNITS = {"position_rms_m": ("position [m]", np.sqrt(2.0)), "heading_rms_rad": ("heading [deg]", 57.29578)}
+LONG = 250.0  # [s] of a run in which a ship of 3 m has met the wind from several sides
 NEAR_DIRECTION, NEAR_SIZE, SHARE = 30.0, 0.3, 0.75  # [deg], relative, of the runs
 WEATHER = ("force", "toward")  # of the wind: the rest says how the hull takes it
 ROUNDS = 3  # of ship and winds in turn
@@ -237,15 +238,15 @@ def around(stretches: Sequence[Recording], a: float, b: float) -> list[Recording
     return out
 
 
-def print_winds(found: Mapping[str, Wind]) -> None:
+def print_winds(found: Mapping[str, Wind], seconds: Mapping[str, float]) -> None:
     """Found in each run, all of it, beside what the anemometer says."""
-    rows, near = [], 0
+    rows, near = [], list[str]()
     for name, wind in found.items():
         truth = measured(name)
         turned = np.degrees(np.angle(np.exp(1j * (wind.toward - truth.toward))))
         size = wind.speed / truth.speed
         good = abs(turned) <= NEAR_DIRECTION and abs(size - 1.0) <= NEAR_SIZE
-        near += good
+        near += [name] if good else []
         said = [f"{np.degrees(np.angle(np.exp(1j * w.toward))):.0f}" for w in (wind, truth)]
         cells = (
             *said,
@@ -258,9 +259,10 @@ def print_winds(found: Mapping[str, Wind]) -> None:
         rows.append([name, *cells])
     header = ["run", "blows to [deg]", "measured", "off", "speed [m/s]", "measured", "ratio", "both near"]
     table("steady wind per run, found without the anemometer", header, rows)
-    print(
-        f"within {NEAR_DIRECTION:g} deg and {100 * NEAR_SIZE:g} %: {near} of {len(rows)} runs (goal {SHARE:g} of them)"
-    )
+    near_to = f"{NEAR_DIRECTION:g} deg and {100 * NEAR_SIZE:g} %"
+    print(f"within {near_to}: {len(near)} of {len(rows)} runs (goal {SHARE:g} of them);")
+    long = [n for n in found if seconds[n] >= LONG]
+    print(f"of the runs of {LONG:g} s or longer {sum(n in near for n in long)} of {len(long)}")
 
 
 # ---- judged
@@ -328,7 +330,7 @@ def diagnosed(recordings: Mapping[str, Opened], boat: Vessel) -> Diagnosis:
     """What is missing, by a stretch of each random and zig-zag run."""
     some = {n: one for n, one in recordings.items() if n.startswith(FITTED)}
     fitted = [one.longest for n, one in some.items() if n not in UNSEEN]
-    unseen = [replace(r, name=f"{n} from {r.t[0]:.0f} s") for n in UNSEEN for r in some[n].stretches]
+    unseen = [some[n].whole for n in UNSEEN]
     boats = {r.path: boat for r in (*fitted, *unseen)}
     note = f"kept unseen: {', '.join(UNSEEN)}; of the others the longest stretch without a leap, {WINDOW:g} s at most"
     return analysis.diagnose_recordings(fitted, unseen, boats, note, horizon=HORIZON)
@@ -366,7 +368,8 @@ def main() -> None:
     recalibrated = converge(problem, ranking.recalibrated)
     weather = Weather(problem, ranking.best)
     weather.refit(list(fitted.values()))
-    print_winds({n: weather.wind(some) for n, some in tracks.items()})
+    seconds = {n: float(np.ptp(one.whole.t)) for n, one in recordings.items()}
+    print_winds({n: weather.wind(some) for n, some in tracks.items()}, seconds)
     fits = {"nominal": ranking.nominal, "recalibrated": recalibrated}
     before = free_runs(problem, fits, list(judged.values()), HORIZON)
     after = [s for n, t in judged.items() for s in in_rests_wind(weather, t, recordings[n].stretches, laid)]
