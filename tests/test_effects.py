@@ -68,6 +68,11 @@ TO_STARBOARD = {
     "toward", "east", "list", "side_force_per_thrust", "thrust_imbalance.fraction", "Y_0", "Y_0u", "Y_0uu", "N_0",
     "N_0u", "N_0uu", "steering_offset.middle", "steering_offset.gain", "steering_asymmetry.gain",
 }  # fmt: skip
+TO_STARBOARD |= {
+    f"mmg_low_speed_propeller.{axis}_{form}"
+    for axis in "YN"
+    for form in ("low", "low_J", "mid", "mid_J", "high", "braked", "braked_J", "braked_JJ")
+}
 TO_STARBOARD |= {f"{name}.{axis}" for name in ("push", "steady_force") for axis in ("sway", "yaw", "roll")}
 TURNS_SIGN = {"y", "phi", "psi", "v", "p", "r", "vr", "sin_psi", "angle", "sin_angle"}  # of motions and signals
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])  # of a wrench

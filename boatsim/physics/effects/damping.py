@@ -125,16 +125,20 @@ class DampingError(Release):
     shown_by: ClassVar[str] = "coasting down in each axis"
 
     surge_factor: float = factor(
-        "linear_damping.surge|surge_drag.linear|approach_balance.damping|mmg_hull.R_0|abkowitz_hull.X_u",
+        "linear_damping.surge|surge_drag.linear|approach_balance.damping|mmg_hull.R_0|abkowitz_hull.X_u"
+        "|mmg_low_speed_hull.X_0F",
         "surge_drag.quadratic",
         words="surge", axis="surge",
     )  # fmt: skip
     sway_factor: float = factor(
-        "linear_damping.sway|linear_hull.sway|mmg_hull.Y_v|abkowitz_hull.Y_v|cross_flow_drag.section_drag_coefficient",
+        "linear_damping.sway|linear_hull.sway|mmg_hull.Y_v|abkowitz_hull.Y_v|mmg_low_speed_hull.C_D"
+        "|cross_flow_drag.section_drag_coefficient",
         words="sway", axis="sway",
     )  # fmt: skip
     yaw_factor: float = factor(
-        "linear_damping.yaw|linear_hull.yaw|mmg_hull.N_r|abkowitz_hull.N_r", words="yaw", axis="yaw"
+        "linear_damping.yaw|linear_hull.yaw|mmg_hull.N_r|abkowitz_hull.N_r|mmg_low_speed_hull.N_r",
+        words="yaw",
+        axis="yaw",
     )
     roll_factor: float = factor("linear_damping.roll|roll_damping.roll", words="roll", axis="roll")
 

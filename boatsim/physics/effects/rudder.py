@@ -66,6 +66,6 @@ class RudderStall(Release):
     thresholds: ClassVar = {"angle": (0.3, 0.45, 0.6, 0.75, 0.9)}
 
     angle: float = number(
-        "rudder.stall", "mmg_rudder.stall",
+        "rudder.stall", "mmg_rudder.stall", "mmg_low_speed_rudder.stall",
         words="angle of stall", unit="rad", spread=1.0, low=0.02, high=NEVER, absent=NEVER,
     )  # fmt: skip

@@ -48,6 +48,7 @@ class ThrustGainError(Release):
     shown_by: ClassVar[str] = "runs at several thrust levels"
 
     factor: float = factor(
-        "thruster.gain", "propeller.gain", "mmg_propeller.gain", "water_jet.gain",
+        "thruster.gain", "propeller.gain", "mmg_propeller.gain", "mmg_low_speed_propeller.gain",
+        "water_jet.gain",
         words="thrust per stated thrust", spread=0.3, low=0.2, high=3.0,
     )  # fmt: skip
