@@ -76,22 +76,3 @@ def test_how_noisy_an_unseen_log_is_does_not_hang_on_those_fitted() -> None:
     there = noise_beside(boat, [camera], exact)
     assert set(there) == {"position_sd_m"} and there["position_sd_m"] < 0.1
     assert noise_beside(boat, [exact], camera)["position_sd_m"] > 10.0
-
-
-def test_rows_left_out_are_averaged_and_bends_put_back() -> None:
-    """A tenth of the rows, each by the mean of ten: a tenth of the noise's variance, and the course itself."""
-    t = 0.02 * np.arange(2000)
-    course, noise = np.sin(2.0 * t), 0.01 * np.random.default_rng(5).standard_normal(len(t))
-    smooth = Recording("smooth", t, {"x_m": course}).thinned(5.0)
-    assert len(smooth) == 200 and smooth.t[0] == 0.09
-    assert np.abs(smooth["x_m"] - np.sin(2.0 * smooth.t))[2:-2].max() < 2e-4  # 7e-3 without
-    noisy = Recording("noisy", t, {"x_m": course + noise}).thinned(5.0)
-    off = (noisy["x_m"] - np.sin(2.0 * noisy.t))[2:-2]
-    assert 0.8 < off.std() * np.sqrt(10) / 0.01 < 1.3
-
-
-def test_a_fix_that_is_held_is_not_averaged_with_the_one_before() -> None:
-    t = 0.02 * np.arange(2000)
-    held = np.repeat(np.arange(40.0), 50)
-    thin = Recording("held", t, {"x_m": held, "psi_rad": 0.001 * t}).thinned(5.0)
-    assert set(thin["x_m"].tolist()) == set(range(40))

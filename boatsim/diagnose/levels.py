@@ -13,7 +13,7 @@ FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above th
 SENSOR_PRIOR = 0.4  # sd of log noise about the stated one
 ROUGH, FINE = 2.0, 0.3  # [nats] that levels are near enough their best, once more and for a first fit
 LEAST = 1 / 10  # of the tolerated force, which a level is at least: no law is better than that
-QUIETEST = 1 / 10  # of the stated or sensed noise, which a sensor's is at least: no log is better than that
+QUIETEST = 1 / 10  # of the stated or sensed noise, which a sensor is off by at least: no log is better than that
 LOOSER = 10  # times that the force is raised e-fold until the filter follows a recording
 TIME_PRIOR = 0.7  # sd of log time constant
 

@@ -24,7 +24,6 @@ OWN = re.compile(r"(sent|actual|sensed|camera|estimate|reference|force|wind)_|co
 COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))")
 HUGE = 1e12  # no time, place, speed or command here is anywhere near
 GAP = 60.0  # [s] between two rows; over a longer one no boat here can be followed
-NEW = 0.9  # share of the rows in which a sensor shows something new that is not held between its readings
 ROUNDING = 1e-3  # share of a channel's range by which a command rounded for the file may pass its limit
 
 
@@ -76,31 +75,22 @@ class Recording:
         return replace(self, t=self.t[inside], signals=signals, orders=orders)
 
     def thinned(self, rate: float) -> "Recording":
-        """About `rate` rows a second, each of n rows at their mean time, by their mean: noise is averaged out.
+        """Every n-th row, so that about `rate` rows a second are left, each with the mean command until the next.
 
-        The mean of a bent course is off its middle by a 24th of how it bends from mean to mean, which is put back. A
-        column that is not new in each row, or not there, is taken where the n begin. The commands themselves stay at
-        their own times, as `orders`.
+        The commands themselves stay at their own times, as its `orders`.
         """
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         if n == 1:
             return self
         commands = {k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)}
-        often = {k for k, v in self.signals.items() if k in commands or (np.diff(v) != 0.0).mean() > NEW}
-        signals = {k: means(v, n) if k in often else v[::n] for k, v in self.signals.items()}
-        for k in often - set(commands):
-            signals[k][1:-1] -= np.diff(signals[k], 2) * (1.0 - 1.0 / n**2) / 24.0
-        return replace(self, t=means(self.t, n), signals=signals, orders=self.orders or Orders(self.t, commands))
+        ends = np.append(np.arange(0, len(self.t), n), len(self.t))
+        signals = {k: v[::n] for k, v in self.signals.items()}
+        signals |= {k: np.add.reduceat(v, ends[:-1]) / np.diff(ends) for k, v in commands.items()}
+        return replace(self, t=self.t[::n], signals=signals, orders=self.orders or Orders(self.t, commands))
 
     def used(self) -> "Recording":
         """The part its notes name in `use`, or all of it."""
         return self.between(*self.notes.use) if self.notes.use else self
-
-
-def means(values: Array, n: int) -> Array:
-    """Means of n values each, the last of those that are left."""
-    ends = np.append(np.arange(0, len(values), n), len(values))
-    return np.asarray(np.add.reduceat(values, ends[:-1]) / np.diff(ends))
 
 
 def read(

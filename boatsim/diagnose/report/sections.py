@@ -63,8 +63,8 @@ GLOSSARY = (
      "How much better an explanation predicts the recordings, as a natural logarithm, the freedom of its extra "
      "parameters paid for. 1 nat is a factor of 2.7, 3 nats 20, 4 nats 55. An effect is named if, with "
      "its look-alikes, it gains more than two and the logarithm of the number of entries tried (more tried, "
-     "more to gain) and a fortieth of what the others explain, which their laws may be off by. Entries within 3 nats "
-     "of it are its look-alikes."),
+     "more to gain), and more than a fortieth of what the others explain, which their laws may be off by. Entries "
+     "within 3 nats of it are its look-alikes."),
     ("probability", "Share of belief that the evidence gives an entry among its rivals and nothing at all."),
     ("\u00b1", "One standard deviation: the true value is expected within twice this in 95 of 100 cases."),
     ("surge, sway, roll, yaw", "Forward, to starboard, starboard side down, bow to starboard."),

@@ -83,7 +83,7 @@ def rank(
 
 def _judged(sets: Sets, best: Fit, named: tuple[Named, ...], unseen: Sequence[Track]) -> tuple[Fit, tuple[Named, ...]]:
     """The set without what physics or unseen recordings speak against, laws in place of what but sways like them."""
-    while named and (worse := braking(sets, best) or misled(sets, best, unseen) or refuted(sets, best, unseen)):
+    while named and (worse := braking(sets, best) or misled(sets, best, unseen) or refuted(sets, best, named, unseen)):
         sets.banned.add(worse)
         best, named = settled(sets, selected(sets, sets.without(best, worse)))
     while law := lawful(sets, best, named, unseen):

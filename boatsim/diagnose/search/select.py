@@ -15,7 +15,7 @@ progress = logging.getLogger("boatsim.diagnose")
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
 CLEAR = 40.0  # prices that an effect is worth by the curvature at a fit, from where it stays without a fit without it
-SLIGHT = 0.025  # of what the others explain, which their laws are off by: an effect must gain that beyond its price
+SLIGHT = 0.025  # of what the others explain, below which an effect may be what their laws are off by
 
 
 def selected(sets: Sets, best: Fit) -> Fit:
@@ -27,7 +27,7 @@ def selected(sets: Sets, best: Fit) -> Fit:
         laws = {n: f for n, f in tried.items() if n not in sets.random}
         if _gained(laws, best) > max(sets.price, LAWFUL * _gained(tried, best)):
             tried = laws  # a random force can stand for a law, a law hardly for it
-        if _gained(tried, best) < sets.price + SLIGHT * sets.explained(best):
+        if _gained(tried, best) < max(sets.price, SLIGHT * sets.explained(best)):
             break
         name = max(tried, key=lambda n: tried[n].evidence)
         further = _pruned(sets, sets.trusted(sets.converged(tried[name])))

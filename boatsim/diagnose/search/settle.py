@@ -58,10 +58,9 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
 
 
 def _little(sets: Sets, best: Fit, named: Named) -> bool:
-    """Whether a member gains too little to be named: less than its price and what the laws of others may be off by."""
-    slight = SLIGHT * max(sets.explained(best) - named.gain, 0.0)
-    few = named.gain < WORTH + slight or named.shared < sets.price + slight
-    return few or not there(sets, best, named.name)
+    """Whether a member gains too little to be named."""
+    slight = SLIGHT * (sets.explained(best) - named.gain)
+    return named.gain < max(WORTH, slight) or named.shared < sets.price or not there(sets, best, named.name)
 
 
 def _mends(sets: Sets, best: Fit, named: Named) -> bool:

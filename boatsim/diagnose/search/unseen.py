@@ -11,6 +11,7 @@ from boatsim.diagnose.levels import fit_force, force_prior
 from boatsim.diagnose.problem import Fit
 from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.evidence import left_over, told_from
+from boatsim.diagnose.search.select import SLIGHT
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.search.settle import ALIKE, Named, beside
 
@@ -32,15 +33,20 @@ def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
     return min(best.suspects, key=lambda n: carries.misfit(carries.squares(rest, n), none))
 
 
-def refuted(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
+def refuted(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> str:
     """The effect by which unseen recordings become unlikelier than without it, if clearly so: it does not carry over.
 
-    That asks of each row what the rows before foretell. Free runs over them must not ask for it all the same, as they
-    may where unseen recordings go beyond the fitted ones.
+    Or by which all recordings together gain less than its price and what the laws of the others may be off by. That
+    asks of each row what the rows before foretell. Free runs over them must not ask for it all the same, as they may
+    where unseen recordings go beyond the fitted ones.
     """
     whole, rest = foretold(sets, best, unseen), {n: sets.without(best, n) for n in best.suspects}
     gains = {n: whole - foretold(sets, f, unseen) for n, f in rest.items()}
     doubtful = [n for n in gains if gains[n] < -told_from(sets.explained(best))]
+    for one in named:
+        slight = SLIGHT * max(sets.explained(best) - one.gain, 0.0)
+        if one.gain + gains[one.name] < sets.price + slight and one.name not in doubtful:
+            doubtful.append(one.name)
     if not doubtful:
         return ""
     fits = {"": best, **{n: rest[n] for n in doubtful}}
