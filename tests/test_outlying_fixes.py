@@ -57,5 +57,5 @@ def test_a_recording_that_begins_with_a_fix_astray_begins_a_row_later(tmp_path: 
     first = [astray(runs[0], 0.2, slice(0, 1)), astray(runs[1], -0.2, slice(0, 2)), runs[2]]
     assert [begins_astray(r, boat) for r in first] == [1, 2, 0]
     begun = without_outliers(first[1], boat)
-    assert begun.t[0] == runs[1].t[2] and "its first 2 rows" in begun.remarks[0]
+    assert begun.t[0] == runs[1].t[2] and f"before t = {begun.t[0]:g} s" in begun.remarks[0]
     nothing_missing(diagnosed(first, tmp_path, "trial_boat"))

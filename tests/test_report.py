@@ -404,7 +404,7 @@ def test_every_verdict_is_one_sentence(verdict, effects, text):
         ("unknown", "Something is missing (0.21 N rms in surge), and nothing was tried to explain it "),
         (
             "nothing_missing",
-            "No more force is missing than is taken for nobody's fault, but nothing was tried to explain it ",
+            "No more force is missing than moving water makes, but nothing was tried to explain it ",
         ),
     ],
 )

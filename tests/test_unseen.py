@@ -100,8 +100,20 @@ def said(problem: Problem, found: Fit, factor: float) -> Fit:
 def test_an_effect_by_which_unseen_runs_become_unlikelier_does_not_carry_over(weak: Laid) -> None:
     problem, base, found, unseen = weak
     sets = sets_of(problem, base, found)
-    assert refuted(sets, found, unseen) == ""
-    assert refuted(sets, said(problem, found, 1.5), unseen) == "weak_reverse"  # stronger astern, where it is weaker
+    one = beside("weak_reverse", found, base, {})
+    assert refuted(sets, found, [one], unseen) == ""
+    wrong = said(problem, found, 1.5)  # stronger astern, where it is weaker
+    assert refuted(sets, wrong, [one], unseen) == "weak_reverse" and refuted(sets, wrong, [one], []) == ""
+
+
+def test_what_all_recordings_together_hardly_ask_for_is_not_named(weak: Laid) -> None:
+    """A factor next to one gains nothing on unseen runs: on the fitted ones it must then gain its whole price."""
+    problem, base, found, unseen = weak
+    little = replace(said(problem, found, 0.999), evidence=base.evidence + 2.5)
+    sets = sets_of(problem, base, little)
+    one = beside("weak_reverse", little, base, {})
+    assert sets.price > 2.6 and refuted(sets, little, [one], unseen) == "weak_reverse"
+    assert refuted(sets, little, [replace(one, shared=sets.price + 20.0)], unseen) == ""  # with its look-alikes
 
 
 def test_what_unseen_runs_say_of_a_law_hangs_little_on_how_rough_the_water_was_before(weak: Laid) -> None:

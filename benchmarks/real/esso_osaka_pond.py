@@ -3,8 +3,9 @@
 The nominal is the MMG model of captive tests of the same hull, the baseline the same with its coefficients refitted.
 Nobody says that there was wind: positions and commands have to show it, and the anemometer is then laid beside what
 they showed. Fitted on random and zig-zag runs, judged on turns and berthing by free runs of 60 s. Wind is no property
-of a ship: for each minute that is judged it is found in the rest of that run, with all else as fitted. Fixes held over,
-and recorded velocities, are not used, for the reasons that are printed first.
+of a ship: for each minute that is judged it is found in the rest of that run, with all else as fitted. Recorded
+velocities are not used; nor, in what is fitted, fixes held over, and runs are cut at leaps, for the reasons that are
+printed first. What is judged is judged as it was recorded.
 """
 
 import json

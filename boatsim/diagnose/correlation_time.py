@@ -89,4 +89,5 @@ def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
         rest = Problem(fitted, ambient, problem.uncertainty, horizon)
         stretches += free_runs(rest, {"": fit(rest, begin)}, unseen, horizon)
     found = [np.maximum([f[""] for f in errors([s]).values()], EXACT) for s in stretches]
-    return np.array([np.exp(np.mean(np.log(each))) for each in found])
+    recorded = [each for each in found if not np.isnan(each).any()]
+    return np.array([np.exp(np.mean(np.log(each))) for each in recorded])

@@ -392,7 +392,7 @@ def noise_beside(vessel: Vessel, recordings: Sequence[Recording], recording: Rec
 
     An exact log and one by a camera must not be taken for equally good: a free run starts where its recording says.
     """
-    families = [f for f in NOISE if f not in recording.notes.noise]
+    families = [f for f in NOISE if f not in recording.notes.noise and f not in vessel.diagnosis.noise]
     pairs = {f: [rules.sensed_noise(vessel, rs, f) for rs in ([recording], recordings)] for f in families}
     ratios = {f: own / common for f, (own, common) in pairs.items() if own and common}
     return {f: r for f, r in ratios.items() if not 1.0 / UNLIKE < r < UNLIKE}

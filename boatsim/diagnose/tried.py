@@ -63,7 +63,7 @@ def library_for(
             idle[called] = lacks
             continue
         if kind.told_by and not asked:
-            left_out[called] = f"shows as {' or '.join(kind.told_by)} does; --library {called} tries it"
+            left_out[called] = f"looks the same as {' or '.join(kind.told_by)}; --library {called} tries it"
             continue
         left_out.pop(called, None)
         for effect in _either_side(placed(kind, vessel, known, table), vessel):

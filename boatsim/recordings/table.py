@@ -82,7 +82,7 @@ class Recording:
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         if n == 1:
             return self
-        commands = {k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)}
+        commands = {k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)}  # whatever the vessel calls them
         ends = np.append(np.arange(0, len(self.t), n), len(self.t))
         signals = {k: v[::n] for k, v in self.signals.items()}
         signals |= {k: np.add.reduceat(v, ends[:-1]) / np.diff(ends) for k, v in commands.items()}

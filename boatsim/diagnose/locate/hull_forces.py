@@ -11,10 +11,10 @@ from boatsim.physics.base import Array
 
 
 def actuators(track: Track) -> Array:
-    """(N, HELD) mean actuators of the vessel as written from row to row, with cosines and sines of angles."""
+    """(N, HELD) mean actuators of the vessel as written from row to row, under each row's mean commands."""
     program = track.program
     on, act, memory = program.switches(), np.zeros(program.held_size), np.zeros(program.memory_size)
-    program.module.settle(track.commands[0], memory, track.values, on, act)
+    program.module.settle(track.orders[0], memory, track.values, on, act)
     out = np.empty((len(track.times), len(act) // 3))
     steps = np.append(np.diff(track.times), track.times[-1] - track.times[-2])
     for row, step in enumerate(steps.tolist()):

@@ -20,6 +20,7 @@ LIKELY = 0.01  # corrected p-value from which a force is said to go with somethi
 FACTOR = 1.5  # of the tolerated force: what is left over is judged against this much
 STRETCHES = 8  # parts of a run in which a force may act
 SMALL = 1e-9  # of the largest information on an axis, below which a feature says nothing
+CONSTANT, SINCE, WITHIN = "nothing, it is constant", "the time since the beginning", "time: it acts in"
 TURNING = ("roll", "pitch", "yaw")
 PLACES = {
     "surge": "how far north or south she is", "sway": "how far east or west she is", "heave": "how deep she floats",
@@ -36,6 +37,11 @@ class Structure:
     gain: float  # [nats] that a force along with it gains at most
     p_value: float  # corrected for all that were tried
     tried: int
+
+    @property
+    def a_law(self) -> bool:
+        """Whether it goes with motion, commands or heading: not with a place or a time, nor with nothing at all."""
+        return not self.goes_with.startswith((CONSTANT, SINCE, WITHIN, *PLACES.values()))
 
     @property
     def likely(self) -> bool:
@@ -65,7 +71,7 @@ def structure(problem: Problem, found: Fit) -> Structure:
     largest = {a: max(i for (axis, _), i in known.items() if axis == a) for a in axes}
     gain = {k: 0.5 * score[k] ** 2 / i for k, i in known.items() if i > SMALL * largest[k[0]]}
     if not gain:
-        return Structure(axes[0], "nothing", 0.0, 1.0, 0)
+        return Structure(axes[0], CONSTANT, 0.0, 1.0, 0)
     axis, name = max(gain, key=lambda k: gain[k])
     best = gain[axis, name]
     return Structure(axis, name, best, min(1.0, len(gain) * float(chdtrc(1, 2.0 * best))), len(gain))
@@ -85,7 +91,7 @@ def _features(track: Track, states: Array, lasting: float) -> Iterator[tuple[str
         f"{a} {'rate' if a in TURNING else 'speed'}": w
         for a, w in zip(axes, track.program.body_rates(states)[:, len(axes) :].T, strict=True)
     }
-    yield "nothing, it is constant", np.ones(len(t))
+    yield CONSTANT, np.ones(len(t))
     for name, w in speeds.items():
         yield name, w
         yield f"the size of {name}", np.abs(w)
@@ -111,12 +117,12 @@ def _features(track: Track, states: Array, lasting: float) -> Iterator[tuple[str
     since = (t - t[0]) / (t[-1] - t[0])
     for run in (track.name, ""):
         of = f" of {run}" if run else ""
-        yield f"the time since the beginning{of}", since - 0.5
+        yield f"{SINCE}{of}", since - 0.5
         for k in range(STRETCHES):
             within = (since >= k / STRETCHES) & (since < (k + 1) / STRETCHES)
             begin, end = t[0] + (t[-1] - t[0]) * np.array([k, k + 1]) / STRETCHES
             span = f"{begin:.3g} to {end:.3g} s" if run else f"part {k + 1} of {STRETCHES}"
-            yield f"time: it acts in {span}{of or ' of every run'}", within.astype(float)
+            yield f"{WITHIN} {span}{of or ' of every run'}", within.astype(float)
 
 
 def _late(c: Array, t: Array, lasting: float) -> Array:

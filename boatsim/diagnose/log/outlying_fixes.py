@@ -26,11 +26,14 @@ MOST = 0.95  # share of the prediction errors that are no leaps; of a normal var
 
 
 def without_outliers(recording: Recording, vessel: Vessel) -> Recording:
-    """The recording without fixes and headings that leap away and come back (nan); a remark says how many."""
+    """The recording without fixes and headings that leap away and come back (nan); a remark says how many.
+
+    It begins where they lie on the course of those behind.
+    """
     if late := begins_astray(recording, vessel):
         kept = recording.between(float(recording.t[late]), float(recording.t[-1]))
-        where, span = recording.path or recording.name, f"{late} row{'s' if late > 1 else ''}"
-        remark = f"{where}: its first {span} lie off the course of those behind: not used"
+        where, begin = recording.path or recording.name, recording.t[late]
+        remark = f"{where}: what lies before t = {begin:g} s is off the course behind it: not used"
         recording = replace(kept, remarks=(*kept.remarks, remark))
     signals, remarks = dict(recording.signals), list(recording.remarks)
     longest = LONGEST * froude_time(vessel)
@@ -49,26 +52,25 @@ def without_outliers(recording: Recording, vessel: Vessel) -> Recording:
 
 
 def begins_astray(recording: Recording, vessel: Vessel) -> int:
-    """First row, `FEW` at most, from which on no fix is off the course of the `BEHIND` rows behind it.
+    """First row from which on no fix is off the course of the `BEHIND` fixes behind it; `FEW` fixes are judged.
 
     A filter starts from the first fix, so it has nothing by which to doubt that one.
     """
-    for row in reversed(range(FEW)):
-        t = recording.t[row : row + BEHIND + 1] - recording.t[row]
-        astray = False
-        for name, family in (("x_m", "position_sd_m"), ("y_m", "position_sd_m"), ("psi_rad", "heading_sd_rad")):
-            y = recording.signals.get(name, NOTHING)[row : row + BEHIND + 1]
-            if len(y) <= BEHIND or not np.isfinite(y).all():
-                continue
+    late = 0
+    for name, family in (("x_m", "position_sd_m"), ("y_m", "position_sd_m"), ("psi_rad", "heading_sd_rad")):
+        column = recording.signals.get(name, NOTHING)
+        there = np.flatnonzero(np.isfinite(column))[: FEW + BEHIND]
+        sensed = sensed_noise(vessel, [recording], family) if len(there) > BEHIND else 0.0
+        for first in range(len(there) - BEHIND):
+            rows = there[first : first + BEHIND + 1]
+            y, t = column[rows], recording.t[rows] - recording.t[rows[0]]
             powers = np.vander(t[1:], 3)  # of a parabola, whose last coefficient is where it began
-            inverse = np.linalg.inv(powers.T @ powers)
+            inverse = np.linalg.pinv(powers.T @ powers)
             course = inverse @ (powers.T @ y[1:])
             off = float(np.sqrt(np.sum((y[1:] - powers @ course) ** 2) / (BEHIND - 3)))
-            sd = max(sensed_noise(vessel, [recording], family), off) * np.sqrt(1.0 + inverse[2, 2])
-            astray = astray or abs(y[0] - course[2]) > ASTRAY * sd
-        if astray:
-            return row + 1
-    return 0
+            if abs(y[0] - course[2]) > ASTRAY * max(sensed, off) * np.sqrt(1.0 + inverse[2, 2]):
+                late = max(late, int(rows[0]) + 1)
+    return late
 
 
 def outlying(t: Array, values: Array, finest: float, longest: float) -> NDArray[np.bool_]:

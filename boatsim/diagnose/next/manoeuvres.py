@@ -154,7 +154,8 @@ def _level(vessel: Vessel, name: str, step: Step, in_use: dict[str, float] | Non
     """Value of one command in a step of a script, to three digits and inside its limits."""
     channel = vessel.commands[name]
     port, starboard = step[3:] if _turns(name) else step[1:3]
-    if not _turns(name) and not any(_turns(n) for n in vessel.commands):  # steered by pushing harder on one side
+    straight = port == starboard != 0.0 and not any(_turns(n) for n in vessel.commands)
+    if straight and not _turns(name):  # steered by pushing harder on one side
         port, starboard = port + DIFFERENCE * step[3], starboard - DIFFERENCE * step[4]
     share = {-1: port, 0: 0.5 * (port + starboard), 1: starboard}[vessel.side(name)]
     limit = channel.high if share > 0 else -channel.low

@@ -52,7 +52,7 @@ GLOSSARY = (
     ("missing force",
      "The force or moment on the hull that the recording shows and the vessel as written has no cause for, estimated "
      "along the run. The band is two standard deviations wide on either side; flagged is where zero lies outside it "
-     "and the force is more than is taken for nobody's fault."),
+     "and the force is more than moving water makes."),
     ("unseen data", "Recordings that were kept apart: nothing was fitted to them."),
     ("free run",
      "The simulated boat starts at the state of the real one and is then driven by the recorded commands alone, "
@@ -61,7 +61,7 @@ GLOSSARY = (
         "In a position x and y count each."),
     ("gain, in nats",
      "How much better an explanation predicts the recordings, as a natural logarithm, the freedom of its extra "
-     "parameters paid for. 1 nat is a factor of 2.7, 3 nats 20, 4 nats 55. An effect is named if, with "
+     "parameters paid for. 1 nat is a factor of 2.7, 3 nats 20, 4 nats 55. An effect is named from 4 nats on if, with "
      "its look-alikes, it gains more than two and the logarithm of the number of entries tried (more tried, "
      "more to gain), and more than a fortieth of what the others explain, which their laws may be off by. Entries "
      "within 3 nats of it are its look-alikes."),

@@ -57,6 +57,6 @@ def in_words(answer: Answer) -> list[str]:
         share = level.get("share_of_full_thrust")
         of_thrust = f", {number(100.0 * share, 2)} % of full thrust" if share is not None else ""
         levels.append(f"{quantity(level['rms'], level['unit'], digits=2)} in {axis}{of_thrust}")
-    told.append(f"taken for nobody's fault: an unsteady force of {listed(levels)} (rms)")
+    told.append(f"never called missing: an unsteady force of {listed(levels)} (rms), as moving water makes")
     told += [f"{rule} is the vessel file's own: {why}" for rule, why in rules["overridden"].items()]
     return told

@@ -220,7 +220,7 @@ def _untried(answer: Answer) -> str:
     """What can be said all the same: whether more force is left than the vessel file tolerates."""
     if answer["verdict"] == "unknown":
         return f"something is missing{_sizes(answer)}, and {UNTRIED}"
-    return f"no more force is missing than is taken for nobody's fault, but {UNTRIED}"
+    return f"no more force is missing than moving water makes, but {UNTRIED}"
 
 
 def _sizes(answer: Answer) -> str:

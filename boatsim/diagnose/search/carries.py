@@ -11,13 +11,13 @@ WORSE = 1.05  # ratio of rms errors from which they have grown
 
 
 def squares(stretches: Sequence[FreeRun], model: str) -> dict[str, list[float]]:
-    """Mean square error of each free run, by family of signals."""
+    """Mean square error of each free run over which anything was recorded, by family of signals."""
     found: dict[str, list[float]] = {}
     for family, signals in FAMILIES.items():
         for s in stretches:
             recorded = s.channels["recorded"]
             off = [s.channels[model][n] - recorded[n] for n in signals if n in recorded]
-            if off:
+            if any(np.isfinite(recorded[n]).any() for n in signals if n in recorded):
                 found.setdefault(family, []).append(mean_square(off))
     return found
 

@@ -20,17 +20,18 @@ def braking(sets: Sets, best: Fit) -> str:
     fitted damping oscillates with the hull as waves of its own rhythm would.
     """
     waves = waves_of(sets, best)
-    return waves if waves and _share_of_power(sets, best, waves) < BRAKES else ""
+    return waves if waves and _share_of_power(sets, best) < BRAKES else ""
 
 
-def _share_of_power(sets: Sets, best: Fit, waves: str) -> float:
+def _share_of_power(sets: Sets, best: Fit) -> float:
     """Mean power of the smoothed oscillating force, over what it would be were it in phase with the hull's rates."""
     problem, on = sets.problem, sets.problem.program.switches(best.suspects)
-    nq, frequency = problem.program.module.NQ, best.value(waves, "frequency")[0]
+    nq, swell = problem.program.module.NQ, problem.program.module.swell
     power, most = 0.0, 0.0
     for track in problem.tracks:
-        states, _ = track.smoothed(problem.values(track, best.free, best.theta), on, best.levels)
-        force = states[:, 3 * nq + 1 : 5 * nq : 2] / frequency
+        values = problem.values(track, best.free, best.theta)
+        states, _ = track.smoothed(values, on, best.levels)
+        force = states[:, 3 * nq + 1 : 5 * nq : 2] / swell(values, on).frequency
         rates = problem.program.body_rates(states[:, : 2 * nq])[:, nq:]
         force, rates = force - force.mean(axis=0), rates - rates.mean(axis=0)
         power += float(np.sum(force * rates))

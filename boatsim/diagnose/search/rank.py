@@ -69,9 +69,9 @@ def rank(
     progress.info("judging what is left over")
     best, named = _judged(sets, best, named, unseen)
     left, goes = left_over(problem, best), structure(problem, best)
-    while (waves := waves_of(sets, best)) and told_apart(goes, sets.explained(best)):
-        sets.banned.add(waves)  # a force that goes with something is a law, for which a random one but stood
-        best, named = settled(sets, selected(sets, sets.without(best, waves)))
+    while (waves := waves_of(sets, best)) and goes.a_law and told_apart(goes, sets.explained(best)):
+        sets.banned.add(waves)  # of a law, whatever it is, for which a random force but stood
+        best, named = _judged(sets, *settled(sets, selected(sets, sets.without(best, waves))), unseen)
         left, goes = left_over(problem, best), structure(problem, best)
     named = told(sets, best, named, unseen)
     first = {n: f.evidence - sets.base.evidence for n, f in sets.looked(sets.base).items()}

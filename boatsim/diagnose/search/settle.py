@@ -15,6 +15,7 @@ from boatsim.diagnose.tried import called
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
 RIVALS = 3  # fitted in the place of what was named
 TOLD = 0.1  # of what was allowed before the data, within which they tell a parameter
+SURE, SURE_RANDOM = 1.0, 2.0  # sds from not acting at which an effect acts
 WORTH = 4.0  # [nats] that an effect must gain by itself
 ALIKE_SHARE = 0.5  # of what two explain together, which each explains alone where they are much alike
 
@@ -101,7 +102,7 @@ def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
 def there(sets: Sets, best: Fit, name: str) -> bool:
     """Whether an effect is more than a standard deviation from not acting: if not, only the search gained by it.
 
-    Of a random one, whose size is all that is fitted, more than two.
+    Of a random one more than two: sizes lie on one side of zero, where the search alone makes something of nothing.
     It acts too where recordings tell, to within `TOLD` of what was allowed, another of its parameters than those which
     are zero without it: a craft that never comes near the speed from which it planes shows by how much it is held back,
     not that speed. (The rhythm of a random force is told by what little of it there seems to be.)
@@ -110,9 +111,10 @@ def there(sets: Sets, best: Fit, name: str) -> bool:
     own = {f.name: f for f in best.free if f.effect == name and not f.relative}
     params, found = kind.params(), {n: best.value(name, n) for n in own}
     strength = [n for n in own if n in (kind.strength or params)]
+    sure = SURE_RANDOM if kind.random else SURE
     return (
         not strength
-        or any(abs(found[n][0] - params[n].absent) > (2.0 if kind.random else 1.0) * found[n][1] for n in strength)
+        or any(abs(found[n][0] - params[n].absent) > sure * found[n][1] for n in strength)
         or not kind.random
         and any(found[n][1] < TOLD * own[n].sd for n in own if n not in strength)
     )

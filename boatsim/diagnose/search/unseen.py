@@ -36,26 +36,26 @@ def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
 def refuted(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> str:
     """The effect by which unseen recordings become unlikelier than without it, if clearly so: it does not carry over.
 
-    Or by which all recordings together gain less than its price and what the laws of the others may be off by. That
-    asks of each row what the rows before foretell. Free runs over them must not ask for it all the same, as they may
-    where unseen recordings go beyond the fitted ones.
+    Or by which all recordings together gain less, its look-alikes counted in, than its price and what the laws of the
+    others may be off by. That asks of each row what the rows before foretell. Free runs over them must not ask for it
+    all the same, as they may where unseen recordings go beyond the fitted ones.
     """
+    if not unseen:
+        return ""
     whole, rest = foretold(sets, best, unseen), {n: sets.without(best, n) for n in best.suspects}
     gains = {n: whole - foretold(sets, f, unseen) for n, f in rest.items()}
-    doubtful = [n for n in gains if gains[n] < -told_from(sets.explained(best))]
-    for one in named:
-        slight = SLIGHT * max(sets.explained(best) - one.gain, 0.0)
-        if one.gain + gains[one.name] < sets.price + slight and one.name not in doubtful:
-            doubtful.append(one.name)
-    if not doubtful:
+    unlikelier = {n for n in gains if gains[n] < -told_from(sets.explained(best))}
+    others = {n.name: SLIGHT * max(sets.explained(best) - n.gain, 0.0) for n in named}
+    little = {n.name for n in named if n.shared + gains[n.name] < sets.price + others[n.name]}
+    if not unlikelier | little:
         return ""
-    fits = {"": best, **{n: rest[n] for n in doubtful}}
+    fits = {"": best, **{n: rest[n] for n in rest if n in unlikelier | little}}
     stretches = free_runs(sets.problem, fits, unseen, _horizon(sets, unseen))
     as_named = carries.squares(stretches, "")
-    needless = [
-        n for n in doubtful
-        if not as_named or carries.misfit(carries.squares(stretches, n), as_named) < carries.WORSE**2
-    ]  # fmt: skip
+    if not as_named:
+        return min(unlikelier, key=lambda n: gains[n], default="")
+    misfits = {n: carries.misfit(carries.squares(stretches, n), as_named) for n in unlikelier | little}
+    needless = sorted(n for n, misfit in misfits.items() if misfit < carries.WORSE**2)
     return min(needless, key=lambda n: gains[n], default="")
 
 

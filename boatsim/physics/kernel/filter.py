@@ -281,7 +281,7 @@ def follow(
     remembered: Array, max_step: float, steps: Array, p: Array, on: Any, k: Array, force: Array, act: Array, s: Swell,
     m: int, F: Array, A: Array, B: Array,
 ) -> int:  # fmt: skip
-    """`predict`, with the transition F linearised about the state z before, with the actuators of this interval.
+    """`predict`, with the transition F linearised about the state z before, with the actuators at this interval's end.
 
     In steps that follow the quickest motion there: those that suited the row before may be too long. Fills steps[i] and
     a first guess for the row after; `remembered` is room for the actuators' memory.
