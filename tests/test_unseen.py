@@ -109,7 +109,9 @@ def test_an_effect_by_which_unseen_runs_become_unlikelier_does_not_carry_over(we
 def test_what_all_recordings_together_hardly_ask_for_is_not_named(weak: Laid) -> None:
     """A factor next to one gains nothing on unseen runs: on the fitted ones it must then gain its whole price."""
     problem, base, found, unseen = weak
-    little = replace(said(problem, found, 0.999), evidence=base.evidence + 2.5)
+    own = dict(zip(((f.effect, f.name) for f in base.free), base.theta, strict=True))
+    theta = np.array([own.get((f.effect, f.name), 0.999) for f in found.free])
+    little = replace(found, theta=theta, levels=base.levels, evidence=base.evidence + 2.5)
     sets = sets_of(problem, base, little)
     one = beside("weak_reverse", little, base, {})
     assert sets.price > 2.6 and refuted(sets, little, [one], unseen) == "weak_reverse"
