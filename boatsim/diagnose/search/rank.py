@@ -33,6 +33,7 @@ class Ranking:
     last: dict[str, Fit]  # every suspect not named, on top of the best set
     left_over: float  # [nats] that a force beyond the tolerated one gains after the best set
     structure: Structure  # what goes best with the force left over
+    explained: float  # [nats] that the laws of the best set gain, of which something besides is told from
 
     @property
     def unknown(self) -> bool:
@@ -42,12 +43,12 @@ class Ranking:
     @property
     def structured(self) -> bool:
         """Whether what is left over, however weak, goes with something."""
-        return told_apart(self.structure, float(self.best.evidence - self.recalibrated.evidence))
+        return told_apart(self.structure, self.explained)
 
     @property
     def told_from(self) -> float:
         """What must be left over [nats] for something to be missing besides: a law is never quite that of its entry."""
-        return told_from(float(self.best.evidence - self.recalibrated.evidence))
+        return told_from(self.explained)
 
 
 def rank(
@@ -78,7 +79,8 @@ def rank(
     last = sets.looked(best)
     for name in sets.banned & last.keys():  # what was found to mislead is no hint
         last[name] = replace(last[name], evidence=min(last[name].evidence, best.evidence))
-    return Ranking(nominal, sets.base, widened(problem, best), named, first, last, left, goes)
+    explained = sets.explained(best)
+    return Ranking(nominal, sets.base, widened(problem, best), named, first, last, left, goes, explained)
 
 
 def _judged(sets: Sets, best: Fit, named: tuple[Named, ...], unseen: Sequence[Track]) -> tuple[Fit, tuple[Named, ...]]:

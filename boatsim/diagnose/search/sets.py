@@ -32,8 +32,14 @@ class Sets:
         self.price = price(len(candidates))
 
     def explained(self, best: Fit) -> float:
-        """Nats that a set gains over the recalibrated vessel."""
-        return float(best.evidence - self.base.evidence)
+        """Nats that the laws of a set gain over the recalibrated vessel, without what is random beside them.
+
+        A random force or error has no shape that nature's could differ from: it explains no law's remainder away.
+        """
+        laws = best
+        for name in self.random & set(best.suspects):
+            laws = self.without(laws, name)
+        return float(laws.evidence - self.base.evidence)
 
     def converged(self, start: Fit) -> Fit:
         """The fit of a set, kept: made from `start` unless it was made before from one no worse."""
