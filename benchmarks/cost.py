@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from boatsim.physics import vessel
-from boatsim.recordings.table import Recording, write_csv
+from boatsim.recordings.table import Recording, read, write_csv
 from boatsim.simulate.twin import Twin
 
 BOAT, HELD, STEP = "trial_boat", 5 / 6, 1 / 60  # vessel, [s] between joystick steps, [s] of integration
@@ -82,6 +82,12 @@ def main() -> None:
     with TemporaryDirectory() as base:
         folder = Path(base)
         cost(simulated(*TRIAL, 0), folder)  # compiles, if nobody has yet
+        run = simulated(180.0, 50.0, 1)
+        write_csv(run, folder / "long.csv")
+        begin = time.process_time()
+        read(folder / "long.csv", vessel.load(BOAT).limits())
+        took = time.process_time() - begin
+        print(f"reading {len(run)} rows of {len(run.signals) + 1} columns: {took:.2f} s CPU", flush=True)
         for rate in (6.0, 20.0):
             for minutes in (1,) if given.quick else (1, 2, 5, 10):
                 run = simulated(60.0 * minutes, rate, minutes)
