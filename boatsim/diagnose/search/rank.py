@@ -18,6 +18,7 @@ from boatsim.diagnose.search.unseen import lawful, misled, refuted, stood_for, t
 from boatsim.diagnose.spread import widened
 
 progress = logging.getLogger("boatsim.diagnose")
+LEFT_OF_IT = 0.25  # of what a random force gains, from which it but stands for a law that is left over beside it
 ALONG = 0.02  # of what was explained: that much less is told of a force that goes with something
 
 
@@ -43,7 +44,7 @@ class Ranking:
     @property
     def structured(self) -> bool:
         """Whether what is left over, however weak, goes with something."""
-        return told_apart(self.structure, self.explained)
+        return told_apart(self.structure, float(self.best.evidence - self.recalibrated.evidence))
 
     @property
     def told_from(self) -> float:
@@ -70,8 +71,8 @@ def rank(
     progress.info("judging what is left over")
     best, named = _judged(sets, best, named, unseen)
     left, goes = left_over(problem, best), structure(problem, best)
-    while (waves := waves_of(sets, best)) and goes.a_law and told_apart(goes, sets.explained(best)):
-        sets.banned.add(waves)  # of a law, whatever it is, for which a random force but stood
+    while (waves := waves_of(sets, best)) and _stands_for_a_law(sets, best, waves, goes):
+        sets.banned.add(waves)
         best, named = _judged(sets, *settled(sets, selected(sets, sets.without(best, waves))), unseen)
         left, goes = left_over(problem, best), structure(problem, best)
     named = told(sets, best, named, unseen)
@@ -91,6 +92,13 @@ def _judged(sets: Sets, best: Fit, named: tuple[Named, ...], unseen: Sequence[Tr
     while law := lawful(sets, best, named, unseen):
         best, named = settled(sets, selected(sets, law))
     return best, named
+
+
+def _stands_for_a_law(sets: Sets, best: Fit, waves: str, goes: Structure) -> bool:
+    """Whether a random force leaves over a good part of what it gains, which goes with a motion, command or heading."""
+    gain = float(best.evidence - sets.without(best, waves).evidence)
+    explained = float(best.evidence - sets.base.evidence)
+    return goes.a_law and told_apart(goes, explained) and goes.gain > LEFT_OF_IT * gain
 
 
 def told_apart(goes: Structure, explained: float) -> bool:
