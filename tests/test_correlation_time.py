@@ -79,3 +79,11 @@ def test_what_a_recordings_notes_state_is_a_fact(tmp_path: Path) -> None:
     write_csv(run, tmp_path / "run.csv")
     (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\n[ambient]\ntime_constant_s = 3.0\n')
     assert analysis.diagnose([tmp_path / "run.csv"]).problem.ambient.time_constant == 3.0
+
+
+def test_free_runs_over_which_nothing_was_recorded_say_nothing() -> None:
+    before, less = np.array([1.0, 1.1, 0.9, 1.0]), np.array([0.5, 0.55, 0.45, 0.5])
+    outage = np.array([1.0, 1.0, np.nan, 1.0])
+    assert correlation_time.clearly_less(less * outage, before * outage)
+    assert not correlation_time.clearly_less(before * outage, before * outage)
+    assert not correlation_time.clearly_less(less * np.nan, before)

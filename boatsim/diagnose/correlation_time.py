@@ -69,8 +69,14 @@ def part(track: Track, begin: int, end: int) -> Track:
 
 
 def clearly_less(errors: Array, before: Array) -> bool:
-    """Whether the errors of free runs (S,) are clearly less than they were, in the mean of their logs."""
+    """Whether the errors of free runs (S,) are clearly less than they were, in the mean of their logs.
+
+    Those over which nothing was recorded (nan) say nothing.
+    """
     ratio = np.log(errors / before)
+    ratio = ratio[~np.isnan(ratio)]
+    if not len(ratio):
+        return False
     scatter = SURE * float(np.std(ratio, ddof=1)) / sqrt(len(ratio)) if len(ratio) > 1 else 0.0
     return bool(np.mean(ratio) < min(-log(WORSE), -scatter))
 
@@ -78,7 +84,7 @@ def clearly_less(errors: Array, before: Array) -> bool:
 def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
     """Error of each free run (S,), that of every half by a fit of the other half.
 
-    It is the geometric mean of the rms of position [m] and of heading or roll [rad].
+    It is the geometric mean of the rms of position [m] and of heading or roll [rad]; nan where one was not recorded.
     """
     ambient = problem.ambient.lasting(seconds)
     begin = replace(start, levels=start.levels.lasting(seconds), evidence=-np.inf)
@@ -89,5 +95,4 @@ def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
         rest = Problem(fitted, ambient, problem.uncertainty, horizon)
         stretches += free_runs(rest, {"": fit(rest, begin)}, unseen, horizon)
     found = [np.maximum([f[""] for f in errors([s]).values()], EXACT) for s in stretches]
-    recorded = [each for each in found if not np.isnan(each).any()]
-    return np.array([np.exp(np.mean(np.log(each))) for each in recorded])
+    return np.array([np.exp(np.mean(np.log(each))) for each in found])

@@ -1,5 +1,6 @@
 """Fits how noisy sensors and water are: sensor noise, level and correlation time of the latent force."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,6 +30,11 @@ def _forces(problem: Problem, logs: Array) -> Array:
     return np.maximum(np.exp(logs), LEAST * problem.ambient.force)
 
 
+def _sensors(families: Sequence[str], logs: Array, stated: Array) -> dict[str, float]:
+    """Noise of each family from its logarithm: however exact a log seems, so much of the stated one is left."""
+    return dict(zip(families, np.maximum(np.exp(logs), QUIETEST * np.exp(stated)).tolist(), strict=True))
+
+
 def fit_force(problem: Problem, found: Fit, enough: float = ROUGH) -> Fit:
     """A hypothesis with the latent-force level of each axis refitted, and with it the spectra it has (`searched`).
 
@@ -48,8 +54,7 @@ def fit_force(problem: Problem, found: Fit, enough: float = ROUGH) -> Fit:
     def placed(x: Array) -> tuple[Levels, Array]:
         theta = found.theta.copy()
         theta[searched] = np.clip(x[:k] * sd, low, high)
-        noise = np.maximum(np.exp(x[k:n]), QUIETEST * np.exp(stated))
-        sensors = dict(zip(families, noise.tolist(), strict=True))
+        sensors = _sensors(families, x[k:n], stated)
         force = _forces(problem, x[n:])
         return replace(found.levels, force=force, sensors={**found.levels.sensors, **sensors}), theta
 
@@ -76,8 +81,7 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     rough = np.log([_roughness(problem, f) or problem.ambient.sensors[f] for f in families])
 
     def levels(x: Array) -> Levels:
-        noise = np.maximum(np.exp(x[n:]), QUIETEST * np.exp(stated))
-        sensors = {**problem.ambient.sensors, **dict(zip(families, noise.tolist(), strict=True))}
+        sensors = {**problem.ambient.sensors, **_sensors(families, x[n:], stated)}
         return replace(problem.ambient, force=_forces(problem, x[:n]), sensors=sensors)
 
     def score(x: Array, fresh: bool = False) -> float:
