@@ -14,7 +14,7 @@ from boatsim.diagnose.search.evidence import left_over, told_from
 from boatsim.diagnose.search.select import begun, selected
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.search.settle import Named, settled
-from boatsim.diagnose.search.unseen import lawful, misled, refuted, stood_for, told
+from boatsim.diagnose.search.unseen import lawful, misled, missed, refuted, stood_for, told
 from boatsim.diagnose.spread import widened
 
 progress = logging.getLogger("boatsim.diagnose")
@@ -86,9 +86,17 @@ def rank(
 
 def _judged(sets: Sets, best: Fit, named: tuple[Named, ...], unseen: Sequence[Track]) -> tuple[Fit, tuple[Named, ...]]:
     """The set without what physics or unseen recordings speak against, laws in place of what but sways like them."""
-    while named and (worse := braking(sets, best) or misled(sets, best, unseen) or refuted(sets, best, named, unseen)):
+    while named and (worse := braking(sets, best) or misled(sets, best, unseen)):
         sets.banned.add(worse)
         best, named = settled(sets, selected(sets, sets.without(best, worse)))
+    while named and (worse := refuted(sets, best, named, unseen)):
+        sets.banned.add(worse)
+        without = settled(sets, selected(sets, sets.without(best, worse)))
+        if missed(sets, best, without[0], unseen):  # what came in its place carries over less than it did
+            sets.banned.remove(worse)
+            sets.vouched.add(worse)
+            continue
+        return _judged(sets, *without, unseen)
     while law := lawful(sets, best, named, unseen):
         best, named = settled(sets, selected(sets, law))
     return best, named

@@ -27,6 +27,7 @@ class Sets:
         self.kept: set[tuple[frozenset[str], str]] = set()  # looks that were compared with what the filter says,
         self.full: set[tuple[frozenset[str], str]] = set()  # and followed by a fit in full
         self.banned: set[str] = set()
+        self.vouched: set[str] = set()  # members without which sets foretell unseen recordings worse, free runs say
         self.random = {e.name for e in problem.program.suspects if type(e).random}
         self.unsteady = {e.name for e in problem.program.suspects if isinstance(e, Unsteady)}  # of them, forces
         self.price = price(len(candidates))

@@ -47,6 +47,7 @@ def refuted(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Trac
     unlikelier = {n for n in gains if gains[n] < -told_from(sets.explained(best))}
     others = {n.name: SLIGHT * max(sets.explained(best) - n.gain, 0.0) for n in named}
     little = {n.name for n in named if n.shared + gains[n.name] < sets.price + others[n.name]}
+    unlikelier, little = unlikelier - sets.vouched, little - sets.vouched
     if not unlikelier | little:
         return ""
     fits = {"": best, **{n: rest[n] for n in rest if n in unlikelier | little}}
@@ -57,6 +58,13 @@ def refuted(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Trac
     misfits = {n: carries.misfit(carries.squares(stretches, n), as_named) for n in unlikelier | little}
     needless = sorted(n for n, misfit in misfits.items() if misfit < carries.WORSE**2)
     return min(needless, key=lambda n: gains[n], default="")
+
+
+def missed(sets: Sets, before: Fit, after: Fit, unseen: Sequence[Track]) -> bool:
+    """Whether free runs over unseen recordings get worse by what became of a set without one of its members."""
+    stretches = free_runs(sets.problem, {"before": before, "after": after}, unseen, _horizon(sets, unseen))
+    was, now = carries.squares(stretches, "before"), carries.squares(stretches, "after")
+    return bool(was) and not carries.misfit(now, was) < carries.WORSE**2
 
 
 def foretold(sets: Sets, found: Fit, unseen: Sequence[Track]) -> float:
