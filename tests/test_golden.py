@@ -1,6 +1,7 @@
 """No norm of a shipped scenario drifts unseen."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,7 @@ import pytest
 from runs import found
 
 from benchmarks import golden
-from benchmarks.golden import TOLERANCE, drifts, kept, main, path_of, tracked, update, values, with_reason
+from benchmarks.golden import REACH, TOLERANCE, drifts, kept, main, path_of, tracked, update, values, with_reason
 from boatsim.simulate.norms import Norm
 
 TRACKED = tracked()
@@ -102,3 +103,16 @@ def test_what_is_kept_of_a_norm_survives_the_file() -> None:
             "unit": "m",
         }
     }
+
+
+def test_of_a_loop_that_runs_away_only_what_goes_beyond_its_own_restlessness_is_a_drift() -> None:
+    old = {"yaw_rate_inf": OLD["yaw_rate_inf"] | {"moves": 0.1}}
+    assert drifts("x", old, with_today(0.5 + 0.9 * REACH * 0.1)) == []
+    assert len(drifts("x", old, with_today(0.5 + 1.1 * REACH * 0.1))) == 1
+
+
+def test_how_far_starts_beside_it_end_is_kept_where_it_is_more_than_arithmetic() -> None:
+    norm = Norm(2.0, "m", None, None, None, None, None, None)
+    assert "moves" not in values({"moved": norm}, [{"moved": replace(norm, value=2.0 + 1e-9)}])["moved"]
+    near = [{"moved": replace(norm, value=x)} for x in (2.1, 1.7)]
+    assert values({"moved": norm}, near)["moved"]["moves"] == pytest.approx(0.3)

@@ -10,7 +10,7 @@ from boatsim.diagnose.problem import Fit
 from boatsim.diagnose.search.evidence import HALF, UNKNOWN, front, left_over, together, told_from
 from boatsim.diagnose.search.select import SLIGHT, selected
 from boatsim.diagnose.search.sets import Sets
-from boatsim.diagnose.tried import called
+from boatsim.diagnose.tried import REORDERED, called
 
 ALIKE = 3.0  # [nats] entries this close to the winner are its look-alikes
 RIVALS = 3  # fitted in the place of what was named
@@ -42,8 +42,8 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         seen.add(frozenset(best.suspects))
         named = tuple(_named(sets, best, n) for n in best.suspects)
         rivals = [(n.name, r, f) for n in named for r, f in n.rivals.items()]
-        fair = [f for name, rival, f in rivals if name in sets.random or rival not in sets.random]
-        better = [f for f in fair if f.evidence > best.evidence + SETTLED]
+        fair = [r for r in rivals if r[0] in sets.random or r[1] not in sets.random]
+        better = [f for name, rival, f in fair if f.evidence > best.evidence + _ahead(name, rival)]
         further = selected(sets, max(better, key=lambda f: f.evidence)) if better else best
         if frozenset(further.suspects) not in seen:
             best = further
@@ -56,6 +56,13 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         if out in calm:
             sets.banned.add(out.name)
         best = sets.without(best, out.name)
+
+
+def _ahead(name: str, rival: str) -> float:
+    """Nats by which a rival must be ahead: on the other side of an actuator than usual only where recordings tell."""
+    if name.removeprefix(REORDERED) == rival.removeprefix(REORDERED):
+        return -ALIKE if name.startswith(REORDERED) else ALIKE
+    return SETTLED
 
 
 def _little(sets: Sets, best: Fit, named: Named) -> bool:
