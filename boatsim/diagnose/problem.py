@@ -118,6 +118,7 @@ class Problem:
         self.horizon = horizon or rules.horizon(self.program.vessel)
         self.nuisances = self._nuisances()
         self.links = self._links()
+        self.spreads: dict[str, float] = {}  # prior sd of the coefficient of each law that the diagnosis describes
 
     def on(self, tracks: Sequence[Track]) -> "Problem":
         """The same question to other recordings."""
@@ -133,7 +134,7 @@ class Problem:
             for name, about in type(effect).params().items():
                 axis_is_free = not about.axis or about.axis in self.program.vessel.freedoms
                 if about.fit and axis_is_free and self._on_board(effect, name) and (acts := self._acts(effect, name)):
-                    sd = about.spread * self.scale(effect, name)
+                    sd = self.spreads.get(effect.name, about.spread * self.scale(effect, name))
                     low, high = self._bounds(about)
                     free.append(
                         Free(

@@ -6,6 +6,7 @@ the vessel) and which facts rule it out, and the vessel's data decide.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import count, islice
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel, check_bindings
 
 FURTHER = "further_"  # in front of the name of an entry of which the vessel has one already
+SLOTS = {"described_force": ("described_", 5), "described_thrust": ("described_thrust_", 2)}  # names, how many
 REORDERED = "reordered_"  # of one that acts on the other side of an actuator's own lag than it usually does
 
 
@@ -26,6 +28,7 @@ class Library:
     """The entries of one diagnosis."""
 
     entries: tuple[Effect, ...]  # all that can act on the vessel: they are composed, whatever is known of a run
+    slots: tuple[Effect, ...]  # composed besides, for laws that the diagnosis writes itself
     left_out: Mapping[str, str]  # those of them that are not tried -> the fact, the vessel's reason, the column missing
     idle: Mapping[str, str]  # what can not act on this vessel -> what that lacks
 
@@ -71,7 +74,19 @@ def library_for(
             if why := reasons.get(called) or ruled_out(kind.ruled_out_by, known) or _unseen(kind, columns):
                 left_out[effect.name] = why
     check_bindings(replace(vessel, effects=(*vessel.effects, *entries.values())), f"{vessel.name}: library")
-    return Library(tuple(entries.values()), left_out, idle)
+    return Library(tuple(entries.values()), slots(vessel), left_out, idle)
+
+
+def slots(vessel: Vessel) -> tuple[Effect, ...]:
+    """Laws without words yet, in which a diagnosis writes what it describes; of kinds that can act on the vessel."""
+    found, taken = list[Effect](), {e.name for e in vessel.effects}
+    for idea, (begins, most) in SLOTS.items():
+        kind: type[Effect] = load_class("effect", idea)
+        if kind.rides and not vessel.all_of(kind.rides):
+            continue
+        free = (name for k in count(1) if (name := f"{begins}{k}") not in taken)
+        found += [kind.from_settings({"name": name}).completed(vessel) for name in islice(free, most)]
+    return tuple(found)
 
 
 def _either_side(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
@@ -99,7 +114,7 @@ def _tables(vessel: Vessel, own: Sequence[str]) -> Iterator[tuple[Mapping[str, o
 
 def fittable(kind: type[Effect]) -> bool:
     """Whether an effect has a parameter that a diagnosis may fit."""
-    return any(p.fit for p in kind.params().values())
+    return not kind.described and any(p.fit for p in kind.params().values())
 
 
 def _unseen(kind: type[Effect], columns: Sequence[str] | None) -> str:
@@ -183,5 +198,6 @@ def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     own = tuple(e for e in vessel.effects if e.name not in vessel.found)
     found = {e.name: e for e in vessel.effects if e.name in vessel.found}
     nominal = replace(vessel, effects=own, found=())
-    entries = {e.name: e for e in library_for(nominal).entries} | found
+    library = library_for(nominal)
+    entries = {e.name: e for e in (*library.entries, *library.slots)} | found
     return Program(nominal, tuple(entries.values())), tuple(n for n in entries if n in found)

@@ -36,7 +36,7 @@ class Composition:
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.effects = tuple(effects)
         self.actuators, self.commands = vessel.actuators, tuple(vessel.commands)
-        self.held: Sequence[str] = [*self.actuators, *(f"{part}_{a}" for a in vessel.angles for part in ("cos", "sin"))]
+        self.held: Sequence[str] = vessel.held
 
     # What kinds may ask -----------------------------------------------------------------------------------------------
 
@@ -44,10 +44,11 @@ class Composition:
         """The calls of an effect's laws: one, or one for each instance that it rides on."""
         effect = self.effects[number]
         own = self._values(number)
+        held = ("act", "at") if type(effect).sees_held else ()
         if type(effect).rides:
             carriers = [self.effects.index(e) for e in self.vessel.ridden(effect)]
-            return [Site(number, own, (self._carried(i, type(effect).rides), self._values(i))) for i in carriers]
-        return [Site(number, own, (self._signals(number),) if type(effect).roles else ())]
+            return [Site(number, own, (self._carried(i, type(effect).rides), self._values(i), *held)) for i in carriers]
+        return [Site(number, own, ((self._signals(number),) if type(effect).roles else ()) + held)]
 
     def targets(self, number: int) -> Sequence[str]:
         """Actuators that a channel effect acts on."""

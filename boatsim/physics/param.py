@@ -93,6 +93,12 @@ def number(
     )  # fmt: skip
 
 
+def code(words: str) -> float:
+    """Field of a number by which a program knows a word of a file: `Effect.rules` give it, no file states it."""
+    about = Param(-1e9, 1e9, "", words)
+    return field(default=UNSET, kw_only=True, repr=False, metadata={"param": about, "ours": True})
+
+
 class Checked:
     """Mixin of dataclasses whose `param` fields are checked on construction and whose unknown settings are named."""
 

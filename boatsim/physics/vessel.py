@@ -159,6 +159,16 @@ class Vessel:
         units = {c: type(e).roles[r].unit for e in self.effects for r, c in self.stated(e).items()}
         return tuple(n for n in self.actuators if units.get(n) == "rad")
 
+    @cached_property
+    def held(self) -> tuple[str, ...]:
+        """What laws see of its actuators: themselves, then cosine and sine of those that are angles."""
+        return (*self.actuators, *(f"{part}_{a}" for a in self.angles for part in ("cos", "sin")))
+
+    def unit(self, actuator: str) -> str:
+        """Unit of an actuator: that of the role in which an effect takes it."""
+        units = (type(e).roles[r].unit for e in self.effects for r, c in self.stated(e).items() if c == actuator)
+        return next(units, "")
+
     def effect(self, name: str) -> Effect | None:
         """The vessel's own effect of that name, or the only one of that idea."""
         named = next((e for e in self.effects if e.name == name), None)

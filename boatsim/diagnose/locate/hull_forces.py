@@ -1,6 +1,6 @@
 """Forces that the vessel as written has along a recording: of its actuators, and of each of its own coefficients."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -10,23 +10,28 @@ from boatsim.diagnose.problem import Fit, Problem
 from boatsim.physics.base import Array
 
 
-def actuators(track: Track) -> Array:
-    """(N, HELD) mean actuators of the vessel as written from row to row, under each row's mean commands."""
-    program = track.program
-    on, act, memory = program.switches(), np.zeros(program.held_size), np.zeros(program.memory_size)
-    program.module.settle(track.orders[0], memory, track.values, on, act)
+def actuators(track: Track, suspects: Sequence[str] = (), values: Array | None = None) -> Array:
+    """(N, HELD) mean actuators from row to row, under each row's mean commands.
+
+    Those of the vessel as written, or with suspects acting and other `values`.
+    """
+    program, values = track.program, track.values if values is None else values
+    on, act, memory = program.switches(suspects), np.zeros(program.held_size), np.zeros(program.memory_size)
+    program.module.settle(track.orders[0], memory, values, on, act)
     out = np.empty((len(track.times), len(act) // 3))
     steps = np.append(np.diff(track.times), track.times[-1] - track.times[-2])
     for row, step in enumerate(steps.tolist()):
-        program.module.actuate_in_place(track.commands[row], memory, step, track.values, on, act)
+        program.module.actuate_in_place(track.commands[row], memory, step, values, on, act)
         begin, middle, end = act.reshape(3, -1)
         out[row] = (begin + 4.0 * middle + end) / 6.0
     return out
 
 
-def along(track: Track, states: Iterable[Array], held: Iterable[Array], values: Array) -> Array:
-    """(N, axes) body-axes wrench of the vessel's own laws at states (N, 2 NQ) with actuators (N, HELD)."""
-    forces, on = track.program.module.forces, track.program.switches()
+def along(
+    track: Track, states: Iterable[Array], held: Iterable[Array], values: Array, suspects: Sequence[str] = ()
+) -> Array:
+    """(N, axes) body-axes wrench of the vessel's laws, and of suspects, at states (N, 2 NQ), actuators (N, HELD)."""
+    forces, on = track.program.module.forces, track.program.switches(suspects)
     first = np.int64(0)
     return np.array([forces(0.0, y, act, first, values, on) for y, act in zip(states, held, strict=True)])
 

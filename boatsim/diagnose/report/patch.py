@@ -44,12 +44,11 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
         if effect.name in settings and isinstance(effect, Release):
             _release(document, vessel, effect, settings[effect.name])
         elif effect.name in settings:
-            told = {n: getattr(effect, n) for names in type(effect).facts.values() for n in names}
             named = {} if effect.name == type(effect).idea() else {"name": effect.name}
             bound: dict[str, object] = {"on": list(effect.on)} if effect.on else {}
             if isinstance(effect, Channel) and effect.other_side:
                 bound["other_side"] = True
-            table = _effect_table(_address(type(effect), vessel), named | bound | told | settings[effect.name])
+            table = _effect_table(_address(type(effect), vessel), named | bound | effect.shape() | settings[effect.name])
             table.add(tomlkit.nl())
             document["effect"].append(table)
     _hold(document, problem, vessel, found)

@@ -48,6 +48,8 @@ class Effect(Checked):
     told_by: ClassVar[tuple[str, ...]] = ()  # entries that show the same: it is tried only where somebody asks for it
     random: ClassVar[bool] = False  # only its spectrum can be fitted: the filter follows its course, a free run can not
     alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
+    described: ClassVar[bool] = False  # a law that the diagnosis writes itself, of terms: no entry of the library
+    sees_held: ClassVar[bool] = False  # its law takes all actuators besides, `act` and `at`, as its last arguments
     rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
 
     filled: frozenset[str] = field(  # parameters by `completed`, which nobody stated
@@ -135,6 +137,10 @@ class Effect(Checked):
         """What recordings really tell where a parameter is but one way to put it: name -> value, meaning in words."""
         return {}
 
+    def shape(self) -> dict[str, object]:
+        """What its table states that no fit finds, besides its name and what it acts on."""
+        return {n: getattr(self, n) for names in type(self).facts.values() for n in names}
+
     def rules(self, vessel: "Boat") -> dict[str, float]:
         """Parameters by a rule of the effect's own, for those that nobody states; what follows is filled in before."""
         return {}
@@ -199,6 +205,10 @@ class Boat(Protocol):
     @property
     def body(self) -> Rigid:
         """The rigid body."""
+
+    @property
+    def held(self) -> Sequence[str]:
+        """What laws see of its actuators: themselves, then cosine and sine of those that are angles."""
 
     def effect(self, name: str) -> Effect | None:
         """Its own effect of that name, or the only one of that idea."""

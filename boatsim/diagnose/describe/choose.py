@@ -1,0 +1,121 @@
+"""Chooses the terms of a description: weighed quickly, the best tried in the filter, made finer, judged by evidence."""
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from boatsim.diagnose.describe.grammar import FINER, neighbours, terms
+from boatsim.diagnose.describe.shapes import ways
+from boatsim.diagnose.describe.slots import free_slot, write
+from boatsim.diagnose.describe.weigh import Weighed, varying, weighed
+from boatsim.diagnose.filter import Track
+from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search.evidence import price
+from boatsim.diagnose.search.select import SLIGHT
+from boatsim.diagnose.search.settle import WORTH
+from boatsim.physics.described import Described
+
+progress = logging.getLogger("boatsim.diagnose")
+MOST = 5  # terms
+TRIED = 4  # of those that promise most, in the filter
+ROUNDS = 3  # moves of a term's times or wavelength at one fineness
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A description so far: the fit, and the term that stands in each slot, in the order in which they came."""
+
+    fit: Fit
+    terms: dict[str, Described]
+
+
+def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
+    """Terms added one by one to a set, each time the one by which the evidence rises most, while one is worth it."""
+    begun = so_far = Chosen(best, {})
+    everywhere = [*problem.tracks, *unseen]
+    while len(so_far.terms) < MOST:
+        seen = ways(problem, so_far.fit)
+        moves, given = (sorted({n for pair in found for n in pair}) for found in zip(*map(varying, seen), strict=True))
+        ordered = weighed(seen, list(terms(problem.program.vessel, problem.tracks, moves, given)))
+        ahead = [w for w in apart(ordered) if w.gain > 0.0][:TRIED]
+        tried = [made for w in ahead if (made := _with(problem, so_far, w, everywhere))]
+        if not tried:
+            break
+        slot, found, w = max(tried, key=lambda t: t[1].evidence)
+        write(problem, slot, w.term, everywhere)  # others were tried in this slot after it
+        problem.spreads[slot] = w.spread
+        term, found = _finer(problem, so_far, slot, w, found, everywhere)
+        found = converge(problem, found)
+        gained = so_far.fit.evidence - begun.fit.evidence
+        if found.evidence - so_far.fit.evidence < max(price(len(ordered)), SLIGHT * gained):
+            break
+        so_far = _pruned(problem, Chosen(found, so_far.terms | {slot: term}))
+        progress.info("described: %d terms (%.0f nats)", len(so_far.terms), found.evidence - best.evidence)
+    return so_far
+
+
+def apart(ordered: Sequence[Weighed]) -> list[Weighed]:
+    """Of terms that differ in no more than when they act, or in a wavelength, the best: the rest is made finer later."""
+    found: dict[tuple[object, ...], Weighed] = {}
+    for w in ordered:
+        t = w.term
+        key = (type(t), t.of, t.acts, t.run, *(getattr(t, n, "") for n in ("axis", "side", "sense")))
+        found.setdefault(key, w)
+    return list(found.values())
+
+
+def _with(problem: Problem, so_far: Chosen, w: Weighed, tracks: Sequence[Track]) -> tuple[str, Fit, Weighed] | None:
+    """The fit with one more term, in its slot; None where no slot is free or the boat runs away."""
+    slot = free_slot(problem, type(w.term), list(so_far.terms))
+    if not slot:
+        return None
+    write(problem, slot, w.term, tracks)
+    problem.spreads[slot] = w.spread
+    base = so_far.fit
+    free = problem.parameters((*base.suspects, slot))
+    known = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
+    theta = np.array([known.get((f.effect, f.name), w.coefficient) for f in free])
+    start = Fit((*base.suspects, slot), free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf)
+    found = descend(problem, start, 4, SETTLED)
+    return (slot, fit(problem, found), w) if np.isfinite(found.evidence) else None
+
+
+def _finer(
+    problem: Problem, so_far: Chosen, slot: str, w: Weighed, found: Fit, tracks: Sequence[Track]
+) -> tuple[Described, Fit]:
+    """The term with its times or its wavelength moved to where they explain most, and the fit with it."""
+    if not neighbours(w.term, problem.tracks, FINER[0]):
+        return w.term, found
+    seen, best = ways(problem, so_far.fit), w
+    for by in FINER:
+        for _ in range(ROUNDS):
+            near = weighed(seen, neighbours(best.term, problem.tracks, by))
+            if not near or near[0].gain <= best.gain:
+                break
+            best = near[0]
+    if best.term == w.term:
+        return w.term, found
+    made = _with(problem, so_far, best, tracks)
+    if made and made[1].evidence > found.evidence:
+        return best.term, made[1]
+    write(problem, slot, w.term, tracks)
+    problem.spreads[slot] = w.spread
+    return w.term, found
+
+
+def _pruned(problem: Problem, so_far: Chosen) -> Chosen:
+    """Without what the newest term has made needless: an earlier term, or an entry that but stood for it."""
+    for name in so_far.fit.suspects[:-1]:
+        without = converge(problem, reduced(problem, so_far.fit, name))
+        if without.evidence > so_far.fit.evidence - WORTH:
+            so_far = Chosen(without, {n: t for n, t in so_far.terms.items() if n != name})
+    return so_far
+
+
+def less(problem: Problem, so_far: Chosen, name: str) -> Chosen:
+    """A description without one of its terms."""
+    found = converge(problem, reduced(problem, so_far.fit, name))
+    return replace(so_far, fit=found, terms={n: t for n, t in so_far.terms.items() if n != name})

@@ -1,0 +1,145 @@
+"""The grammar of described laws: all terms that are weighed on a vessel, and what lies next to one.
+
+A term is a described effect without a coefficient. Forces go with powers and products of speeds, commands, heading and
+place, changes of thrust with the drives; either may act for a while: within a stretch, rising, fading, swinging. What
+acts within a stretch of one recording is an event of that run.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from boatsim.diagnose.filter import Track, axes_of
+from boatsim.physics.described import EVER, Described
+from boatsim.physics.effects.described_force import DescribedForce
+from boatsim.physics.effects.described_thrust import SENSES, SIDES, DescribedThrust
+from boatsim.physics.terms import SPEEDS
+from boatsim.physics.vessel import Vessel
+
+PARTS = 16  # of a recording, at whose ends a stretch may begin and end
+LENGTHS = (1, 2, 4, 8)  # of a stretch, in such parts
+SPANS = (1.0, 0.5, 0.25, 0.125)  # of a recording, in which a law rises or fades
+PERIODS, LEAST_PERIOD = 40, 6  # from the whole recording down to so many rows, what swings; so many in all
+WAVES, SHORTEST_WAVE = 24, 0.5  # lengths of a pattern on the water: so many, from so many boat lengths to what was seen
+FINER = (0.5, 0.25, 0.12)  # of a part, of a span, of the step between periods: how near neighbours of a term lie
+
+
+def terms(vessel: Vessel, tracks: Sequence[Track], moves: Sequence[str], given: Sequence[str]) -> Iterator[Described]:
+    """All terms that are weighed: `moves` are the speeds, `given` the actuators that vary in the recordings."""
+    lasting = list(_lasting(vessel, tracks))
+    axes = axes_of(vessel)
+    level = ("north", "east") if {"surge", "sway"} <= set(axes) else ()
+    for axis in axes:
+        for of in _products(vessel, moves, given):
+            yield DescribedForce(axis=axis, of=of)
+        for ripple in _ripples(vessel, tracks):
+            yield DescribedForce(axis=axis, of=ripple[:1], wavelength=ripple[1])
+    for axis in (*axes, *level):
+        for run, acts, begin, end in lasting:
+            yield DescribedForce(axis=axis, acts=acts, begin=begin, end=end, run=run)
+    if vessel.all_of(DescribedThrust.rides):
+        for side in SIDES if _sided(vessel) else ("all",):
+            for sense in SENSES:
+                for run, acts, begin, end in lasting:
+                    yield DescribedThrust(side=side, sense=sense, acts=acts, begin=begin, end=end, run=run)
+                for speed in moves:
+                    yield DescribedThrust(side=side, sense=sense, of=(f"abs_{speed}",))
+
+
+def _sided(vessel: Vessel) -> bool:
+    """Whether a drive lies to one side."""
+    return any(getattr(e, "y", 0.0) != 0.0 for e in vessel.all_of(DescribedThrust.rides))
+
+
+def _products(vessel: Vessel, moves: Sequence[str], given: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Factors of forces that act always."""
+    yield ()
+    for s in moves:
+        yield from ((s,), (s, f"abs_{s}"), (s, s, s), (f"abs_{s}",), (s, s), (f"sign_{s}",))
+    for a, b in combinations(moves, 2):
+        yield from ((a, b), (a, f"abs_{b}"), (f"abs_{a}", b), (a, b, b), (a, a, b))
+    for c in given:
+        yield from ((c,), (f"abs_{c}",), (c, f"abs_{c}"))
+        for s in moves:
+            yield from ((c, s), (f"abs_{c}", s), (c, f"abs_{s}"))
+    for a, b in combinations(given, 2):
+        yield (a, b)
+    if "yaw" in vessel.freedoms:
+        for bearing in ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading"):
+            yield (bearing,)
+            yield from ((bearing, s) for s in moves if s == SPEEDS[0])
+    for axis, place in (("surge", "north"), ("sway", "east"), ("heave", "depth")):
+        if axis in vessel.freedoms:
+            yield (place,)
+    for axis, angle in (("roll", "roll_angle"), ("pitch", "pitch_angle")):
+        if axis in vessel.freedoms:
+            yield from ((angle,), (angle, angle), (angle, angle, angle))
+
+
+def _ripples(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, float]]:
+    """Patterns that lie still on the water: factor and wavelength [m], as long as what was sailed through."""
+    for axis, place, signal in (("surge", "north", "x_m"), ("sway", "east", "y_m")):
+        columns = [t.measured[:, t.signals.index(signal)] for t in tracks if signal in t.signals]
+        if axis not in vessel.freedoms or not columns:
+            continue
+        extent = float(np.nanmax(np.concatenate(columns)) - np.nanmin(np.concatenate(columns)))
+        shortest = SHORTEST_WAVE * vessel.length
+        if extent > 2.0 * shortest:
+            for wavelength in np.geomspace(shortest, extent, WAVES).tolist():
+                yield f"cos_{place}", wavelength
+                yield f"sin_{place}", wavelength
+
+
+def _lasting(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, str, float, float]]:
+    """How a law may act for a while: recording or "" for all of them, course, begin, end [s]."""
+    begin = min(float(t.times[0]) for t in tracks)
+    end = max(float(t.times[-1]) for t in tracks)
+    for span in SPANS:
+        yield "", "fading", begin, begin + span * (end - begin)
+    yield "", "rising", begin, end
+    shortest = LEAST_PERIOD * max(float(np.median(np.diff(t.times))) for t in tracks)
+    for period in np.geomspace(shortest, end - begin, PERIODS).tolist() if end - begin > shortest else ():
+        yield "", "swinging", 0.0, period
+        yield "", "swinging", 0.25 * period, 1.25 * period
+    for track in tracks:
+        first, last = float(track.times[0]), float(track.times[-1])
+        part = (last - first) / PARTS
+        for length in LENGTHS:
+            for k in range(PARTS - length + 1):
+                yield track.name, "within", first + k * part, first + (k + length) * part
+        for k in range(PARTS // 2, PARTS):  # from then on
+            if k + LENGTHS[-1] > PARTS:
+                yield track.name, "within", first + k * part, EVER
+    if len(tracks) > 1:
+        part = (end - begin) / PARTS
+        for length in LENGTHS:
+            for k in range(PARTS - length + 1):
+                yield "", "within", begin + k * part, begin + (k + length) * part
+
+
+def neighbours(term: Described, tracks: Sequence[Track], by: float) -> list[Described]:
+    """The same term a little otherwise: begin, end, wavelength or period moved by a share `by` of the grid's step."""
+    found: list[Described] = []
+    near = [t for t in tracks if term.run in ("", t.name)]
+    whole = max(float(t.times[-1] - t.times[0]) for t in near)
+    if term.acts == "within":
+        step = by * whole / PARTS
+        edges = [(term.begin + a * step, term.end + b * step) for a in (-1, 0, 1) for b in (-1, 0, 1) if a or b]
+        edges = [(a, min(b, EVER)) for a, b in edges]
+        found += [replace(term, begin=a, end=b) for a, b in edges if b > a]
+    if term.acts in ("rising", "fading"):
+        span = term.end - term.begin
+        found += [replace(term, end=term.begin + span * x) for x in (2.0**by, 2.0**-by)]
+    if term.acts == "swinging":
+        period, ratio = term.end - term.begin, 1.0 + by * 0.5 * (term.end - term.begin) / whole
+        for p in (period * ratio, period, period / ratio):
+            for phase in (-by / 4, 0.0, by / 4):
+                if p != period or phase:
+                    begin = (term.begin / period + phase) * p
+                    found.append(replace(term, begin=begin, end=begin + p))
+    if any(f.endswith(("_north", "_east")) for f in term.of):
+        step = 1.0 + 0.15 * by
+        found += [replace(term, wavelength=term.wavelength * x) for x in (step, 1.0 / step)]
+    return found

@@ -1,0 +1,90 @@
+"""How much each term would gain beside a fit, by the force that the fit leaves over: quick, and good enough to choose.
+
+A term's coefficient has a prior about nothing as wide as that of a steady force, over the rows in which it acts.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from boatsim.diagnose.describe.shapes import Way
+from boatsim.diagnose.filter import axes_of
+from boatsim.diagnose.locate.smoothing import information_alone
+from boatsim.diagnose.problem import scale_of
+from boatsim.physics.base import Array
+from boatsim.physics.described import Described
+from boatsim.physics.effects.described_thrust import DescribedThrust
+from boatsim.physics.vessel import Vessel
+
+FORCE = {"surge": 0.1, "sway": 0.1, "heave": 0.1, "roll": 0.02, "pitch": 0.04, "yaw": 0.04}  # [N, N m] on a 1.2 m boat
+SHARE = 0.3  # of the thrust
+AT_ONCE = 200  # terms: more would not fit into a processor's cache
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """A term with what it promises."""
+
+    term: Described
+    gain: float  # [nats] that it would gain, the freedom of its coefficient paid for
+    coefficient: float  # that it would have,
+    spread: float  # and its prior sd
+
+
+def weighed(ways: Sequence[Way], terms: Sequence[Described]) -> list[Weighed]:
+    """Each term by itself on top of the fit, the best first; those that never act are left out."""
+    found: list[Weighed] = []
+    for first in range(0, len(terms), AT_ONCE):
+        found += _batch(ways, terms[first : first + AT_ONCE])
+    return sorted(found, key=lambda w: -w.gain)
+
+
+def _batch(ways: Sequence[Way], terms: Sequence[Described]) -> list[Weighed]:
+    known, score = np.zeros(len(terms)), np.zeros(len(terms))
+    squares, rows = np.zeros(len(terms)), np.zeros(len(terms))
+    for way in ways:
+        with np.errstate(over="ignore"):
+            shapes = np.stack([way.along(t) for t in terms], axis=2)
+            sizes = np.stack([way.size(t) if t.run in ("", way.track.name) else 0.0 * way.track.times for t in terms])
+        squares += (sizes**2).sum(axis=1)
+        rows += (sizes != 0.0).sum(axis=1)
+        nq, levels, on = way.problem.program.module.NQ, way.found.levels, way.on
+        latent = slice(2 * nq, 3 * nq)
+        learnt, slope = information_alone(
+            shapes, way.left, way.track.times, *way.smoother, latent, *way.track.jolts(way.values, on, levels),
+            levels.time_constant,
+        )  # fmt: skip
+        known, score = known + learnt, score + slope
+    out = []
+    vessel = ways[0].problem.program.vessel
+    for term, i, s, square, n in zip(terms, known.tolist(), score.tolist(), squares.tolist(), rows.tolist(), strict=True):
+        if not (np.isfinite(i) and i > 0.0 and square > 0.0):
+            continue
+        spread = strength(vessel, term) / float(np.sqrt(square / n))
+        whole = i + spread**-2
+        gain = 0.5 * s**2 / whole - 0.5 * float(np.log(whole * spread**2))
+        out.append(Weighed(term, gain, s / whole, spread))
+    return out
+
+
+def strength(vessel: Vessel, term: Described) -> float:
+    """Prior sd of what a term amounts to where it acts: a force [N], a moment [N m], or a share of the thrust."""
+    if isinstance(term, DescribedThrust):
+        return SHARE
+    axis = str(getattr(term, "axis", ""))
+    turning = axis in ("roll", "pitch", "yaw")
+    return FORCE.get(axis, FORCE["surge"]) * scale_of("N m" if turning else "N", vessel)
+
+
+def varying(way: Way) -> tuple[list[str], list[str]]:
+    """Speeds through the water and actuators that vary along a recording, by the names of factors."""
+    vessel, m = way.problem.program.vessel, way.motion
+    speeds = dict(zip(("surge", "sway", "heave", "roll", "pitch", "yaw"), (m.ur, m.vr, m.wr, m.p, m.q, m.r), strict=True))
+    kind = {"surge": "surge_speed", "sway": "sway_speed", "heave": "heave_speed"}
+    moves = [kind.get(a, f"{a}_rate") for a in axes_of(vessel) if _varies(speeds[a])]
+    return moves, [a for i, a in enumerate(vessel.actuators) if _varies(way.held[i])]
+
+
+def _varies(values: Array) -> bool:
+    return bool(np.ptp(values) > 0.0)

@@ -1,0 +1,124 @@
+"""Terms of a described law: products of factors that a sailor knows, and how it acts in time.
+
+Files name factors, courses and directions; a program knows each by a number (`codes`), so that one compiled law is any
+of them. The same functions work on single numbers and on arrays over the rows of a recording.
+"""
+
+from collections.abc import Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from boatsim.errors import BadInput, unknown_name
+from boatsim.physics.kernel.compiling import apart
+from boatsim.physics.signals import Wrench, wrench
+
+SPEEDS = ("surge_speed", "sway_speed", "heave_speed", "roll_rate", "pitch_rate", "yaw_rate")  # through the water
+SIZES, SENSES = tuple(f"abs_{s}" for s in SPEEDS), tuple(f"sign_{s}" for s in SPEEDS)
+BEARINGS = ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading")
+PLACES = ("north", "east", "depth", "roll_angle", "pitch_angle")
+RIPPLES = ("cos_north", "sin_north", "cos_east", "sin_east")  # of a pattern that lies still, with a wavelength
+FACTORS = ("", *SPEEDS, *SIZES, *SENSES, *BEARINGS, *PLACES, *RIPPLES)  # a factor's number is its place here;
+FIRST_HELD = 100  # that of a vessel's k-th actuator signal this and 2 k, of its size one more
+MOST = 3  # factors of a term
+COURSES = ("always", "within", "rising", "fading", "swinging")
+DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw", "north", "east")  # the last two on level axes
+UNITS = dict.fromkeys(("surge_speed", "sway_speed", "heave_speed"), "m/s") | dict.fromkeys(SPEEDS[3:], "rad/s")
+UNITS |= {f"abs_{s}": UNITS[s] for s in SPEEDS} | {"north": "m", "east": "m", "depth": "m"}
+UNITS |= {"roll_angle": "rad", "pitch_angle": "rad"}
+
+SINGLE, SIZE, SENSE, BEARING, PLACE, RIPPLE = (
+    FACTORS.index(names[0]) for names in (SPEEDS, SIZES, SENSES, BEARINGS, PLACES, RIPPLES)
+)
+WITHIN, RISING, FADING, SWINGING = (float(COURSES.index(c)) for c in COURSES[1:])
+
+
+@apart
+def factor(m: Any, act: Any, at: Any, number: float, wavelength: float, little: float) -> Any:
+    """One factor; `little` is the speed at which a sense is three quarters there, `wavelength` [m] of a ripple."""
+    k = int(number)
+    if k >= FIRST_HELD:
+        value = act[at + (k - FIRST_HELD) // 2]
+        return abs(value) if (k - FIRST_HELD) % 2 else value
+    if k >= RIPPLE:
+        along = 2.0 * pi / wavelength * (m.x if k < RIPPLE + 2 else m.y)
+        return np.cos(along) if (k - RIPPLE) % 2 == 0 else np.sin(along)
+    if k >= PLACE:
+        return (m.x, m.y, m.z, m.phi, m.theta)[k - PLACE]
+    if k >= BEARING:
+        c, s = m.cos_psi, m.sin_psi
+        return (c, s, c * c - s * s, 2.0 * c * s)[k - BEARING]
+    if k >= SINGLE:
+        speed = (m.ur, m.vr, m.wr, m.p, m.q, m.r)[(k - SINGLE) % len(SPEEDS)]
+        return speed if k < SIZE else abs(speed) if k < SENSE else np.tanh(speed / little)
+    return 0.0 * m.t + 1.0
+
+
+@apart
+def course(t: Any, acts: float, begin: float, end: float) -> Any:
+    """How a law acts in time: always; within two instants; rising between them; fading, swinging over their span."""
+    if acts == WITHIN:
+        return 1.0 * ((t >= begin) & (t < end))
+    if acts == RISING:
+        return np.minimum(np.maximum((t - begin) / (end - begin), 0.0), 1.0)
+    if acts == FADING:
+        return np.exp(-np.maximum(t - begin, 0.0) / (end - begin))
+    if acts == SWINGING:
+        return np.sin(2.0 * pi * (t - begin) / (end - begin))
+    return 0.0 * t + 1.0
+
+
+@njit(inline="always")
+def term(m: Any, q: Any, act: Any, at: Any) -> Any:
+    """The product of a described law's factors and its course."""
+    return (
+        factor(m, act, at, q.first, q.wavelength, q.little)
+        * factor(m, act, at, q.second, q.wavelength, q.little)
+        * factor(m, act, at, q.third, q.wavelength, q.little)
+        * course(m.t, q.course, q.begin, q.end)
+    )
+
+
+@apart
+def along(m: Any, direction: float, force: float) -> Wrench:
+    """A force or moment along one of `DIRECTIONS`."""
+    k = int(direction)
+    if k == 6:
+        return wrench(X=force * m.cos_psi, Y=-force * m.sin_psi)
+    if k == 7:
+        return wrench(X=force * m.sin_psi, Y=force * m.cos_psi)
+    return wrench(
+        X=force * (k == 0), Y=force * (k == 1), Z=force * (k == 2), K=force * (k == 3), M=force * (k == 4),
+        N=force * (k == 5),
+    )  # fmt: skip
+
+
+def names_for(held: Sequence[str]) -> tuple[str, ...]:
+    """Names of all factors on a vessel with these actuator signals."""
+    return (*FACTORS[1:], *(name for h in held for name in (h, f"abs_{h}")))
+
+
+def codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, ...]:
+    """(MOST,) numbers of a term's factors. Raises BadInput for a name that does not exist, or too many."""
+    if len(of) > MOST:
+        raise BadInput(f"{what}: of = {list(of)}; allowed are at most {MOST} factors")
+    found = []
+    for name in of:
+        size = name.removeprefix("abs_")
+        if name in held or size in held:
+            of_size = name not in held
+            found.append(float(FIRST_HELD + 2 * list(held).index(size if of_size else name) + of_size))
+        elif name and name in FACTORS:
+            found.append(float(FACTORS.index(name)))
+        else:
+            raise BadInput(unknown_name(f"{what}: of", name, names_for(held)))
+    return (*found, *[0.0] * (MOST - len(found)))
+
+
+def code_of(what: str, word: str, words: Sequence[str]) -> float:
+    """Number of a course or direction. Raises BadInput."""
+    if word not in words:
+        raise BadInput(unknown_name(what, word, words))
+    return float(words.index(word))
