@@ -57,7 +57,7 @@ def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[st
     )
     horizon = HORIZON * math.sqrt(found.vessel.length / LENGTH)
     out.mkdir(parents=True, exist_ok=True)
-    patch.write(found.problem, found.vessel, found.ranking.best, out / "patched.toml")
+    patch.write(found.problem, found.vessel, found.ranking.best, out / "patched.toml", found.ranking.laws)
     with contextlib.redirect_stdout(io.StringIO()):
         commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon, out)
     (out / "diagnosis.json").write_text(json.dumps(found.findings.answer, indent=1))

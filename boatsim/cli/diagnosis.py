@@ -77,7 +77,8 @@ def write(found: Diagnosis, out: Path) -> None:
         ) from None
     with filling(out) as new:
         report.write(found.findings, new)
-        patched = patch.patched(found.problem, found.vessel, found.ranking.best, out / "patched.toml")
+        laws = found.ranking.laws
+        patched = patch.patched(found.problem, found.vessel, found.ranking.best, out / "patched.toml", laws)
         (new / "patched.toml").write_text(patched, encoding="utf-8")
         if found.plan is not None:
             (new / NEXT).write_text(scenario_text(found.plan, found.vessel), encoding="utf-8")

@@ -9,6 +9,7 @@ import numpy as np
 
 from boatsim.diagnose import rules
 from boatsim.diagnose.correlation_time import timed
+from boatsim.diagnose.describe.describe import described
 from boatsim.diagnose.filter import Track, axes_of, noise_beside, noise_of, nominal_levels, track
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.locate import forces as locate
@@ -23,6 +24,7 @@ from boatsim.diagnose.report import show, taken
 from boatsim.diagnose.report.answer import compose, meanings
 from boatsim.diagnose.report.findings import Findings, Missing
 from boatsim.diagnose.search.rank import Ranking, rank
+from boatsim.diagnose.spread import widened
 from boatsim.diagnose.tried import less, library_for, with_stated_errors
 from boatsim.errors import BadInput
 from boatsim.physics import vessel as vessels
@@ -140,6 +142,7 @@ def diagnose_recordings(
         a_fact = "time_constant_s" in fitted[0].notes.ambient
         if not a_fact and (again := timed(problem, ranking.best)) is not problem:
             problem, ranking = again, rank(again, candidates, unseen_tracks, ranking.best)
+        ranking = _described(problem, ranking, unseen_tracks)
         plan = experiment.next_experiment(problem, *experiment.question(ranking))
         findings = _findings(problem, ranking, unseen_tracks, boat, note, plan)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
@@ -177,6 +180,15 @@ def _compile(problem: Problem) -> None:
     hull_forces.along(track, rest, hull_forces.actuators(track)[:1], track.values)
 
 
+def _described(problem: Problem, ranking: Ranking, unseen: Sequence[Track]) -> Ranking:
+    """The same with a law written down for what nothing explains, and without entries that but stood for it."""
+    found = described(problem, ranking.best, ranking.recalibrated, unseen) if ranking.unknown else None
+    if found is None:
+        return ranking
+    named = tuple(n for n in ranking.named if n.name in found.fit.suspects)
+    return replace(ranking, best=widened(problem, found.fit), named=named, description=found)
+
+
 def _findings(
     problem: Problem,
     ranking: Ranking,
@@ -193,7 +205,7 @@ def _findings(
     forces = locate.missing_force(problem, ranking.recalibrated, everything)
     left = locate.force_left(problem, ranking.best, everything)
     stretches = free_runs(problem, fits, unseen, horizon)
-    parts = show.by_part(problem, fits, everything, horizon) if ranking.named else []
+    parts = show.by_part(problem, fits, everything, horizon) if ranking.adds else []
     table = show.table_of(parts, problem.tracks, horizon)
     axes = axes_of(vessel)
 
@@ -216,5 +228,5 @@ def _findings(
         vessel.name, tuple(t.name for t in problem.tracks), held_out, note, missing, tuple(stretches),
         tuple(show.remarks(parts, problem.tracks, errors(stretches), ranking)), coefficients,
         (table,) if table[2] else (), meanings(problem.program.suspects, problem.program.vessel),
-        experiment.steps(plan),
+        ranking.description.terms if ranking.description else (), experiment.steps(plan),
     )  # fmt: skip

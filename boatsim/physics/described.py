@@ -23,6 +23,9 @@ class Described(Force):
 
     of: Sequence[str] = field(default=(), hash=False)  # the factors it goes with; none: it is constant
     acts: str = "always"  # which of `terms.COURSES`
+    coefficient: float = param(
+        0.0, low=-1e15, high=1e15, unit="", words="per product of its factors", fit=True, spread=1.0
+    )
     run: str = field(default="", metadata={"ours": True})  # the recording of which it is an event; "": of none
     begin: float = param(-EVER, low=-EVER, high=EVER, unit="s", words="it begins, on the clock of the recording")
     end: float = param(EVER, low=-EVER, high=EVER, unit="s", words="it ends; of what fades or swings, one span later")

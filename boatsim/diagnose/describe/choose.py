@@ -58,7 +58,7 @@ def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
 
 
 def apart(ordered: Sequence[Weighed]) -> list[Weighed]:
-    """Of terms that differ in no more than when they act, or in a wavelength, the best: the rest is made finer later."""
+    """Of terms that differ in no more than when they act, or in a wavelength, the best: it is made finer later."""
     found: dict[tuple[object, ...], Weighed] = {}
     for w in ordered:
         t = w.term

@@ -1,38 +1,17 @@
 """A description of what no entry of the library explains, and how far it carries over to recordings not seen."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from boatsim.diagnose.describe.choose import Chosen, chosen, less
+from boatsim.diagnose.describe.curves import curve
+from boatsim.diagnose.describe.shapes import ways
+from boatsim.diagnose.description import Description, Written
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.free_runs import free_runs
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
-from boatsim.physics.described import Described
 
 BETTER = 0.98  # of the mean square errors: free runs must get that much better for one more term to carry over
-
-
-@dataclass(frozen=True)
-class Written:
-    """A term of a description."""
-
-    term: Described  # with its coefficient
-    sd: float  # of the coefficient
-    gain: float  # [nats] on top of the other terms and entries
-    carries: bool  # free runs over unseen recordings get better by it; an event of a run acts in no other
-
-
-@dataclass(frozen=True)
-class Description:
-    """The terms, and the fit in which those stand that carry over, and the events of the recordings fitted."""
-
-    terms: tuple[Written, ...]
-    fit: Fit
-
-    def effects(self) -> Mapping[str, Described]:
-        """What a boat that sails elsewhere has of it, by the names of the slots."""
-        return {w.term.name: w.term for w in self.terms if w.carries}
 
 
 def described(problem: Problem, best: Fit, recalibrated: Fit, unseen: Sequence[Track]) -> Description | None:
@@ -43,12 +22,13 @@ def described(problem: Problem, best: Fit, recalibrated: Fit, unseen: Sequence[T
     alone = {name: less(problem, found, name).fit for name in found.terms}
     gains = {name: found.fit.evidence - f.evidence for name, f in alone.items()}
     kept = _carried(problem, found, gains, recalibrated, unseen)
-    written = []
+    written, seen = [], ways(problem, found.fit)
     for name, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
-        of = kept.fit if name in kept.terms else found.fit
-        value, sd = of.value(name, "coefficient")
-        said = term.having({"name": name, "coefficient": value})
-        written.append(Written(said, sd, gains[name], name in kept.terms and not term.run))
+        carries = name in kept.terms and not term.run
+        value, sd = (kept if carries else found).fit.value(name, "coefficient")
+        own = found.fit.value(name, "coefficient")
+        shown = curve(seen, term, *own)
+        written.append(Written(term.having({"name": name, "coefficient": value}), sd, gains[name], carries, shown))
     return Description(tuple(written), kept.fit)
 
 

@@ -21,28 +21,29 @@ from boatsim.physics.vessel import Vessel
 PARTS = 16  # of a recording, at whose ends a stretch may begin and end
 LENGTHS = (1, 2, 4, 8)  # of a stretch, in such parts
 SPANS = (1.0, 0.5, 0.25, 0.125)  # of a recording, in which a law rises or fades
-PERIODS, LEAST_PERIOD = 40, 6  # from the whole recording down to so many rows, what swings; so many in all
+SWINGS, OF_THRUST = 60, 8  # what swings does so up to so many times in a recording, what changes the thrust less often
+SHORTEST_SWING = 6  # rows
 WAVES, SHORTEST_WAVE = 24, 0.5  # lengths of a pattern on the water: so many, from so many boat lengths to what was seen
 FINER = (0.5, 0.25, 0.12)  # of a part, of a span, of the step between periods: how near neighbours of a term lie
 
 
 def terms(vessel: Vessel, tracks: Sequence[Track], moves: Sequence[str], given: Sequence[str]) -> Iterator[Described]:
     """All terms that are weighed: `moves` are the speeds, `given` the actuators that vary in the recordings."""
-    lasting = list(_lasting(vessel, tracks))
+    lasting, swinging = list(_lasting(tracks)), list(_swinging(tracks, SWINGS))
     axes = axes_of(vessel)
     level = ("north", "east") if {"surge", "sway"} <= set(axes) else ()
     for axis in axes:
         for of in _products(vessel, moves, given):
             yield DescribedForce(axis=axis, of=of)
-        for ripple in _ripples(vessel, tracks):
-            yield DescribedForce(axis=axis, of=ripple[:1], wavelength=ripple[1])
     for axis in (*axes, *level):
-        for run, acts, begin, end in lasting:
+        for place, wavelength in _ripples(vessel, tracks):
+            yield DescribedForce(axis=axis, of=(place,), wavelength=wavelength)
+        for run, acts, begin, end in (*lasting, *swinging):
             yield DescribedForce(axis=axis, acts=acts, begin=begin, end=end, run=run)
     if vessel.all_of(DescribedThrust.rides):
         for side in SIDES if _sided(vessel) else ("all",):
             for sense in SENSES:
-                for run, acts, begin, end in lasting:
+                for run, acts, begin, end in (*lasting, *_swinging(tracks, OF_THRUST)):
                     yield DescribedThrust(side=side, sense=sense, acts=acts, begin=begin, end=end, run=run)
                 for speed in moves:
                     yield DescribedThrust(side=side, sense=sense, of=(f"abs_{speed}",))
@@ -92,31 +93,47 @@ def _ripples(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, flo
                 yield f"sin_{place}", wavelength
 
 
-def _lasting(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, str, float, float]]:
+def _lasting(tracks: Sequence[Track]) -> Iterator[tuple[str, str, float, float]]:
     """How a law may act for a while: recording or "" for all of them, course, begin, end [s]."""
-    begin = min(float(t.times[0]) for t in tracks)
-    end = max(float(t.times[-1]) for t in tracks)
+    begin, end = _clock(tracks)
     for span in SPANS:
         yield "", "fading", begin, begin + span * (end - begin)
     yield "", "rising", begin, end
-    shortest = LEAST_PERIOD * max(float(np.median(np.diff(t.times))) for t in tracks)
-    for period in np.geomspace(shortest, end - begin, PERIODS).tolist() if end - begin > shortest else ():
-        yield "", "swinging", 0.0, period
-        yield "", "swinging", 0.25 * period, 1.25 * period
     for track in tracks:
         first, last = float(track.times[0]), float(track.times[-1])
         part = (last - first) / PARTS
-        for length in LENGTHS:
-            for k in range(PARTS - length + 1):
-                yield track.name, "within", first + k * part, first + (k + length) * part
-        for k in range(PARTS // 2, PARTS):  # from then on
-            if k + LENGTHS[-1] > PARTS:
-                yield track.name, "within", first + k * part, EVER
+        for a, b in _stretches():
+            yield track.name, "within", first + a * part, first + b * part
+        for k in range(PARTS - LENGTHS[-1] + 1, PARTS):  # from then on
+            yield track.name, "within", first + k * part, EVER
     if len(tracks) > 1:
         part = (end - begin) / PARTS
-        for length in LENGTHS:
-            for k in range(PARTS - length + 1):
-                yield "", "within", begin + k * part, begin + (k + length) * part
+        for a, b in _stretches():
+            yield "", "within", begin + a * part, begin + b * part
+
+
+def _stretches() -> Iterator[tuple[int, int]]:
+    """Begin and end of the stretches of a recording, in its parts."""
+    for length in LENGTHS:
+        for k in range(PARTS - length + 1):
+            yield k, k + length
+
+
+def _swinging(tracks: Sequence[Track], most: int) -> Iterator[tuple[str, str, float, float]]:
+    """What swings, in all recordings alike or in one of them, with its cosine and its sine."""
+    for run, near in (("", tracks), *((t.name, [t]) for t in tracks if len(tracks) > 1)):
+        begin, end = _clock(near)
+        shortest = SHORTEST_SWING * max(float(np.median(np.diff(t.times))) for t in near)
+        for half in range(2, 2 * most + 1):
+            period = 2.0 * (end - begin) / half
+            if period > shortest:
+                yield run, "swinging", 0.0, period
+                yield run, "swinging", 0.25 * period, 1.25 * period
+
+
+def _clock(tracks: Sequence[Track]) -> tuple[float, float]:
+    """First and last time [s] of recordings."""
+    return min(float(t.times[0]) for t in tracks), max(float(t.times[-1]) for t in tracks)
 
 
 def neighbours(term: Described, tracks: Sequence[Track], by: float) -> list[Described]:

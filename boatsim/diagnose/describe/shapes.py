@@ -1,8 +1,8 @@
 """What a term is along a recording: the force that goes with it, row by row, where the boat was."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Way:
         """Of every row, each field (N,)."""
         vessel, rows = self.problem.program.vessel, len(self.states)
         axes, nq = axes_of(vessel), self.problem.program.module.NQ
-        given = dict.fromkeys(Motion._fields, np.zeros(rows)) | {"t": self.track.times}
+        given: dict[str, Any] = dict.fromkeys(Motion._fields, np.zeros(rows)) | {"t": self.track.times}
         rates = self.problem.program.body_rates(self.states)[:, nq:]
         symbols = dict(zip(AXES, zip(("x", "y", "z", "phi", "theta", "psi"), "uvwpqr", strict=True), strict=True))
         for i, axis in enumerate(axes):

@@ -30,4 +30,3 @@ def write(problem: Problem, name: str, term: Described, tracks: Sequence[Track])
 def _put(problem: Problem, name: str, numbers: dict[str, float], values: Array) -> None:
     for key, x in numbers.items():
         values[problem.program.index(name, key)] = x
-

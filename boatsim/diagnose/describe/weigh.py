@@ -5,6 +5,7 @@ A term's coefficient has a prior about nothing as wide as that of a steady force
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from boatsim.diagnose.describe.shapes import Way
 from boatsim.diagnose.filter import axes_of
 from boatsim.diagnose.locate.smoothing import information_alone
 from boatsim.diagnose.problem import scale_of
-from boatsim.physics.base import Array
+from boatsim.physics.base import AXES
 from boatsim.physics.described import Described
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.vessel import Vessel
@@ -56,9 +57,9 @@ def _batch(ways: Sequence[Way], terms: Sequence[Described]) -> list[Weighed]:
             levels.time_constant,
         )  # fmt: skip
         known, score = known + learnt, score + slope
-    out = []
-    vessel = ways[0].problem.program.vessel
-    for term, i, s, square, n in zip(terms, known.tolist(), score.tolist(), squares.tolist(), rows.tolist(), strict=True):
+    out, vessel = [], ways[0].problem.program.vessel
+    numbers = np.column_stack([known, score, squares, rows]).tolist()
+    for term, (i, s, square, n) in zip(terms, numbers, strict=True):
         if not (np.isfinite(i) and i > 0.0 and square > 0.0):
             continue
         spread = strength(vessel, term) / float(np.sqrt(square / n))
@@ -80,11 +81,11 @@ def strength(vessel: Vessel, term: Described) -> float:
 def varying(way: Way) -> tuple[list[str], list[str]]:
     """Speeds through the water and actuators that vary along a recording, by the names of factors."""
     vessel, m = way.problem.program.vessel, way.motion
-    speeds = dict(zip(("surge", "sway", "heave", "roll", "pitch", "yaw"), (m.ur, m.vr, m.wr, m.p, m.q, m.r), strict=True))
+    speeds = dict(zip(AXES, (m.ur, m.vr, m.wr, m.p, m.q, m.r), strict=True))
     kind = {"surge": "surge_speed", "sway": "sway_speed", "heave": "heave_speed"}
     moves = [kind.get(a, f"{a}_rate") for a in axes_of(vessel) if _varies(speeds[a])]
     return moves, [a for i, a in enumerate(vessel.actuators) if _varies(way.held[i])]
 
 
-def _varies(values: Array) -> bool:
+def _varies(values: Any) -> bool:
     return bool(np.ptp(values) > 0.0)

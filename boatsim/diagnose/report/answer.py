@@ -12,6 +12,7 @@ from boatsim.diagnose.locate.regions import regions
 from boatsim.diagnose.locate.structure import Structure
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import words as report_words
+from boatsim.diagnose.report.described import described_entries
 from boatsim.diagnose.report.entries import (
     Acting,
     Answer,
@@ -47,7 +48,8 @@ def compose(
     """diagnosis.json as a dictionary, without the seconds; `wanted` is what it says of the next experiment."""
     effects = [_effect(problem, ranking.best, n) for n in ranking.named]
     verdict = "ambiguous" if any(e["tied_with"] for e in effects) else "named" if effects else "nothing_missing"
-    verdict = "unknown" if ranking.unknown else verdict
+    laws = described_entries(ranking.description, problem.program.vessel)
+    verdict = ("described" if laws else "unknown") if ranking.unknown else verdict
     answer: Answer = {
         "verdict": verdict,
         "sentence": "",
@@ -59,6 +61,7 @@ def compose(
             "gain_nats": round(ranking.left_over, 3),
             "told_from_nats": round(ranking.told_from, 3),
         },
+        "described": laws,
         "candidates": _candidates(ranking),
         "upper_limits": {called(name): _limits(problem, fitted, name) for name, fitted in ranking.last.items()},
         "where": {

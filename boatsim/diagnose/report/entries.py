@@ -32,6 +32,26 @@ class EffectEntry(Acting):
     parameters: dict[str, ParameterEntry]  # by name with unit
 
 
+class TermEntry(TypedDict):
+    """One term of a described law."""
+
+    of: str  # what it goes with, in words
+    value: float
+    sd: float
+    unit: str  # of the value: force or moment per product of what it goes with; "" for a share of the thrust
+    gain_nats: float
+    run: NotRequired[str]  # the recording of which it is an event
+
+
+class DescribedEntry(TypedDict):
+    """A law written down for what no entry of the library explains, along one axis."""
+
+    axis: str  # "surge" ... "yaw", "north", "east", or "thrust"
+    statement: str
+    terms: list[TermEntry]
+    carries_over: bool  # free runs over unseen recordings get better by it
+
+
 class StructureEntry(TypedDict):
     """What the force left over goes with."""
 
@@ -140,12 +160,13 @@ class RulesEntry(TypedDict):
 class Answer(TypedDict):
     """The whole of diagnosis.json."""
 
-    verdict: str  # "named", "ambiguous", "unknown" or "nothing_missing"
+    verdict: str  # "named", "ambiguous", "described", "unknown" or "nothing_missing"
     sentence: str
     seconds: float
     version: str
     effects: list[EffectEntry]
     unknown: UnknownEntry
+    described: list[DescribedEntry]
     candidates: list[CandidateEntry]
     tried: NotRequired[list[str]]
     left_out: NotRequired[list[LeftOutEntry]]

@@ -12,7 +12,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnose.description import Written
 from boatsim.diagnose.free_runs import FreeRun
+from boatsim.diagnose.report.described import axis_of, share_or_force
 from boatsim.diagnose.report.entries import IntervalEntry
 from boatsim.diagnose.report.findings import Missing
 from boatsim.diagnose.report.words import handy, number
@@ -216,6 +218,24 @@ def closer(run: FreeRun, signal: str) -> FreeRun:
     begin, end = int(edges[first]), int(edges[first + SWINGS]) + 1
     channels = {m: {n: v[begin:end] for n, v in c.items()} for m, c in run.channels.items()}
     return FreeRun(run.run, float(run.t[begin]), run.t[begin:end], channels)
+
+
+def law_figure(written: Written) -> str:
+    """A described term over what it goes with, and the means of what was recorded there."""
+    c = written.curve
+    assert c is not None
+    unit = share_or_force(written.term)
+    name, factor = ("%", 100.0) if not unit else handy(unit, float(np.max(np.abs(c.law))))
+    law, sd, found = factor * c.law, factor * c.sd, factor * c.found
+    band = (c.x, law - BAND * sd, law + BAND * sd)
+    along = {"time": "time [s]", "product": "product of the factors [SI]"}.get(
+        c.over, f"{c.over.replace('_', ' ')} [SI]"
+    )
+    about = f"The law over {along}, from {number(float(c.x[0]))} to {number(float(c.x[-1]))}, beside what was recorded."
+    lines = (Line("recorded", c.x, found), Line("patched", c.x, law))
+    title = f"{axis_of(written.term)} [{name}]"
+    panel = Panel(title, lines, (float(c.x[0]), float(c.x[-1])), limits([*band[1:], found]), along, band, about=about)
+    return figure([panel], f"{axis_of(written.term)}, over {along}", wide=True)
 
 
 def models_in(run: FreeRun) -> list[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from boatsim.diagnose.description import Written
 from boatsim.diagnose.free_runs import FreeRun
 from boatsim.diagnose.report.entries import Answer
 from boatsim.physics.base import Array
@@ -35,4 +36,10 @@ class Findings:
     coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)  # recalibrated coefficient -> factor, sd
     extra_tables: tuple[tuple[str, list[str], list[list[str]]], ...] = ()  # title, header, rows
     words: dict[str, str] = field(default_factory=dict)  # what a library entry says, by name; also "entry.parameter"
+    described: tuple[Written, ...] = ()  # terms of described laws, with their curves
     steps: tuple[tuple[float, Mapping[str, float]], ...] = ()  # commands of the next experiment from each time [s] on
+
+    @property
+    def patched(self) -> bool:
+        """Whether the patched boat has anything that the recalibrated one has not."""
+        return bool(self.answer["effects"]) or any(d["carries_over"] for d in self.answer["described"])

@@ -14,6 +14,7 @@ __all__ = ["sentence", "write"]
 VERDICTS = {
     "named": "Named",
     "ambiguous": "Named, with look-alikes",
+    "described": "Described: a law that is not in the library",
     "unknown": "Cause not in the library",
     "nothing_missing": "Nothing missing",
 }
@@ -70,7 +71,7 @@ def _headline(f: Findings) -> str:
     names = [plain(e["name"]) for e in f.answer["effects"]]
     if len(said) <= LONG or not names:
         return said
-    rest = "; more is missing than these explain" if f.answer["verdict"] == "unknown" else ""
+    rest = "; more is missing than these explain" if f.answer["unknown"]["flag"] else ""
     return f"{capital(listed(names))}{rest}."
 
 

@@ -18,8 +18,15 @@ DIGITS = 10  # significant, so that the file gives the fitted motion back
 SAME = 1e-9  # numbers this close, relative, are one
 
 
-def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
-    """Text of the patched vessel file that is to lie at `path`; its own paths start there, so that folders can move."""
+def patched(
+    problem: Problem, vessel: Vessel, found: Fit, path: Path, described: Mapping[str, Effect] | None = None
+) -> str:
+    """Text of the patched vessel file that is to lie at `path`; its own paths start there, so that folders can move.
+
+    `described` are the laws that a diagnosis wrote down, by name; what else of that kind was fitted are events of runs.
+    """
+    events = {e.name for e in problem.program.suspects if type(e).described} - set(described or {})
+    suspects = [(described or {}).get(e.name, e) for e in problem.program.suspects if e.name not in events]
     text = vessel.file.read_text(encoding="utf-8")
     base = tomlkit.parse(text).get("based_on")
     for key, empty in (("found", "[]"), ("based_on", '""')):  # new keys go first, above the tables
@@ -28,7 +35,7 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
     document = tomlkit.parse(text)
     document["based_on"] = tomlkit.item(_based_on(vessel, base, path))
     document["based_on"].comment("its folder holds the hull")
-    laws = [e.name for e in problem.program.suspects if e.name in found.suspects and not isinstance(e, Release)]
+    laws = [e.name for e in suspects if e.name in found.suspects and not isinstance(e, Release)]
     document["found"] = tomlkit.item(laws)
     document["found"].comment("effects that were added to it; the others it had")
     document.setdefault("effect", tomlkit.aot())
@@ -40,7 +47,7 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
                 _alter(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
         else:
             settings[free.effect][free.name] = float(x)
-    for effect in problem.program.suspects:  # channels act in the order of the diagnosis
+    for effect in suspects:  # channels act in the order of the diagnosis
         if effect.name in settings and isinstance(effect, Release):
             _release(document, vessel, effect, settings[effect.name])
         elif effect.name in settings:
@@ -48,17 +55,20 @@ def patched(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> str:
             bound: dict[str, object] = {"on": list(effect.on)} if effect.on else {}
             if isinstance(effect, Channel) and effect.other_side:
                 bound["other_side"] = True
-            table = _effect_table(_address(type(effect), vessel), named | bound | effect.shape() | settings[effect.name])
+            said = named | bound | effect.shape() | settings[effect.name]
+            table = _effect_table(_address(type(effect), vessel), said)
             table.add(tomlkit.nl())
             document["effect"].append(table)
     _hold(document, problem, vessel, found)
     return str(tomlkit.dumps(document))
 
 
-def write(problem: Problem, vessel: Vessel, found: Fit, path: Path) -> None:
+def write(
+    problem: Problem, vessel: Vessel, found: Fit, path: Path, described: Mapping[str, Effect] | None = None
+) -> None:
     """Write the patched vessel file."""
     with replacing(path) as temporary:
-        temporary.write_text(patched(problem, vessel, found, path), encoding="utf-8")
+        temporary.write_text(patched(problem, vessel, found, path, described), encoding="utf-8")
 
 
 def _based_on(vessel: Vessel, base: str | None, path: Path) -> str:

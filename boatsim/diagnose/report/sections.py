@@ -26,6 +26,7 @@ from boatsim.diagnose.report.words import (
     parameter,
     percent,
     plain,
+    quantity,
     readable,
     said,
     shown,
@@ -81,7 +82,7 @@ def proof(f: Findings) -> str:
     if not parts:
         return "Nothing was left to test the finding on: no data was kept unseen."
     stretch = f"{fit['horizon_s']:g} s"
-    if not f.answer["effects"]:
+    if not f.patched:
         errors = listed(f"{before} in {words}" for words, before, *_ in parts)
         return f"In free runs of {stretch} over unseen data the recalibrated vessel has an rms error of {errors}."
     compared = (f"of {after} in {words} instead of {before} ({_times(gain)})" for words, before, after, gain in parts)
@@ -139,6 +140,8 @@ def _what(f: Findings) -> Iterator[Block]:
     unknown = f.answer["unknown"]
     if not tried(f.answer):
         yield Text(f"{capital(UNTRIED)}.")
+    elif f.answer["described"]:
+        yield from _described(f)
     elif unknown["flag"]:
         yield Heading("Something that no entry of the library explains", f"gain {nats(unknown['gain_nats'])} nats")
         if unknown["gain_nats"] > unknown["told_from_nats"]:
@@ -155,6 +158,27 @@ def _what(f: Findings) -> Iterator[Block]:
             "No entry of the library explains the recordings clearly better than the vessel as it is. What may still "
             "be hidden in them is bounded by the upper limits below."
         )
+
+
+def _described(f: Findings) -> Iterator[Block]:
+    """The laws written down for what no entry explains, each as a curve over what it goes with."""
+    for d in f.answer["described"]:
+        gain = sum(t["gain_nats"] for t in d["terms"])
+        yield Heading(capital(d["statement"]), f"described · gain {nats(gain)} nats")
+        rows = [[t["of"], quantity(t["value"], t["unit"], t["sd"]), nats(t["gain_nats"])] for t in d["terms"]]
+        yield Table("Terms", ["goes with", "value ± deviation", "gain [nats]"], rows)
+        if d["carries_over"]:
+            yield Text("Free runs over unseen recordings get better by it: it is part of the patched vessel.")
+        else:
+            yield Text("Unseen recordings do not bear it out, so that it is no part of the patched vessel.")
+    yield Text(
+        "No entry of the library explains this. The law is the shortest sum of products of speeds, commands, heading, "
+        "place and time that the recordings call for: it says what goes with what, and not why."
+    )
+    if drawn := [w for w in f.described if w.curve is not None]:
+        looks = {"patched": "the law", "band": "its band of 2 standard deviations", "recorded": "what was recorded"}
+        yield Figures(figures.legend(looks), [figures.law_figure(w) for w in drawn])
+        yield Text("Curves end where the recordings end: beyond what was seen the law is a guess.")
 
 
 def _taken(f: Findings) -> Iterator[Block]:
@@ -250,7 +274,7 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
         "band": "its band of 2 standard deviations",
         "flag": "flagged: zero lies outside the band",
     }
-    if not f.answer["effects"]:  # then there is no patch that could leave anything
+    if not f.patched:  # then there is no patch that could leave anything
         shown = [replace(m, left={}) for m in shown]
     if not any(m.left for m in shown):
         del looks["left"]
@@ -261,8 +285,8 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
 
 def _proof(f: Findings) -> Iterator[Block]:
     fit = f.answer["fit"]
-    models = MODELS if f.answer["effects"] else MODELS[:2]  # a patch that adds nothing is no boat of its own
-    header = [*models, "better by"] if f.answer["effects"] else list(models)
+    models = MODELS if f.patched else MODELS[:2]  # a patch that adds nothing is no boat of its own
+    header = [*models, "better by"] if f.patched else list(models)
     rows = [_compared(words, fit[key], unit) for key, (words, unit, _) in FAMILIES.items() if fit.get(key)]
     if rows:
         caption = f"rms error of free runs of {fit['horizon_s']:g} s over {listed(fit['held_out'])}"

@@ -189,12 +189,11 @@ def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
         return f"{capital(_untried(answer))}."
     physics = [_clause(e, words or {}) for e in effects if e["kind"] != "measurement"]
     measured = [_clause(e, words or {}) for e in effects if e["kind"] == "measurement"]
-    unknown = answer["verdict"] == "unknown"
-    parts = (
-        [f"something is missing that no entry of the library explains{_sizes(answer)}{_with(answer)}"]
-        if unknown
-        else []
-    )
+    unknown = answer["unknown"]["flag"]
+    parts = [d["statement"] for d in answer["described"]][:MOST]
+    if unknown and not parts:
+        parts = [f"something is missing that no entry of the library explains{_sizes(answer)}{_with(answer)}"]
+    before = len(parts)
     if physics:
         count = COUNTS[len(physics)] if len(physics) < len(COUNTS) else f"{len(physics)} things"
         parts.append(f"the model leaves out {count}: {_clauses(physics)}")
@@ -204,7 +203,7 @@ def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
     if not parts:
         return "Nothing is missing that these recordings could show: the vessel explains them to within their noise."
     if unknown and physics:
-        parts[1] = f"besides, {parts[1]}"
+        parts[before] = f"besides, {parts[before]}"
     ties = [f"{plain(e['name'])} from {listed(map(plain, e['tied_with']), 'or')}" for e in effects if e["tied_with"]]
     if ties:
         parts.append(f"but these recordings cannot tell {listed(ties)}")

@@ -1,9 +1,10 @@
 """Names what is missing: every suspect fitted in the filter, scored by evidence, selected forward, pruned backward."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from boatsim.diagnose.description import Description
 from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import converge, descend
 from boatsim.diagnose.levels import fit_noise
@@ -16,6 +17,7 @@ from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.search.settle import Named, settled
 from boatsim.diagnose.search.unseen import lawful, misled, missed, refuted, stood_for, told
 from boatsim.diagnose.spread import widened
+from boatsim.physics.described import Described
 
 progress = logging.getLogger("boatsim.diagnose")
 LEFT_OF_IT = 0.25  # of what a random force gains, from which it but stands for a law that is left over beside it
@@ -35,6 +37,17 @@ class Ranking:
     left_over: float  # [nats] that a force beyond the tolerated one gains after the best set
     structure: Structure  # what goes best with the force left over
     explained: float  # [nats] that the laws of the best set gain, of which something besides is told from
+    description: Description | None = None  # of what is left over, where something is
+
+    @property
+    def adds(self) -> bool:
+        """Whether the best fit adds anything to the vessel."""
+        return bool(self.named) or bool(self.laws)
+
+    @property
+    def laws(self) -> Mapping[str, Described]:
+        """The described laws that the best fit adds, by name."""
+        return self.description.effects() if self.description else {}
 
     @property
     def unknown(self) -> bool:
