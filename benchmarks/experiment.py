@@ -66,7 +66,7 @@ class Outcome:
 def program() -> Program:
     """The vessel with all its suspects, compiled once for all cases."""
     boat = vessel.load(BOAT)
-    return Program(boat, library_for(boat).entries)
+    return Program(boat, library_for(boat).compiled)
 
 
 def drawn(truth: str, rng: np.random.Generator) -> Boat:

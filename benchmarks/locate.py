@@ -67,7 +67,7 @@ def problem_of(trial: Path) -> Problem:
     """The recordings of a trial laid on the vessel's program, as a diagnosis does it."""
     opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
     recordings, boat = [r.thinned(rules.rate(b)) for r, b in opened], opened[0][1]
-    program = Program(boat, library_for(boat).entries)
+    program = Program(boat, library_for(boat).compiled)
     tracks = [track(r, program, noise_of(boat, recordings)) for r in recordings]
     uncertainty = rules.uncertainty(boat)
     return Problem(tracks, nominal_levels(boat, recordings), uncertainty | recordings[0].notes.coefficient_uncertainty)

@@ -54,7 +54,7 @@ def sail(name: str, seed: int, missing: Missing, facts: dict[str, Any] | None = 
 
 
 def laid(*recordings: Recording) -> tuple[Problem, Fit]:
-    program = Program(BOAT, library_for(BOAT).entries)
+    program = Program(BOAT, library_for(BOAT).compiled)
     problem = Problem(
         [track(r, program) for r in recordings], nominal_levels(BOAT, recordings), {"damping": 0.05, "thrust": 0.05}
     )

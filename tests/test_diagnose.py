@@ -121,7 +121,7 @@ def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
 def joystick():
     """Servos lag by 60 ms, motors fed by PWM by 150 ms; a delay is suspected; a rate limit that limits nothing."""
     boat = vessel.load("joystick_boat", extra=[{"use": "rate_limit", "on": ["thrust_port_N"]}])
-    return Program(boat, library_for(boat).entries)
+    return Program(boat, library_for(boat).compiled)
 
 
 def driven(boat: vessel.Vessel) -> Recording:

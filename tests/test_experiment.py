@@ -43,7 +43,7 @@ CONFUSABLE = {  # truth with its values, rival, first recording in which the two
 @cache
 def program() -> Program:
     boat = vessel.load("trial_boat")
-    return Program(boat, library_for(boat).entries)
+    return Program(boat, library_for(boat).compiled)
 
 
 def recorded(name: str, settings: dict[str, float], script: tuple[manoeuvres.Step, ...]) -> Recording:

@@ -33,7 +33,7 @@ def problem_of(paths: list[Path], vessel: str | None) -> Problem:
     """The question of a diagnosis of some recordings."""
     opened = [analysis.open_recording(path, vessel, ()) for path in paths]
     boat, first = opened[0][1], opened[0][0]
-    program = Program(boat, library_for(boat).entries)
+    program = Program(boat, library_for(boat).compiled)
     stated = noise_of(boat, [first])
     tracks = [track(run.thinned(rules.rate(boat)), program, stated) for run, _ in opened]
     uncertainty = rules.uncertainty(boat)

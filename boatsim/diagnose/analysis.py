@@ -123,7 +123,7 @@ def diagnose_recordings(
     columns = sorted({c for r in fitted for c in r.signals})
     known = {path: with_stated_errors(b, facts) for path, b in boats.items()}
     there = {path: library_for(b, library, facts, columns) for path, b in known.items()}
-    programs = {path: Program(b, (*there[path].entries, *there[path].slots)) for path, b in known.items()}
+    programs = {path: Program(b, there[path].compiled) for path, b in known.items()}
     stated = noise_of(boat, fitted)
     laid = [track(r, programs[r.path], stated) for r in fitted]
     laid += [track(r, programs[r.path], stated, noise_beside(boat, fitted, r)) for r in unseen]

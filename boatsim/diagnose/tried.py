@@ -33,6 +33,11 @@ class Library:
     idle: Mapping[str, str]  # what can not act on this vessel -> what that lacks
 
     @property
+    def compiled(self) -> tuple[Effect, ...]:
+        """All that a diagnosis composes beside the vessel's own effects."""
+        return (*self.entries, *self.slots)
+
+    @property
     def tried(self) -> tuple[str, ...]:
         """Names of the entries that are tried."""
         return tuple(e.name for e in self.entries if e.name not in self.left_out)
@@ -199,5 +204,5 @@ def composed(vessel: Vessel) -> tuple[Program, tuple[str, ...]]:
     found = {e.name: e for e in vessel.effects if e.name in vessel.found}
     nominal = replace(vessel, effects=own, found=())
     library = library_for(nominal)
-    entries = {e.name: e for e in (*library.entries, *library.slots)} | found
+    entries = {e.name: e for e in library.compiled} | found
     return Program(nominal, tuple(entries.values())), tuple(n for n in entries if n in found)

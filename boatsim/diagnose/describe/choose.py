@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnose.describe.grammar import FINER, neighbours, terms
+from boatsim.diagnose.describe.grammar import FINER, FINEST, neighbours, terms
 from boatsim.diagnose.describe.shapes import ways
 from boatsim.diagnose.describe.slots import free_slot, write
 from boatsim.diagnose.describe.weigh import Weighed, varying, weighed
@@ -21,6 +21,7 @@ from boatsim.physics.described import Described
 progress = logging.getLogger("boatsim.diagnose")
 MOST = 5  # terms
 TRIED = 4  # of those that promise most, in the filter
+TOLD = 0.1  # [nats] by which a move must gain
 ROUNDS = 3  # moves of a term's times or wavelength at one fineness
 
 
@@ -96,14 +97,36 @@ def _finer(
             if not near or near[0].gain <= best.gain:
                 break
             best = near[0]
-    if best.term == w.term:
-        return w.term, found
-    made = _with(problem, so_far, best, tracks)
-    if made and made[1].evidence > found.evidence:
-        return best.term, made[1]
-    write(problem, slot, w.term, tracks)
-    problem.spreads[slot] = w.spread
-    return w.term, found
+    if best.term != w.term:
+        made = _with(problem, so_far, best, tracks)
+        if made and made[1].evidence > found.evidence:
+            w, found = best, made[1]
+        else:
+            write(problem, slot, w.term, tracks)
+            problem.spreads[slot] = w.spread
+    return _polished(problem, slot, w.term, found, tracks)
+
+
+def _polished(
+    problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[Track]
+) -> tuple[Described, Fit]:
+    """The same by the filter itself, all else held, and the fit then made: what is left over says it but roughly."""
+    on = problem.program.switches(found.suspects)
+
+    def likelihood(one: Described) -> float:
+        write(problem, slot, one, tracks)
+        return problem.likelihood(found.free, found.theta, on, found.levels)
+
+    best = begun = likelihood(term)
+    for by in FINEST:
+        for _ in range(ROUNDS):
+            scores = [(likelihood(t), i, t) for i, t in enumerate(neighbours(term, problem.tracks, by))]
+            score, _, ahead = max(scores, key=lambda s: s[:2])
+            if not score > best + TOLD:
+                break
+            term, best = ahead, score
+    write(problem, slot, term, tracks)
+    return term, fit(problem, found) if best > begun else found
 
 
 def _pruned(problem: Problem, so_far: Chosen) -> Chosen:

@@ -24,7 +24,10 @@ SPANS = (1.0, 0.5, 0.25, 0.125)  # of a recording, in which a law rises or fades
 SWINGS, OF_THRUST = 60, 8  # what swings does so up to so many times in a recording, what changes the thrust less often
 SHORTEST_SWING = 6  # rows
 WAVES, SHORTEST_WAVE = 24, 0.5  # lengths of a pattern on the water: so many, from so many boat lengths to what was seen
-FINER = (0.5, 0.25, 0.12)  # of a part, of a span, of the step between periods: how near neighbours of a term lie
+FINER, FINEST = (
+    (0.5, 0.25),
+    (0.12, 0.06, 0.03, 0.015),
+)  # of a part, of a span, of the step between periods: how near neighbours of a term lie
 
 
 def terms(vessel: Vessel, tracks: Sequence[Track], moves: Sequence[str], given: Sequence[str]) -> Iterator[Described]:

@@ -63,7 +63,7 @@ def share_or_force(term: Described) -> str:
 def _entry(written: Sequence[Written], vessel: Vessel) -> DescribedEntry:
     axis, first = axis_of(written[0].term), written[0]
     what = FORCES.get(axis, "a change of thrust")
-    statement = f"{what} that no entry explains: {listed(_said(w, vessel) for w in written)}"
+    statement = f"{what} that no entry explains: {listed((_said(w, vessel) for w in written), 'plus')}"
     if not first.carries:
         events = sorted({w.term.run for w in written if w.term.run})
         where = f"of {listed(events)}" if events else "of the recordings fitted"
@@ -95,7 +95,8 @@ def _said(w: Written, vessel: Vessel) -> str:
     else:
         size = quantity(term.coefficient, unit_of(term, vessel), w.sd)
     times = f" times {factors(term, vessel)}" if term.of else ""
-    return f"{size}{times}{_when(term)}"
+    when = _when(term).removeprefix(", ")
+    return f"{size}{times}{f' ({when})' if when else ''}"
 
 
 def _of(term: Described, vessel: Vessel) -> str:

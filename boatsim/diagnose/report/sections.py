@@ -13,7 +13,7 @@ from boatsim.diagnose.next.experiment import WORTH
 from boatsim.diagnose.report import figures, taken
 from boatsim.diagnose.report.answer import SHAPE
 from boatsim.diagnose.report.blocks import Block, Figures, Heading, Items, Section, Table, Text, without_empty
-from boatsim.diagnose.report.entries import EffectEntry, Family, StructureEntry
+from boatsim.diagnose.report.entries import EffectEntry, Family, StructureEntry, TermEntry
 from boatsim.diagnose.report.findings import Findings, Missing
 from boatsim.diagnose.report.words import (
     UNTRIED,
@@ -165,7 +165,7 @@ def _described(f: Findings) -> Iterator[Block]:
     for d in f.answer["described"]:
         gain = sum(t["gain_nats"] for t in d["terms"])
         yield Heading(capital(d["statement"]), f"described · gain {nats(gain)} nats")
-        rows = [[t["of"], quantity(t["value"], t["unit"], t["sd"]), nats(t["gain_nats"])] for t in d["terms"]]
+        rows = [[t["of"], _coefficient(d["axis"], t), nats(t["gain_nats"])] for t in d["terms"]]
         yield Table("Terms", ["goes with", "value ± deviation", "gain [nats]"], rows)
         if d["carries_over"]:
             yield Text("Free runs over unseen recordings get better by it: it is part of the patched vessel.")
@@ -179,6 +179,13 @@ def _described(f: Findings) -> Iterator[Block]:
         looks = {"patched": "the law", "band": "its band of 2 standard deviations", "recorded": "what was recorded"}
         yield Figures(figures.legend(looks), [figures.law_figure(w) for w in drawn])
         yield Text("Curves end where the recordings end: beyond what was seen the law is a guess.")
+
+
+def _coefficient(axis: str, term: TermEntry) -> str:
+    """Value and deviation of a described term; shares of the thrust in %."""
+    if axis == "thrust" and not term["unit"]:
+        return f"{spread(100.0 * term['value'], 100.0 * term['sd'])} %"
+    return quantity(term["value"], term["unit"], term["sd"])
 
 
 def _taken(f: Findings) -> Iterator[Block]:
