@@ -23,6 +23,7 @@ import io
 import json
 import math
 import os
+import re
 import statistics
 import time
 from collections.abc import Sequence
@@ -36,6 +37,16 @@ SHARED = Path(__file__).parents[2] / "shared" / "recordings" / "trials" / "pract
 VESSEL, HORIZON, LENGTH = "trial_boat", 6.0, 1.2  # where none is named; [s] of free runs at this length [m]
 BINS = (0.0, 0.02, 0.1, 0.3, 0.7, 0.95, 1.0)
 Answers = dict[str, dict[str, Any]]  # by trial
+KINDS = {  # cause outside the library -> axis and factors of a described law that is of its kind
+    "sag": "^thrust",
+    "seized_motor": "^thrust",
+    "eddies": "how far (north|east)",
+    "stiction": "^roll.* roll rate",
+    "lifting_hull": "^(sway|yaw).* surge speed",
+    "bilge_pump": "^(sway|yaw|roll).*(swinging|, from)",
+    "shifting_cargo": "^roll.*(swinging|, from)",
+}
+SLACK = 1.05  # of the recalibrated error on run_3: a description must not do worse
 WORTH = 0.15  # share of the recalibrated error that the true structure must save for a skill to be told
 
 
@@ -129,6 +140,20 @@ def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
     return max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
 
 
+def of_its_kind(answer: dict[str, Any], found: dict[str, Any]) -> bool:
+    """Whether a described law holds a term of the kind of the unknown cause."""
+    (cause,) = answer["effects"]
+    kind = KINDS[cause["name"].partition(":")[2]]
+    return any(re.search(kind, f"{law['axis']} {term['of']}") for law in found["described"] for term in law["terms"])
+
+
+def of_recalibrated(found: dict[str, Any]) -> float | None:
+    """Error of the patched boat on run_3 in errors of the recalibrated one, all signals alike; None if none is told."""
+    rms = [v for k, v in found["fit"].items() if k.endswith(("_rms_m", "_rms_rad")) and v]
+    ratios = [v["patched"] / v["recalibrated"] for v in rms if v["recalibrated"] > 0.0]
+    return statistics.geometric_mean(ratios) if ratios else None
+
+
 # ---- all trials
 
 
@@ -165,6 +190,8 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
         "wrong names (none, singles, pairs)": share([bool(wrong[n]) for n in known]),
         "visible unknown cause flagged, pilot": share(["unknown" in said[n] for n in unknown[False]]),
         "visible unknown cause flagged, concealed": share(["unknown" in said[n] for n in unknown[True]]),
+        "visible unknown cause described": share([bool(found[n]["described"]) for n in visible["unknown"]]),
+        "  with a term of its kind": share([of_its_kind(answers[n], found[n]) for n in visible["unknown"]]),
         "known cause called unknown": share(["unknown" in said[n] for n in (*kind["single"], *kind["pair"])]),
     }
 
@@ -180,6 +207,11 @@ def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> di
     if skills:
         tenth = f"{statistics.median(skills):.3f} / {sorted(skills)[len(skills) // 10]:.3f} ({len(skills)} trials)"
         table["held-out skill, median / lowest tenth"] = tenth
+    carried = [n for n in found if any(law["carries_over"] for law in found[n]["described"])]
+    if ratios := [r for n in carried if (r := of_recalibrated(found[n])) is not None]:
+        words = f"{statistics.median(ratios):.2f} / {max(ratios):.2f} ({len(ratios)} trials)"
+        table["described, error of recalibrated, median / worst"] = words
+        table[f"  above {SLACK:g} of it"] = share([r > SLACK for r in ratios])
     if z:
         table["true parameters within 2 sd"] = f"{sum(x <= 2 for x in z) / len(z):.3f} of {len(z)}"
         table["median error of a parameter in sd"] = f"{statistics.median(z):.2f}"
@@ -223,9 +255,17 @@ def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answer
     for what, concealed in (("pilot", False), ("concealed", True)):
         print(f"  flagged, {what:10s} {share([flagged[n] for n in again if answers[n]['concealed'] is concealed])}")
     print(f"  flagged, or nothing named  {share([flagged[n] or not f['effects'] for n, f in again.items()])}")
+    skills = {n: skill(trials / n, out / "unknowns" / n, answers[n]) for n in again}
+    told = [s for s in skills.values() if s is not None]
+    if told:
+        print(f"  held-out skill, median     {statistics.median(told):.3f} ({len(told)} trials)")
+    by_law = [s for n, s in skills.items() if s is not None and again[n]["described"]]
+    if by_law:
+        print(f"  of these by a description  {statistics.median(by_law):.3f} ({len(by_law)} trials)")
     for n, f in again.items():
         instead = [f"{e['name']} ({e['gain_nats']:.0f} nats)" for e in f["effects"]]
-        said = ", ".join([*(["unknown"] if flagged[n] else []), *instead]) or "nothing missing"
+        law = "described" if f["described"] else "unknown"
+        said = ", ".join([*([law] if flagged[n] else []), *instead]) or "nothing missing"
         print(f"    {n} without {', '.join(left_out[n])}: {said}")
 
 

@@ -25,7 +25,7 @@ def named(answer: Mapping[str, Any], name: str, true: Mapping[str, float], more:
     With `more` there is a force besides that is no effect's, and the answer must say so.
     """
     assert [e["name"] for e in answer["effects"]] == [name] and not answer["effects"][0]["tied_with"]
-    assert answer["verdict"] == ("unknown" if more else "named"), answer["sentence"]
+    assert answer["unknown"]["flag"] == more and (more or answer["verdict"] == "named"), answer["sentence"]
     found = answer["effects"][0]["parameters"]
     for key, value in true.items():
         assert abs(found[key]["value"] - value) < 3.5 * found[key]["sd"] < 3.5 * 0.3 * abs(value), (key, found[key])

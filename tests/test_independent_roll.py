@@ -74,7 +74,14 @@ def test_dry_friction_is_not_taken_for_waves(tmp_path: Path) -> None:
     """It goes to and fro with the hull, at her own rhythm, but always against her: no entry does, and waves do not."""
     answer = diagnosed(decays(Hull(dry=4.0)), tmp_path, "kvlcc2_roll")
     assert "wave_forcing" not in [e["name"] for e in answer["effects"]]
-    assert answer["verdict"] == "unknown", answer["sentence"]
+    assert answer["verdict"] == "described", answer["sentence"]
+    (law,) = answer["described"]
+    assert law["axis"] == "roll" and law["carries_over"] and len(law["terms"]) == 1
+    (term,) = law["terms"]
+    assert term["of"] == "the sense of roll rate" and term["unit"] == "N m"
+    assert term["value"] == pytest.approx(-4.0, rel=0.1)
+    rms = answer["fit"]["roll_rms_rad"]
+    assert rms["patched"] < 0.5 * rms["recalibrated"]
 
 
 def decays(hull: Hull) -> list[Recording]:

@@ -8,6 +8,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from boatsim.diagnose.description import Curve, Written
 from boatsim.diagnose.report import page as report
 from boatsim.diagnose.report.entries import Answer, IntervalEntry
 from boatsim.diagnose.report.figures import closer, thinned, ticks
@@ -25,6 +26,8 @@ from boatsim.diagnose.report.words import (
     shown,
     spread,
 )
+from boatsim.physics.effects.described_force import DescribedForce
+from boatsim.physics.effects.described_thrust import DescribedThrust
 
 VOID = {"meta", "br", "hr", "img", "input", "link"}
 MODELS = ("nominal", "recalibrated", "patched")
@@ -81,7 +84,7 @@ def planar_answer(intervals: list[IntervalEntry]) -> Answer:
             "words": "the propellers push less astern than commanded", "tied_with": ["prop_walk"],
             "parameters": {"astern_factor": {"value": 0.6943, "sd": 0.0118, "unit": ""}},
         }],
-        "unknown": {"flag": False, "gain_nats": 1.21, "told_from_nats": 6.0},
+        "unknown": {"flag": False, "gain_nats": 1.21, "told_from_nats": 6.0}, "described": [],
         "candidates": [
             {"name": n, "gain_nats": g, "probability": p}
             for n, g, p in (
@@ -171,7 +174,7 @@ def rolling() -> Findings:
              "tied_with": [], "words": "the righting arm bends with heel",
              "parameters": {"cubic": {"value": -0.381, "sd": 0.0217, "unit": ""}}},
         ],
-        "unknown": {"flag": False, "gain_nats": 0.0, "told_from_nats": 6.0},
+        "unknown": {"flag": False, "gain_nats": 0.0, "told_from_nats": 6.0}, "described": [],
         "candidates": [{"name": "quadratic_damping", "gain_nats": 812.0, "probability": 0.99994},
                        {"name": "cubic_damping", "gain_nats": 788.0, "probability": 2.9e-5},
                        {"name": "righting_arm_stiffening", "gain_nats": 196.0, "probability": 1e-90},
@@ -220,6 +223,30 @@ def unknown() -> Findings:
     return replace(f, answer=answer, free_runs=(), held_out=(), held_out_note="")
 
 
+def described() -> Findings:
+    """A cause outside the library with two laws written down for it, one of them an event of a run."""
+    f = unknown()
+    fit = {"horizon_s": 6.0, "held_out": ["run_3"], "position_rms_m": dict(zip(MODELS, (0.2, 0.1, 0.03), strict=True))}
+    laws = [
+        {"axis": "sway", "statement": "a side force that no entry explains: 1.20 N s² times yaw rate squared",
+         "terms": [{"of": "yaw rate squared", "value": 1.2, "sd": 0.05, "unit": "N s^2", "gain_nats": 39.3}],
+         "carries_over": True},
+        {"axis": "thrust", "statement": "a change of thrust that no entry explains: 15 % less (from 3 to 9 s)",
+         "terms": [{"of": "thrust, from 3 to 9 s of run_1", "value": -0.15, "sd": 0.02, "unit": "", "gain_nats": 12.1,
+                    "run": "run_1"}],
+         "carries_over": False},
+    ]  # fmt: skip
+    answer = f.answer | {"verdict": "described", "described": laws, "fit": fit}
+    answer["sentence"] = report.sentence(answer)
+    x = np.linspace(0.0, 0.6, 12)
+    curve = Curve("yaw_rate", x, 1.2 * x**2, 0.05 * x**2, 1.2 * x**2 + 0.01)
+    terms = (
+        Written(DescribedForce(name="described_1", axis="sway", of=("yaw_rate", "yaw_rate")), 0.05, 39.3, True, curve),
+        Written(DescribedThrust(name="described_thrust_1", acts="within", begin=3.0, end=9.0), 0.02, 12.1, False),
+    )
+    return replace(f, answer=answer, described=terms, held_out=("run_3",), held_out_note="run_3")
+
+
 class Outline(HTMLParser):
     """Checks that tags close in order, and keeps what a browser would look at."""
 
@@ -250,7 +277,7 @@ class Outline(HTMLParser):
             self.words.append(data)
 
 
-CASES = {"planar": planar, "rolling": rolling, "nothing": nothing, "unknown": unknown}
+CASES = {"planar": planar, "rolling": rolling, "nothing": nothing, "unknown": unknown, "described": described}
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -393,7 +420,8 @@ MISSING = "Something is missing that no entry of the library explains (0.21 N rm
 def test_every_verdict_is_one_sentence(verdict, effects, text):
     where = {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}}
     answer = {
-        "verdict": verdict, "effects": effects, "where": where, "candidates": [{"name": "wind"}], "unknown": {},
+        "verdict": verdict, "effects": effects, "where": where, "candidates": [{"name": "wind"}], "described": [],
+        "unknown": {"flag": verdict == "unknown"},
     }  # fmt: skip
     assert report.sentence(answer, MEANT) == text
 
@@ -410,18 +438,21 @@ def test_every_verdict_is_one_sentence(verdict, effects, text):
 )
 def test_a_diagnosis_with_nothing_to_try_says_so(verdict: str, begins: str) -> None:
     where = {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}}
-    said = report.sentence({"verdict": verdict, "effects": [], "where": where, "candidates": [], "unknown": {}})
+    unknown = {"flag": verdict == "unknown"}
+    nothing = {"verdict": verdict, "effects": [], "where": where, "candidates": [], "unknown": unknown, "described": []}
+    said = report.sentence(nothing)
     assert said == f"{begins}(facts or the vessel's reasons leave every entry out)."
 
 
 def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_numbers():
     values = {"surge_N": 0.2, "sway_N": 0.001, "yaw_Nm": 0.1, "north_mps": 0.3, "east_mps": 0.3, "astern_factor": 0.005}
     effect = DAMPED | {"parameters": {k: {"value": v, "sd": 0.01, "unit": parameter(k)[1]} for k, v in values.items()}}
-    said = report.sentence({"verdict": "named", "effects": [effect], "candidates": [effect], "where": {"axes": {}}})
+    said = report.sentence({"verdict": "named", "effects": [effect], "candidates": [effect], "where": {"axes": {}},
+                            "unknown": {"flag": False}, "described": []})  # fmt: skip
     assert "surge 0.200 ± 0.010 N, yaw" in said and "north" in said and "sway" not in said and "east" not in said
     effect["parameters"] = {"astern_factor": effect["parameters"]["astern_factor"]}  # a factor is something at zero too
     assert "astern factor 0.005 ± 0.010" in report.sentence(
-        {"verdict": "named", "effects": [effect], "candidates": [effect]}
+        {"verdict": "named", "effects": [effect], "candidates": [effect], "unknown": {"flag": False}, "described": []}
     )
 
 
@@ -556,3 +587,12 @@ def test_a_long_curve_keeps_its_peaks():
     y[31_111] = 7.0
     rows = thinned(y)
     assert len(rows) < 600 and y[rows].max() == 7.0 and y[rows].min() == y.min() and rows[-1] == len(y) - 1
+
+
+def test_a_described_law_is_drawn_over_what_it_goes_with_and_said_to_carry_over_or_not(tmp_path):
+    report.write(described(), tmp_path)
+    page, text = ((tmp_path / f"report.{end}").read_text("utf-8") for end in ("html", "md"))
+    assert "sway, over yaw rate" in page and "its band of 2 standard deviations" in page
+    assert "it is part of the patched vessel" in text and "no part of the patched vessel" in text
+    assert "1.200 ± 0.050 N s²" in text and "−15.0 ± 2.0 %" in text
+    assert text.count("patched") > text.count("0.03")  # the patched boat has a column of its own

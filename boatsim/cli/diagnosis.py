@@ -97,6 +97,12 @@ def summary(found: Diagnosis) -> list[str]:
             f"  {effect['name']}: gains {effect['gain_nats']:.1f} nats, probability {effect['probability']:.2f}"
         )
         lines += [f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()]
+    for law in answer["described"]:
+        lines += [
+            f"  described: {law['axis']} that goes with {term['of']}: gains {term['gain_nats']:.1f} nats\n"
+            f"    {term['value']:.4g} +- {term['sd']:.2g} {term['unit']}".rstrip()
+            for term in law["terms"]
+        ]
     lines += [f"  {line}" for line in taken.in_words(answer)]
     fit = answer["fit"]
     lines.append(f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):")

@@ -66,6 +66,9 @@ GLOSSARY = (
      "its look-alikes, it gains more than two and the logarithm of the number of entries tried (more tried, "
      "more to gain), and more than a fortieth of what the others explain, which their laws may be off by. Entries "
      "within 3 nats of it are its look-alikes."),
+    ("described", "A law written down for what no entry of the library explains: the shortest sum of products of "
+        "speeds, commands, heading, place and time that the recordings call for, at most five terms. It says what goes "
+        "with what, not why. A term has to gain more than two and the logarithm of the number of terms weighed."),
     ("probability", "Share of belief that the evidence gives an entry among its rivals and nothing at all."),
     ("\u00b1", "One standard deviation: the true value is expected within twice this in 95 of 100 cases."),
     ("surge, sway, roll, yaw", "Forward, to starboard, starboard side down, bow to starboard."),
@@ -140,10 +143,10 @@ def _what(f: Findings) -> Iterator[Block]:
     unknown = f.answer["unknown"]
     if not tried(f.answer):
         yield Text(f"{capital(UNTRIED)}.")
-    elif f.answer["described"]:
-        yield from _described(f)
     elif unknown["flag"]:
-        yield Heading("Something that no entry of the library explains", f"gain {nats(unknown['gain_nats'])} nats")
+        yield from _described(f)
+        if not f.answer["described"]:
+            yield Heading("Something that no entry of the library explains", f"gain {nats(unknown['gain_nats'])} nats")
         if unknown["gain_nats"] > unknown["told_from_nats"]:
             yield Text(
                 f"After the best set of entries, a random force of {FACTOR:g} times the tolerated size is not "
@@ -171,6 +174,8 @@ def _described(f: Findings) -> Iterator[Block]:
             yield Text("Free runs over unseen recordings get better by it: it is part of the patched vessel.")
         else:
             yield Text("Unseen recordings do not bear it out, so that it is no part of the patched vessel.")
+    if not f.answer["described"]:
+        return
     yield Text(
         "No entry of the library explains this. The law is the shortest sum of products of speeds, commands, heading, "
         "place and time that the recordings call for: it says what goes with what, and not why."
