@@ -36,6 +36,7 @@ class Description:
 
     terms: tuple[Written, ...]
     fit: Fit
+    left_over: float  # [nats] that a force beyond the tolerated one gains beside all of the terms
 
     def effects(self) -> Mapping[str, Described]:
         """What a boat that sails elsewhere has of it, by the names of the slots."""

@@ -10,6 +10,7 @@ from boatsim.diagnose.filter import Track
 from boatsim.diagnose.free_runs import free_runs
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
+from boatsim.diagnose.search.evidence import left_over
 
 BETTER = 0.98  # of the mean square errors: free runs must get that much better for one more term to carry over
 
@@ -29,7 +30,7 @@ def described(problem: Problem, best: Fit, recalibrated: Fit, unseen: Sequence[T
         own = found.fit.value(name, "coefficient")
         shown = curve(seen, term, *own)
         written.append(Written(term.having({"name": name, "coefficient": value}), sd, gains[name], carries, shown))
-    return Description(tuple(written), kept.fit)
+    return Description(tuple(written), kept.fit, left_over(problem, found.fit))
 
 
 def _carried(

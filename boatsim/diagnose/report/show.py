@@ -92,11 +92,17 @@ def remarks(
                     f"On unseen data what was added does not help in {what}: {found['patched'] * scale:.3g} {unit}, "
                     f"the recalibrated boat {found['recalibrated'] * scale:.3g} {unit}."
                 )
-    if ranking.left_over > ranking.told_from:
+    beside = ranking.description.left_over if ranking.description else ranking.left_over
+    if beside > ranking.told_from and ranking.description:
+        out.append(
+            "A force larger than the tolerated one stays unexplained beside the law that was written down "
+            f"({beside:.0f} nats beyond {FACTOR:g} times the ambient force)."
+        )
+    elif beside > ranking.told_from:
         why = "none of the entries tried accounts for it" if ranking.first else "nothing was tried to account for it"
         out.append(
             "A force larger than the tolerated one stays unexplained after all this "
-            f"({ranking.left_over:.0f} nats beyond {FACTOR:g} times the ambient force): "
+            f"({beside:.0f} nats beyond {FACTOR:g} times the ambient force): "
             f"{why}."
         )
     for track in fitted:
