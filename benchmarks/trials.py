@@ -40,7 +40,7 @@ Answers = dict[str, dict[str, Any]]  # by trial
 KINDS = {  # cause outside the library -> axis and factors of a described law that is of its kind
     "sag": "^thrust",
     "seized_motor": "^thrust",
-    "eddies": "how far (north|east)",
+    "eddies": "(north|east).*repeats every",
     "stiction": "^roll.* roll rate",
     "lifting_hull": "^(sway|yaw).* surge speed",
     "bilge_pump": "^(sway|yaw|roll).*(swinging|, from)",

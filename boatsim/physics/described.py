@@ -30,6 +30,8 @@ class Described(Force):
     begin: float = param(-EVER, low=-EVER, high=EVER, unit="s", words="it begins, on the clock of the recording")
     end: float = param(EVER, low=-EVER, high=EVER, unit="s", words="it ends; of what fades or swings, one span later")
     wavelength: float = param(1.0, low=1e-3, high=1e6, unit="m", words="of a pattern that lies still")
+    crest: float = param(0.0, low=-1e6, high=1e6, unit="m", words="where it is highest, north or east")
+    beyond: float = param(0.0, low=0.0, high=1e3, unit="", words="speed [SI] from which a factor beyond_ grows")
     little: float = param(UNSET, low=1e-9, high=1e3, unit="", words="speed [SI] within which a sense turns")
 
     first: float = code("its first factor")
@@ -62,5 +64,7 @@ class Described(Force):
         if self.acts != "always":
             said |= {"begin": self.begin, "end": self.end}
         if set(self.of) & set(terms.RIPPLES):
-            said["wavelength"] = self.wavelength
+            said |= {"wavelength": self.wavelength, "crest": self.crest}
+        if set(self.of) & set(terms.BEYOND):
+            said["beyond"] = self.beyond
         return said

@@ -19,39 +19,47 @@ SPEEDS = ("surge_speed", "sway_speed", "heave_speed", "roll_rate", "pitch_rate",
 SIZES, SENSES = tuple(f"abs_{s}" for s in SPEEDS), tuple(f"sign_{s}" for s in SPEEDS)
 BEARINGS = ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading")
 PLACES = ("north", "east", "depth", "roll_angle", "pitch_angle")
-RIPPLES = ("cos_north", "sin_north", "cos_east", "sin_east")  # of a pattern that lies still, with a wavelength
-FACTORS = ("", *SPEEDS, *SIZES, *SENSES, *BEARINGS, *PLACES, *RIPPLES)  # a factor's number is its place here;
+RIPPLES = ("ripple_north", "ripple_east")  # a pattern that lies still, along north or east
+BEYOND = tuple(f"beyond_{s}" for s in SPEEDS)  # what a speed is above a threshold either way, with its sign
+FACTORS = ("", *SPEEDS, *SIZES, *SENSES, *BEARINGS, *PLACES, *RIPPLES, *BEYOND)  # a factor's number is its place here;
 FIRST_HELD = 100  # that of a vessel's k-th actuator signal this and 2 k, of its size one more
 MOST = 3  # factors of a term
 COURSES = ("always", "within", "rising", "fading", "swinging")
 DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw", "north", "east")  # the last two on level axes
 UNITS = dict.fromkeys(("surge_speed", "sway_speed", "heave_speed"), "m/s") | dict.fromkeys(SPEEDS[3:], "rad/s")
-UNITS |= {f"abs_{s}": UNITS[s] for s in SPEEDS} | {"north": "m", "east": "m", "depth": "m"}
+UNITS |= {f"{mark}_{s}": UNITS[s] for s in SPEEDS for mark in ("abs", "beyond")} | {
+    "north": "m",
+    "east": "m",
+    "depth": "m",
+}
 UNITS |= {"roll_angle": "rad", "pitch_angle": "rad"}
 
-SINGLE, SIZE, SENSE, BEARING, PLACE, RIPPLE = (
-    FACTORS.index(names[0]) for names in (SPEEDS, SIZES, SENSES, BEARINGS, PLACES, RIPPLES)
+SINGLE, SIZE, SENSE, BEARING, PLACE, RIPPLE, ABOVE = (
+    FACTORS.index(names[0]) for names in (SPEEDS, SIZES, SENSES, BEARINGS, PLACES, RIPPLES, BEYOND)
 )
+Detail = tuple[float, float, float, float]  # wavelength and crest [m] of a ripple, little and beyond [SI] of a speed
 WITHIN, RISING, FADING, SWINGING = (float(COURSES.index(c)) for c in COURSES[1:])
 
 
 @apart
-def factor(m: Any, act: Any, at: Any, number: float, wavelength: float, little: float) -> Any:
-    """One factor; `little` is the speed at which a sense is three quarters there, `wavelength` [m] of a ripple."""
-    k = int(number)
+def factor(m: Any, act: Any, at: Any, number: float, detail: Detail) -> Any:
+    """One factor; a sense turns within `little`, a ripple is one at its crest."""
+    k, (wavelength, crest, little, beyond) = int(number), detail
     if k >= FIRST_HELD:
         value = act[at + (k - FIRST_HELD) // 2]
         return abs(value) if (k - FIRST_HELD) % 2 else value
-    if k >= RIPPLE:
-        along = 2.0 * pi / wavelength * (m.x if k < RIPPLE + 2 else m.y)
-        return np.cos(along) if (k - RIPPLE) % 2 == 0 else np.sin(along)
-    if k >= PLACE:
+    if k >= RIPPLE and k < ABOVE:
+        return np.cos(2.0 * pi / wavelength * ((m.x if k == RIPPLE else m.y) - crest))
+    if k >= PLACE and k < ABOVE:
         return (m.x, m.y, m.z, m.phi, m.theta)[k - PLACE]
-    if k >= BEARING:
+    if k >= BEARING and k < ABOVE:
         c, s = m.cos_psi, m.sin_psi
         return (c, s, c * c - s * s, 2.0 * c * s)[k - BEARING]
     if k >= SINGLE:
-        speed = (m.ur, m.vr, m.wr, m.p, m.q, m.r)[(k - SINGLE) % len(SPEEDS)]
+        first = ABOVE if k >= ABOVE else SINGLE
+        speed = (m.ur, m.vr, m.wr, m.p, m.q, m.r)[(k - first) % len(SPEEDS)]
+        if k >= ABOVE:
+            return np.sign(speed) * np.maximum(np.abs(speed) - beyond, 0.0)
         return speed if k < SIZE else abs(speed) if k < SENSE else np.tanh(speed / little)
     return 0.0 * m.t + 1.0
 
@@ -73,10 +81,11 @@ def course(t: Any, acts: float, begin: float, end: float) -> Any:
 @njit(inline="always")
 def term(m: Any, q: Any, act: Any, at: Any) -> Any:
     """The product of a described law's factors and its course."""
+    detail = (q.wavelength, q.crest, q.little, q.beyond)
     return (
-        factor(m, act, at, q.first, q.wavelength, q.little)
-        * factor(m, act, at, q.second, q.wavelength, q.little)
-        * factor(m, act, at, q.third, q.wavelength, q.little)
+        factor(m, act, at, q.first, detail)
+        * factor(m, act, at, q.second, detail)
+        * factor(m, act, at, q.third, detail)
         * course(m.t, q.course, q.begin, q.end)
     )
 

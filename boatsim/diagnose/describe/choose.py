@@ -39,8 +39,7 @@ def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
     everywhere = [*problem.tracks, *unseen]
     while len(so_far.terms) < MOST:
         seen = ways(problem, so_far.fit)
-        moves, given = (sorted({n for pair in found for n in pair}) for found in zip(*map(varying, seen), strict=True))
-        ordered = weighed(seen, list(terms(problem.program.vessel, problem.tracks, moves, given)))
+        ordered = weighed(seen, list(terms(problem.program.vessel, problem.tracks, *varying(seen))))
         ahead = [w for w in apart(ordered) if w.gain > 0.0][:TRIED]
         tried = [made for w in ahead if (made := _with(problem, so_far, w, everywhere))]
         if not tried:

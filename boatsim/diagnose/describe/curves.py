@@ -39,7 +39,7 @@ def _over(term: Described) -> str:
     """What a term is drawn over: the only thing that it goes with, the product of several, or time."""
     if not term.of:
         return "" if term.acts == "always" else "time"
-    bases = {name.removeprefix("abs_").removeprefix("sign_") for name in term.of}
+    bases = {name.removeprefix("abs_").removeprefix("sign_").removeprefix("beyond_") for name in term.of}
     return bases.pop() if len(bases) == 1 else "product"
 
 
@@ -64,4 +64,4 @@ def _values(way: Way, term: Described, over: str, size: Array) -> Array:
     if over in RIPPLES:
         return np.asarray(way.motion.x if over.endswith("north") else way.motion.y)
     (number, *_) = codes(term.name, (over,), way.problem.program.vessel.held)
-    return way.factor(number, term.wavelength, 1.0)
+    return way.factor(number, (1.0, 0.0, 1.0, 0.0))

@@ -5,17 +5,18 @@ place, changes of thrust with the drives; either may act for a while: within a s
 acts within a stretch of one recording is an event of that run.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
 from boatsim.diagnose.filter import Track, axes_of
+from boatsim.physics.base import Array
 from boatsim.physics.described import EVER, Described
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import SENSES, SIDES, DescribedThrust
-from boatsim.physics.terms import SPEEDS
+from boatsim.physics.terms import BEYOND, RIPPLES, SPEEDS
 from boatsim.physics.vessel import Vessel
 
 PARTS = 16  # of a recording, at whose ends a stretch may begin and end
@@ -23,6 +24,7 @@ LENGTHS = (1, 2, 4, 8)  # of a stretch, in such parts
 SPANS = (1.0, 0.5, 0.25, 0.125)  # of a recording, in which a law rises or fades
 SWINGS, OF_THRUST = 60, 8  # what swings does so up to so many times in a recording, what changes the thrust less often
 SHORTEST_SWING = 6  # rows
+BELOW = (0.2, 0.4, 0.6, 0.8)  # shares of the rows that lie below a threshold
 WAVES, SHORTEST_WAVE = 24, 0.5  # lengths of a pattern on the water: so many, from so many boat lengths to what was seen
 FINER, FINEST = (
     (0.5, 0.25),
@@ -30,17 +32,25 @@ FINER, FINEST = (
 )  # of a part, of a span, of the step between periods: how near neighbours of a term lie
 
 
-def terms(vessel: Vessel, tracks: Sequence[Track], moves: Sequence[str], given: Sequence[str]) -> Iterator[Described]:
-    """All terms that are weighed: `moves` are the speeds, `given` the actuators that vary in the recordings."""
+def terms(
+    vessel: Vessel, tracks: Sequence[Track], moves: Mapping[str, Array], given: Sequence[str]
+) -> Iterator[Described]:
+    """All terms that are weighed: `moves` are the speeds [SI], `given` the actuators that vary in the recordings."""
     lasting, swinging = list(_lasting(tracks)), list(_swinging(tracks, SWINGS))
     axes = axes_of(vessel)
     level = ("north", "east") if {"surge", "sway"} <= set(axes) else ()
     for axis in axes:
-        for of in _products(vessel, moves, given):
+        for of in _products(vessel, list(moves), given):
             yield DescribedForce(axis=axis, of=of)
+        for speed, beyond in _thresholds(moves):
+            yield DescribedForce(axis=axis, of=(speed,), beyond=beyond)
+            yield DescribedForce(axis=axis, of=(speed, speed), beyond=beyond)
+    for axis in level or axes:  # what lies still on the water pushes in directions that lie still
+        for place, wavelength, crest in _ripples(vessel, tracks):
+            yield DescribedForce(axis=axis, of=(place,), wavelength=wavelength, crest=crest)
+        for place in ("north", "east")[: len(level)]:
+            yield DescribedForce(axis=axis, of=(place,))
     for axis in (*axes, *level):
-        for place, wavelength in _ripples(vessel, tracks):
-            yield DescribedForce(axis=axis, of=(place,), wavelength=wavelength)
         for run, acts, begin, end in (*lasting, *swinging):
             yield DescribedForce(axis=axis, acts=acts, begin=begin, end=end, run=run)
     if vessel.all_of(DescribedThrust.rides):
@@ -74,16 +84,22 @@ def _products(vessel: Vessel, moves: Sequence[str], given: Sequence[str]) -> Ite
         for bearing in ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading"):
             yield (bearing,)
             yield from ((bearing, s) for s in moves if s == SPEEDS[0])
-    for axis, place in (("surge", "north"), ("sway", "east"), ("heave", "depth")):
-        if axis in vessel.freedoms:
-            yield (place,)
+    if "heave" in vessel.freedoms:
+        yield ("depth",)
     for axis, angle in (("roll", "roll_angle"), ("pitch", "pitch_angle")):
         if axis in vessel.freedoms:
             yield from ((angle,), (angle, angle), (angle, angle, angle))
 
 
-def _ripples(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, float]]:
-    """Patterns that lie still on the water: factor and wavelength [m], as long as what was sailed through."""
+def _thresholds(moves: Mapping[str, Array]) -> Iterator[tuple[str, float]]:
+    """Thresholds [SI] of a speed, by the share of the rows that lie below: factor and threshold."""
+    for speed, values in moves.items():
+        for share in BELOW:
+            yield f"beyond_{speed}", float(np.quantile(np.abs(values), share))
+
+
+def _ripples(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, float, float]]:
+    """Patterns that lie still on the water: factor, wavelength [m] up to what was sailed through, and crest [m]."""
     for axis, place, signal in (("surge", "north", "x_m"), ("sway", "east", "y_m")):
         columns = [t.measured[:, t.signals.index(signal)] for t in tracks if signal in t.signals]
         if axis not in vessel.freedoms or not columns:
@@ -92,8 +108,8 @@ def _ripples(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, flo
         shortest = SHORTEST_WAVE * vessel.length
         if extent > 2.0 * shortest:
             for wavelength in np.geomspace(shortest, extent, WAVES).tolist():
-                yield f"cos_{place}", wavelength
-                yield f"sin_{place}", wavelength
+                yield f"ripple_{place}", wavelength, 0.0
+                yield f"ripple_{place}", wavelength, 0.25 * wavelength
 
 
 def _lasting(tracks: Sequence[Track]) -> Iterator[tuple[str, str, float, float]]:
@@ -159,7 +175,13 @@ def neighbours(term: Described, tracks: Sequence[Track], by: float) -> list[Desc
                 if p != period or phase:
                     begin = (term.begin / period + phase) * p
                     found.append(replace(term, begin=begin, end=begin + p))
-    if any(f.endswith(("_north", "_east")) for f in term.of):
-        step = 1.0 + 0.15 * by
-        found += [replace(term, wavelength=term.wavelength * x) for x in (step, 1.0 / step)]
+    if set(term.of) & set(RIPPLES):
+        for step in (1.0 + 0.15 * by, 1.0, 1.0 / (1.0 + 0.15 * by)):
+            for shift in (-0.25 * by, 0.0, 0.25 * by):
+                if step != 1.0 or shift:
+                    wavelength = term.wavelength * step
+                    crest = float(np.remainder(term.crest + shift * wavelength, wavelength))
+                    found.append(replace(term, wavelength=wavelength, crest=crest))
+    if set(term.of) & set(BEYOND):
+        found += [replace(term, beyond=term.beyond * x) for x in (1.0 + by, 1.0 / (1.0 + by))]
     return found

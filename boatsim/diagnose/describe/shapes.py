@@ -67,7 +67,7 @@ class Way:
         return {}
 
     @cached_property
-    def _factors(self) -> dict[tuple[float, float, float], Array]:
+    def _factors(self) -> dict[tuple[float, terms.Detail], Array]:
         return {}
 
     def along(self, term: Described) -> Array:
@@ -93,18 +93,17 @@ class Way:
         acts = float(terms.COURSES.index(term.acts))
         size = np.asarray(terms.course.py_func(self.track.times, acts, term.begin, term.end))
         little = term.completed(vessel).little if set(term.of) & set(terms.SENSES) else 1.0
+        detail = (term.wavelength, term.crest, little, term.beyond)
         for number in terms.codes(term.name, term.of, vessel.held)[: len(term.of)]:
-            size = size * self.factor(number, term.wavelength, little)
+            size = size * self.factor(number, detail)
         return size
 
-    def factor(self, number: float, wavelength: float, little: float) -> Array:
+    def factor(self, number: float, detail: terms.Detail) -> Array:
         """(N,) one factor."""
-        key = (number, wavelength, little)
-        if key not in self._factors:
-            self._factors[key] = np.asarray(
-                terms.factor.py_func(self.motion, self.held, 0, number, wavelength, little), dtype=float
-            )
-        return self._factors[key]
+        if (number, detail) not in self._factors:
+            found = terms.factor.py_func(self.motion, self.held, 0, number, detail)
+            self._factors[number, detail] = np.asarray(found, dtype=float)
+        return self._factors[number, detail]
 
     def thrust(self, side: str, sense: str) -> Array:
         """(N, axes) force of the drives on one side while they push in one sense."""

@@ -5,7 +5,6 @@ A term's coefficient has a prior about nothing as wide as that of a steady force
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -13,9 +12,10 @@ from boatsim.diagnose.describe.shapes import Way
 from boatsim.diagnose.filter import axes_of
 from boatsim.diagnose.locate.smoothing import information_alone
 from boatsim.diagnose.problem import scale_of
-from boatsim.physics.base import AXES
+from boatsim.physics.base import AXES, Array
 from boatsim.physics.described import Described
 from boatsim.physics.effects.described_thrust import DescribedThrust
+from boatsim.physics.terms import SPEEDS
 from boatsim.physics.vessel import Vessel
 
 FORCE = {"surge": 0.1, "sway": 0.1, "heave": 0.1, "roll": 0.02, "pitch": 0.04, "yaw": 0.04}  # [N, N m] on a 1.2 m boat
@@ -78,14 +78,12 @@ def strength(vessel: Vessel, term: Described) -> float:
     return FORCE.get(axis, FORCE["surge"]) * scale_of("N m" if turning else "N", vessel)
 
 
-def varying(way: Way) -> tuple[list[str], list[str]]:
-    """Speeds through the water and actuators that vary along a recording, by the names of factors."""
-    vessel, m = way.problem.program.vessel, way.motion
-    speeds = dict(zip(AXES, (m.ur, m.vr, m.wr, m.p, m.q, m.r), strict=True))
-    kind = {"surge": "surge_speed", "sway": "sway_speed", "heave": "heave_speed"}
-    moves = [kind.get(a, f"{a}_rate") for a in axes_of(vessel) if _varies(speeds[a])]
-    return moves, [a for i, a in enumerate(vessel.actuators) if _varies(way.held[i])]
-
-
-def _varies(values: Any) -> bool:
-    return bool(np.ptp(values) > 0.0)
+def varying(ways: Sequence[Way]) -> tuple[dict[str, Array], list[str]]:
+    """Speeds through the water that vary along the recordings, of all rows, and actuators: by the names of factors."""
+    vessel = ways[0].problem.program.vessel
+    fields = dict(zip(AXES, ("ur", "vr", "wr", "p", "q", "r"), strict=True))
+    names = dict(zip(AXES, SPEEDS, strict=True))
+    speeds = {names[a]: np.concatenate([getattr(w.motion, fields[a]) for w in ways]) for a in axes_of(vessel)}
+    held = np.concatenate([w.held for w in ways], axis=1)
+    moves = {n: x for n, x in speeds.items() if np.ptp(x) > 0.0}
+    return moves, [a for i, a in enumerate(vessel.actuators) if np.ptp(held[i]) > 0.0]

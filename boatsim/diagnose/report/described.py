@@ -1,6 +1,5 @@
 """Described laws in words: what a term goes with, its unit, and the statement that a person reads."""
 
-import re
 from collections import Counter, defaultdict
 from collections.abc import Sequence
 from itertools import groupby
@@ -11,7 +10,7 @@ from boatsim.diagnose.report.words import listed, number, parameter, plain, quan
 from boatsim.physics.described import EVER, Described
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
-from boatsim.physics.terms import UNITS
+from boatsim.physics.terms import BEYOND, RIPPLES, UNITS
 from boatsim.physics.vessel import Vessel
 
 FORCES = {
@@ -130,21 +129,26 @@ def factors(term: Described, vessel: Vessel) -> str:
         own = f"abs_{name}"
         if name.startswith("abs_") and name.removeprefix("abs_") in term.of:
             continue
-        parts.append(_factor(name, term.wavelength) + POWERS.get(power, ""))
+        parts.append(_factor(name, term) + POWERS.get(power, ""))
         if own in term.of:
             parts.append("its size")
     return " times ".join(parts)
 
 
-def _factor(name: str, wavelength: float) -> str:
+def _factor(name: str, term: Described) -> str:
     if name in FACTORS:
         return FACTORS[name]
-    if found := re.fullmatch("(cos|sin)_(north|east)", name):
-        part = {"cos": "cosine", "sin": "sine"}[found[1]]
-        return f"the {part} of how far {found[2]} she is, in waves of {number(wavelength)} m"
+    if name in RIPPLES:
+        along = name.removeprefix("ripple_")
+        return (
+            f"a pattern that repeats every {number(term.wavelength)} m {along}, with a crest at {number(term.crest)} m"
+        )
+    if name in BEYOND:
+        speed = name.removeprefix("beyond_")
+        return f"what {plain(speed)} is beyond {quantity(term.beyond, UNITS[speed])}"
     for mark, words in (("abs_", "the size of "), ("sign_", "the sense of ")):
         if name.startswith(mark):
-            return words + _factor(name.removeprefix(mark), wavelength)
+            return words + _factor(name.removeprefix(mark), term)
     return parameter(name)[0] if name not in UNITS else plain(name)
 
 
