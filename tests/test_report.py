@@ -592,7 +592,7 @@ def test_a_long_curve_keeps_its_peaks():
 def test_a_described_law_is_drawn_over_what_it_goes_with_and_said_to_carry_over_or_not(tmp_path):
     report.write(described(), tmp_path)
     page, text = ((tmp_path / f"report.{end}").read_text("utf-8") for end in ("html", "md"))
-    assert "sway, over yaw rate" in page and "its band of 2 standard deviations" in page
+    assert "A side force, over yaw rate [rad/s]" in page and "its band of 2 standard deviations" in page
     assert "it is part of the patched vessel" in text and "no part of the patched vessel" in text
     assert "1.200 ± 0.050 N s²" in text and "−15.0 ± 2.0 %" in text
     assert text.count("patched") > text.count("0.03")  # the patched boat has a column of its own

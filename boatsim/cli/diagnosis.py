@@ -19,6 +19,7 @@ from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import page as report
 from boatsim.diagnose.report import patch, show, taken
+from boatsim.diagnose.report.described import what_of
 from boatsim.diagnose.report.entries import Family
 from boatsim.diagnose.tried import composed
 from boatsim.errors import BadInput, BadPhysics
@@ -99,7 +100,7 @@ def summary(found: Diagnosis) -> list[str]:
         lines += [f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()]
     for law in answer["described"]:
         lines += [
-            f"  described: {law['axis']} that goes with {term['of']}: gains {term['gain_nats']:.1f} nats\n"
+            f"  described: {what_of(law['axis'])} that goes with {term['of']}: gains {term['gain_nats']:.1f} nats\n"
             f"    {term['value']:.4g} +- {term['sd']:.2g} {term['unit']}".rstrip()
             for term in law["terms"]
         ]

@@ -22,7 +22,7 @@ def described(problem: Problem, best: Fit, recalibrated: Fit, unseen: Sequence[T
         return None
     alone = {name: less(problem, found, name).fit for name in found.terms}
     gains = {name: found.fit.evidence - f.evidence for name, f in alone.items()}
-    kept = _carried(problem, found, gains, recalibrated, unseen)
+    kept = _carried(problem, found, Chosen(best, {}), gains, recalibrated, unseen)
     written, seen = [], ways(problem, found.fit)
     for name, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
         carries = name in kept.terms and not term.run
@@ -34,13 +34,23 @@ def described(problem: Problem, best: Fit, recalibrated: Fit, unseen: Sequence[T
 
 
 def _carried(
-    problem: Problem, found: Chosen, gains: Mapping[str, float], recalibrated: Fit, unseen: Sequence[Track]
+    problem: Problem,
+    found: Chosen,
+    begun: Chosen,
+    gains: Mapping[str, float],
+    recalibrated: Fit,
+    unseen: Sequence[Track],
 ) -> Chosen:
-    """As many of the terms that gain most as free runs over unseen recordings are best with, and all events."""
+    """As many of the terms that gain most as free runs over unseen recordings are best with, and all events.
+
+    Or none of them, but the entries that made way for them, where these foretell unseen recordings best.
+    """
     lasting = sorted((n for n, t in found.terms.items() if not t.run), key=lambda n: gains[n])
     chain = [found]
     for name in lasting:
         chain.append(less(problem, chain[-1], name))
+    if not set(begun.fit.suspects) <= set(chain[-1].fit.suspects):
+        chain.append(begun)
     fits = {"recalibrated": recalibrated} | {str(k): c.fit for k, c in enumerate(chain)}
     longest = max((float(t.times[-1] - t.times[0]) for t in unseen), default=0.0)
     stretches = free_runs(problem, fits, unseen, min(problem.horizon, longest)) if unseen else []

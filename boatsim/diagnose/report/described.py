@@ -53,6 +53,21 @@ def axis_of(term: Described) -> str:
     return term.axis if isinstance(term, DescribedForce) else "thrust"
 
 
+def what_of(axis: str) -> str:
+    """What a described law is of: a side force."""
+    return FORCES.get(axis, "a change of thrust")
+
+
+def over_words(over: str) -> str:
+    """What a curve is drawn over, with its unit."""
+    if over in RIPPLES:
+        return f"how far {over.removeprefix('ripple_')} she is [m]"
+    if over in ("time", "product"):
+        return "time [s]" if over == "time" else "product of the factors [SI]"
+    unit = UNITS.get(over, "")
+    return f"{FACTORS.get(over, plain(over))} [{unit}]" if unit else parameter(over)[0]
+
+
 def share_or_force(term: Described) -> str:
     """Unit of what a term amounts to: "N", "N m", or "" of a share of the thrust."""
     axis = axis_of(term)
@@ -61,8 +76,7 @@ def share_or_force(term: Described) -> str:
 
 def _entry(written: Sequence[Written], vessel: Vessel) -> DescribedEntry:
     axis, first = axis_of(written[0].term), written[0]
-    what = FORCES.get(axis, "a change of thrust")
-    statement = f"{what} that no entry explains: {listed((_said(w, vessel) for w in written), 'plus')}"
+    statement = f"{what_of(axis)} that no entry explains: {listed((_said(w, vessel) for w in written), 'plus')}"
     if not first.carries:
         events = sorted({w.term.run for w in written if w.term.run})
         where = f"of {listed(events)}" if events else "of the recordings fitted"

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from boatsim.diagnose.description import Written
 from boatsim.diagnose.free_runs import FreeRun
-from boatsim.diagnose.report.described import axis_of, share_or_force
+from boatsim.diagnose.report.described import axis_of, over_words, share_or_force, what_of
 from boatsim.diagnose.report.entries import IntervalEntry
 from boatsim.diagnose.report.findings import Missing
-from boatsim.diagnose.report.words import handy, number
+from boatsim.diagnose.report.words import capital, handy, number
 from boatsim.physics.base import Array
 
 GRID = 2000  # units of the drawing along each edge; whole ones are finer than a pixel
@@ -228,14 +228,12 @@ def law_figure(written: Written) -> str:
     name, factor = ("%", 100.0) if not unit else handy(unit, float(np.max(np.abs(c.law))))
     law, sd, found = factor * c.law, factor * c.sd, factor * c.found
     band = (c.x, law - BAND * sd, law + BAND * sd)
-    along = {"time": "time [s]", "product": "product of the factors [SI]"}.get(
-        c.over, f"{c.over.replace('_', ' ')} [SI]"
-    )
+    along = over_words(c.over)
     about = f"The law over {along}, from {number(float(c.x[0]))} to {number(float(c.x[-1]))}, beside what was recorded."
     lines = (Line("recorded", c.x, found), Line("patched", c.x, law))
     title = f"{axis_of(written.term)} [{name}]"
     panel = Panel(title, lines, (float(c.x[0]), float(c.x[-1])), limits([*band[1:], found]), along, band, about=about)
-    return figure([panel], f"{axis_of(written.term)}, over {along}", wide=True)
+    return figure([panel], f"{capital(what_of(axis_of(written.term)))}, over {along}", wide=True)
 
 
 def models_in(run: FreeRun) -> list[str]:
