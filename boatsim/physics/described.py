@@ -49,7 +49,7 @@ class Described(Force):
     def rules(self, vessel: Boat) -> dict[str, float]:
         """What its words are to the program. Raises BadInput for factors that the vessel has not."""
         first, second, third = terms.codes(self.name, self.of, vessel.held)
-        turning = any(terms.UNITS.get(name.removeprefix("sign_")) == "rad/s" for name in self.of)
+        turning = any(terms.UNITS.get(name.removeprefix("sign_")) == "rad/s" for name in self.of)  # not m/s
         little = LITTLE * (GRAVITY / vessel.length if turning else GRAVITY * vessel.length) ** 0.5
         acts = terms.code_of(self.name, self.acts, terms.COURSES)
         return {"little": little, "first": first, "second": second, "third": third, "course": acts}

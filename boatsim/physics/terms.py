@@ -26,13 +26,9 @@ FIRST_HELD = 100  # that of a vessel's k-th actuator signal this and 2 k, of its
 MOST = 3  # factors of a term
 COURSES = ("always", "within", "rising", "fading", "swinging")
 DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw", "north", "east")  # the last two on level axes
-UNITS = dict.fromkeys(("surge_speed", "sway_speed", "heave_speed"), "m/s") | dict.fromkeys(SPEEDS[3:], "rad/s")
-UNITS |= {f"{mark}_{s}": UNITS[s] for s in SPEEDS for mark in ("abs", "beyond")} | {
-    "north": "m",
-    "east": "m",
-    "depth": "m",
-}
-UNITS |= {"roll_angle": "rad", "pitch_angle": "rad"}
+SPEED_UNITS = dict(zip(SPEEDS, 3 * ("m/s",) + 3 * ("rad/s",), strict=True))
+UNITS = SPEED_UNITS | {f"{mark}_{s}": unit for s, unit in SPEED_UNITS.items() for mark in ("abs", "beyond")}
+UNITS |= dict(zip(PLACES, 3 * ("m",) + 2 * ("rad",), strict=True))
 
 SINGLE, SIZE, SENSE, BEARING, PLACE, RIPPLE, ABOVE = (
     FACTORS.index(names[0]) for names in (SPEEDS, SIZES, SENSES, BEARINGS, PLACES, RIPPLES, BEYOND)
@@ -48,11 +44,11 @@ def factor(m: Any, act: Any, at: Any, number: float, detail: Detail) -> Any:
     if k >= FIRST_HELD:
         value = act[at + (k - FIRST_HELD) // 2]
         return abs(value) if (k - FIRST_HELD) % 2 else value
-    if k >= RIPPLE and k < ABOVE:
+    if RIPPLE <= k < ABOVE:
         return np.cos(2.0 * pi / wavelength * ((m.x if k == RIPPLE else m.y) - crest))
-    if k >= PLACE and k < ABOVE:
+    if PLACE <= k < ABOVE:
         return (m.x, m.y, m.z, m.phi, m.theta)[k - PLACE]
-    if k >= BEARING and k < ABOVE:
+    if BEARING <= k < ABOVE:
         c, s = m.cos_psi, m.sin_psi
         return (c, s, c * c - s * s, 2.0 * c * s)[k - BEARING]
     if k >= SINGLE:

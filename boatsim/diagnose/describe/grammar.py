@@ -26,10 +26,8 @@ SWINGS, OF_THRUST = 60, 8  # what swings does so up to so many times in a record
 SHORTEST_SWING = 6  # rows
 BELOW = (0.2, 0.4, 0.6, 0.8)  # shares of the rows that lie below a threshold
 WAVES, SHORTEST_WAVE = 24, 0.5  # lengths of a pattern on the water: so many, from so many boat lengths to what was seen
-FINER, FINEST = (
-    (0.5, 0.25),
-    (0.12, 0.06, 0.03, 0.015),
-)  # of a part, of a span, of the step between periods: how near neighbours of a term lie
+# How near neighbours of a term lie: of a part, a span, the step between periods or wavelengths, a threshold
+FINER, FINEST = (0.5, 0.25), (0.12, 0.06, 0.03, 0.015)
 
 
 def terms(
