@@ -24,13 +24,14 @@ class Hull:
     stiffening: float = 0.0  # [1/rad^2] of the righting moment
     height: float = 1.0  # of the metacentre, per stated one
     dry: float = 0.0  # [N m] of friction that is the same at any rate
+    lopsided: float = 0.0  # [N m/rad^2] more of righting moment to one side, less to the other
 
 
 def slopes(t: float, y: Array, hull: Hull) -> list[float]:
     """Newton's law of a hull that rolls about a fixed axis; powers are not whole, and a curve of levers bends back."""
     phi, p = y
     part = abs(p) / USUAL
-    righting = RIGHTING * (hull.height * phi + hull.stiffening * phi**3 * (1.1 - 1.5 * phi**2))
+    righting = RIGHTING * (hull.height * phi + hull.stiffening * phi**3 * (1.1 - 1.5 * phi**2)) + hull.lopsided * phi**2
     resisting = (DAMPING + hull.square * USUAL * part**0.85 + hull.cube * USUAL**2 * part**1.8) * p
     return [p, -(righting + resisting + hull.dry * np.tanh(p / 0.005)) / INERTIA]
 
@@ -82,6 +83,15 @@ def test_dry_friction_is_not_taken_for_waves(tmp_path: Path) -> None:
     assert term["value"] == pytest.approx(-4.0, rel=0.1)
     rms = answer["fit"]["roll_rms_rad"]
     assert rms["patched"] < 0.5 * rms["recalibrated"]
+
+
+def test_a_hull_that_rights_herself_better_from_one_side_is_told_by_the_square_of_heel(tmp_path: Path) -> None:
+    """No entry is even in heel, and a moment that is so stays far below the tolerated one."""
+    answer = diagnosed(decays(Hull(lopsided=20.0)), tmp_path, "kvlcc2_roll")
+    assert not answer["effects"] and answer["verdict"] == "described", answer["sentence"]
+    assert answer["unknown"]["structure"]["goes_with"] == "the roll angle squared"
+    ((term,),) = (law["terms"] for law in answer["described"])
+    assert term["of"] == "roll angle squared" and term["value"] == pytest.approx(-20.0, rel=0.1)
 
 
 def decays(hull: Hull) -> list[Recording]:

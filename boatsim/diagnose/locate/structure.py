@@ -113,7 +113,11 @@ def _features(track: Track, states: Array, lasting: float) -> Iterator[tuple[str
             yield f"the sine of {what}", np.sin(angle)
     for axis, place in PLACES.items():
         if axis in axes:
-            yield place, states[:, axes.index(axis)] - states[:, axes.index(axis)].mean()
+            off = states[:, axes.index(axis)] - states[:, axes.index(axis)].mean()
+            yield place, off
+            if axis in TURNING:  # a lopsided hull's arm is even in heel: no other feature here is
+                yield f"{place} squared", off**2
+                yield f"{place} cubed", off**3
     since = (t - t[0]) / (t[-1] - t[0])
     for run in (track.name, ""):
         of = f" of {run}" if run else ""
