@@ -27,9 +27,9 @@ from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.describe.slots import write
 from boatsim.diagnose.filter import Track, track
-from boatsim.diagnose.fit import converge
 from boatsim.diagnose.locate.structure import structure
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search.rank import baseline
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -189,13 +189,13 @@ def rms(off: Array, begin: int = START, end: int | None = None) -> float:
 
 
 def ladder(found: Diagnosis) -> dict[str, Fit]:
-    """The linear oscillator as written and refitted, with one entry more at a time, with all that was found."""
+    """The linear oscillator as written and refitted, with one entry more at a time, with what is described besides."""
     ranking = found.ranking
     models = {"linear, as written": ranking.nominal, "linear, recalibrated": ranking.recalibrated}
     named = [n.name for n in sorted(ranking.named, key=lambda n: ranking.best.suspects.index(n.name))]
     for k in range(1, len(named) + 1):
         models[f"+ {named[k - 1]}"] = with_effects(found.problem, ranking.recalibrated, named[:k])
-    return models | {"patched (with what is described)": ranking.best}
+    return models | {"patched": ranking.best}
 
 
 # ---- tables
@@ -220,7 +220,7 @@ def input_rows(whole: Path, boat: Vessel, found: Diagnosis) -> list[list[str]]:
         fitted = [part(recording, *ends) for ends in FITTED]
         old = found.problem
         problem = Problem([track(r, old.program) for r in fitted], old.ambient, old.uncertainty)
-        base = converge(problem, found.ranking.recalibrated)
+        _, base = baseline(problem)
         models = {"linear": base, "found": with_effects(problem, base, NAMED)}
         unseen = part(recording, *UNSEEN[0])
         off = {name: rms(e) for name, e in missed(found, unseen, models).items()}
@@ -260,7 +260,7 @@ def said(found: Diagnosis) -> str:
     rough = float(best.levels.force[0] / found.problem.ambient.force[0])
     return (
         f"left over after all this: a moment of {rough:.1f} times the tolerated one; it goes best with "
-        f"{goes.goes_with}, by {goes.gain:.0f} nats"
+        f"{goes.goes_with}, by {goes.gain:.0f} nats of {best.evidence - found.ranking.recalibrated.evidence:.0f}"
     )
 
 
@@ -276,16 +276,16 @@ def main() -> None:
     models = ladder(found)
     tests = {name: opened(runs[name]) for name in (MULTISINE, ARROW)}
     off = {name: missed(found, test, models) for name, test in tests.items()}
-    few = [m for m in models if m != "linear, as written"]
+    few = ["linear, recalibrated", *list(models)[-2:]]
     header = ["model", MULTISINE, ARROW, "arrow without its tip", "by"]
     table("Rms error [mV] of one free run over each whole test set", header, score_rows(off))
-    arrow = rms(off[ARROW][few[-1]])
+    arrow = rms(off[ARROW]["patched"])
     print(f"  goal: {GOAL:g} mV over the arrow: {'met' if arrow < GOAL else 'missed'}, {arrow:.3f} mV")
     header = ["input between its rows", "linear", "+ " + ", ".join(NAMED), "evidence [nats]"]
     title = "Rms error [mV] over a stretch of the training data that was not fitted, by how the input is taken"
     table(title, header, input_rows(runs["train"], boat, found))
     left = {m: off[ARROW][m] for m in few}
-    header = ["of the arrow", "recorded [mV]", *few, "last [% of recorded]"]
+    header = ["of the arrow", "recorded [mV]", *few, "patched [% of recorded]"]
     table("What is left over, rms error [mV], by how far the circuit swings", header, size_rows(left, tests[ARROW]))
     table("What is left over of the arrow, share of its square [%] by frequency", ["band", *few], band_rows(left))
     print(f"\n{said(found)}")
