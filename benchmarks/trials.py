@@ -210,8 +210,8 @@ def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> di
     carried = [n for n in found if any(law["carries_over"] for law in found[n]["described"])]
     if ratios := [r for n in carried if (r := of_recalibrated(found[n])) is not None]:
         words = f"{statistics.median(ratios):.2f} / {max(ratios):.2f} ({len(ratios)} trials)"
-        table["described, error of recalibrated, median / worst"] = words
-        table[f"  above {SLACK:g} of it"] = share([r > SLACK for r in ratios])
+        table["described: error ratio, median / worst"] = words
+        table[f"  above {SLACK:g} of the recalibrated"] = share([r > SLACK for r in ratios])
     if z:
         table["true parameters within 2 sd"] = f"{sum(x <= 2 for x in z) / len(z):.3f} of {len(z)}"
         table["median error of a parameter in sd"] = f"{statistics.median(z):.2f}"
@@ -258,7 +258,7 @@ def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answer
     skills = {n: skill(trials / n, out / "unknowns" / n, answers[n]) for n in again}
     told = [s for s in skills.values() if s is not None]
     if told:
-        print(f"  held-out skill, median     {statistics.median(told):.3f} ({len(told)} trials)")
+        print(f"  skill, truth taken out     {statistics.median(told):.3f} ({len(told)} trials)")
     by_law = [s for n, s in skills.items() if s is not None and again[n]["described"]]
     if by_law:
         print(f"  of these by a description  {statistics.median(by_law):.3f} ({len(by_law)} trials)")

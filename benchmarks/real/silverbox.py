@@ -281,6 +281,15 @@ def main() -> None:
     table("Rms error [mV] of one free run over each whole test set", header, score_rows(off))
     arrow = rms(off[ARROW]["patched"])
     print(f"  goal: {GOAL:g} mV over the arrow: {'met' if arrow < GOAL else 'missed'}, {arrow:.3f} mV")
+    linear = rms(off[ARROW]["linear, recalibrated"])
+    cells = [
+        "arrow",
+        f"{rms(off[ARROW]['linear, as written']):.3f}",
+        f"{linear:.3f}",
+        f"{arrow:.3f}",
+        f"{arrow / linear:.3f}",
+    ]
+    table("Rms error [mV], one free run", ["over", "nominal", "recalibrated", "patched", "ratio"], [cells])
     header = ["input between its rows", "linear", "+ " + ", ".join(NAMED), "evidence [nats]"]
     title = "Rms error [mV] over a stretch of the training data that was not fitted, by how the input is taken"
     table(title, header, input_rows(runs["train"], boat, found))
