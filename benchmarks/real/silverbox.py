@@ -281,14 +281,8 @@ def main() -> None:
     table("Rms error [mV] of one free run over each whole test set", header, score_rows(off))
     arrow = rms(off[ARROW]["patched"])
     print(f"  goal: {GOAL:g} mV over the arrow: {'met' if arrow < GOAL else 'missed'}, {arrow:.3f} mV")
-    linear = rms(off[ARROW]["linear, recalibrated"])
-    cells = [
-        "arrow",
-        f"{rms(off[ARROW]['linear, as written']):.3f}",
-        f"{linear:.3f}",
-        f"{arrow:.3f}",
-        f"{arrow / linear:.3f}",
-    ]
+    nominal, linear = (rms(off[ARROW][m]) for m in ("linear, as written", "linear, recalibrated"))
+    cells = ["arrow", *(f"{x:.3f}" for x in (nominal, linear, arrow, arrow / linear))]
     table("Rms error [mV], one free run", ["over", "nominal", "recalibrated", "patched", "ratio"], [cells])
     header = ["input between its rows", "linear", "+ " + ", ".join(NAMED), "evidence [nats]"]
     title = "Rms error [mV] over a stretch of the training data that was not fitted, by how the input is taken"
