@@ -1,0 +1,108 @@
+"""What a trial asks of a rival: two recordings on the same compiled program, the same library; and how it answers."""
+
+import contextlib
+import io
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.entry import horizon_of, vessel_of
+from boatsim.cli import diagnosis as commands
+from boatsim.control.base import wrap
+from boatsim.diagnose import rules
+from boatsim.diagnose.analysis import open_recording
+from boatsim.diagnose.filter import axes_of, noise_of, nominal_levels, track
+from boatsim.diagnose.log.held_fixes import without_repeats
+from boatsim.diagnose.log.outlying_fixes import without_outliers
+from boatsim.diagnose.problem import Fit, Free, Problem
+from boatsim.diagnose.report import patch
+from boatsim.diagnose.report.answer import key_of
+from boatsim.diagnose.tried import called, library_for
+from boatsim.physics.base import Array, Effect
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+
+LEAST_SD = 1e-9  # of a parameter that a fit takes for exactly known
+
+
+@dataclass(frozen=True)
+class Question:
+    """Recordings to explain, and what may be named."""
+
+    vessel: Vessel
+    problem: Problem
+    entries: dict[str, Effect]  # of the library, those that are tried on this vessel and have a course to be fitted
+    noise: dict[str, float]  # by family, as found in the recordings [m, rad]
+    known: dict[tuple[str, ...], tuple[Free, ...]] = field(default_factory=dict)  # what hypotheses fit, once asked
+
+    def start(self, entry: str = "", values: dict[str, float] | None = None) -> Array:
+        """Everything where it is without an entry; the entry's own parameters as given."""
+        free = self.problem.parameters([entry] if entry else [])
+        given = values or {}
+        return np.array([given.get(f.name, f.mean) if f.effect == entry else f.mean for f in free])
+
+
+def asked(trial: Path) -> Question:
+    """The question of one trial: rows, noise and library as the diagnosis has them, random forces left out."""
+    opened = [open_recording(trial / f"run_{i}.csv", vessel_of(trial), ()) for i in (1, 2)]
+    vessel = opened[0][1]
+    runs = [without_outliers(without_repeats(r.thinned(rules.rate(b))), b) for r, b in opened]
+    columns = sorted({c for r in runs for c in r.signals})
+    library = library_for(vessel, (), runs[0].notes.facts, columns)
+    program = Program(vessel, library.compiled)
+    stated = noise_of(vessel, runs)
+    tracks = [track(r, program, stated) for r in runs]
+    uncertainty = rules.uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
+    problem = Problem(tracks, nominal_levels(vessel, runs), uncertainty)
+    entries = {e.name: e for e in library.entries if e.name in library.tried and not type(e).random}
+    families = {f for t in tracks for f in t.families}
+    noise = {f: rules.sensed_noise(vessel, runs, f) or stated[f] for f in families}
+    return Question(vessel, problem, entries, noise)
+
+
+def free_of(question: Question, suspects: tuple[str, ...]) -> tuple[Free, ...]:
+    """What a hypothesis may fit: the vessel's own coefficients, then the parameters of its entries."""
+    if suspects not in question.known:
+        question.known[suspects] = question.problem.parameters(suspects)
+    return question.known[suspects]
+
+
+def fit_of(question: Question, suspects: tuple[str, ...], theta: Array, covariance: Array) -> Fit:
+    """A rival's fit as the diagnosis writes one, for the patched vessel."""
+    problem = question.problem
+    return Fit(suspects, free_of(question, suspects), theta, covariance, problem.ambient, 0.0)
+
+
+def answer(question: Question, found: Fit, gains: dict[str, float], unknown: bool, trial: Path, out: Path) -> None:
+    """Write diagnosis.json, patched.toml and replay.csv of one trial."""
+    out.mkdir(parents=True, exist_ok=True)
+    patch.write(question.problem, question.vessel, found, out / "patched.toml")
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon_of(trial), out)
+    said: dict[str, Any] = {
+        "effects": [{"name": called(n), "parameters": parameters(question, found, n), "gain_nats": round(gains[n], 2)}
+                    for n in found.suspects],
+        "unknown": {"flag": unknown},
+    }  # fmt: skip
+    (out / "diagnosis.json").write_text(json.dumps(said, indent=1) + "\n")
+
+
+def parameters(question: Question, found: Fit, entry: str) -> dict[str, dict[str, Any]]:
+    """Value, sd and unit of an entry's parameters, by the names that answers use."""
+    kind = type(question.entries[entry])
+    stated = {}
+    for f in found.free:
+        if f.effect == entry and not f.relative:
+            value, sd = found.value(entry, f.name)
+            unit = kind.params()[f.name].unit
+            value = wrap(value) if unit == "rad" else value
+            stated[key_of(f.name, unit)] = {"value": value, "sd": max(sd, LEAST_SD), "unit": unit}
+    return stated
+
+
+def axes(question: Question) -> tuple[str, ...]:
+    """Names of the freedoms, in the order of a state."""
+    return axes_of(question.vessel)
