@@ -1,7 +1,8 @@
 """What a tool hands in to the benchmark, read and checked: a folder of answers, one for each trial.
 
-RESULTS/Txxx/diagnosis.json needs `effects`, a list of tables with `name` and, where they are told, `parameters` (by name
-with unit, each with `value` and `sd`), and `unknown` with `flag`. RESULTS/Txxx/replay.csv has free runs over run_3, if there is one.
+RESULTS/Txxx/diagnosis.json needs `effects`, a list of tables with `name` and, where they are told, `parameters` (by
+name with unit, each with `value` and `sd`), and `unknown` with `flag`. RESULTS/Txxx/replay.csv has free runs over
+run_3, if the tool makes any.
 """
 
 import csv
@@ -38,7 +39,9 @@ def horizon_of(trial: Path) -> float:
 def answers_in(results: Path, trials: list[str]) -> dict[str, dict[str, Any]]:
     """The answers of a tool, by trial. Raises BadEntry."""
     if not results.is_dir():
-        raise BadEntry(f"{results}: there is no such folder; a folder of answers holds T001.../diagnosis.json and so on")
+        raise BadEntry(
+            f"{results}: there is no such folder; a folder of answers holds T001.../diagnosis.json and so on"
+        )
     return {name: read_answer(results / name / "diagnosis.json") for name in trials}
 
 

@@ -1,5 +1,8 @@
 """Diagnoses a folder of trials: `python -m benchmarks.trials [TRIALS] [--out RESULTS] [--unknowns] [--jobs N]`.
 
+`--make DIR --seed N` makes such a folder (the second practice set) and no more. `--answers RESULTS` scores what any
+tool answered, `RESULTS/Txxx/diagnosis.json` and `replay.csv`, and diagnoses nothing: see docs/benchmark.md.
+
 TRIALS/Txxx/ holds run_1.csv, run_2.csv (to diagnose from), run_3.csv (held out) and answer.json. Writes
 RESULTS/Txxx/diagnosis.json, patched.toml and replay.csv (free runs over run_3: 6 s for a boat of 1.2 m,
 for others by Froude's scale of time), then prints how the answers compare with the truth, vessel by vessel where there
@@ -18,7 +21,6 @@ are several (their recording.toml names them; `python -m benchmarks.practice` ma
 
 import argparse
 import contextlib
-import csv
 import io
 import json
 import math
@@ -33,8 +35,9 @@ from typing import Any
 
 from rich.progress import Progress
 
+from benchmarks.entry import BadEntry, answers_in, horizon_of, replay_errors, vessel_of
+
 SHARED = Path(__file__).parents[2] / "shared" / "recordings" / "trials" / "practice"
-VESSEL, HORIZON, LENGTH = "trial_boat", 6.0, 1.2  # where none is named; [s] of free runs at this length [m]
 BINS = (0.0, 0.02, 0.1, 0.3, 0.7, 0.95, 1.0)
 Answers = dict[str, dict[str, Any]]  # by trial
 KINDS = {  # cause outside the library -> axis and factors of a described law that is of its kind
@@ -50,13 +53,6 @@ SLACK = 1.05  # of the recalibrated error on run_3: a description must not do wo
 WORTH = 0.15  # share of the recalibrated error that the true structure must save for a skill to be told
 
 
-def vessel_of(trial: Path) -> str:
-    """The vessel its recording.toml names."""
-    from boatsim.recordings.notes import notes_for
-
-    return notes_for(trial / "run_1.csv").notes.vessel or VESSEL
-
-
 def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[str, Any]:
     """Diagnose one trial and replay its held-out run with the patched vessel; the answer."""
     from boatsim.cli import diagnosis as commands
@@ -66,11 +62,10 @@ def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[st
     found = analysis.diagnose(
         [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"], vessel_of(trial), without=without
     )
-    horizon = HORIZON * math.sqrt(found.vessel.length / LENGTH)
     out.mkdir(parents=True, exist_ok=True)
     patch.write(found.problem, found.vessel, found.ranking.best, out / "patched.toml", found.ranking.laws)
     with contextlib.redirect_stdout(io.StringIO()):
-        commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon, out)
+        commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon_of(trial), out)
     (out / "diagnosis.json").write_text(json.dumps(found.findings.answer, indent=1))
     return dict(found.findings.answer)
 
@@ -126,18 +121,16 @@ def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:
 
 
 def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
-    """Share of the error that the true structure saves on run_3 and the patched boat too; None if it saves none."""
+    """Share of the error that the true structure saves on run_3 and the patched boat too; None if it saves none.
+
+    -1 where free runs are missing, or do not cover run_3.
+    """
     reference = answer.get("reference_position_rms_m", {})
     recalibrated, true = reference.get("recalibrated"), reference.get("true_structure")
     if recalibrated is None or true is None or recalibrated - true <= max(1e-3, WORTH * recalibrated):
         return None
-    with (trial / "run_3.csv").open() as file:
-        recorded = {round(float(row["t_s"]), 3): row for row in csv.DictReader(file)}
-    with (out / "replay.csv").open() as file:
-        rows = [(row, recorded[round(float(row["t_s"]), 3)]) for row in csv.DictReader(file)]
-    squares = [(float(a[c]) - float(b[c])) ** 2 for a, b in rows for c in ("x_m", "y_m")]
-    patched = math.sqrt(sum(squares) / len(squares))
-    return max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
+    patched = replay_errors(trial, out / "replay.csv", horizon_of(trial))
+    return -1.0 if patched is None else max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
 
 
 def of_its_kind(answer: dict[str, Any], found: dict[str, Any]) -> bool:
@@ -202,9 +195,11 @@ def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> di
               and (s := skill(trials / n, out / n, answers[n])) is not None]  # fmt: skip
     exact = [n for n in found if said_of(answers[n], found[n]) == truth_of(answers[n])]
     z = [x for n in exact for x in deviations(answers[n], found[n])]
-    seconds = [f["seconds"] for f in found.values()]
-    table = {"seconds per diagnosis, median / p95": f"{statistics.median(seconds):.2f} / {quantile(seconds, 0.95):.2f}"}
-    if skills:
+    table, seconds = {}, [f["seconds"] for f in found.values() if "seconds" in f]
+    if seconds:
+        words = f"{statistics.median(seconds):.2f} / {quantile(seconds, 0.95):.2f}"
+        table["seconds per diagnosis, median / p95"] = words
+    if skills and any((out / n / "replay.csv").is_file() for n in found):
         tenth = f"{statistics.median(skills):.3f} / {sorted(skills)[len(skills) // 10]:.3f} ({len(skills)} trials)"
         table["held-out skill, median / lowest tenth"] = tenth
     carried = [n for n in found if any(law["carries_over"] for law in found[n]["described"])]
@@ -281,6 +276,23 @@ def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> 
     print()
 
 
+def print_wrong(answers: Answers, found: Answers) -> None:
+    """Trials that are not exactly right."""
+    for n, f in found.items():
+        said, truth = said_of(answers[n], f), truth_of(answers[n])
+        if said != truth:
+            seen = "" if answers[n].get("visible", True) else " (invisible: adds less than 6 nats)"
+            print(f"  {n} {answers[n]['kind']}: truth {sorted(truth)}, said {sorted(said)}{seen}")
+
+
+def score(trials: Path, results: Path, answers: Answers) -> None:
+    """Print how the answers of any tool compare with the truth. Raises BadEntry."""
+    found = answers_in(results, list(answers))
+    print(f"{len(found)} trials; answers in {results}")
+    print_figures(trials, results, answers, found)
+    print_wrong(answers, found)
+
+
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -288,19 +300,29 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("out/trials"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--unknowns", action="store_true", help="also the table of unknowns")
+    parser.add_argument("--answers", type=Path, metavar="RESULTS", help="score these answers, diagnose nothing")
+    parser.add_argument("--make", type=Path, metavar="DIR", help="make the second practice set there, and no more")
+    parser.add_argument("--seed", type=int, default=1, help="of the set that is made")
     args = parser.parse_args()
+    if args.make:
+        from benchmarks.practice.__main__ import make_set
+
+        make_set(args.make, args.seed)
+        return
     answers = {t.name: json.loads((t / "answer.json").read_text()) for t in sorted(args.trials.glob("T*"))}
     if not answers:
         raise SystemExit(f"{args.trials}: no trials there")
+    if args.answers:
+        try:
+            score(args.trials, args.answers, answers)
+        except BadEntry as error:
+            raise SystemExit(str(error)) from None
+        return
     begin = time.time()
     found = all_of(args.jobs, {n: (args.trials / n, args.out / n, ()) for n in answers}, "diagnosing")
     print(f"{len(found)} trials in {time.time() - begin:.0f} s on {args.jobs} processes; answers in {args.out}")
     print_figures(args.trials, args.out, answers, found)
-    for n, f in found.items():
-        said, truth = said_of(answers[n], f), truth_of(answers[n])
-        if said != truth:
-            seen = "" if answers[n].get("visible", True) else " (invisible: adds less than 6 nats)"
-            print(f"  {n} {answers[n]['kind']}: truth {sorted(truth)}, said {sorted(said)}{seen}")
+    print_wrong(answers, found)
     print("\nreliability: entries by stated probability, in trials with one effect or none")
     for span, count, mean, true in reliability(answers, found):
         print(f"  {span}   {count:5d} entries, mean {mean:.3f}, true {true:.3f}")

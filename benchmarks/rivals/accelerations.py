@@ -4,7 +4,9 @@ Savitzky and Golay's filter blurs what it differentiates. The laws' acceleration
 the thrust is no error of the model.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from math import sqrt
 
 import numpy as np
@@ -14,11 +16,11 @@ from boatsim.diagnose.filter import Levels, Track, body_of
 from boatsim.diagnose.locate.hull_forces import actuators
 from boatsim.physics.base import Array
 
-ORDER, NARROWEST = 3, 7  # of the polynomials, and rows of the narrowest window
+ORDER, NARROWEST = 3, 5  # of the polynomials, and rows of the narrowest window
 WIDEST = 1 / 6  # of a recording
-ALLOWED = 1.1  # errors of smoothing in those that noise alone leaves
+ALLOWED = 1.02  # errors of smoothed positions in those that noise alone leaves
+LOUDER = 1.0  # times the power of the ambient force that noise may have in accelerations
 SHORT = 1e-4  # [s] of a step whose change of speed is an acceleration
-NEVER = 1e-12  # of the noise, below which a channel never varies
 
 
 @dataclass(frozen=True)
@@ -26,19 +28,24 @@ class Smoother:
     """Windows (rows, odd) of one recording's freedoms."""
 
     track: Track
-    windows: tuple[int, ...]
+    windows: tuple[int, ...]  # in which accelerations are told
+    narrow: tuple[int, ...]  # in which states are: what is blurred twice would seem damped
 
     @classmethod
-    def of(cls, track: Track, noise: dict[str, float]) -> "Smoother":
-        """The widest windows whose smoothed positions keep within the noise `noise` [m, rad]; x and y have the same."""
-        nq, found = track.program.module.NQ, {}
-        recorded = positions(track)
-        for c, code in enumerate(track.codes):
-            if code < nq:
-                family = track.families[c]
-                found[code] = (family, widest(recorded[:, code], noise[family]))
-        least = {family: min(n for f, n in found.values() if f == family) for family, _ in found.values()}
-        return cls(track, tuple(least[found[j][0]] for j in range(nq)))
+    def of(cls, track: Track, ambient: Levels, noise: Mapping[str, float]) -> "Smoother":
+        """Windows in which noise [m, rad] moves accelerations less than the ambient force; x and y have the same.
+
+        Those of states are as wide as leaves the errors of smoothed positions to noise, and at most half as wide.
+        """
+        families, recorded = of_freedoms(track), positions(track)
+        wide, narrow = dict[str, int](), dict[str, int]()
+        for j, family in enumerate(families):
+            n = calm(track, ambient.force[j] / track.inertia[j], ambient.time_constant, noise[family])
+            wide[family] = max(n, wide.get(family, n))
+            n = widest(recorded[:, j], noise[family])
+            narrow[family] = min(n, narrow.get(family, n))
+        limit = {f: max(NARROWEST, wide[f] // 2 // 2 * 2 + 1) for f in wide}
+        return cls(track, tuple(wide[f] for f in families), tuple(min(narrow[f], limit[f]) for f in families))
 
     @property
     def margin(self) -> int:
@@ -48,7 +55,8 @@ class Smoother:
     def motion(self, recorded: Array) -> tuple[Array, Array]:
         """States (N, 2 NQ) and joint accelerations (N, NQ) of positions (N, NQ); those at the ends are poor."""
         h = float(np.median(np.diff(self.track.times)))
-        parts = [np.column_stack([derived(y, n, d, h) for y, n in zip(recorded.T, self.windows, strict=True)])
+        windows = (self.narrow, self.narrow, self.windows)
+        parts = [np.column_stack([derived(y, n, d, h) for y, n in zip(recorded.T, windows[d], strict=True)])
                  for d in range(3)]  # fmt: skip
         return np.ascontiguousarray(np.hstack(parts[:2])), parts[2]
 
@@ -58,22 +66,49 @@ class Smoother:
             [np.convolve(a, kernel(n), "same") for a, n in zip(accelerations.T, self.windows, strict=True)]
         )
 
-    def spread(self, ambient: Levels, noise: dict[str, float], times: float) -> Array:
+    def spread(self, ambient: Levels, noise: Mapping[str, float], times: float) -> Array:
         """(NQ,) variance of the accelerations of a perfect model in water that pushes `times` as hard as is tolerated.
 
-        The recording's noise twice differentiated, and the ambient force as the windows see it; along x and y as the
-        mean over all headings.
+        Noise twice differentiated, and the ambient force as the windows see it; along x and y the mean of headings.
         """
-        h, out = float(np.median(np.diff(self.track.times))), np.zeros(len(self.windows))
         pushed = (times * ambient.force / self.track.inertia) ** 2
         level = [j for j, free in enumerate(self.track.program.module.FREE) if free < 2]
         pushed[level] = np.mean(pushed[level]) if level else 0.0
-        families = dict(zip(self.track.codes.tolist(), self.track.families, strict=True))
-        for j, n in enumerate(self.windows):
-            seen, apart = kernel(n), h * np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
-            kept = float(seen @ np.exp(-apart / ambient.time_constant) @ seen)
-            out[j] = pushed[j] * kept + (noise[families[j]] * float(np.linalg.norm(savgol_coeffs(n, ORDER, 2, h)))) ** 2
+        h, out = step(self.track), np.zeros(len(pushed))
+        for j, (n, family) in enumerate(zip(self.windows, of_freedoms(self.track), strict=True)):
+            out[j] = pushed[j] * kept(n, h, ambient.time_constant) + noise[family] ** 2 * loud(n, h)
         return out
+
+
+def step(track: Track) -> float:
+    """Seconds from row to row."""
+    return float(np.median(np.diff(track.times)))
+
+
+def of_freedoms(track: Track) -> list[str]:
+    """Noise family of each recorded position."""
+    families = dict(zip(track.codes.tolist(), track.families, strict=True))
+    return [families[j] for j in range(track.program.module.NQ)]
+
+
+def kept(n: int, h: float, lasts: float) -> float:
+    """Share of the power of a force that lasts so long [s] which a window of n rows sees."""
+    apart = h * np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    return float(kernel(n) @ np.exp(-apart / lasts) @ kernel(n))
+
+
+def loud(n: int, h: float) -> float:
+    """Variance of a window's accelerations per variance of the noise [1/s^4]."""
+    return float(np.sum(coefficients(n, 2) ** 2)) / h**4
+
+
+def calm(track: Track, ambient: float, lasts: float, noise: float) -> int:
+    """Rows of the narrowest window in which noise moves accelerations less than the ambient one [m/s^2] does."""
+    h, most = step(track), int(WIDEST * len(track.times))
+    for n in range(NARROWEST, most, 2):
+        if noise**2 * loud(n, h) < LOUDER * ambient**2 * kept(n, h, lasts):
+            return n
+    return most // 2 * 2 + 1
 
 
 def positions(track: Track) -> Array:
@@ -92,22 +127,29 @@ def widest(y: Array, noise: float) -> int:
     for n in range(NARROWEST, max(int(WIDEST * len(y)), NARROWEST + 1), 2):
         inside = slice(n // 2, len(y) - n // 2)
         left = (y - derived(y, n, 0, 1.0))[inside]
-        alone = noise * sqrt(1.0 - float(savgol_coeffs(n, ORDER)[n // 2]))
+        alone = noise * sqrt(1.0 - float(coefficients(n, 0)[n // 2]))
         if float(np.sqrt(np.mean(left**2))) > ALLOWED * alone:
             break
         best = n
     return best
 
 
+@cache
+def coefficients(n: int, order: int) -> Array:
+    """(n,) of a derivative per row, for a convolution."""
+    return np.asarray(savgol_coeffs(n, ORDER, order))
+
+
 def derived(y: Array, n: int, order: int, h: float) -> Array:
     """A derivative (N,) of a signal by windows of n rows, h s apart."""
-    padded = np.pad(y, n // 2, mode="reflect", reflect_type="odd")
-    return np.asarray(np.convolve(padded, savgol_coeffs(n, ORDER, order, h), "valid"))
+    padded = np.concatenate([np.full(n // 2, y[0]), y, np.full(n // 2, y[-1])])
+    return np.asarray(np.convolve(padded, coefficients(n, order), "valid")) / h**order
 
 
+@cache
 def kernel(n: int) -> Array:
     """(n,) weights with which the second differences of a window of n rows see accelerations; their sum is 1."""
-    twice = np.cumsum(np.cumsum(savgol_coeffs(n, ORDER, 2)))
+    twice = np.cumsum(np.cumsum(coefficients(n, 2)))
     return np.append(0.0, twice[:-1])
 
 
@@ -132,9 +174,7 @@ def predicted(track: Track, states: Array, held: Array, values: Array, on: Array
     code = track.program.module
     k, nothing, nq = np.zeros(code.K), np.zeros(code.NQ), code.NQ
     code.constants(body_of(values), values, on, k)
-    out, acts = np.zeros((len(states), nq)), np.hstack([held, held, held])
-    for row, (state, act, t) in enumerate(zip(states, acts, track.times.tolist(), strict=True)):
-        y = state.copy()
+    after, acts = states.copy(), np.hstack([held, held, held])
+    for t, y, act in zip(track.times.tolist(), after, acts, strict=True):
         code.step_in_place(t, y, SHORT, act, values, on, k, nothing)
-        out[row] = (y[nq:] - state[nq:]) / SHORT
-    return out
+    return np.asarray((after[:, nq:] - states[:, nq:]) / SHORT)

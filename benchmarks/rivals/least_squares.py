@@ -122,9 +122,7 @@ class LeastSquares:
 
     def measured(self) -> list[Array]:
         """What was recorded in each window."""
-        return [
-            run.track.measured[a : b + 1] for run in self.runs for a, b in zip(run.begins, run.ends, strict=True)
-        ]
+        return [run.track.measured[a : b + 1] for run in self.runs for a, b in zip(run.begins, run.ends, strict=True)]
 
     def weighed(self, state: State) -> State:
         """The same with each channel weighed by the rms of its errors, those alike counted as fewer."""
@@ -151,7 +149,8 @@ class LeastSquares:
         for i in range(HALVINGS):
             share = 0.5**i
             begun = self.shifted(state.starts, by_window, share)
-            step = self.at(state.suspects, state.theta + share * move, begun, state.weights)
+            theta = np.clip(state.theta + share * move, [f.low for f in free], [f.high for f in free])
+            step = self.at(state.suspects, theta, begun, state.weights)
             if step.square < state.square:
                 return step
         return None

@@ -6,6 +6,7 @@ are not linear in their parameters are first fitted alone, and stand in the regr
 changes by near it. Random forces have no course to be regressed on, and a clock that is off no column: left out.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,12 +16,13 @@ from benchmarks.rivals.accelerations import Smoother, held_by, positions, predic
 from benchmarks.rivals.evidence import Judge, sizes
 from benchmarks.rivals.linear import solved
 from benchmarks.rivals.question import Question, fit_of, free_of
-from boatsim.diagnose.problem import Fit, Free
+from boatsim.diagnose.problem import Fit
 from boatsim.diagnose.search.screen import handed_over, joined, starts
 from boatsim.diagnose.tried import called
 from boatsim.physics.base import Array, Force, Measurement
 
 STEP = 1e-3  # prior sds by which a parameter is moved for derivatives
+LEAST_GAIN = 1e-3  # of the sum of squares, from which another step is worth it
 RIDGE = 1e-8  # of a column's square
 ROUNDS = 3  # Gauss-Newton steps
 MOST = 4  # effects
@@ -43,8 +45,7 @@ class Group:
     """What an entry can change about the nominal's errors."""
 
     columns: Array  # (R, K) its shape as fitted alone, and how that changes by its parameters
-    theta: Array  # (F,) of the fit alone
-    own: int  # parameters of its own
+    alone: State
 
 
 class SparseRegression:
@@ -55,7 +56,7 @@ class SparseRegression:
         late = [n for n, e in question.entries.items() if isinstance(e, Measurement) and type(e).late is not None]
         self.entries = {n: e for n, e in question.entries.items() if n not in late}
         self.judge = Judge(plain, len(self.entries))
-        self.smoothers = [Smoother.of(t, question.noise) for t in self.problem.tracks]
+        self.smoothers = [Smoother.of(t, self.problem.ambient, question.noise) for t in self.problem.tracks]
         self.recorded = [positions(t) for t in self.problem.tracks]
         self.weights = np.ones(self.problem.program.module.NQ)
         self.held = [held_by(t, (), t.values) for t in self.problem.tracks]
@@ -63,8 +64,9 @@ class SparseRegression:
     def answer(self) -> tuple[Fit, dict[str, float], bool]:
         """The effects found, what each gains [nats], whether the cause is unknown."""
         nominal = self.nominal()
-        groups = {n: g for n in self.entries if (g := self.group(nominal, n)) is not None}
-        sets = [self.refitted(nominal, groups, names) for names in self.thresholded(nominal, groups)]
+        known = self.slopes(nominal)
+        groups = {n: g for n in self.entries if (g := self.group(nominal, n, known)) is not None}
+        sets = [self.refitted(nominal, groups, names) for names in self.thresholded(nominal, groups, known)]
         best = max([nominal, *sets], key=lambda s: self.gain(nominal, s))
         best = self.pruned(nominal, best)
         gains = {n: self.gain(nominal, best) - self.gain(nominal, self.without(best, n)) for n in best.suspects}
@@ -82,7 +84,7 @@ class SparseRegression:
             values = self.problem.values(track, free, theta)
             true = shown_by(track, recorded, values, on) if any(isinstance(e, Measurement) for e in kinds) else recorded
             states, accelerations = smoother.motion(true)
-            if any(not isinstance(e, Measurement | Force) for e in kinds):
+            if held.any() and any(not isinstance(e, Measurement | Force) for e in kinds):
                 held = held_by(track, suspects, values)
             left = accelerations - smoother.blurred(predicted(track, states, held, values, on))
             errors.append(left[smoother.margin : len(left) - smoother.margin])
@@ -110,19 +112,27 @@ class SparseRegression:
             columns.append(np.where(np.isfinite(column), column, 0.0))
         return np.column_stack(columns) if columns else np.zeros((len(here), 0))
 
-    def fitted(self, state: State, rounds: int = ROUNDS) -> State:
-        """Gauss-Newton steps, each shortened until it is one for the better."""
+    def fitted(self, state: State, rounds: int = ROUNDS, known: Array | None = None) -> State:
+        """Gauss-Newton steps, each shortened until it is one for the better.
+
+        `known`: derivatives by the vessel's own coefficients, held.
+        """
         free = free_of(self.question, state.suspects)
         for _ in range(rounds):
             if not np.isfinite(state.square):
                 break
-            move = solved(self.slopes(state), self.row(state), [f.low for f in free], [f.high for f in free],
-                          state.theta)  # fmt: skip
-            steps = (self.at(state.suspects, state.theta + share * move) for share in (1.0, 0.5, 0.25, 0.125))
+            J = self.slopes(state) if known is None else np.hstack([known, self.slopes(state, state.suspects[-1])])
+            low, high = [f.low for f in free], [f.high for f in free]
+            move = solved(J, self.row(state), low, high, state.theta)
+            nearer = (np.clip(state.theta + share * move, low, high) for share in (1.0, 0.5, 0.25, 0.125))
+            steps = (self.at(state.suspects, theta) for theta in nearer)
             step = next((s for s in steps if s.square < state.square), None)
             if step is None:
                 break
+            done = state.square - step.square < LEAST_GAIN * state.square
             state = step
+            if done:
+                break
         return state
 
     def nominal(self) -> State:
@@ -152,7 +162,7 @@ class SparseRegression:
 
     # ---- the sparse regression
 
-    def group(self, nominal: State, entry: str) -> Group | None:
+    def group(self, nominal: State, entry: str, known: Array) -> Group | None:
         """An entry fitted alone, and its columns; None if it runs away or changes nothing."""
         base = fit_of(self.question, (), nominal.theta, np.zeros((0, 0)))
         begun = [handed_over(joined(self.problem, base, entry, s), self.entries[entry])
@@ -160,25 +170,24 @@ class SparseRegression:
         free = free_of(self.question, (entry,))
         low, high = [f.low for f in free], [f.high for f in free]
         tried = [self.at((entry,), np.clip(f.theta, low, high)) for f in begun]
-        first = [self.fitted(s, 1) for s in tried if np.isfinite(s.square)]
+        first = [self.fitted(s, 1, known) for s in tried if np.isfinite(s.square)]
         if not first:
             return None
-        alone = self.fitted(min(first, key=lambda s: s.square), ROUNDS - 1)
+        alone = self.fitted(min(first, key=lambda s: s.square), ROUNDS - 1, known)
         slopes = self.slopes(alone, entry)
-        theta = np.array([x if not f.relative else y for f, x, y in
-                          zip(free, alone.theta, self.widened(nominal, free), strict=True)])  # fmt: skip
-        shape = self.row(self.at((entry,), theta)) - self.row(nominal)
+        shape = self.row(self.at((entry,), self.placed((entry,), [alone, nominal]))) - self.row(nominal)
         columns = np.column_stack([shape, slopes])
-        return Group(columns, alone.theta, slopes.shape[1]) if np.isfinite(columns).all() and shape.any() else None
+        return Group(columns, alone) if np.isfinite(columns).all() and shape.any() else None
 
-    def widened(self, nominal: State, free: tuple[Free, ...]) -> Array:
-        """The nominal's coefficients among the parameters of a set, 0 for others."""
-        known = {(f.effect, f.name): x for f, x in zip(free_of(self.question, ()), nominal.theta, strict=True)}
-        return np.array([known.get((f.effect, f.name), 0.0) if f.relative else 0.0 for f in free])
+    def placed(self, suspects: tuple[str, ...], states: Sequence[State]) -> Array:
+        """(F,) parameters of a set, as later ones of some states have them where several do."""
+        known = {(f.effect, f.name, f.relative): x for s in states
+                 for f, x in zip(free_of(self.question, s.suspects), s.theta, strict=True)}  # fmt: skip
+        return np.array([known[f.effect, f.name, f.relative] for f in free_of(self.question, suspects)])
 
-    def thresholded(self, nominal: State, groups: dict[str, Group]) -> list[tuple[str, ...]]:
+    def thresholded(self, nominal: State, groups: dict[str, Group], own: Array) -> list[tuple[str, ...]]:
         """The sets that are left when the entry which is needed least is taken out again and again."""
-        names, own = list(groups), self.slopes(nominal)
+        names = list(groups)
         blocks = [own, *(g.columns for g in groups.values())]
         A = np.column_stack(blocks)
         A = A / np.maximum(np.linalg.norm(A, axis=0), 1e-300)
@@ -202,18 +211,13 @@ class SparseRegression:
 
     def refitted(self, nominal: State, groups: dict[str, Group], names: tuple[str, ...]) -> State:
         """A set fitted by its own laws, from the fits of its entries alone."""
-        free = free_of(self.question, names)
-        known = {(f.effect, f.name): x for f, x in zip(free_of(self.question, ()), nominal.theta, strict=True)}
-        for n in names:
-            pairs = zip(free_of(self.question, (n,)), groups[n].theta, strict=True)
-            known |= {(f.effect, f.name): x for f, x in pairs if f.effect == n and not f.relative}
-        return self.fitted(self.at(names, np.array([known[f.effect, f.name] for f in free])))
+        alone = [groups[n].alone for n in names]
+        return self.fitted(self.at(names, self.placed(names, [*alone, nominal])))
 
     def without(self, state: State, name: str) -> State:
         """A set without one of its entries, fitted again."""
         left = tuple(n for n in state.suspects if n != name)
-        known = {(f.effect, f.name): x for f, x in zip(free_of(self.question, state.suspects), state.theta, strict=True)}
-        return self.fitted(self.at(left, np.array([known[f.effect, f.name] for f in free_of(self.question, left)])))
+        return self.fitted(self.at(left, self.placed(left, [state])))
 
     def pruned(self, nominal: State, best: State) -> State:
         """Without entries that BIC is better off without."""
