@@ -1,4 +1,4 @@
-"""Least squares of trajectories: output error in windows, effects added one by one while BIC falls.
+"""Least squares of trajectories: output error in windows, effects added and taken out one by one while BIC falls.
 
 What is fitted: the vessel's own uncertain coefficients within their stated spread, the parameters of the entries, and
 the start of every window. Each channel counts by the rms of its errors. Random forces can not be simulated: they are
@@ -19,6 +19,7 @@ from boatsim.diagnose.tried import called
 from boatsim.physics.base import Array
 
 MOST = 4  # effects
+STEPS = 6  # of the selection
 FULL = 4  # entries in front that are fitted in full
 ROUNDS, LOOKS = 5, 3  # Gauss-Newton steps of a fit, and of a look at an entry
 WEIGHINGS = 2  # fits until the weights agree with the errors
@@ -50,12 +51,14 @@ class LeastSquares:
 
     def answer(self) -> tuple[Fit, dict[str, float], bool]:
         """The effects found, what each gains [nats], whether the cause is unknown."""
-        best, gains = self.nominal(), dict[str, float]()
-        while len(best.suspects) < MOST:
-            found = self.next(best)
-            if found is None:
+        best = self.nominal()
+        for _ in range(STEPS):
+            found = self.next(best) if len(best.suspects) < MOST else None
+            fewer = self.pruned(found) if found else best
+            if set(fewer.suspects) == set(best.suspects):  # nothing came in, or it went out again
                 break
-            best, gains = found[0], gains | {found[0].suspects[-1]: found[1]}
+            best = fewer
+        gains = {n: self.gain(self.without(best, n), best) for n in best.suspects}
         return fit_of(self.question, best.suspects, best.theta, self.covariance(best)), gains, False
 
     def nominal(self) -> State:
@@ -79,19 +82,33 @@ class LeastSquares:
         """How many are recorded."""
         return self.problem.tracks[0].measured.shape[1]
 
-    def next(self, best: State) -> tuple[State, float] | None:
-        """The best of the entries on top of a set with what it gains [nats], or none if BIC would rise."""
+    def next(self, best: State) -> State | None:
+        """The best of the entries on top of a set, or none if BIC would rise."""
         there = {called(n) for n in best.suspects}
         base = self.linear(best)
         looks = [self.look(best, base, n) for n in self.question.entries if called(n) not in there]
         rows = float(sum(np.isfinite(e).sum() for e in best.errors))
         looks = sorted((x for x in looks if x is not None), key=lambda s: s.square + len(s.theta) * np.log(rows))
         full = [self.fitted(look) for look in looks[:FULL]]
-        if not full:
-            return None
-        first = max(full, key=lambda s: self.gain(best, s))
-        gain = self.gain(best, first)
-        return (self.settled(first), gain) if gain > 0.0 else None
+        first = max(full, key=lambda s: self.gain(best, s), default=best)
+        return self.settled(first) if full and self.gain(best, first) > 0.0 else None
+
+    def pruned(self, best: State) -> State:
+        """Without entries that BIC is better off without since others came in."""
+        while len(best.suspects) > 1:
+            fewer = min((self.without(best, n) for n in best.suspects), key=lambda s: self.gain(s, best))
+            if self.gain(fewer, best) > 0.0:
+                break
+            best = self.settled(fewer)
+        return best
+
+    def without(self, best: State, name: str) -> State:
+        """A set without one of its entries, fitted again."""
+        left = tuple(n for n in best.suspects if n != name)
+        pairs = zip(free_of(self.question, best.suspects), best.theta, strict=True)
+        known = {(f.effect, f.name): x for f, x in pairs if f.relative or f.effect != name}
+        theta = np.array([known[f.effect, f.name] for f in free_of(self.question, left)])
+        return self.fitted(self.at(left, theta, best.starts, best.weights))
 
     def gain(self, before: State, after: State) -> float:
         """What a set gains over one with an entry less [nats]."""
