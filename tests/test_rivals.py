@@ -9,6 +9,7 @@ import pytest
 
 from benchmarks import trials
 from benchmarks.entry import BadEntry, answers_in, horizon_of, read_answer, replay_errors
+from benchmarks.practice import __main__ as practice
 from benchmarks.practice import hulls
 from benchmarks.practice.make import Trial, make
 from benchmarks.rivals.__main__ import RIVALS, enter
@@ -74,6 +75,16 @@ def test_a_missing_folder_or_trial_is_said_in_one_line(easy: Path, monkeypatch: 
         with pytest.raises(SystemExit) as refused:
             trials.main()
         assert words in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_trials_make_the_very_set_that_practice_makes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = list[tuple[Path, int]]()
+    monkeypatch.setattr(practice, "make_set", lambda out, seed, *_: made.append((out, seed)))
+    monkeypatch.setattr(sys, "argv", ["trials", "--make", str(tmp_path), "--seed", "7"])
+    trials.main()
+    monkeypatch.setattr(sys, "argv", ["practice", "--out", str(tmp_path), "--seed", "7"])
+    practice.main()
+    assert made == [(tmp_path, 7), (tmp_path, 7)]
 
 
 def test_free_runs_count_only_if_they_are_long_enough_and_cover_the_run(tmp_path: Path) -> None:

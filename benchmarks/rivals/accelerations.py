@@ -66,18 +66,20 @@ class Smoother:
             [np.convolve(a, kernel(n), "same") for a, n in zip(accelerations.T, self.windows, strict=True)]
         )
 
-    def spread(self, ambient: Levels, noise: Mapping[str, float], times: float) -> Array:
-        """(NQ,) variance of the accelerations of a perfect model in water that pushes `times` as hard as is tolerated.
+    def pushed(self, ambient: Levels, times: float) -> Array:
+        """(NQ,) variance of accelerations in water that pushes `times` as hard as is tolerated, as the windows see it.
 
-        Noise twice differentiated, and the ambient force as the windows see it; along x and y the mean of headings.
+        Along x and y it is the mean of all headings.
         """
-        pushed = (times * ambient.force / self.track.inertia) ** 2
+        power = (times * ambient.force / self.track.inertia) ** 2
         level = [j for j, free in enumerate(self.track.program.module.FREE) if free < 2]
-        pushed[level] = np.mean(pushed[level]) if level else 0.0
-        h, out = step(self.track), np.zeros(len(pushed))
-        for j, (n, family) in enumerate(zip(self.windows, of_freedoms(self.track), strict=True)):
-            out[j] = pushed[j] * kept(n, h, ambient.time_constant) + noise[family] ** 2 * loud(n, h)
-        return out
+        power[level] = np.mean(power[level]) if level else 0.0
+        return power * np.array([kept(n, step(self.track), ambient.time_constant) for n in self.windows])
+
+    def noisy(self, noise: Mapping[str, float], rng: np.random.Generator) -> Array:
+        """(N, NQ) noise as the instruments have it [m, rad]."""
+        sd = np.array([noise[f] for f in of_freedoms(self.track)])
+        return sd * rng.standard_normal((len(self.track.times), len(sd)))
 
 
 def step(track: Track) -> float:

@@ -80,5 +80,5 @@ def solved(J: Array, errors: Array, low: Sequence[float], high: Sequence[float],
     ridged, ridge = np.vstack([J / size, RIDGE * np.eye(len(theta))]), np.zeros(len(theta))
     least = np.minimum((np.array(low) - theta) * size, -1e-12)
     most = np.maximum((np.array(high) - theta) * size, 1e-12)
-    R = np.linalg.qr(np.column_stack([ridged, np.append(-errors, ridge)]), mode="r")
+    R = np.asarray(np.linalg.qr(np.column_stack([ridged, np.append(-errors, ridge)]), mode="r"))
     return np.asarray(lsq_linear(R[:, :-1], R[:, -1], (least, most), method="bvls").x) / size

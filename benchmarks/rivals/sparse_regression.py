@@ -28,6 +28,7 @@ ROUNDS = 3  # Gauss-Newton steps
 MOST = 4  # effects
 SURE = 1e-3  # of the chance that what is left over is no more than twice the ambient force
 TOLERATED = 2.0  # times that force
+DRAWS, SEED = 5, 1  # of the noise
 
 
 @dataclass(frozen=True)
@@ -230,11 +231,19 @@ class SparseRegression:
 
     def beyond_the_water(self, best: State) -> bool:
         """Whether what is left over is surely more than noise and twice the ambient force: a chi-square test."""
-        square = freedom = 0.0
-        expected = np.mean([s.spread(self.problem.ambient, self.question.noise, TOLERATED) for s in self.smoothers],
-                           axis=0)  # fmt: skip
-        alike = self.judge.alike(best.errors)
-        for errors in best.errors:
-            square += float(np.sum(errors**2 / expected / alike))
-            freedom += float(np.sum(len(errors) / alike))
-        return bool(chi2.sf(square, freedom) < SURE)
+        pushed = np.mean([s.pushed(self.problem.ambient, TOLERATED) for s in self.smoothers], axis=0)
+        expected, alike = pushed + self.by_noise(best), self.judge.alike(best.errors)
+        square = sum(float(np.sum(e**2 / expected / alike)) for e in best.errors)
+        return bool(chi2.sf(square, sum(float(np.sum(len(e) / alike)) for e in best.errors)) < SURE)
+
+    def by_noise(self, best: State) -> Array:
+        """(NQ,) variance of the errors by noise alone, carried through smoothing and laws: as much again is put in."""
+        rng, recorded, found = np.random.default_rng(SEED), self.recorded, list[Array]()
+        for _ in range(DRAWS):
+            self.recorded = [
+                y + s.noisy(self.question.noise, rng) for y, s in zip(recorded, self.smoothers, strict=True)
+            ]
+            noisy = self.at(best.suspects, best.theta).errors
+            found.append(sizes([a - b for a, b in zip(noisy, best.errors, strict=True)]) ** 2)
+        self.recorded = recorded
+        return np.asarray(np.mean(found, axis=0))
