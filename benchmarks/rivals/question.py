@@ -14,7 +14,7 @@ from boatsim.cli import diagnosis as commands
 from boatsim.control.base import wrap
 from boatsim.diagnose import rules
 from boatsim.diagnose.analysis import open_recording
-from boatsim.diagnose.filter import axes_of, noise_of, nominal_levels, track
+from boatsim.diagnose.filter import noise_of, nominal_levels, track
 from boatsim.diagnose.log.held_fixes import without_repeats
 from boatsim.diagnose.log.outlying_fixes import without_outliers
 from boatsim.diagnose.problem import Fit, Free, Problem
@@ -38,11 +38,9 @@ class Question:
     noise: dict[str, float]  # by family, as found in the recordings [m, rad]
     known: dict[tuple[str, ...], tuple[Free, ...]] = field(default_factory=dict)  # what hypotheses fit, once asked
 
-    def start(self, entry: str = "", values: dict[str, float] | None = None) -> Array:
-        """Everything where it is without an entry; the entry's own parameters as given."""
-        free = self.problem.parameters([entry] if entry else [])
-        given = values or {}
-        return np.array([given.get(f.name, f.mean) if f.effect == entry else f.mean for f in free])
+    def start(self) -> Array:
+        """The vessel's own coefficients as written."""
+        return np.array([f.mean for f in self.problem.parameters(())])
 
 
 def asked(trial: Path) -> Question:
@@ -101,8 +99,3 @@ def parameters(question: Question, found: Fit, entry: str) -> dict[str, dict[str
             value = wrap(value) if unit == "rad" else value
             stated[key_of(f.name, unit)] = {"value": value, "sd": max(sd, LEAST_SD), "unit": unit}
     return stated
-
-
-def axes(question: Question) -> tuple[str, ...]:
-    """Names of the freedoms, in the order of a state."""
-    return axes_of(question.vessel)
