@@ -1,0 +1,158 @@
+"""Real recordings altered so that the right answer is known: `python -m benchmarks.real.concealed [--only NAME...]`.
+
+Something is missing from the plain vessel of every real recording already. So the unaltered recordings are diagnosed
+first, and the patched vessel is that of the cases; what is still named of the unaltered recordings with it counts for
+nothing. Then each case alters the recordings as its cause would have, by closed form, or takes one of the effects
+found out of the patched vessel again. A cause can be told from a recording (is visible) if the true structure, its
+sizes fitted, gains more than 6 nats in the tool's own filter; what can not be told must be left alone.
+
+--only takes names of sets or parts of names of cases, --list prints the cases alone. To cost minutes, not hours, short
+pieces of a few runs of each set are used, as printed; sets whose recordings are not there are skipped.
+"""
+
+import argparse
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from benchmarks.real.common import OUT, table
+from benchmarks.real.concealed.alterations import unaltered
+from benchmarks.real.concealed.cases import STUDIES, Case, Laid, Study, taken_out
+from benchmarks.real.concealed.judging import Cause, Verdict, judged, meant, names_of, shares, sizes_of
+from boatsim.diagnose import analysis
+from boatsim.diagnose.analysis import Diagnosis
+from boatsim.diagnose.problem import Fit
+from boatsim.diagnose.report import patch
+from boatsim.diagnose.tried import called
+
+
+class Patched:
+    """What a set's vessel lacks by its unaltered recordings, found once; with it the vessel of the cases."""
+
+    def __init__(self, study: Study, folder: Path) -> None:
+        self.study, self.folder = study, folder / study.name
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.first = diagnosed(study.open(None, unaltered))
+        self.file = self.write(self.first.ranking.best, "patched.toml")
+        self.laid = study.open(str(self.file), unaltered)
+        self.before = diagnosed(self.laid)
+
+    @property
+    def found(self) -> list[Cause]:
+        """The effects that it was given, with their sizes."""
+        effects = self.first.findings.answer["effects"]
+        return [Cause(e["name"], {k: p["value"] for k, p in e["parameters"].items()}) for e in effects]
+
+    def cases(self) -> list[Case]:
+        """Those of the set, and each effect found taken out again."""
+        return [*self.study.cases(self.laid.vessel), *taken_out(self.laid.vessel, self.found)]
+
+    def verdict(self, case: Case) -> Verdict:
+        """Of one case."""
+        if case.plain:
+            beside = [c for c in self.found if c.name not in meant(case.truth)]
+            return judged(diagnosed(self.study.open(None, case.alter)), case.truth, self.first, beside)
+        file = self.without(case.without) if case.without else self.file
+        return judged(diagnosed(self.study.open(str(file), case.alter)), case.truth, self.before)
+
+    def without(self, name: str) -> Path:
+        """The patched vessel with everything that was found but one effect."""
+        best = self.first.ranking.best
+        gone = {n for n in best.suspects if called(n) == name}
+        kept = [i for i, f in enumerate(best.free) if f.relative or f.effect not in gone]
+        rest = Fit(
+            tuple(n for n in best.suspects if n not in gone),
+            tuple(best.free[i] for i in kept),
+            best.theta[kept],
+            best.covariance[kept][:, kept],
+            best.levels,
+            best.evidence,
+        )
+        return self.write(rest, f"without_{name}.toml")
+
+    def write(self, fit: Fit, name: str) -> Path:
+        """A fit as a vessel's file."""
+        path, first = self.folder / name, self.first
+        patch.write(first.problem, first.vessel, fit, path, first.ranking.laws)
+        return path
+
+
+def diagnosed(laid: Laid) -> Diagnosis:
+    """What the vessel leaves out of some recordings."""
+    boats = {r.path: laid.vessel for r in (*laid.fitted, *laid.unseen)}
+    return analysis.diagnose_recordings(laid.fitted, laid.unseen, boats, "one kept unseen")
+
+
+def row(study: Study, case: Case, verdict: Verdict) -> list[str]:
+    """A line of the table."""
+    gain = "" if verdict.gain is None else f"{verdict.gain:.1f}"
+    return [study.name, case.name, sizes_of(case.truth) or "nothing", gain, verdict.outcome, verdict.said]
+
+
+HEADER = ["set", "concealed", "truth", "gain [nats]", "judged", "said"]
+
+
+def wanted(study: Study, case: Case, only: Sequence[str]) -> bool:
+    """Whether a case is asked for."""
+    return not only or any(o == study.name or o in case.name for o in only)
+
+
+def main() -> None:
+    """Every set in turn, each case printed as it is judged, then all of them against the goals."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.real.concealed", description=__doc__)
+    parser.add_argument("--only", nargs="+", default=[], help="names of sets, or parts of names of cases")
+    parser.add_argument("--list", action="store_true", help="print the cases and run none")
+    parser.add_argument("--out", type=Path, default=OUT / "concealed", help="where patched vessels go")
+    asked = parser.parse_args()
+    rows, verdicts = list[list[str]](), list[Verdict]()
+    for study in STUDIES:
+        if not study.there():
+            print(f"{study.name}: skipped, its recordings are not there")
+            continue
+        if asked.list:
+            listed(study, asked.only)
+            continue
+        if asked.only and study.name not in asked.only and not _any_case(study, asked.only):
+            continue
+        some = run(study, asked.only, asked.out)
+        rows += [r for r, _ in some]
+        verdicts += [v for _, v in some]
+    if verdicts:
+        table("what was concealed, and what was said of it", HEADER, rows)
+        table("against the goals", ["", "", "goal"], [list(s) for s in shares(verdicts)])
+
+
+def _any_case(study: Study, only: Sequence[str]) -> bool:
+    vessel = study.open(None, unaltered).vessel
+    return any(wanted(study, c, only) for c in study.cases(vessel)) or any("taken out again" in o for o in only)
+
+
+def listed(study: Study, only: Sequence[str]) -> None:
+    """The cases of a set; sizes that depend on the patched vessel are those of the plain one."""
+    print(f"{study.name}: {study.about}")
+    for case in study.cases(study.open(None, unaltered).vessel):
+        if wanted(study, case, only):
+            print(f"  {case.name}: {sizes_of(case.truth) or 'nothing, which no recording can tell'}")
+    print("  each effect that is found in the unaltered recordings, taken out again")
+
+
+def run(study: Study, only: Sequence[str], out: Path) -> list[tuple[list[str], Verdict]]:
+    """All cases of a set."""
+    begin = time.perf_counter()
+    patched = Patched(study, out)
+    print(f"\n{study.name}: {study.about}")
+    print(f"  the vessel lacks: {sizes_of(patched.found) or 'nothing'}")
+    left = ", ".join(sorted(names_of(patched.before))) or "nothing"
+    print(f"  with that, still named: {left} ({patched.before.findings.answer['verdict']})", flush=True)
+    found = []
+    for case in patched.cases():
+        if wanted(study, case, only):
+            verdict = patched.verdict(case)
+            cells = row(study, case, verdict)
+            print(f"  {' | '.join(cells[1:])}  [{time.perf_counter() - begin:.0f} s]", flush=True)
+            found.append((cells, verdict))
+    return found
+
+
+if __name__ == "__main__":
+    main()
