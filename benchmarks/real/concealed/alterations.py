@@ -110,7 +110,7 @@ def current(north: float, east: float) -> Alteration:
 
 
 def heading_off(offset: float, cos: float = 0.0, sin: float = 0.0) -> Alteration:
-    """A compass that shows psi + offset + cos cos(psi) + sin sin(psi) [rad]; speeds are resolved along what it shows."""
+    """A compass that shows psi + offset + cos cos(psi) + sin sin(psi) [rad]; speeds are resolved along that."""
 
     def alter(recording: Recording) -> Recording:
         psi = recording["psi_rad"]

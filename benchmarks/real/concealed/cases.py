@@ -8,10 +8,12 @@ from benchmarks.real.common import RECORDINGS
 from benchmarks.real.concealed import alterations as a
 from benchmarks.real.concealed.alterations import Alteration
 from benchmarks.real.concealed.judging import Cause
+from benchmarks.real.esso_osaka_vessel import NAME as ESSO
 from benchmarks.real.esso_osaka_vessel import SOURCE, written
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.log.held_fixes import without_repeats
 from boatsim.diagnose.log.outlying_fixes import without_outliers
+from boatsim.physics.base import Effect
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
@@ -103,7 +105,7 @@ def esso(patched: str | None, alter: Alteration) -> Laid:
     vessel, found = patched or str(written()), list[Recording]()
     boat: Vessel | None = None
     for run in (*ESSO_FITTED, *ESSO_UNSEEN):
-        path = RECORDINGS / esso_osaka_pond.NAME / "runs" / f"{run}.csv"
+        path = RECORDINGS / ESSO / "runs" / f"{run}.csv"
         whole, boat = analysis.open_recording(path, vessel, ())
         stretches = esso_osaka_pond.sound(whole, path, esso_osaka_pond.SHORTEST)
         longest = max(stretches, key=lambda r: float(r.t[-1] - r.t[0]))
@@ -119,6 +121,11 @@ def esso(patched: str | None, alter: Alteration) -> Laid:
 def taken_out(vessel: Vessel, found: Sequence[Cause]) -> list[Case]:
     """Each effect that the patched vessel was given, taken out again."""
     return [Case(f"{c.name} taken out again", (c,), without=c.name) for c in found]
+
+
+def number(effect: Effect | None, name: str) -> float:
+    """A parameter of an effect that a vessel has."""
+    return float(getattr(effect, name))
 
 
 def late_by(seconds: float) -> Cause:
@@ -182,13 +189,13 @@ def of_release(vessel: Vessel) -> list[Case]:
     shown k times as long divide stiffness per inertia by k^2, damping by k, and multiply cubic damping by k.
     """
     arm, damping = vessel.effect("righting_arm"), vessel.effect("cubic_damping")
-    stiffness, cubic = (float(getattr(arm, n)) for n in ("stiffness", "cubic"))
+    stiffness, cubic = (number(arm, n) for n in ("stiffness", "cubic"))
     heel = 0.012  # [rad]
     push = {n: Cause("steady_force", {"roll_Nm": stiffness * x}) for n, x in (("large", heel), ("small", 1e-5))}
     scale = 0.75
     bent = [Cause("righting_arm_stiffening", {"cubic_perrad2": cubic * (scale**-2 - 1.0)})]
     if damping is not None:
-        bent.append(Cause("cubic_damping", {"roll_Nms3": float(getattr(damping, "roll")) * (scale**-2 - 1.0)}))
+        bent.append(Cause("cubic_damping", {"roll_Nms3": number(damping, "roll") * (scale**-2 - 1.0)}))
     slow = Cause("metacentric_height_error", {"factor": 1.5**-2})
     all_of_it = stiffness * heel + _moment(vessel)
     return [
@@ -219,7 +226,7 @@ def _mirrored(vessel: Vessel) -> list[Case]:
 
 def _moment(vessel: Vessel) -> float:
     """Constant roll moment that a vessel has [N m]."""
-    return sum(float(getattr(e, "roll")) for e in vessel.effects if type(e).idea() == "steady_force")
+    return sum(number(e, "roll") for e in vessel.effects if type(e).idea() == "steady_force")
 
 
 RUDDER = ("delta_rad",)
@@ -227,7 +234,7 @@ RUDDER = ("delta_rad",)
 
 def of_tank(vessel: Vessel) -> list[Case]:
     """One rudder, speeds over the ground recorded beside positions."""
-    U = float(getattr(vessel.effect("approach_balance"), "speed"))
+    U = number(vessel.effect("approach_balance"), "speed")
     step = 0.5 * vessel.length / U  # [s] half a length
     late = round(0.2 * step, 1) if vessel.length < 100.0 else round(0.2 * step)
     north, east = 0.04 * U, 0.03 * U
