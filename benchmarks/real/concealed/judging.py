@@ -69,7 +69,7 @@ def judged(found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: 
     if wrong:
         outcome = WRONG
     elif truth and all(hits):
-        sizes = all(right_size(e, cause) for e, cause in zip(hits, every, strict=True) if e)
+        sizes = all(right_size(e, cause) for e, cause in zip(hits, truth, strict=False) if e)
         outcome = (RIGHT if sizes else SIZE) if visible else FAINT
     elif visible:
         outcome = MISSED
