@@ -1,6 +1,6 @@
 """Entries of the library that a rolling hull shows, found with their values in decays integrated by scipy."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,7 @@ class Hull:
     height: float = 1.0  # of the metacentre, per stated one
     dry: float = 0.0  # [N m] of friction that is the same at any rate
     lopsided: float = 0.0  # [N m/rad^2] more of righting moment to one side, less to the other
+    heeling: float = 0.0  # [N m] of a weight off the centreline
 
 
 def slopes(t: float, y: Array, hull: Hull) -> list[float]:
@@ -33,7 +34,7 @@ def slopes(t: float, y: Array, hull: Hull) -> list[float]:
     part = abs(p) / USUAL
     righting = RIGHTING * (hull.height * phi + hull.stiffening * phi**3 * (1.1 - 1.5 * phi**2)) + hull.lopsided * phi**2
     resisting = (DAMPING + hull.square * USUAL * part**0.85 + hull.cube * USUAL**2 * part**1.8) * p
-    return [p, -(righting + resisting + hull.dry * np.tanh(p / 0.005)) / INERTIA]
+    return [p, -(righting + resisting + hull.dry * np.tanh(p / 0.005) - hull.heeling) / INERTIA]
 
 
 def released(hull: Hull, seed: int) -> Recording:
@@ -92,6 +93,21 @@ def test_a_hull_that_rights_herself_better_from_one_side_is_told_by_the_square_o
     assert answer["unknown"]["structure"]["goes_with"] == "the roll angle squared"
     ((term,),) = (law["terms"] for law in answer["described"])
     assert term["of"] == "roll angle squared" and term["value"] == pytest.approx(-20.0, rel=0.1)
+@pytest.mark.parametrize("askew", [-0.06, 0.06])
+def test_an_inclinometer_askew_is_no_moment_and_hides_no_law(tmp_path: Path, askew: float) -> None:
+    """The righting moment bends about upright, wherever the zero of the instrument lies."""
+    runs = [replace(r, signals={"phi_rad": r["phi_rad"] + askew}) for r in decays(Hull(stiffening=-1.5))]
+    found = {e["name"]: e["parameters"] for e in diagnosed(runs, tmp_path, "kvlcc2_roll")["effects"]}
+    assert set(found) == {"roll_offset", "righting_arm_stiffening"}
+    assert found["roll_offset"]["offset_rad"]["value"] == pytest.approx(askew, rel=0.05)
+    assert found["righting_arm_stiffening"]["cubic_perrad2"]["value"] == pytest.approx(-1.5, rel=0.15)
+
+
+def test_a_weight_off_the_centreline_is_no_inclinometer_askew(tmp_path: Path) -> None:
+    runs = decays(Hull(stiffening=-1.5, heeling=40.0))
+    found = {e["name"]: e["parameters"] for e in diagnosed(runs, tmp_path, "kvlcc2_roll")["effects"]}
+    assert set(found) == {"steady_force", "righting_arm_stiffening"}
+    assert found["steady_force"]["roll_Nm"]["value"] == pytest.approx(40.0, rel=0.05)
 
 
 def decays(hull: Hull) -> list[Recording]:

@@ -30,7 +30,8 @@ def test_the_middle_third_is_predicted_from_the_first_and_the_last() -> None:
 def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(windows: Diagnosis) -> None:
     _, ranking = roll.last_third(windows, roll.opened(roll.AT_REST)[0])
     assert {n.name for n in ranking.named} == {"steady_force"}
-    assert max(gain for name, gain in ranking.first.items() if name != "steady_force") < 4.0
+    alike = {"steady_force", "roll_offset"}  # so small a roll can not tell them apart
+    assert max(gain for name, gain in ranking.first.items() if name not in alike) < 4.0
 
 
 def test_stiffening_explains_the_phase_and_damping_the_envelope(windows: Diagnosis) -> None:

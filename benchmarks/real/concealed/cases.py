@@ -154,7 +154,9 @@ def of_blueboat(vessel: Vessel) -> list[Case]:
     return [
         Case("starboard motor gives 0.8", (uneven(0.8, "starboard"),), a.weaker(THRUSTS[1:], 0.8)),
         Case(f"dead band of {band:g} N", (Cause("thrust_deadband", {"width_N": band}),), a.dead_band(THRUSTS, band)),
-        Case("both give 0.65 astern", (Cause("weak_reverse", {"astern_factor": 0.65}),), a.weaker_astern(THRUSTS, 0.65)),
+        Case(
+            "both give 0.65 astern", (Cause("weak_reverse", {"astern_factor": 0.65}),), a.weaker_astern(THRUSTS, 0.65)
+        ),
         Case("commands late by 0.4 s", (late_by(0.4),), a.late(THRUSTS, 0.4)),
         Case("current of 0.25, -0.15 m/s", (flow(0.25, -0.15),), a.current(0.25, -0.15)),
         Case("compass off by 0.12 rad", (Cause("heading_offset", {"offset_rad": 0.12}),), a.heading_off(0.12)),
