@@ -3,8 +3,10 @@
 Something is missing from the plain vessel of every real recording already. So the unaltered recordings are diagnosed
 first, and the patched vessel is that of the cases; what is still named of the unaltered recordings with it counts for
 nothing. Then each case alters the recordings as its cause would have, by closed form, or takes one of the effects
-found out of the patched vessel again. A cause can be told from a recording (is visible) if the true structure, its
-sizes fitted, gains more than 6 nats in the tool's own filter; what can not be told must be left alone.
+found out of the patched vessel again. Beside the truth stands what a fit makes of the same cause in the unaltered
+recordings: a real boat has a little of everything, to which an alteration adds. A cause can be told from a recording
+(is visible) if the true structure, its sizes fitted, gains more than 6 nats in the tool's own filter; what can not be
+told must be left alone.
 
 --only takes names of sets or parts of names of cases, --list prints the cases alone. To cost minutes, not hours, short
 pieces of a few runs of each set are used, as printed; sets whose recordings are not there are skipped.
@@ -86,10 +88,10 @@ def diagnosed(laid: Laid) -> Diagnosis:
 def row(study: Study, case: Case, verdict: Verdict) -> list[str]:
     """A line of the table."""
     gain = "" if verdict.gain is None else f"{verdict.gain:.1f}"
-    return [study.name, case.name, sizes_of(case.truth) or "nothing", gain, verdict.outcome, verdict.said]
+    return [study.name, case.name, sizes_of(case.truth) or "nothing", verdict.own, gain, verdict.outcome, verdict.said]
 
 
-HEADER = ["set", "concealed", "truth", "gain [nats]", "judged", "said"]
+HEADER = ["set", "concealed", "truth", "unaltered", "gain [nats]", "judged", "said"]
 
 
 def wanted(study: Study, case: Case, only: Sequence[str]) -> bool:

@@ -40,6 +40,7 @@ class Verdict:
     outcome: str  # one of `OUTCOMES`
     said: str
     gain: float | None  # [nats] of the true structure; None where nothing was concealed, or no entry can say it
+    own: str = ""  # what the unaltered recordings have of the same causes, too little to be named or known already
 
 
 RIGHT, SIZE, WRONG, MISSED, ALONE, FAINT = (
@@ -76,7 +77,7 @@ def judged(found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: 
     else:
         outcome = MISSED if doubt else ALONE
     said = "; ".join([*map(in_words, new), *(["a cause unknown"] if doubt else [])]) or "nothing new"
-    return Verdict(outcome, f"{said} ({answer['verdict']})", gain)
+    return Verdict(outcome, f"{said} ({answer['verdict']})", gain, own_of(before, truth, known))
 
 
 def names_of(found: Diagnosis) -> set[str]:
@@ -124,17 +125,37 @@ def gain_of(found: Diagnosis, truth: Sequence[Cause], known: Collection[str]) ->
     None where nothing is concealed or an entry is not there.
     """
     problem = found.problem
-    base = found.ranking.recalibrated
-    for name in sorted(set(known) - meant(truth)):
-        if (effect := entry_of(problem, name)) is not None:
-            base = with_entry(problem, base, effect, _fitted(found, effect))
-    whole = base
+    base = whole = _with_known(found, truth, known)
     for cause in truth:
         effect = entry_of(problem, cause.name)
         if effect is None:
             return None
         whole = with_entry(problem, whole, effect, cause.values)
     return whole.evidence - base.evidence if truth else None
+
+
+def own_of(before: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> str:
+    """Sizes of the same causes fitted to the unaltered recordings: a real boat has a little of everything.
+
+    An alteration adds to these, so a size that is off by them is none of the tool's.
+    """
+    whole, found = _with_known(before, truth, known), []
+    for cause in truth:
+        if (effect := entry_of(before.problem, cause.name)) is None:
+            return ""
+        whole = with_entry(before.problem, whole, effect, {})
+        values = (whole.value(effect.name, f.name) for f in whole.free if f.effect == effect.name and not f.relative)
+        found.append(", ".join(f"{x:.2g} ± {sd:.1g}" for x, sd in values))
+    return "; ".join(found)
+
+
+def _with_known(found: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> Fit:
+    """The recalibrated vessel with what is known to be missing from it besides."""
+    base = found.ranking.recalibrated
+    for name in sorted(set(known) - meant(truth)):
+        if (effect := entry_of(found.problem, name)) is not None:
+            base = with_entry(found.problem, base, effect, _fitted(found, effect))
+    return base
 
 
 def entry_of(problem: Problem, name: str) -> Effect | None:
