@@ -93,6 +93,8 @@ def test_a_hull_that_rights_herself_better_from_one_side_is_told_by_the_square_o
     assert answer["unknown"]["structure"]["goes_with"] == "the roll angle squared"
     ((term,),) = (law["terms"] for law in answer["described"])
     assert term["of"] == "roll angle squared" and term["value"] == pytest.approx(-20.0, rel=0.1)
+
+
 @pytest.mark.parametrize("askew", [-0.06, 0.06])
 def test_an_inclinometer_askew_is_no_moment_and_hides_no_law(tmp_path: Path, askew: float) -> None:
     """The righting moment bends about upright, wherever the zero of the instrument lies."""
