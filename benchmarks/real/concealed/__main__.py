@@ -8,8 +8,9 @@ recordings: a real boat has a little of everything, to which an alteration adds.
 (is visible) if the true structure, its sizes fitted, gains more than 6 nats in the tool's own filter; what can not be
 told must be left alone.
 
---only takes names of sets or parts of names of cases, --list prints the cases alone. To cost minutes, not hours, short
-pieces of a few runs of each set are used, as printed; sets whose recordings are not there are skipped.
+--only takes names of sets or parts of names of cases, --list prints the cases alone. The two releases take a minute or
+two. Of the others short pieces of a few runs are used, as printed, and still a single diagnosis may take ten minutes,
+for so much is missing from their plain vessels. Sets whose recordings are not there are skipped.
 """
 
 import argparse
