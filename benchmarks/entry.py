@@ -68,6 +68,8 @@ def read_answer(file: Path) -> dict[str, Any]:
             _check_number(value, f"{where}parameters.{key}", file)
     for key, empty in OPTIONAL.items():
         found.setdefault(key, empty)
+    laws = _needed(found, "described", list, file, "")
+    found["described"] = [d for d in laws if isinstance(d, dict) and {"axis", "terms", "carries_over"} <= set(d)]
     return found
 
 
@@ -109,4 +111,5 @@ def replay_errors(trial: Path, file: Path, horizon: float) -> float | None:
     last = begin + horizon * math.floor((end - begin) / horizon * (1.0 + 1e-6))
     needed = {t for t in recorded if t <= last}
     reached = needed & {t for rows in whole.values() for t, _ in rows}
-    return math.sqrt(sum(squares) / len(squares)) if squares and len(reached) >= COVERED * len(needed) else None
+    whole_way = squares and all(map(math.isfinite, squares)) and len(reached) >= COVERED * len(needed)
+    return math.sqrt(sum(squares) / len(squares)) if whole_way else None

@@ -281,7 +281,7 @@ def print_wrong(answers: Answers, found: Answers) -> None:
     for n, f in found.items():
         said, truth = said_of(answers[n], f), truth_of(answers[n])
         if said != truth:
-            seen = "" if answers[n].get("visible", True) else " (invisible: adds less than 6 nats)"
+            seen = "" if answers[n].get("visible", True) else " (invisible)"
             print(f"  {n} {answers[n]['kind']}: truth {sorted(truth)}, said {sorted(said)}{seen}")
 
 

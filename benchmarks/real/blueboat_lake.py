@@ -95,7 +95,7 @@ def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
     out = []
     for group in (tracks[i::GROUPS] for i in range(GROUPS)):
         rest = without(usual, tracks, group)
-        names = tuple(e.name for e in rest.program.suspects)
+        names = rest.program.entries
         chosen = selection(rest, names)
         if (again := timed(rest, chosen[1])) is not rest:
             rest, chosen = again, selection(again, names)

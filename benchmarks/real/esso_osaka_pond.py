@@ -21,7 +21,7 @@ from benchmarks.real.common import RECORDINGS, report, runs_of, table
 from benchmarks.real.esso_osaka_vessel import NAME, SOURCE, written
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import Track, noise_of, segments, track
+from boatsim.diagnose.filter import Track, noise_of, segments
 from boatsim.diagnose.fit import converge, descend, fit
 from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.log.outlying_fixes import without_outliers
@@ -359,12 +359,12 @@ def main() -> None:
     stated = noise_of(boat, [r for one in recordings.values() for r in one.stretches])
 
     def laid(some: Sequence[Recording]) -> list[Track]:
-        return [track(r, found.problem.program, stated) for r in some]
+        return [found.laid(r, stated) for r in some]
 
     tracks = {n: laid(one.stretches) for n, one in recordings.items()}
     fitted = {n: some for n, some in tracks.items() if n.startswith(FITTED)}
     judged = {n: laid([one.whole])[0] for n, one in recordings.items() if n.startswith(JUDGED)}
-    problem = Problem([t for some in fitted.values() for t in some], found.problem.ambient, found.problem.uncertainty)
+    problem = found.problem.on([t for some in fitted.values() for t in some])
     ranking = found.ranking
     recalibrated = converge(problem, ranking.recalibrated)
     weather = Weather(problem, ranking.best)

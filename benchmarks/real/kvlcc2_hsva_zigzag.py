@@ -8,10 +8,9 @@ Z_20_05; then each of the ten runs is left out once, with the couplings kept and
 from benchmarks.real.common import report, runs_of, table
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import Track, track
+from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import converge, descend
 from boatsim.diagnose.free_runs import errors, free_runs
-from boatsim.diagnose.problem import Problem
 from boatsim.diagnose.report import show
 
 NAME = "kvlcc2_hsva_zigzag"
@@ -62,7 +61,7 @@ def print_left_out(found: Diagnosis, tracks: list[Track]) -> None:
     """Each run left out once."""
     rows, ahead = [], [0, 0]
     for out in tracks:
-        problem = Problem([t for t in tracks if t is not out], found.problem.ambient, found.problem.uncertainty)
+        problem = found.problem.on([t for t in tracks if t is not out])
         before, after = (
             converge(problem, descend(problem, f, 4, 0.1)) for f in (found.ranking.recalibrated, found.ranking.best)
         )
@@ -85,7 +84,7 @@ def main() -> None:
     print_couplings(found)
     rate = rules.rate(found.vessel)
     opened = [analysis.open_recording(path, None, ())[0].thinned(rate) for path in runs.values()]
-    print_left_out(found, [track(r, found.problem.program) for r in opened])
+    print_left_out(found, [found.laid(r) for r in opened])
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.real.common import report, runs_of, table
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import Track, track
+from boatsim.diagnose.filter import Track
 from boatsim.diagnose.problem import Fit
 from boatsim.diagnose.report.show import fits_of
 from boatsim.physics.base import Array
@@ -43,7 +43,7 @@ def main() -> None:
     found = analysis.diagnose([runs[n] for n in FITTED], [runs[UNSEEN]], horizon=HORIZON)
     report(found, NAME)
     recording, boat = analysis.open_recording(runs[UNSEEN], None, ())
-    circle = track(recording.thinned(rules.rate(boat)), found.problem.program)
+    circle = found.laid(recording.thinned(rules.rate(boat)))
     nominal, before, after = (turn(found, f, circle) for f in fits_of(found.problem, found.ranking).values())
     rows = [
         [what, *(f"{x[i]:.3f}" for x in (nominal, before, after)), f"{after[i] / before[i]:.3f}", f"<= {goal}"]

@@ -16,7 +16,7 @@ import numpy as np
 from benchmarks.real.common import report, table
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import Track, track
+from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import converge
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.problem import Fit, Problem
@@ -101,7 +101,8 @@ def with_effects(problem: Problem, base: Fit, names: Sequence[str]) -> Fit:
 
 def one_at_a_time(found: Diagnosis) -> dict[str, Fit]:
     """The linear boat, the same with each effect found alone, and with all of them; each fitted to the same data."""
-    problem, base, named = found.problem, found.ranking.recalibrated, found.ranking.best.suspects
+    problem, base = found.problem, found.ranking.recalibrated
+    named = tuple(n.name for n in found.ranking.named)
     sets = {"linear": (), **{f"+ {n}": (n,) for n in named}, "+ all of these": named}
     return {label: with_effects(problem, base, names) for label, names in sets.items()}
 
@@ -146,7 +147,7 @@ def polar_errors(problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Tra
 
 def laid_on(found: Diagnosis, parts: Sequence[Recording]) -> list[Track]:
     """Recordings on the program of a diagnosis."""
-    return [track(p, found.problem.program) for p in parts]
+    return [found.laid(p) for p in parts]
 
 
 def error_rows(found: Diagnosis, fits: Mapping[str, Fit], tracks: Sequence[Track], what: str) -> Rows:
@@ -214,7 +215,7 @@ def both_speeds(at_rest: Diagnosis, at_speed: Diagnosis, releases: Sequence[Reco
     for diagnosis, whole in zip((at_rest, at_speed), releases, strict=True):
         problem = Problem(laid_on(diagnosis, [whole]), diagnosis.problem.ambient, diagnosis.problem.uncertainty)
         base = converge(problem, diagnosis.ranking.recalibrated)
-        found.append(coefficients(problem, with_effects(problem, base, at_rest.ranking.best.suspects)))
+        found.append(coefficients(problem, with_effects(problem, base, [n.name for n in at_rest.ranking.named])))
     rows = []
     for name, (a, sa) in found[0].items():
         b, sb = found[1][name]
@@ -244,7 +245,7 @@ def last_third(found: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
     """The tail of the decay with what was fitted elsewhere and by itself; and its own ranking."""
     (tail,) = laid_on(found, thirds(whole)[2:])
     alone = Problem([tail], found.problem.ambient, found.problem.uncertainty)
-    ranking = rank(alone, tuple(e.name for e in found.problem.program.suspects))
+    ranking = rank(alone, found.problem.program.entries)
     fits = show.fits_of(found.problem, found.ranking) | {"linear, fitted here": ranking.recalibrated}
     fits |= {f"{n}, fitted here": with_effects(alone, ranking.recalibrated, [n]) for n in ranking.first}
     rms = errors(free_runs(alone, fits, [tail], float(np.ptp(tail.times))))["roll_rms_rad"]

@@ -25,7 +25,6 @@ from benchmarks.real.common import OUT, report, runs_of, table
 from benchmarks.real.kvlcc2_roll_decay import with_effects
 from boatsim.diagnose import analysis
 from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.describe.slots import write
 from boatsim.diagnose.filter import Track, track
 from boatsim.diagnose.locate.structure import structure
 from boatsim.diagnose.problem import Fit, Problem
@@ -164,10 +163,7 @@ def laid_on(found: Diagnosis, test: Recording) -> Track:
     """A set on the program of a diagnosis: all of the input, and of the displacement the first rows alone."""
     shown = test["phi_rad"].copy()
     shown[START:] = np.nan
-    laid = track(replace(test, signals={**test.signals, "phi_rad": shown}), found.problem.program)
-    for w in found.ranking.description.terms if found.ranking.description else ():
-        write(found.problem, w.term.name, w.term, [laid])
-    return laid
+    return found.laid(replace(test, signals={**test.signals, "phi_rad": shown}))
 
 
 def simulated(problem: Problem, laid: Track, f: Fit) -> Array:

@@ -45,7 +45,7 @@ def main() -> None:
     for name in sys.argv[1:] or UNSEEN:
         paths = [path for run, path in runs_of(name).items() if run not in UNSEEN[name]]
         problem = problem_of(paths, VESSELS.get(name))
-        _, chosen = selection(problem, tuple(e.name for e in problem.program.suspects))
+        _, chosen = selection(problem, problem.program.entries)
         usual, taken = problem.ambient.time_constant, correlation_time(problem, chosen)
         ladder = [usual * 2.0**step for step in range(-STEPS, STEPS + 1)]
         errors = [float(np.exp(np.mean(np.log(halves_errors(problem, chosen, x))))) for x in ladder]

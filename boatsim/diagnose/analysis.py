@@ -10,6 +10,7 @@ import numpy as np
 from boatsim.diagnose import rules
 from boatsim.diagnose.correlation_time import timed
 from boatsim.diagnose.describe.describe import described
+from boatsim.diagnose.describe.slots import write
 from boatsim.diagnose.filter import Track, axes_of, noise_beside, noise_of, nominal_levels, track
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.locate import forces as locate
@@ -48,6 +49,13 @@ class Diagnosis:
     ranking: Ranking
     remarks: tuple[str, ...]  # what was read and not used
     plan: experiment.Plan | None = None  # what to record next
+
+    def laid(self, recording: Recording, stated: Mapping[str, float] | None = None) -> Track:
+        """A further recording on the same program, with the laws that were described; `stated` is sensor noise."""
+        made = track(recording, self.problem.program, stated)
+        for w in self.ranking.description.terms if self.ranking.description else ():
+            write(self.problem, w.term.name, w.term, [made])
+        return made
 
 
 def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
@@ -142,8 +150,8 @@ def diagnose_recordings(
         a_fact = "time_constant_s" in fitted[0].notes.ambient
         if not a_fact and (again := timed(problem, ranking.best)) is not problem:
             problem, ranking = again, rank(again, candidates, unseen_tracks, ranking.best)
-        ranking = _described(problem, ranking, unseen_tracks)
-        plan = experiment.next_experiment(problem, *experiment.question(ranking))
+        before, ranking = ranking, _described(problem, ranking, unseen_tracks)
+        plan = experiment.next_experiment(problem, *experiment.question(replace(before, named=ranking.named)))
         findings = _findings(problem, ranking, unseen_tracks, boat, note, plan)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         where = fitted[0].path or fitted[0].name
@@ -186,7 +194,9 @@ def _described(problem: Problem, ranking: Ranking, unseen: Sequence[Track]) -> R
     if found is None:
         return ranking
     named = tuple(n for n in ranking.named if n.name in found.fit.suspects)
-    return replace(ranking, best=widened(problem, found.fit), named=named, description=found)
+    best = ranking.best if found.fit is ranking.best else widened(problem, found.fit)
+    terms = (replace(w, sd=best.value(w.term.name, "coefficient")[1]) if w.carries else w for w in found.terms)
+    return replace(ranking, best=best, named=named, description=replace(found, terms=tuple(terms)))
 
 
 def _findings(

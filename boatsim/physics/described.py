@@ -9,7 +9,7 @@ from boatsim.physics import terms
 from boatsim.physics.base import UNSET, Boat, Force, param
 from boatsim.physics.param import code
 
-EVER = 1e6  # [s]
+EVER = 1e12  # [s] beyond any clock, one that counts from 1970 too
 LITTLE = 0.01  # of the speed, or rate, that belongs to the length: within so much a sense turns
 GRAVITY = 9.81  # [m/s^2]
 

@@ -38,6 +38,11 @@ class Program:
         sizes = [len(type(e).params()) for e in self.effects]
         object.__setattr__(self, "offsets", tuple(int(n) for n in np.cumsum([0, *sizes])[:-1]))
 
+    @property
+    def entries(self) -> tuple[str, ...]:
+        """Names of what may be tried: all suspects but the slots that a diagnosis writes laws into."""
+        return tuple(e.name for e in self.suspects if not type(e).described)
+
     def values(self) -> Array:
         """Parameters of all effects, flat."""
         return np.array([v for e in self.effects for v in e.values()], dtype=float)

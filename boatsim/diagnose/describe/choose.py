@@ -40,7 +40,7 @@ def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
     while len(so_far.terms) < MOST:
         seen = ways(problem, so_far.fit)
         ordered = weighed(seen, list(terms(problem.program.vessel, problem.tracks, *varying(seen))))
-        ahead = [w for w in apart(ordered) if w.gain > 0.0][:TRIED]
+        ahead = [w for w in best_of_each(ordered) if w.gain > 0.0][:TRIED]
         tried = [made for w in ahead if (made := _with(problem, so_far, w, everywhere))]
         if not tried:
             break
@@ -57,7 +57,7 @@ def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
     return so_far
 
 
-def apart(ordered: Sequence[Weighed]) -> list[Weighed]:
+def best_of_each(ordered: Sequence[Weighed]) -> list[Weighed]:
     """Of terms that differ in no more than when they act, or in a wavelength, the best: it is made finer later."""
     found: dict[tuple[object, ...], Weighed] = {}
     for w in ordered:

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from boatsim.diagnose.describe.choose import Chosen, chosen, less
 from boatsim.diagnose.describe.curves import curve
 from boatsim.diagnose.describe.shapes import ways
@@ -55,9 +57,10 @@ def _carried(
     longest = max((float(t.times[-1] - t.times[0]) for t in unseen), default=0.0)
     stretches = free_runs(problem, fits, unseen, min(problem.horizon, longest)) if unseen else []
     before = carries.squares(stretches, "recalibrated")
-    if not before:
-        return found
+    if not before:  # nobody has seen a law carry over
+        return chain[len(lasting)]
     misfits = [carries.misfit(carries.squares(stretches, str(k)), before) for k in range(len(chain))]
+    misfits = [m if np.isfinite(m) else np.inf for m in misfits]  # the boat runs away
     best = len(chain) - 1
     for k in reversed(range(len(chain))):
         if misfits[k] < BETTER * misfits[best]:

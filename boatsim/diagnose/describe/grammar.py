@@ -161,7 +161,7 @@ def neighbours(term: Described, tracks: Sequence[Track], by: float) -> list[Desc
     if term.acts == "within":
         step = by * whole / PARTS
         edges = [(term.begin + a * step, term.end + b * step) for a in (-1, 0, 1) for b in (-1, 0, 1) if a or b]
-        edges = [(a, min(b, EVER)) for a, b in edges]
+        edges = [(a, EVER if term.end >= EVER else b) for a, b in edges]
         found += [replace(term, begin=a, end=b) for a, b in edges if b > a]
     if term.acts in ("rising", "fading"):
         span = term.end - term.begin

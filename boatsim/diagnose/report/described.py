@@ -6,7 +6,7 @@ from itertools import groupby
 
 from boatsim.diagnose.description import Description, Written
 from boatsim.diagnose.report.entries import DescribedEntry, TermEntry
-from boatsim.diagnose.report.words import listed, number, parameter, plain, quantity, spread
+from boatsim.diagnose.report.words import listed, number, parameter, plain, quantity, spread, unit_words
 from boatsim.physics.described import EVER, Described
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
@@ -38,10 +38,10 @@ def described_entries(description: Description | None, vessel: Vessel) -> list[D
     if description is None:
         return []
 
-    def key(w: Written) -> tuple[str, bool]:
-        return axis_of(w.term), w.carries
+    def key(w: Written) -> tuple[str, bool, str]:
+        return axis_of(w.term), w.carries, w.term.run
 
-    gains = defaultdict[tuple[str, bool], float](float)
+    gains = defaultdict[tuple[str, bool, str], float](float)
     for w in description.terms:
         gains[key(w)] += w.gain
     ordered = sorted(description.terms, key=lambda w: (-gains[key(w)], key(w), -w.gain))
@@ -78,8 +78,7 @@ def _entry(written: Sequence[Written], vessel: Vessel) -> DescribedEntry:
     axis, first = axis_of(written[0].term), written[0]
     statement = f"{what_of(axis)} that no entry explains: {listed((_said(w, vessel) for w in written), 'plus')}"
     if not first.carries:
-        events = sorted({w.term.run for w in written if w.term.run})
-        where = f"of {listed(events)}" if events else "of the recordings fitted"
+        where = f"of {first.term.run}" if first.term.run else "of the recordings fitted"
         statement += f" (an event {where}: no law that unseen recordings bear out)"
     return {
         "axis": axis, "statement": statement, "terms": [_term(w, vessel) for w in written],
@@ -102,7 +101,8 @@ def _said(w: Written, vessel: Vessel) -> str:
     term = w.term
     if isinstance(term, DescribedThrust):
         more = "more" if term.coefficient > 0.0 else "less"
-        size = f"{spread(100.0 * abs(term.coefficient), 100.0 * w.sd)} % {more}"
+        per = unit_words(unit_of(term, vessel)).removeprefix("1")
+        size = f"{spread(100.0 * abs(term.coefficient), 100.0 * w.sd)} %{f' {per}' if per else ''} {more}"
         size += {"all": "", "port": " to port", "starboard": " to starboard"}[term.side]
         size += {"both": "", "ahead": " when pushing ahead", "astern": " when pushing astern"}[term.sense]
     else:

@@ -84,7 +84,7 @@ def remarks(
 ) -> list[str]:
     """What the data can not tell: parts without the effect, no gain on unseen data, force that stays unexplained."""
     out = []
-    if ranking.named:
+    if ranking.adds:
         for family, found in unseen.items():
             if found["patched"] > found["recalibrated"]:
                 what, unit, scale = _readable(family)

@@ -52,7 +52,7 @@ class Ranking:
     @property
     def unknown(self) -> bool:
         """Whether something is left that no entry of the library explains."""
-        return bool(self.left_over > self.told_from) or self.structured
+        return self.description is not None or bool(self.left_over > self.told_from) or self.structured
 
     @property
     def structured(self) -> bool:
