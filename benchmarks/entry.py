@@ -63,6 +63,7 @@ def read_answer(file: Path) -> dict[str, Any]:
             raise BadEntry(f"{file}: effects[{i}] = {effect!r}; allowed is a table with name and parameters")
         _needed(effect, "name", str, file, where)
         effect.setdefault("tied_with", [])
+        _needed(effect, "tied_with", list, file, where)
         effect.setdefault("parameters", {})
         for key, value in _needed(effect, "parameters", dict, file, where).items():
             _check_number(value, f"{where}parameters.{key}", file)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.rivals.evidence import Judge, sizes
-from benchmarks.rivals.linear import Linear, solved
+from benchmarks.rivals.linear import Linear, descended, solved
 from benchmarks.rivals.question import Question, fit_of, free_of
 from benchmarks.rivals.windows import Windows
 from boatsim.diagnose.problem import Fit
@@ -23,7 +23,6 @@ STEPS = 6  # of the selection
 FULL = 4  # entries in front that are fitted in full
 ROUNDS, LOOKS = 5, 3  # Gauss-Newton steps of a fit, and of a look at an entry
 WEIGHINGS = 2  # fits until the weights agree with the errors
-LEAST_GAIN = 1e-3  # of the sum of squares, from which another step is worth it
 HALVINGS = 6  # of a step that makes things worse
 STEP = 1e-3  # prior sds by which a parameter is moved for derivatives
 FAR = 5.0  # rms of its channel from which an error is an outlier
@@ -148,15 +147,7 @@ class LeastSquares:
 
     def fitted(self, state: State) -> State:
         """Gauss-Newton steps until they gain next to nothing."""
-        for _ in range(ROUNDS):
-            step = self.stepped(state, self.linear(state))
-            if step is None:
-                break
-            done = state.square - step.square < LEAST_GAIN * state.square
-            state = step
-            if done:
-                break
-        return state
+        return descended(state, lambda s: self.stepped(s, self.linear(s)), ROUNDS)
 
     def stepped(self, state: State, linear: Linear) -> State | None:
         """After a step, shortened until it is one for the better; None if none is."""

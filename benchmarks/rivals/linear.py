@@ -1,7 +1,8 @@
 """Errors of windows linearised: what each window's own start can do about them is projected out of a step."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Protocol, TypeVar
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -9,6 +10,18 @@ from scipy.optimize import lsq_linear
 from boatsim.physics.base import Array
 
 RIDGE = 1e-5  # of a column's length, so that what nothing depends on stays
+LEAST_GAIN = 1e-3  # of the sum of squares, from which another step is worth it
+
+
+class Squared(Protocol):
+    """What a fit has reached."""
+
+    @property
+    def square(self) -> float:
+        """Weighted sum of squares, those of the prior included."""
+
+
+S = TypeVar("S", bound=Squared)
 
 
 def nothing() -> Array:
@@ -69,6 +82,19 @@ class Linear:
         left = self.cut(self.errors + self.raw @ move)
         pairs = zip(self.bases, self.triangles, left, strict=True)
         return [-np.linalg.lstsq(t, q.T @ e, rcond=1e-9)[0] for q, t, e in pairs]
+
+
+def descended(state: S, step: Callable[[S], S | None], rounds: int) -> S:
+    """After at most so many steps, until one gains next to nothing or none is for the better."""
+    for _ in range(rounds):
+        after = step(state)
+        if after is None:
+            break
+        done = state.square - after.square < LEAST_GAIN * state.square
+        state = after
+        if done:
+            break
+    return state
 
 
 def solved(J: Array, errors: Array, low: Sequence[float], high: Sequence[float], theta: Array) -> Array:

@@ -14,7 +14,7 @@ from scipy.stats import chi2
 
 from benchmarks.rivals.accelerations import Smoother, held_by, positions, predicted, shown_by
 from benchmarks.rivals.evidence import Judge, sizes
-from benchmarks.rivals.linear import solved
+from benchmarks.rivals.linear import descended, solved
 from benchmarks.rivals.question import Question, fit_of, free_of
 from boatsim.diagnose.problem import Fit
 from boatsim.diagnose.search.screen import handed_over, joined, starts
@@ -22,7 +22,6 @@ from boatsim.diagnose.tried import called
 from boatsim.physics.base import Array, Force, Measurement
 
 STEP = 1e-3  # prior sds by which a parameter is moved for derivatives
-LEAST_GAIN = 1e-3  # of the sum of squares, from which another step is worth it
 RIDGE = 1e-8  # of a column's square
 ROUNDS = 3  # Gauss-Newton steps
 MOST = 4  # effects
@@ -119,22 +118,18 @@ class SparseRegression:
         `known`: derivatives by the vessel's own coefficients, held.
         """
         free = free_of(self.question, state.suspects)
-        for _ in range(rounds):
-            if not np.isfinite(state.square):
-                break
-            J = self.slopes(state) if known is None else np.hstack([known, self.slopes(state, state.suspects[-1])])
-            low, high = [f.low for f in free], [f.high for f in free]
-            move = solved(J, self.row(state), low, high, state.theta)
-            nearer = (np.clip(state.theta + share * move, low, high) for share in (1.0, 0.5, 0.25, 0.125))
-            steps = (self.at(state.suspects, theta) for theta in nearer)
-            step = next((s for s in steps if s.square < state.square), None)
-            if step is None:
-                break
-            done = state.square - step.square < LEAST_GAIN * state.square
-            state = step
-            if done:
-                break
-        return state
+        low, high = [f.low for f in free], [f.high for f in free]
+
+        def stepped(s: State) -> State | None:
+            if not np.isfinite(s.square):
+                return None
+            J = self.slopes(s) if known is None else np.hstack([known, self.slopes(s, s.suspects[-1])])
+            move = solved(J, self.row(s), low, high, s.theta)
+            nearer = (np.clip(s.theta + share * move, low, high) for share in (1.0, 0.5, 0.25, 0.125))
+            steps = (self.at(s.suspects, theta) for theta in nearer)
+            return next((after for after in steps if after.square < s.square), None)
+
+        return descended(state, stepped, rounds)
 
     def nominal(self) -> State:
         """The vessel recalibrated, each axis weighed by the rms of its errors, those alike counted as fewer."""

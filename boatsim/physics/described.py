@@ -8,10 +8,10 @@ from boatsim.errors import BadInput
 from boatsim.physics import terms
 from boatsim.physics.base import UNSET, Boat, Force, param
 from boatsim.physics.param import code
+from boatsim.physics.particulars import GRAVITY
 
 EVER = 1e12  # [s] beyond any clock, one that counts from 1970 too
-LITTLE = 0.01  # of the speed, or rate, that belongs to the length: within so much a sense turns
-GRAVITY = 9.81  # [m/s^2]
+LITTLE = 0.01  # of the speed, or rate, that belongs to the length by Froude: within so much a sense turns
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Described(Force):
     def rules(self, vessel: Boat) -> dict[str, float]:
         """What its words are to the program. Raises BadInput for factors that the vessel has not."""
         first, second, third = terms.codes(self.name, self.of, vessel.held)
-        turning = any(terms.UNITS.get(name.removeprefix("sign_")) == "rad/s" for name in self.of)  # not m/s
+        turning = any(terms.UNITS.get(name.removeprefix("sign_")) == "rad/s" for name in self.of)
         little = LITTLE * (GRAVITY / vessel.length if turning else GRAVITY * vessel.length) ** 0.5
         acts = terms.code_of(self.name, self.acts, terms.COURSES)
         return {"little": little, "first": first, "second": second, "third": third, "course": acts}

@@ -15,11 +15,13 @@ from boatsim.diagnose.problem import scale_of
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.described import Described
 from boatsim.physics.effects.described_thrust import DescribedThrust
+from boatsim.physics.effects.push import SteadyForce
 from boatsim.physics.terms import SPEEDS
 from boatsim.physics.vessel import Vessel
 
-FORCE = {"surge": 0.1, "sway": 0.1, "heave": 0.1, "roll": 0.02, "pitch": 0.04, "yaw": 0.04}  # [N, N m] on a 1.2 m boat
-SHARE = 0.3  # of the thrust
+STEADY = {axis: about.spread for axis, about in SteadyForce.params().items() if about.fit}  # [N, N m] on a 1.2 m boat
+FORCE = STEADY | {"heave": STEADY["sway"], "pitch": STEADY["yaw"]}
+SHARE = DescribedThrust.params()["coefficient"].spread  # of the thrust
 AT_ONCE = 200  # terms: more would not fit into a processor's cache
 
 
