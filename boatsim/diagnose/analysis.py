@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from boatsim.diagnose import rules
 from boatsim.diagnose.correlation_time import timed
@@ -146,13 +147,14 @@ def diagnose_recordings(
     _compile(problem)
     begin = time.perf_counter()
     try:
-        ranking = rank(problem, candidates, unseen_tracks)
-        a_fact = "time_constant_s" in fitted[0].notes.ambient
-        if not a_fact and (again := timed(problem, ranking.best)) is not problem:
-            problem, ranking = again, rank(again, candidates, unseen_tracks, ranking.best)
-        before, ranking = ranking, _described(problem, ranking, unseen_tracks)
-        plan = experiment.next_experiment(problem, *experiment.question(replace(before, named=ranking.named)))
-        findings = _findings(problem, ranking, unseen_tracks, boat, note, plan)
+        with threadpool_limits(1, "blas"):  # matrices are small: threads cost more, on a busy machine twentyfold
+            ranking = rank(problem, candidates, unseen_tracks)
+            a_fact = "time_constant_s" in fitted[0].notes.ambient
+            if not a_fact and (again := timed(problem, ranking.best)) is not problem:
+                problem, ranking = again, rank(again, candidates, unseen_tracks, ranking.best)
+            before, ranking = ranking, _described(problem, ranking, unseen_tracks)
+            plan = experiment.next_experiment(problem, *experiment.question(replace(before, named=ranking.named)))
+            findings = _findings(problem, ranking, unseen_tracks, boat, note, plan)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         where = fitted[0].path or fitted[0].name
         raise BadInput(f"{where}: {boat.name} can not follow this recording ({error}); are its units right?") from None
