@@ -15,7 +15,7 @@ from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.evidence import price
 from boatsim.diagnose.search.select import SLIGHT
-from boatsim.diagnose.search.settle import WORTH
+from boatsim.diagnose.search.settle import ALIKE_SHARE, WORTH
 from boatsim.physics.described import Described
 
 progress = logging.getLogger("boatsim.diagnose")
@@ -36,11 +36,11 @@ class Chosen:
 def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
     """Terms added one by one to a set, each time the one by which the evidence rises most, while one is worth it."""
     begun = so_far = Chosen(best, {})
-    everywhere = [*problem.tracks, *unseen]
+    everywhere, refused = [*problem.tracks, *unseen], set[Likeness]()
     while len(so_far.terms) < MOST:
         seen = ways(problem, so_far.fit)
         ordered = weighed(seen, list(terms(problem.program.vessel, problem.tracks, *varying(seen))))
-        ahead = [w for w in best_of_each(ordered) if w.gain > 0.0][:TRIED]
+        ahead = [w for w in best_of_each(ordered) if w.gain > 0.0 and likeness(w.term) not in refused][:TRIED]
         tried = [made for w in ahead if (made := _with(problem, so_far, w, everywhere))]
         if not tried:
             break
@@ -52,18 +52,28 @@ def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
         gained = so_far.fit.evidence - begun.fit.evidence
         if found.evidence - so_far.fit.evidence < max(price(len(ordered)), SLIGHT * gained):
             break
-        so_far = _pruned(problem, Chosen(found, so_far.terms | {slot: term}))
+        further = Chosen(found, so_far.terms | {slot: term})
+        if _said_already(problem, so_far, further):
+            refused.add(likeness(w.term))
+            continue
+        so_far = _pruned(problem, further)
         progress.info("described: %d terms (%.0f nats)", len(so_far.terms), found.evidence - best.evidence)
     return so_far
 
 
+Likeness = tuple[object, ...]
+
+
+def likeness(term: Described) -> Likeness:
+    """What terms share that differ in no more than when they act, or in a wavelength."""
+    return (type(term), term.of, term.acts, term.run, *(getattr(term, n, "") for n in ("axis", "side", "sense")))
+
+
 def best_of_each(ordered: Sequence[Weighed]) -> list[Weighed]:
     """Of terms that differ in no more than when they act, or in a wavelength, the best: it is made finer later."""
-    found: dict[tuple[object, ...], Weighed] = {}
+    found: dict[Likeness, Weighed] = {}
     for w in ordered:
-        t = w.term
-        key = (type(t), t.of, t.acts, t.run, *(getattr(t, n, "") for n in ("axis", "side", "sense")))
-        found.setdefault(key, w)
+        found.setdefault(likeness(w.term), w)
     return list(found.values())
 
 
@@ -126,6 +136,20 @@ def _polished(
             term, best = ahead, score
     write(problem, slot, term, tracks)
     return term, fit(problem, found) if best > begun else found
+
+
+def _said_already(problem: Problem, before: Chosen, further: Chosen) -> bool:
+    """Whether the newest term would take the place of an entry that alone explains most of what the term does.
+
+    A law of the library with a name, a little off, is the better answer: a wind, not a side force with the heading.
+    """
+    for name in (n for n in before.fit.suspects if n not in before.terms):
+        without = less(problem, further, name).fit
+        if without.evidence > further.fit.evidence - WORTH:
+            neither = less(problem, before, name).fit.evidence
+            if before.fit.evidence - neither > ALIKE_SHARE * (without.evidence - neither):
+                return True
+    return False
 
 
 def _pruned(problem: Problem, so_far: Chosen) -> Chosen:
