@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from benchmarks.real.concealed import alterations as a
-from benchmarks.real.concealed.__main__ import Patched
-from benchmarks.real.concealed.cases import STUDIES, Laid, late_by, uneven
+from benchmarks.real.concealed.base import Patched
+from benchmarks.real.concealed.cases import STUDIES, late_by, uneven
 from benchmarks.real.concealed.judging import (
     ALONE,
     FAINT,
@@ -16,6 +16,7 @@ from benchmarks.real.concealed.judging import (
     RIGHT,
     WRONG,
     Cause,
+    Size,
     Verdict,
     right_size,
     shares,
@@ -175,6 +176,13 @@ def test_a_size_is_right_within_two_sds_or_fifteen_percent() -> None:
     assert not right_size(entry("thrust_deadband", 6.0, 0.5), cause)
 
 
+def test_a_size_may_be_that_of_the_alteration_and_what_the_boat_has_itself() -> None:
+    band = Cause("thrust_deadband", {"width_N": 4.0})
+    assert right_size(entry("thrust_deadband", 7.0, 0.1), band, {"width_N": Size(2.9, 0.2)})
+    assert not right_size(entry("thrust_deadband", 5.2, 0.1), band, {"width_N": Size(2.9, 0.2)})
+    assert Size(0.65, 0.0).with_own(Size(0.8, 0.1, absent=1.0)) == Size(0.65 * 0.8, 0.65 * 0.1, 1.0)
+
+
 def test_shares_count_visible_causes_apart_from_those_that_can_not_be_told() -> None:
     some = [(RIGHT, 20.0), (MISSED, 9.0), (WRONG, 2.0), (ALONE, None), (FAINT, 5.0)]
     named, wrong, alone = (cells[1] for cells in shares([Verdict(o, "", gain) for o, gain in some]))
@@ -185,7 +193,6 @@ def test_shares_count_visible_causes_apart_from_those_that_can_not_be_told() -> 
 def test_what_is_concealed_in_a_release_is_named_with_its_size(tmp_path: Path) -> None:
     study = next(s for s in STUDIES if s.name == "roll_at_rest")
     patched = Patched(study, tmp_path)
-    assert isinstance(patched.laid, Laid)
     some = [c for c in patched.cases() if c.name.startswith(("roll shown 0.012 rad more", "clock", "cubic_damping"))]
     verdicts = [patched.verdict(c) for c in some]
     assert [v.outcome for v in verdicts] == [RIGHT, RIGHT, ALONE, RIGHT], [v.said for v in verdicts]

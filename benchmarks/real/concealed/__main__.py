@@ -1,12 +1,12 @@
 """Real recordings altered so that the right answer is known: `python -m benchmarks.real.concealed [--only NAME...]`.
 
 Something is missing from the plain vessel of every real recording already. So the unaltered recordings are diagnosed
-first, and the patched vessel is that of the cases; what is still named of the unaltered recordings with it counts for
-nothing. Then each case alters the recordings as its cause would have, by closed form, or takes one of the effects
-found out of the patched vessel again. Beside the truth stands what a fit makes of the same cause in the unaltered
-recordings: a real boat has a little of everything, to which an alteration adds. A cause can be told from a recording
-(is visible) if the true structure, its sizes fitted, gains more than 6 nats in the tool's own filter; what can not be
-told must be left alone.
+first, the vessel patched, and that again with what is still named, at most three times; what is named of the unaltered
+recordings even then counts for nothing. Then each case alters the recordings as its cause would have, by closed form,
+or takes one of the effects found out of the patched vessel again. Beside the truth stands what a fit makes of the same
+cause in the unaltered recordings: a real boat has a little of everything, to which an alteration adds, so that the size
+of both together is right too. A cause can be told from a recording (is visible) if the true structure, its sizes
+fitted, gains more than 6 nats in the tool's own filter; what can not be told must be left alone.
 
 --only takes names of sets or parts of names of cases, --list prints the cases alone. The two releases take a minute or
 two. Of the others short pieces of a few runs are used, as printed, and still a single diagnosis may take ten minutes,
@@ -20,70 +20,9 @@ from pathlib import Path
 
 from benchmarks.real.common import OUT, table
 from benchmarks.real.concealed.alterations import unaltered
-from benchmarks.real.concealed.cases import STUDIES, Case, Laid, Study, taken_out
-from benchmarks.real.concealed.judging import Cause, Verdict, judged, meant, names_of, shares, sizes_of
-from boatsim.diagnose import analysis
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.problem import Fit
-from boatsim.diagnose.report import patch
-from boatsim.diagnose.tried import called
-
-
-class Patched:
-    """What a set's vessel lacks by its unaltered recordings, found once; with it the vessel of the cases."""
-
-    def __init__(self, study: Study, folder: Path) -> None:
-        self.study, self.folder = study, folder / study.name
-        self.folder.mkdir(parents=True, exist_ok=True)
-        self.first = diagnosed(study.open(None, unaltered))
-        self.file = self.write(self.first.ranking.best, "patched.toml")
-        self.laid = study.open(str(self.file), unaltered)
-        self.before = diagnosed(self.laid)
-
-    @property
-    def found(self) -> list[Cause]:
-        """The effects that it was given, with their sizes."""
-        effects = self.first.findings.answer["effects"]
-        return [Cause(e["name"], {k: p["value"] for k, p in e["parameters"].items()}) for e in effects]
-
-    def cases(self) -> list[Case]:
-        """Those of the set, and each effect found taken out again."""
-        return [*self.study.cases(self.laid.vessel), *taken_out(self.laid.vessel, self.found)]
-
-    def verdict(self, case: Case) -> Verdict:
-        """Of one case."""
-        if case.plain:
-            beside = [c for c in self.found if c.name not in meant(case.truth)]
-            return judged(diagnosed(self.study.open(None, case.alter)), case.truth, self.first, beside)
-        file = self.without(case.without) if case.without else self.file
-        return judged(diagnosed(self.study.open(str(file), case.alter)), case.truth, self.before)
-
-    def without(self, name: str) -> Path:
-        """The patched vessel with everything that was found but one effect."""
-        best = self.first.ranking.best
-        gone = {n for n in best.suspects if called(n) == name}
-        kept = [i for i, f in enumerate(best.free) if f.relative or f.effect not in gone]
-        rest = Fit(
-            tuple(n for n in best.suspects if n not in gone),
-            tuple(best.free[i] for i in kept),
-            best.theta[kept],
-            best.covariance[kept][:, kept],
-            best.levels,
-            best.evidence,
-        )
-        return self.write(rest, f"without_{name}.toml")
-
-    def write(self, fit: Fit, name: str) -> Path:
-        """A fit as a vessel's file."""
-        path, first = self.folder / name, self.first
-        patch.write(first.problem, first.vessel, fit, path, first.ranking.laws)
-        return path
-
-
-def diagnosed(laid: Laid) -> Diagnosis:
-    """What the vessel leaves out of some recordings."""
-    boats = {r.path: laid.vessel for r in (*laid.fitted, *laid.unseen)}
-    return analysis.diagnose_recordings(laid.fitted, laid.unseen, boats, "one kept unseen")
+from benchmarks.real.concealed.base import Patched
+from benchmarks.real.concealed.cases import STUDIES, Case, Study
+from benchmarks.real.concealed.judging import Verdict, names_of, shares, sizes_of
 
 
 def row(study: Study, case: Case, verdict: Verdict) -> list[str]:

@@ -34,6 +34,21 @@ class Cause:
 
 
 @dataclass(frozen=True)
+class Size:
+    """A parameter with its sd; `absent` is its value where the cause is not there."""
+
+    value: float
+    sd: float
+    absent: float = 0.0
+
+    def with_own(self, own: "Size") -> "Size":
+        """This and what a boat has of it already: factors multiply, all else adds up."""
+        if own.absent == 1.0:
+            return Size(self.value * own.value, self.value * own.sd, 1.0)
+        return Size(self.value + own.value, own.sd)
+
+
+@dataclass(frozen=True)
 class Verdict:
     """What became of one case."""
 
@@ -65,19 +80,20 @@ def judged(found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: 
     doubt = answer["unknown"]["flag"] and not before.findings.answer["unknown"]["flag"]
     gain = gain_of(found, truth, known)
     visible = gain is not None and gain > VISIBLE
+    own = own_of(before, truth, known)
     hits = [next((e for e in new if _says(e, cause)), None) for cause in every]
     wrong = [e for e in new if not any(_says(e, cause) for cause in every)]
     if wrong:
         outcome = WRONG
     elif truth and all(hits):
-        sizes = all(right_size(e, cause) for e, cause in zip(hits, truth, strict=False) if e)
+        sizes = all(right_size(e, cause, own.get(e["name"])) for e, cause in zip(hits, truth, strict=False) if e)
         outcome = (RIGHT if sizes else SIZE) if visible else FAINT
     elif visible:
         outcome = MISSED
     else:
         outcome = MISSED if doubt else ALONE
     said = "; ".join([*map(in_words, new), *(["a cause unknown"] if doubt else [])]) or "nothing new"
-    return Verdict(outcome, f"{said} ({answer['verdict']})", gain, own_of(before, truth, known))
+    return Verdict(outcome, f"{said} ({answer['verdict']})", gain, "; ".join(map(in_numbers, own.values())))
 
 
 def names_of(found: Diagnosis) -> set[str]:
@@ -95,16 +111,26 @@ def _says(entry: EffectEntry, cause: Cause) -> bool:
     return bool({c.name for c in cause.either} & {entry["name"], *entry["tied_with"]})
 
 
-def right_size(entry: EffectEntry, cause: Cause) -> bool:
-    """Whether the sizes stated are those of the cause; those of one unit are the parts of one arrow."""
+def right_size(entry: EffectEntry, cause: Cause, own: Mapping[str, Size] | None = None) -> bool:
+    """Whether the sizes stated are those of the cause, or of it and what the boat has of it itself (`own`) together.
+
+    Those of one unit are the parts of one arrow.
+    """
     true = next((c.values for c in cause.either if c.name == entry["name"]), {})
     units = {k: entry["parameters"][k]["unit"] for k in true if k in entry["parameters"]}
-    for key, unit in units.items():
-        size = np.hypot.reduce([true[k] for k in units if units[k] == unit])
-        found = entry["parameters"][key]
-        if abs(found["value"] - true[key]) > max(SDS * found["sd"], NEAR * size):
-            return False
-    return True
+
+    def near(expected: Mapping[str, Size]) -> bool:
+        for key, unit in units.items():
+            size = np.hypot.reduce([expected[k].value for k in units if units[k] == unit])
+            found = entry["parameters"][key]
+            sd = np.hypot(found["sd"], expected[key].sd)
+            if abs(found["value"] - expected[key].value) > max(SDS * sd, NEAR * size):
+                return False
+        return True
+
+    alone = {k: Size(x, 0.0) for k, x in true.items()}
+    both = {k: s.with_own(own[k]) if own and k in own else s for k, s in alone.items()}
+    return near(alone) or near(both)
 
 
 def in_words(entry: EffectEntry) -> str:
@@ -134,19 +160,26 @@ def gain_of(found: Diagnosis, truth: Sequence[Cause], known: Collection[str]) ->
     return whole.evidence - base.evidence if truth else None
 
 
-def own_of(before: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> str:
-    """Sizes of the same causes fitted to the unaltered recordings: a real boat has a little of everything.
+def own_of(before: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> dict[str, dict[str, Size]]:
+    """Sizes of the same causes fitted to the unaltered recordings, by name and parameter with unit.
 
-    An alteration adds to these, so a size that is off by them is none of the tool's.
+    A real boat has a little of everything, to which an alteration adds.
     """
-    whole, found = _with_known(before, truth, known), []
+    whole, found = _with_known(before, truth, known), dict[str, dict[str, Size]]()
     for cause in truth:
         if (effect := entry_of(before.problem, cause.name)) is None:
-            return ""
+            return {}
         whole = with_entry(before.problem, whole, effect, {})
-        values = (whole.value(effect.name, f.name) for f in whole.free if f.effect == effect.name and not f.relative)
-        found.append(", ".join(f"{x:.2g} ± {sd:.1g}" for x, sd in values))
-    return "; ".join(found)
+        params = type(effect).params()
+        free = [f.name for f in whole.free if f.effect == effect.name and not f.relative]
+        sizes = {n: (*whole.value(effect.name, n), params[n].absent) for n in free}
+        found[cause.name] = {key_of(n, params[n].unit): Size(*s) for n, s in sizes.items()}
+    return found
+
+
+def in_numbers(sizes: Mapping[str, Size]) -> str:
+    """Sizes with their sds."""
+    return ", ".join(f"{s.value:.2g} ± {s.sd:.1g}" for s in sizes.values())
 
 
 def _with_known(found: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> Fit:
