@@ -20,6 +20,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 class MeasuredRelativeWind(MeasuredWind):
     """The same with the reading of an anemometer on board that nobody has turned into true wind."""
 
+    anchored: ClassVar[str] = ""  # the reading says it all, wherever water and air go
     law: ClassVar = law
     roles: ClassVar = {
         "speed": Role("m/s", "the speed of the air past the hull"),
