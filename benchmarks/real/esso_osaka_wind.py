@@ -31,21 +31,19 @@ from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.recordings.table import Recording
 
 CALLED = f"{NAME}_wind"
+STEADY = 0.5  # [s] of readings taken together: the vessel's rate, in less a hull of 3 m does nothing
 
 
 def with_wind(name: str, recording: Recording) -> Recording:
-    """A run with its anemometer's columns at its own times; the direction without jumps of a turn."""
+    """A run with its anemometer's columns, the mean of each `STEADY` seconds; the direction without jumps of a turn."""
     d = np.genfromtxt(RECORDINGS / NAME / "wind" / f"{name}.csv", delimiter=",", names=True)
     good = np.isfinite(d["true_speed_mps"]) & np.isfinite(d["true_direction_rad"])
-    read = {"wind_mps": d["true_speed_mps"], "wind_from_rad": np.unwrap(d["true_direction_rad"][good])}
-    read["wind_mps"] = read["wind_mps"][good]
+    read = {"wind_mps": d["true_speed_mps"][good], "wind_from_rad": np.unwrap(d["true_direction_rad"][good])}
+    part = np.floor(recording.t / STEADY + 1e-6).astype(int)
     laid = {n: np.interp(recording.t, d["t_s"][good], x) for n, x in read.items()}
-    return replace(recording, signals=recording.signals | laid)
-
-
-def calm(recording: Recording) -> Recording:
-    """The same where nobody reads the anemometer."""
-    return replace(recording, signals=recording.signals | {"wind_mps": np.zeros(len(recording))}, orders=None)
+    rows = np.maximum(np.bincount(part), 1)
+    means = {n: (np.bincount(part, x) / rows)[part] for n, x in laid.items()}
+    return replace(recording, signals=recording.signals | means)
 
 
 def print_against(known: Sequence[FreeRun], concealed: Mapping[str, Mapping[str, Mapping[str, float]]]) -> None:
