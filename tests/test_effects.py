@@ -75,7 +75,8 @@ TO_STARBOARD |= {
     for form in ("low", "low_J", "mid", "mid_J", "high", "braked", "braked_J", "braked_JJ")
 }
 TO_STARBOARD |= {f"{name}.{axis}" for name in ("push", "steady_force") for axis in ("sway", "yaw", "roll")}
-TURNS_SIGN = {"y", "phi", "psi", "v", "p", "r", "vr", "sin_psi", "angle", "sin_angle"}  # of motions and signals
+TURNS_SIGN = {"y", "phi", "psi", "v", "p", "r", "vr", "sin_psi"}  # of motions and signals
+TURNS_SIGN |= {"angle", "sin_angle", "comes_from", "sin_comes_from"}
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])  # of a wrench
 RESTS = {  # effects that are not always there
     "astern_time_constant",  # going ahead
@@ -107,6 +108,8 @@ RANGES = {
     "throttle": (1.0, 7.0),
     "angle": (-0.8, 0.8),
     "bucket": (-0.8, 0.8),
+    "speed": (0.5, 3.0),
+    "comes_from": (-3.0, 3.0),
 }
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.real.common import RECORDINGS, report, runs_of, table
+from benchmarks.real.common import OUT, RECORDINGS, report, runs_of, table
 from benchmarks.real.esso_osaka_vessel import NAME, SOURCE, written
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
@@ -35,6 +35,8 @@ UNSEEN = ("random_0731_1248", "random_0806_1624_6", "zigzag_0731_1403")  # of th
 WINDOW = 300.0  # [s] of each run that the diagnosis is given at most, for the time it takes
 HORIZON = 60.0  # [s] of a free run
 MODELS = ("nominal", "recalibrated", "patched")
+TITLE = f"fitted on {' and '.join(FITTED)} runs, judged on {' and '.join(JUDGED)}"
+KEPT = OUT / NAME / "judged.json"
 GOALS = {"nominal": 0.75, "recalibrated": 0.9}  # position, patched over this one
 UNITS = {"position_rms_m": ("position [m]", np.sqrt(2.0)), "heading_rms_rad": ("heading [deg]", 57.29578)}
 LONG = 250.0  # [s] of a run in which a ship of 3 m has met the wind from several sides
@@ -284,6 +286,13 @@ def print_judged(stretches: Sequence[FreeRun], title: str) -> None:
     table(title, header, rows)
 
 
+def keep(stretches: Sequence[FreeRun]) -> None:
+    """What was judged, for the second mode to be laid beside it."""
+    found = {kind: errors([s for s in stretches if s.run.startswith(kind)]) for kind in (*JUDGED, "")}
+    KEPT.parent.mkdir(parents=True, exist_ok=True)
+    KEPT.write_text(json.dumps(found, indent=1), encoding="utf-8")
+
+
 def with_model(stretches: Sequence[FreeRun], patched: Sequence[FreeRun]) -> list[FreeRun]:
     """The same stretches with what another boat does in them."""
     return [
@@ -316,12 +325,19 @@ class Opened:
         return found.between(float(found.t[0]), float(found.t[0]) + WINDOW)
 
 
-def opened(runs: Mapping[str, Path], vessel: str) -> tuple[dict[str, Opened], Vessel]:
-    """Every run, thinned."""
+def as_recorded(name: str, recording: Recording) -> Recording:
+    """A run with nothing laid beside it."""
+    return recording
+
+
+def opened(
+    runs: Mapping[str, Path], vessel: str, completed: Callable[[str, Recording], Recording] = as_recorded
+) -> tuple[dict[str, Opened], Vessel]:
+    """Every run, thinned, once what there is beside it is laid there."""
     boat = analysis.vessel_for(next(iter(runs.values())), vessel, ())
     rate, found = rules.rate(boat), {}
     for name, path in runs.items():
-        recording, _ = analysis.open_recording(path, vessel, ())
+        recording = completed(name, analysis.open_recording(path, vessel, ())[0])
         parts = [r.thinned(rate) for r in sound(recording, path, SHORTEST)]
         found[name] = Opened(without_outliers(recording.thinned(rate), boat), parts)
     return found, boat
@@ -374,7 +390,9 @@ def main() -> None:
     fits = {"nominal": ranking.nominal, "recalibrated": recalibrated}
     before = free_runs(problem, fits, list(judged.values()), HORIZON)
     after = [s for n, t in judged.items() for s in in_rests_wind(weather, t, recordings[n].stretches, laid)]
-    print_judged(with_model(before, after), f"fitted on {' and '.join(FITTED)} runs, judged on {' and '.join(JUDGED)}")
+    judgement = with_model(before, after)
+    print_judged(judgement, TITLE)
+    keep(judgement)
     print(f"\n{time.perf_counter() - begin:.0f} s")
 
 

@@ -19,15 +19,19 @@ SOURCE = RECORDINGS / NAME / "vessel.json"
 WATERS_SHARE = 0.36  # of I_zz + J_zz, about as of KVLCC2 (6075 of 16089 kg m^2); the sum alone moves the ship
 
 
-def written(folder: Path = OUT / NAME / "vessel" / NAME) -> Path:
-    """Path of the vessel's file, made in `folder`; ends the program with one line where its numbers are not there."""
+def written(folder: Path = OUT / NAME / "vessel" / NAME, wind_known: bool = False) -> Path:
+    """Path of the vessel's file, made in `folder`, with an anemometer or without.
+
+    Ends the program with one line where its numbers are not there.
+    """
     if not SOURCE.is_file():
         print(f"{NAME}: skipped, there is no ../shared/recordings/{NAME}/vessel.json")
         raise SystemExit
     folder.mkdir(parents=True, exist_ok=True)
     for name in ("hull.xml", "turn.toml"):
         shutil.copy(BLANKS / name, folder)
-    blanks = Template((BLANKS / "vessel.toml.in").read_text(encoding="utf-8"))
+    parts = ("vessel.toml.in", "wind.toml.in") if wind_known else ("vessel.toml.in",)
+    blanks = Template("".join((BLANKS / part).read_text(encoding="utf-8") for part in parts))
     numbers = filled(json.loads(SOURCE.read_text(encoding="utf-8")))
     file = folder / "vessel.toml"
     file.write_text(blanks.substitute(numbers), encoding="utf-8")
@@ -44,6 +48,7 @@ def filled(particulars: Mapping[str, Any]) -> dict[str, float]:
     unit = 0.5 * p["density_water_kgm3"] * p["Lpp_m"] ** 2 * p["draught_m"]  # [kg]
     turning = p["I_zz_plus_J_zz"] * unit * p["Lpp_m"] ** 2  # [kg m^2]
     wind, above = particulars["mmg"]["wind"], particulars["above_water"]
+    front, side = -wind["X1"] * above["transverse_area_m2"], wind["Y1"] * above["lateral_area_m2"]
     return p | {
         "m_x": p["m_x"] * unit,
         "m_y": p["m_y"] * unit,
@@ -53,7 +58,11 @@ def filled(particulars: Mapping[str, Any]) -> dict[str, float]:
         "midship": 0.5 * p["Lpp_m"],
         "rudder_largest": p["largest_command_rad"],
         "slope": 6.13 * p["aspect_ratio"] / (p["aspect_ratio"] + 2.25),
-        "end_on": -wind["X1"] * above["transverse_area_m2"] / (wind["Y1"] * above["lateral_area_m2"]),
+        "end_on": front / side,
+        "wind_front": front,
+        "wind_side": side,
+        "wind_arm": wind["N1"] / wind["Y1"] * p["Lpp_m"],
+        "wind_swing": -2.0 * wind["N2"] / wind["Y1"] * p["Lpp_m"],  # its angle is counted from the wind against it
     }
 
 

@@ -20,6 +20,7 @@ from boatsim.diagnose.log.held_fixes import without_repeats
 from boatsim.diagnose.log.outlying_fixes import without_outliers
 from boatsim.diagnose.log.position_frame import in_one_frame
 from boatsim.diagnose.log.steering_sense import steered
+from boatsim.diagnose.log.turning_readings import unwound
 from boatsim.diagnose.next import experiment
 from boatsim.diagnose.problem import Problem, check_taken_up
 from boatsim.diagnose.report import show, taken
@@ -85,7 +86,8 @@ def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
 def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple[Recording, Vessel]:
     """A recording read with its vessel's names of columns and command limits. Raises BadInput."""
     found = vessel_for(path, vessel, load)
-    return in_one_frame(steered(read(path, found.limits(), found.columns).used(), found)), found
+    recording = unwound(read(path, found.limits(), found.columns).used(), found)
+    return in_one_frame(steered(recording, found)), found
 
 
 def diagnose(

@@ -292,9 +292,7 @@ def track(
     measured = np.column_stack([recording.signals[s.column] for s in found])
     own = checked_noise(recording)
     scale = {f: own.get(f, common) / common for f, common in (stated or NOISE | own).items()} | dict(beside or {})
-    commands = (
-        taken_rows(vessel, recording.signals, len(recording)) if vessel.commands else np.zeros((len(recording), 1))
-    )
+    commands = taken_rows(vessel, recording.signals, len(recording)) if vessel.inputs else np.zeros((len(recording), 1))
     facts = facts_of(vessel, recording)
     laid = Track(
         recording.name, program, np.ascontiguousarray(recording.t), np.ascontiguousarray(measured),
@@ -317,7 +315,7 @@ def changes(times: Array, commands: Array) -> tuple[Array, Array]:
 
 def _orders_of(recording: Recording, vessel: Vessel) -> tuple[Array, Array]:
     """Commands at their own times where a recording has them more often than in its rows, else empty."""
-    if recording.orders is None or not vessel.commands:
+    if recording.orders is None or not vessel.inputs:
         return np.zeros(0), np.zeros((0, 0))
     t, signals = recording.orders.t, recording.orders.signals
     return changes(t, taken_rows(vessel, signals, len(t)))
@@ -368,9 +366,10 @@ def stated_values(program: Program, facts: Mapping[str, Any]) -> Array:
 
 
 def _unfed(recording: Recording, vessel: Vessel) -> list[str]:
-    """Actuators for which the recording has neither a command nor one that feeds them (PWM feeds thrust)."""
+    """What laws take and the recording has not got: readings, and actuators without a command (PWM feeds thrust)."""
     there = recording.signals
-    return [n for n in vessel.actuators if n not in there and not any(_feeds(vessel, n, m) for m in there)]
+    idle = [n for n in vessel.actuators if n not in there and not any(_feeds(vessel, n, m) for m in there)]
+    return idle + [n for n in vessel.readings if n not in there]
 
 
 def _feeds(vessel: Vessel, actuator: str, command: str) -> bool:

@@ -24,7 +24,7 @@ ROWS = 20.0  # [Hz] of rows that are used: errors of closer ones are not indepen
 FINEST = 1e-4  # of length, of a radian, of the speed that belongs to the length: no instrument is better
 ORDERS = range(2, 7)  # of the differences in which noise is looked for: the motion is smoother than that
 MEDIAN = 0.455  # of the square of a normal variable
-UNCERTAINTY = {"damping": 0.05, "thrust": 0.05, "restoring": 0.05}  # relative sd of coefficients that nobody states
+UNCERTAINTY = dict.fromkeys(("damping", "thrust", "restoring", "wind"), 0.05)  # relative sd where nobody states one
 
 
 def froude_time(vessel: Vessel) -> float:

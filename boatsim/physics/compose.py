@@ -35,7 +35,7 @@ class Composition:
         """Effects beyond the vessel's own stand behind switches; `offsets` says where each one's parameters begin."""
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.effects = tuple(effects)
-        self.actuators, self.commands = vessel.actuators, tuple(vessel.commands)
+        self.signals, self.commands = (*vessel.actuators, *vessel.readings), vessel.inputs
         self.held: Sequence[str] = vessel.held
 
     # What kinds may ask -----------------------------------------------------------------------------------------------
@@ -83,7 +83,7 @@ class Composition:
     @cached_property
     def _memory(self) -> dict[tuple[int, str], int]:
         found, at = {}, 0
-        for actuator in self.actuators:
+        for actuator in self.signals:
             for i, effect in enumerate(self.effects):
                 if isinstance(effect, Channel) and actuator in self.targets(i):
                     found[i, actuator], at = at, at + type(effect).slots

@@ -1,8 +1,9 @@
-"""A vessel is data: hull, freedoms, effects with values, command channels, loads, and what a diagnosis may assume."""
+"""A vessel is data: hull, freedoms, effects with values, channels, loads, and what a diagnosis may assume."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import inf
 from pathlib import Path
 from typing import Literal, Self
 
@@ -44,6 +45,13 @@ class CommandChannel(Table):
     about: str = ""
 
 
+class MeasuredChannel(Table):
+    """What is measured of the boat's surroundings: known where it was recorded, and nobody's command."""
+
+    neutral: float = 0.0  # in force in a simulation whose scenario says nothing of it
+    about: str = ""
+
+
 OVERRIDES = ("ambient", "horizon", "rate", "noise")  # of the rules of a diagnosis, which need a reason
 
 
@@ -52,7 +60,7 @@ class DiagnosisTable(Table):
 
     leave_out: dict[str, str] = {}  # entry of the library that is not tried -> the reason, in words
     also: list[dict[str, object]] = []  # tables as in [[effect]], tried beside the library: on what else it may act
-    coefficient_uncertainty: dict[Literal["damping", "thrust", "restoring"], PositiveFloat] = {}  # relative sd
+    coefficient_uncertainty: dict[Literal["damping", "thrust", "restoring", "wind"], PositiveFloat] = {}  # relative sd
     # In place of a rule of `boatsim.diagnose.rules`, each with its reason in `reasons`
     ambient: dict[Freedom, PositiveFloat] = {}  # tolerated unmodelled force per axis, rms [N, N m]
     horizon: float | None = Field(default=None, gt=0)  # [s] length of a free run
@@ -103,6 +111,7 @@ class VesselFile(Table):
     geometry: dict[str, float] = {}
     marks: dict[str, tuple[float, float]] = {}  # [m] ahead and to starboard of the CG: what a camera above follows
     channels: dict[str, CommandChannel] = {}
+    measured: dict[str, MeasuredChannel] = {}
     columns: dict[str, str] = {}  # our name -> the column of this vessel's recordings, "-" in front flips the sign
     effect: list[dict[str, object]] = []
     loads: dict[str, dict[str, object]] = {}
@@ -137,11 +146,22 @@ class Vessel:
     manoeuvring: ManoeuvringTable = ManoeuvringTable()
     marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # [m] ahead and to starboard of the CG
     found: tuple[str, ...] = ()  # names of those effects that a diagnosis found
+    measured: Mapping[str, MeasuredChannel] = field(default_factory=dict)  # of the surroundings: taken, not commanded
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """All that its program takes row by row: commands, then what is measured of the surroundings."""
+        return (*self.commands, *self.measured)
 
     @property
     def actuators(self) -> tuple[str, ...]:
         """Channels that laws see: those bound to a role of an effect. The others only feed them (PWM feeds thrust)."""
         return tuple(n for n in self.commands if n in self.roles)
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Measured channels that laws see, as they are: those bound to a role of an effect."""
+        return tuple(n for n in self.measured if n in self.roles)
 
     @cached_property
     def roles(self) -> Mapping[str, str]:
@@ -156,17 +176,23 @@ class Vessel:
     @cached_property
     def angles(self) -> tuple[str, ...]:
         """Actuators that are angles: laws see their cosine and sine too."""
-        units = {c: type(e).roles[r].unit for e in self.effects for r, c in self.stated(e).items()}
-        return tuple(n for n in self.actuators if units.get(n) == "rad")
+        return tuple(n for n in self.actuators if self.unit(n) == "rad")
+
+    @cached_property
+    def bearings(self) -> tuple[str, ...]:
+        """Measured channels that are angles: laws see their cosine and sine too."""
+        return tuple(n for n in self.readings if self.unit(n) == "rad")
 
     @cached_property
     def held(self) -> tuple[str, ...]:
-        """What laws see of its actuators: themselves, then cosine and sine of those that are angles."""
-        return (*self.actuators, *(f"{part}_{a}" for a in self.angles for part in ("cos", "sin")))
+        """What laws see of its actuators: themselves, then cosine and sine of angles; then of its readings the same."""
+        pairs = ((self.actuators, self.angles), (self.readings, self.bearings))
+        parts = ((*all_of, *(f"{part}_{a}" for a in angles for part in ("cos", "sin"))) for all_of, angles in pairs)
+        return tuple(n for names in parts for n in names)
 
-    def unit(self, actuator: str) -> str:
-        """Unit of an actuator: that of the role in which an effect takes it."""
-        units = (type(e).roles[r].unit for e in self.effects for r, c in self.stated(e).items() if c == actuator)
+    def unit(self, channel: str) -> str:
+        """Unit of an actuator or a reading: that of the role in which an effect takes it."""
+        units = (type(e).roles[r].unit for e in self.effects for r, c in self.stated(e).items() if c == channel)
         return next(units, "")
 
     def effect(self, name: str) -> Effect | None:
@@ -235,8 +261,19 @@ class Vessel:
         return unknown_name(f"{self.name}: command", name, self.commands)
 
     def limits(self) -> dict[str, tuple[float, float]]:
-        """Allowed range of each command, as `recording.read` takes it."""
-        return {n: (c.low, c.high) for n, c in self.commands.items()}
+        """Allowed range of each input, as `recording.read` takes it; what is measured may be anything."""
+        return {n: (c.low, c.high) for n, c in self.commands.items()} | dict.fromkeys(self.measured, (-inf, inf))
+
+    def measuring(self, values: Mapping[str, float]) -> Self:
+        """The vessel in surroundings that are measured so, and stay so where nothing else is recorded.
+
+        Raises BadInput for a channel that it does not measure.
+        """
+        for name in values:
+            if name not in self.measured:
+                raise BadInput(unknown_name(f"{self.name}: measured", name, self.measured))
+        told = {n: m.model_copy(update={"neutral": values.get(n, m.neutral)}) for n, m in self.measured.items()}
+        return replace(self, measured=told)
 
 
 def load(
@@ -264,6 +301,8 @@ def load(
     raw = overlaid(raw, dict(settings or {}), label)
     file = checked(VesselFile, raw, label)
     _check_channels(file.channels, label)
+    if twice := [n for n in file.measured if n in file.channels]:
+        raise BadInput(f"{label}: measured.{twice[0]} is among the [channels] too; it is either sent or measured")
     own = [_called(table) for table in file.effect]
     for table in extra:
         if _called(table) in own:
@@ -276,6 +315,7 @@ def load(
         called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
         file.scale, file.scales, file.columns, file.manoeuvring, file.marks, tuple(file.found),
+        file.measured,
     )  # fmt: skip
     whole = with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
     check_bindings(whole, label)
@@ -334,11 +374,11 @@ def _check_roles(vessel: Vessel, effect: Effect, what: str) -> None:
     for role, channel in stated.items():
         if role not in roles:
             raise BadInput(unknown_name(f"{what}: on", role, roles))
-        if isinstance(channel, str) and channel not in vessel.commands:
-            raise BadInput(unknown_name(f"{what}: on.{role} channel", channel, vessel.commands))
+        if isinstance(channel, str) and channel not in vessel.inputs:
+            raise BadInput(unknown_name(f"{what}: on.{role} channel", channel, vessel.inputs))
     for role, about in roles.items():
         if role not in vessel.bound(effect) and about.fixed is None:
-            there = ", ".join(vessel.commands)
+            there = ", ".join(vessel.inputs)
             raise BadInput(f"{what}: on.{role} is missing: the channel of {about.words}; there are: {there}")
 
 

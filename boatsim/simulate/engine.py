@@ -82,7 +82,7 @@ class Engine:
         coordinates = [COORDINATES[i] for i in self.code.FREE]
         self._place = np.array([joints.index(n) for n in coordinates])  # of each coordinate among MuJoCo's joints
         self._sign = np.array([float(SIGN[n]) for n in coordinates])  # SNAME = sign * z-up, coordinate and rate alike
-        self._commands = np.zeros(len(vessel.commands))
+        self._commands = np.zeros(len(vessel.inputs))
         self._memory = np.zeros(self.program.memory_size)
         self._act = np.zeros(self.program.held_size)
         self._mean = np.zeros(len(vessel.actuators))  # of each actuator over the last step
@@ -115,7 +115,7 @@ class Engine:
     @property
     def commands(self) -> dict[str, float]:
         """Commands in force."""
-        return dict(zip(self.vessel.commands, self._commands.tolist(), strict=True))
+        return dict(zip(self.vessel.commands, self._commands.tolist(), strict=False))  # what is measured comes behind
 
     def advance(self, steps: int = 1, length: float | None = None) -> None:
         """Steps of `length` s (default: `step`) with the commands held. Raises BadPhysics if the motion diverges."""

@@ -94,7 +94,7 @@ class BoatPhysics(Physics):
 
     def control(self) -> Array:
         """The commands (C,) in force."""
-        return self.engine._commands.copy()
+        return self.engine._commands[: len(self.engine.vessel.commands)].copy()
 
     def copy(self, share_model: bool = False) -> "BoatPhysics":
         """A boat of its own in the same state; its model is always its own, for outboards turn in the model."""
@@ -162,8 +162,9 @@ class BoatTask(control.Task):
 
     def action_spec(self, physics: BoatPhysics) -> specs.BoundedArray:
         """(C,) command channels between their limits; the name lists them, separated by tabs."""
-        low, high = np.array(list(self.scenario.vessel.limits().values()), dtype=float).reshape(-1, 2).T
-        return specs.BoundedArray(low.shape, float, low, high, name="\t".join(self.scenario.vessel.commands))
+        taken = self.scenario.vessel.commands
+        low, high = np.array([(c.low, c.high) for c in taken.values()], dtype=float).reshape(-1, 2).T
+        return specs.BoundedArray(low.shape, float, low, high, name="\t".join(taken))
 
     def get_observation(self, physics: BoatPhysics) -> OrderedDict[str, np.float64]:
         """True pose in start axes and velocities in body axes, actual actuators, goal; units are in the names."""

@@ -82,6 +82,7 @@ class Runner:
         self._read = {name: column for sensor in scenario.aboard for name, column in type(sensor).columns.items()}
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
         self._actuators = vessel.actuators
+        self._around = {n: m.neutral for n, m in vessel.measured.items()}
         self._winds = [e for e in vessel.effects if isinstance(e, Force) and type(e).of_air]
         self._sent: dict[str, float] = {}  # by the controller; what acts of it is the engine's
         self._beyond: list[str] = []
@@ -142,7 +143,7 @@ class Runner:
         references = [n for n in self._estimates if n.startswith("reference_")]
         force, wind = ([f"{what}_{c}" for c in self._components()] for what in ("force", "wind"))
         return [
-            "t_s", *(s.column for s in self._signals), *self._sent_channels,
+            "t_s", *(s.column for s in self._signals), *self._sent_channels, *self._around,
             *(f"sent_{n}" for n in self._sent_channels), *(f"actual_{n}" for n in self._actuators),
             *(f"sensed_{n}" for n in (*SENSED, *self._read.values())), *self._marks, *(f"camera_{n}" for n in SEEN),
             *force, *(wind if self._winds else ()), "contacts", *(f"estimate_{n}" for n in limits), *references,
@@ -204,7 +205,7 @@ class Runner:
         to(commands)
         vessel = self.scenario.vessel
         row = sent_row(vessel, commands)
-        self._sent, self._beyond = dict(zip(vessel.commands, row.tolist(), strict=True)), beyond(vessel, row)
+        self._sent, self._beyond = dict(zip(vessel.commands, row.tolist(), strict=False)), beyond(vessel, row)
 
     @contextmanager
     def _asked(self) -> Iterator[Controller]:
@@ -257,6 +258,7 @@ class Runner:
                 s.t,
                 *(getattr(s, signal.symbol) for signal in self._signals),
                 *self._in_force(),
+                *self._around.values(),
                 *(self._sent[n] for n in self._sent_channels),
                 *engine.actuators.values(),
                 *(getattr(sense, f) for f in FIELDS),
@@ -282,7 +284,10 @@ class Runner:
         total = [0.0] * len(AXES)
         for effect in self._winds:
             law = type(effect).law.py_func  # type: ignore[attr-defined]  # one call needs no compiling
-            w = law(motion(**s._asdict()), effect.values())
+            bound = self.scenario.vessel.stated(effect).items()
+            read = {role: self._around[c] if isinstance(c, str) else c for role, c in bound}
+            signals = (type(effect).signals(**read),) if type(effect).roles else ()
+            w = law(motion(**s._asdict()), effect.values(), *signals)
             total = [a + b for a, b in zip(total, w, strict=True)]
         return total
 

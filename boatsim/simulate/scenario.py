@@ -123,6 +123,7 @@ class ScenarioFile(Table):
     goal: list[dict[str, float | CourseTable]] = []
     set: dict[str, dict[str, object]] = {}
     effect: list[dict[str, object]] = []
+    measured: dict[str, float] = {}  # the surroundings, as the vessel's channels of that kind read them throughout
     measure: str | dict[str, object] | None = None
     log: float = Field(default=0.0, ge=0)  # [s] between rows of the log; 0: every step
     norms: dict[str, NormTable] = {}
@@ -180,7 +181,7 @@ def from_table(raw: Mapping[str, object], place: Place) -> Scenario:
     label, path = place.label, place.path
     file = checked(ScenarioFile, raw, label)
     try:
-        vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent)
+        vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent).measuring(file.measured)
         controller = _made(Controller, file.controller, path.parent)
         sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
         aboard = _aboard(file.sensor, path.parent)

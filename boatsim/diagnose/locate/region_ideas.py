@@ -87,9 +87,9 @@ def _reversals(track: Track) -> Iterator[Idea]:
     late = held.copy()
     for row in range(1, len(held)):
         late[row, angles] = np.clip(late[row - 1, angles], held[row, angles] - PLAY / 2, held[row, angles] + PLAY / 2)
-    for k, name in enumerate(track.program.composition.held[len(vessel.actuators) :], len(vessel.actuators)):
-        part, angle = name.split("_", 1)
-        late[:, k] = getattr(np, part)(late[:, vessel.actuators.index(angle)])
+    for angle, column in zip(vessel.angles, angles, strict=True):
+        for part, of in (("cos", np.cos), ("sin", np.sin)):
+            late[:, vessel.held.index(f"{part}_{angle}")] = of(late[:, column])
     yield Idea("steering reversals", ((_at_rest(track, late) - _at_rest(track, held)) / PLAY,), _play)
 
 

@@ -5,21 +5,30 @@ from math import cos, pi, sin, sqrt
 from typing import Any, ClassVar
 
 from numba import njit
+from numba.extending import register_jitable
 
 from boatsim.physics.base import Force, Wrench, param, wrench
 
 AIR_DENSITY = 1.2  # [kg/m^3] dry air at 20 deg C, 1013 hPa
 
 
+@register_jitable  # for compiled laws; plain Python where one call needs no compiling
+def pushed(along: float, across: float, density: float, q: Any, swing: float) -> Wrench:
+    """Quadratic drag in air that moves past the hull [m/s, body axes]; the moment has the terms sin g and sin 2 g."""
+    speed = sqrt(along * along + across * across)
+    pressure = 0.5 * density * speed
+    Y = pressure * q.side * across
+    arm = q.arm + (swing * along / speed if speed > 0.0 else 0.0)
+    return wrench(X=pressure * q.front * along, Y=Y, N=arm * Y)
+
+
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Quadratic drag in the air's velocity past the hull."""
+    """Drag in the air's velocity past the hull."""
     north, east = q.speed * cos(q.toward), q.speed * sin(q.toward)
-    along = m.cos_psi * north + m.sin_psi * east - m.u  # [m/s] air past the hull, body axes
+    along = m.cos_psi * north + m.sin_psi * east - m.u
     across = m.cos_psi * east - m.sin_psi * north - m.v
-    pressure = 0.5 * AIR_DENSITY * sqrt(along * along + across * across)
-    Y = pressure * q.side * across
-    return wrench(X=pressure * q.front * along, Y=Y, N=q.arm * Y)
+    return pushed(along, across, AIR_DENSITY, q, 0.0)
 
 
 @dataclass(frozen=True)

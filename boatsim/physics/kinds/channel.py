@@ -10,9 +10,9 @@ from boatsim.physics.signals import Course
 
 
 def actuators(program: Composed) -> Sequence[Station]:
-    """Each actuator's signal begins as its command, held over the step, and ends in the rows of `act`."""
+    """Each signal begins as its command or reading, held over the step, and ends in the rows of `act`."""
     stations = []
-    for name in program.actuators:
+    for name in program.signals:
         places = {"x.{0}": program.held.index(name)}
         for part in ("cos", "sin"):
             if f"{part}_{name}" in program.held:
@@ -28,8 +28,8 @@ def actuators(program: Composed) -> Sequence[Station]:
 
 
 def pausing(program: Composed) -> Sequence[Station]:
-    """Each actuator's command."""
-    return [Station((f"x = commands[{program.commands.index(name)}]",), (), name) for name in program.actuators]
+    """Each signal's command or reading."""
+    return [Station((f"x = commands[{program.commands.index(name)}]",), (), name) for name in program.signals]
 
 
 # Stages: what is wrong with a command comes before the actuator that follows it, what is wrong with its deed after it

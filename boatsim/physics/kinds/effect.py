@@ -241,9 +241,9 @@ class Composed(Protocol):
     """What a kind may ask of the program it is written into."""
 
     effects: tuple[Effect, ...]
-    actuators: tuple[str, ...]
-    commands: tuple[str, ...]
-    held: Sequence[str]  # what `act` holds: the actuators, then cosine and sine of those that are angles
+    signals: tuple[str, ...]  # actuators, and readings of what is measured around the boat
+    commands: tuple[str, ...]  # what the vessel takes: commands, then what is measured
+    held: Sequence[str]  # what `act` holds: the signals, with cosine and sine of those that are angles
 
     def sites(self, number: int) -> Sequence[Site]:
         """The calls of an effect's laws: one, or one for each instance that it rides on."""
