@@ -1,0 +1,84 @@
+"""Bags of ROS 1 (`.bag`) and of ROS 2 (the folder with its `metadata.yaml`, or the `.db3` in it)."""
+
+from pathlib import Path
+from typing import Any
+
+from boatsim.errors import BadInput
+from boatsim.recordings.importing.log import BAG, MOST_BYTES, Log, Room, damaged, needs
+from boatsim.recordings.importing.ros import MOST_SIZE, Decoder, Topic, log_of
+from boatsim.recordings.raw import refuse
+
+SUFFIXES = (".bag", ".db3", "/")
+MOST_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
+
+
+def read(path: Path) -> Log:
+    """Every number of every topic: `/imu.angular_velocity.z`. Raises BadInput."""
+    try:
+        from rosbags.rosbag1 import Reader as Bag1
+        from rosbags.rosbag2 import Reader as Bag2
+    except ImportError as error:
+        raise needs(path, "rosbags", "ros") from error
+    topics: dict[str, Topic] = {}
+    remarks: list[str] = []
+    try:
+        folder = path if path.is_dir() else path.parent
+        if path.suffix.lower() != ".bag":
+            _check_folder(path, folder)
+        with Bag1(path) if path.suffix.lower() == ".bag" else Bag2(folder) as bag:
+            _check_chunks(path, bag)
+            _fill(path, bag, topics, remarks)
+    except BadInput:
+        raise
+    except Exception as error:  # whatever the library finds in a damaged file
+        if not any(len(topic.logged) for topic in topics.values()):
+            raise damaged(path, "a bag of ROS", error) from error
+        remarks.append(f"{path}: ends early or is damaged; what stands before is used")
+    return log_of(path, {name: topic for name, topic in topics.items() if len(topic.logged)}, remarks)
+
+
+def _check_folder(path: Path, folder: Path) -> None:
+    """A bag that is packed as a whole would be unpacked to a file of its own, which no reader here writes."""
+    about = folder / BAG
+    if not about.is_file():
+        raise refuse(path, f"a ROS 2 bag needs its {BAG} beside it")
+    if about.stat().st_size > 10_000_000:
+        raise refuse(about, "is too large for what a bag says of itself")
+    if "compression_mode: file" in about.read_text(encoding="utf-8", errors="replace").lower().replace('"', ""):
+        raise refuse(path, "is packed as a whole file; unpack its .zstd first (zstd -d), or record with message mode")
+    if sum(file.stat().st_size for file in folder.iterdir() if file.is_file()) > MOST_BYTES:
+        raise refuse(path, f"has more than {MOST_BYTES:,} bytes; cut the log")
+
+
+def _check_chunks(path: Path, bag: Any) -> None:
+    chunks = getattr(bag, "chunks", {}).values()
+    if any(getattr(chunk, "size", 0) > MOST_CHUNK for chunk in chunks):
+        raise refuse(path, "has a chunk too large to unpack")
+
+
+def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) -> None:
+    room, read = Room(path), []
+    for connection in bag.connections:
+        try:
+            text = connection.msgdef.data or _usual(connection.msgtype)
+            cdr = hasattr(connection.ext, "serialization_format")
+            topics.setdefault(connection.topic, Topic(Decoder(text, connection.msgtype, cdr)))
+            read.append(connection)
+        except (ValueError, RecursionError) as error:
+            remarks.append(f"{path}: {connection.topic} is not read ({error})")
+    for connection, when, data in bag.messages(connections=read) if read else ():
+        if len(data) <= MOST_SIZE:
+            try:
+                topics[connection.topic].add(when * 1e-9, bytes(data), room)
+            except ValueError as error:
+                remarks.append(f"{path}: messages of {connection.topic} that can not be read are left out ({error})")
+
+
+def _usual(name: str) -> str:
+    """Definition of a message of ROS 2 itself, for bags that do not bring theirs. Raises ValueError."""
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    if name not in store.fielddefs:
+        raise ValueError(f"the bag does not define {name}, and ROS 2 has none of this name")
+    return str(store.generate_msgdef(name, ros_version=2)[0])
