@@ -83,28 +83,42 @@ class Recording:
     def thinned(self, rate: float) -> "Recording":
         """Every n-th row, so that about `rate` rows a second are left, each with the mean command until the next.
 
-        What is measured less often than that keeps its own rows, in which nothing else is measured. The commands
+        Of poses and rates that are not measured in every row, each keeps every n-th of its own samples. The commands
         themselves stay at their own times, as its `orders`.
         """
+        measured = {k: v for k, v in self.signals.items() if k in (*POSE, *RATES)}
+        if any(np.isnan(v).any() for v in measured.values()):
+            return self._thinned_each(rate, measured)
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         if n == 1:
             return self
         commands = {k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)}  # whatever the vessel calls them
-        slow = {k: v for k, v in self.signals.items() if k not in commands and self._is_slow(v, rate)}
-        kept = np.arange(len(self.t)) % n == 0
-        usual = np.copy(kept)
-        for values in slow.values():
-            kept |= np.isfinite(values)
-        rows = np.flatnonzero(kept)
-        ends = np.append(rows, len(self.t))
-        signals = {k: v[rows] if k in slow else np.where(usual[rows], v[rows], np.nan) for k, v in self.signals.items()}
+        ends = np.append(np.arange(0, len(self.t), n), len(self.t))
+        signals = {k: v[::n] for k, v in self.signals.items()}
         signals |= {k: np.add.reduceat(v, ends[:-1]) / np.diff(ends) for k, v in commands.items()}
-        return replace(self, t=self.t[rows], signals=signals, orders=self.orders or Orders(self.t, commands))
+        return replace(self, t=self.t[::n], signals=signals, orders=self.orders or Orders(self.t, commands))
 
-    def _is_slow(self, values: Array, rate: float) -> bool:
-        """Whether a pose or rate is measured in some rows only, and no more often than at `rate`."""
-        there = np.isfinite(values)
-        return not there.all() and int(there.sum()) <= rate * float(self.t[-1] - self.t[0]) + 1.0
+    def _thinned_each(self, rate: float, measured: Mapping[str, Array]) -> "Recording":
+        """The rows in which some signal has a sample that it keeps."""
+        kept = {}
+        for name, values in measured.items():
+            there = np.flatnonzero(np.isfinite(values))
+            steps = np.diff(self.t[there])
+            kept[name] = there[:: max(1, round(1.0 / (rate * float(np.median(steps))))) if len(steps) else 1]
+        rows = np.unique(np.concatenate(list(kept.values())))
+        if len(rows) < 2:
+            return self
+        signals = {}
+        for name, values in self.signals.items():
+            if name in kept:
+                full = np.full(len(self.t), np.nan)
+                full[kept[name]] = values[kept[name]]
+                signals[name] = full[rows]
+            else:  # the mean until the next row, by time
+                lasts = np.append(np.diff(self.t), np.median(np.diff(self.t)))
+                signals[name] = np.add.reduceat(values * lasts, rows) / np.add.reduceat(lasts, rows)
+        commands = {k: v for k, v in self.signals.items() if k not in measured}
+        return replace(self, t=self.t[rows], signals=signals, orders=self.orders or Orders(self.t, commands))
 
     def used(self) -> "Recording":
         """The part its notes name in `use`, or all of it."""
@@ -221,7 +235,8 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
             row, cell = raw.text[name]
             raise refuse(raw.path, f"{cell!r} is not a number", row, name)
     _check_overlap(raw, {name: np.isnan(raw.columns[name]) for name in needed})
-    unusable = {n: ~(np.abs(raw.columns[n]) < HUGE) & ~(np.isnan(raw.columns[n]) & _slow(raw, n)) for n in needed}
+    fair = fair_gaps({n: raw.columns[n] for n in needed})
+    unusable = {n: ~(np.abs(raw.columns[n]) < HUGE) & ~fair.get(n, False) for n in needed}
     first = [(int(np.argmax(where)), name) for name, where in unusable.items() if where.any()]
     if first:
         index, name = min(first, key=lambda found: found[0])
@@ -232,10 +247,18 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
         raise refuse(raw.path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed", raw.rows[-1])
 
 
-def _slow(raw: Raw, name: str) -> bool:
-    """Whether a column is a pose or rate that is measured less often than rows are written: empty in many of them."""
-    empty = np.isnan(raw.columns[name])
-    return name in (*POSE, *RATES) and len(empty) - int(empty.sum()) >= FEWEST_ROWS and empty.mean() >= SLOW
+def fair_gaps(columns: Mapping[str, Array]) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
+    """Of each pose and rate the rows (N,) in which it may be empty: it is just not measured then.
+
+    One that is empty in many rows is measured less often than they are written. Another may be empty in rows that are
+    there for such a one. Elsewhere an empty cell is a fault of the file.
+    """
+    empty = {n: np.isnan(v) for n, v in columns.items() if n in (*POSE, *RATES)}
+    slow = {n: e for n, e in empty.items() if e.mean() >= SLOW and len(e) - int(e.sum()) >= FEWEST_ROWS}
+    if not slow:
+        return {}
+    theirs = np.any([~e for e in slow.values()], axis=0)
+    return {n: e if n in slow else e & theirs for n, e in empty.items()}
 
 
 def _check_overlap(raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]) -> None:

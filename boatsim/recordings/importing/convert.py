@@ -16,15 +16,17 @@ from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.held import repeats
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local
-from boatsim.recordings.importing.log import Log, Signal
+from boatsim.recordings.importing.log import Log, Signal, rate_of
 from boatsim.recordings.importing.mapping import Map, Position, Range
-from boatsim.recordings.importing.resample import LEAST_LOST, Samples, held, longest_hold, placed, samples
+from boatsim.recordings.importing.resample import LEAST_LOST, Samples, clock, held, longest_hold, placed, samples
 from boatsim.recordings.raw import refuse
-from boatsim.recordings.table import FEWEST_ROWS, GAP, SLOW, Recording, is_command
+from boatsim.recordings.table import FEWEST_ROWS, GAP, Recording, fair_gaps, is_command
 
 TOGETHER = (("x_m", "y_m"), ("psi_rad",))  # columns that come with one fix
 HELD = ("stick_", "sent_", "reference_")  # beside commands, what somebody wants is in force until he wants otherwise
 ALIKE = 1.5  # times as fast as the poses: from there on commands set the clock
+NEAR = 0.05  # of a step of the rows: what is measured so near to a row is in it
+ROUNDS = 4
 MOST_ROWS = 5_000_000
 
 
@@ -67,12 +69,12 @@ def convert(log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, f
         is_held = name in work.channels or is_command(name) or name.startswith(HELD)
         work.columns[name] = Column(_of_use(work, name, samples(t, values)), is_held)
     _drop_repeats(work)
-    rows = _clock(work)
-    signals = {n: (held if c.held else placed)(rows, c.given) for n, c in work.columns.items()}
+    rows, near = _clock(work)
+    signals = {n: held(rows, c.given) if c.held else placed(rows, c.given, near) for n, c in work.columns.items()}
     _say_what_was_held(work, rows)
     rows, signals = _whole(work, rows, signals)
     _say_times(work, rows)
-    return Recording(log.path.stem, rows - rows[0], signals, remarks=tuple(work.remarks), path=log.path)
+    return Recording(log.path.stem, np.round(rows - rows[0], 6), signals, remarks=tuple(work.remarks), path=log.path)
 
 
 def _signal(work: _Work, key: str, text: str) -> tuple[Signal, Expression]:
@@ -168,8 +170,12 @@ def _drop_repeats(work: _Work) -> None:
                 work.columns[name] = replace(c, given=Samples(c.given.t[~repeated], c.given.values[~repeated]))
 
 
-def _clock(work: _Work) -> Array:
-    """(N,) times of the rows [s], of the log's clock: those of the fastest signal, or evenly at the rate asked for."""
+def _clock(work: _Work) -> tuple[Array, float]:
+    """(N,) times of the rows [s], of the log's clock, and how near to one a sample is in it [s].
+
+    They are those of the fastest signal, and of what of the others is measured at other times; or evenly at the rate
+    that the map asks for.
+    """
     poses = {n: c for n, c in work.columns.items() if n in (*POSE, *RATES)}
     orders = {n: c for n, c in work.columns.items() if c.held and not n.startswith(HELD)}
     fastest = max(poses.values(), key=lambda c: c.given.rate)
@@ -194,19 +200,29 @@ def _clock(work: _Work) -> Array:
             f"poses and commands have {span} in common, in which the fastest has {len(rows)} samples; at least "
             f"{FEWEST_ROWS} are needed",
         )
-    rate = 1.0 / float(np.median(np.diff(rows)))
+    _say_rates(work, rows)
+    if work.map.rate:
+        work.say(f"what is measured is put into the nearest row, up to {0.5 / work.map.rate:.3g} s from its own time")
+        return rows, 1.0 / work.map.rate
+    near = NEAR * float(np.median(np.diff(rows)))
+    others = sorted((c.given for c in poses.values() if c is not fastest), key=lambda s: -s.rate)
+    rows = clock(rows, others, near)
+    return rows[_in_use(work, rows)], near
+
+
+def _say_rates(work: _Work, rows: Array) -> None:
+    """What is measured less often than rows are written, and what more often."""
+    rate, slow, quick = rate_of(rows), dict[str, list[str]](), dict[str, list[str]]()
     for name, c in work.columns.items():
         inside = int(np.sum((c.given.t >= rows[0] - 1e-9) & (c.given.t <= rows[-1] + 1e-9)))
         if not c.held and c.given.rate < 0.9 * rate:
-            work.say(
-                f"{name} is measured {c.given.rate:.3g} times a second, rows are {rate:.3g}: the rows between are empty"
-            )
+            slow.setdefault(f"{c.given.rate:.3g}", []).append(name)
         elif c.given.rate > 1.1 * rate and inside > len(rows):
-            work.say(
-                f"{name} comes {c.given.rate:.3g} times a second, rows are {rate:.3g}: {inside - len(rows)} samples "
-                "are left out"
-            )
-    return rows
+            quick.setdefault(f"{c.given.rate:.3g} times a second: {inside - len(rows)} samples", []).append(name)
+    for times, names in slow.items():
+        work.say(f"{', '.join(names)}: measured {times} times a second; the other rows, {rate:.3g} a second, are empty")
+    for what, names in quick.items():
+        work.say(f"{', '.join(names)}: logged {what} between the {rate:.3g} rows a second are left out")
 
 
 def _say_what_was_held(work: _Work, rows: Array) -> None:
@@ -218,22 +234,21 @@ def _say_what_was_held(work: _Work, rows: Array) -> None:
 def _whole(work: _Work, rows: Array, signals: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
     """Without rows in which a command is unknown, and those few in which a pose is missing that others have.
 
-    A column that is empty in many rows is a slow one, and its reader knows it; one that is empty in a few is two clocks
-    of one rate that drifted through each other, or a sample lost.
+    A column that is empty in many rows is a slow one, and its reader knows it; one that is empty in a few has lost
+    samples.
     """
     kept = np.ones(len(rows), dtype=np.bool_)
     for name, values in signals.items():
         if work.columns[name].held and not name.startswith(HELD):
             kept &= np.isfinite(values)
-    for name in [n for n in signals if n in (*POSE, *RATES)]:
-        empty = np.isnan(signals[name]) & kept
-        if 0 < empty.sum() < SLOW * kept.sum():
-            work.say(f"{int(empty.sum())} rows without {name} are left out")
-            kept &= ~empty
-    for name in [n for n in signals if n in (*POSE, *RATES)]:
-        share = float(np.isnan(signals[name][kept]).mean()) if kept.any() else 1.0
-        if 0.0 < share < SLOW:  # others took rows away: few enough to lose these too
-            kept &= ~np.isnan(signals[name])
+    for _ in range(ROUNDS):  # rows that are left out may make a slow column of one that was not
+        fair = fair_gaps({n: v[kept] for n, v in signals.items()})
+        unfair = [np.isnan(v[kept]) & ~fair.get(n, False) for n, v in signals.items() if n in (*POSE, *RATES)]
+        lost = np.flatnonzero(kept)[np.any(unfair, axis=0)]
+        if not len(lost):
+            break
+        work.say(f"{len(lost)} rows in which a pose or rate is missing that the others have are left out")
+        kept[lost] = False
     if kept.sum() < FEWEST_ROWS:
         raise refuse(work.log.path, f"{int(kept.sum())} rows have all that is needed; at least {FEWEST_ROWS} must")
     for name in [n for n in signals if n in (*POSE, *RATES)]:

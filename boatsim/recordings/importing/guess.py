@@ -1,6 +1,7 @@
 """What each signal of a log probably is, by its name, unit and range: general rules, which know no boat and no log."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import pi
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.importing.log import Log, Signal, rate_of
+from boatsim.recordings.table import is_command
 
 FEWEST = 20  # samples
 WORDS = {  # units as formats spell them -> as expressions do; "" is the SI unit itself
@@ -62,13 +64,13 @@ def tokens_of(name: str) -> list[str]:
     return [t for t in re.split(r"[^A-Za-z0-9%°/]+|(?<=[A-Za-z])/(?=[A-Za-z]{3,})|^/", parted.lower()) if t]
 
 
-def guesses(log: Log) -> list[Guess]:
-    """The likeliest of every signal that is anything, best first."""
-    found = [g for name, s in log.signals.items() if (g := guess(name, s, log)) is not None]
+def guesses(log: Log, channels: Sequence[str] = ()) -> list[Guess]:
+    """What every signal is that is anything, likeliest first; `channels` are names of the vessel's commands."""
+    found = [g for name, s in log.signals.items() if (g := guess(name, s, log, channels)) is not None]
     return sorted(found, key=lambda g: -g.score)
 
 
-def guess(name: str, signal: Signal, log: Log) -> Guess | None:
+def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> Guess | None:
     """What a signal is, if its name, unit and range say so."""
     values = signal.values[np.isfinite(signal.values)]
     if len(values) < FEWEST:
@@ -81,7 +83,7 @@ def guess(name: str, signal: Signal, log: Log) -> Guess | None:
     for place, match in (("latitude", ("lat", "latitude")), ("longitude", ("lon", "lng", "long", "longitude"))):
         if last[-1] in match and not tokens & NOT_MEASURED and moves:
             return _degrees(name, signal, place, tokens, moves + rate + 10.0 * bool(tokens & SATELLITES))
-    if kind := _drives(signal, tokens):
+    if kind := "command" if name in channels or is_command(name) else _drives(signal, tokens):
         return Guess(name, signal, kind, _word(name, signal), moves + rate, "", tokens)
     of_ours = name if name in COLUMNS else _motion(last, tokens, log)
     if of_ours is None or tokens & NOT_MEASURED:

@@ -73,7 +73,7 @@ def _safe(name: str) -> str:
 
 def proposal(log: Log, vessel: str | None = None, drives: Sequence[Drive] = (), freedoms: Sequence[str] = ()) -> str:
     """Text of a map: the likeliest signal of each column, the others beside it in comments."""
-    found = guesses(log)
+    found = guesses(log, [d.name for d in drives])
     best: dict[str, list[Guess]] = {}
     for g in found:
         best.setdefault(g.column, []).append(g)
@@ -81,12 +81,12 @@ def proposal(log: Log, vessel: str | None = None, drives: Sequence[Drive] = (), 
     lines += [f'vessel = "{vessel}"'] if vessel else ['# vessel = "NAME"']
     body, used = _poses(log, best, freedoms)
     commands, driven = _commands(best.get("command", []), drives)
-    if (quickest := max((rate_of(g.signal.t) for g in (*used, *driven)), default=0.0)) > QUICKEST:
+    if (quickest := max((rate_of(g.signal.t) for g in (*used, *driven)), default=0.0)) > 1.01 * QUICKEST:
         lines.append(f"rate = {QUICKEST:g}  # [Hz] of rows; the quickest signal has {quickest:.3g}")
     lines += ["# use = [0.0, 60.0]  # [s] since the log begins, to leave out what was before and after", "", *body]
     lines += ["", "# commands: what was sent to the drives", *(commands or ["# none was found"])]
     for kind, said in (("actual", "what the drives did"), ("stick", "the pilot's hand, kept beside the commands")):
-        moving = [g for g in best.get(kind, []) if np.ptp(g.signal.values[np.isfinite(g.signal.values)]) > 0.0]
+        moving = [g for g in best.get(kind, []) if not _still(g)]
         if moving:
             lines += ["", f"# {said}", *_kept(kind, sorted(moving, key=lambda g: g.name))]
     return "\n".join(lines) + "\n"
@@ -113,7 +113,7 @@ def _poses(log: Log, best: Mapping[str, list[Guess]], freedoms: Sequence[str]) -
         if column in ("x_m", "y_m") and pair or source not in best:
             continue
         g = best[source][0]
-        held = column in LEANS and LEANS[column] not in freedoms
+        held = column in LEANS and (LEANS[column] not in freedoms or _still(g))
         quarter = QUARTER if enu and column == "psi_rad" else ""
         lines.append(
             f"{'# ' if held else ''}{column} = {_text(sign + _expression(g) + quarter)}{_note(g, best[source])}"
@@ -122,6 +122,11 @@ def _poses(log: Log, best: Mapping[str, list[Guess]], freedoms: Sequence[str]) -
     if "psi_rad" not in best:
         lines.append('# psi_rad = "..."  # no heading was found; a vessel that turns can not be followed without one')
     return lines, used
+
+
+def _still(g: Guess) -> bool:
+    """Whether a signal has one value throughout."""
+    return float(np.ptp(g.signal.values[np.isfinite(g.signal.values)])) == 0.0
 
 
 def _pair(latitudes: Sequence[Guess], longitudes: Sequence[Guess]) -> list[Guess]:
@@ -153,7 +158,7 @@ def _text(value: str) -> str:
 
 def _commands(found: Sequence[Guess], drives: Sequence[Drive]) -> tuple[list[str], list[Guess]]:
     """Lines of the vessel's channels, or of all outputs that moved where there is no vessel."""
-    moving = [g for g in found if np.ptp(g.signal.values[np.isfinite(g.signal.values)]) > 0.0]
+    moving = [g for g in found if not _still(g)]
     moving.sort(key=lambda g: _order(g.name))
     if not drives:
         names = _names([_called(g) for g in moving])
@@ -233,12 +238,10 @@ def _scale(
     if drive is None or unit_of(drive.name) and g.word and g.word != "percent":
         return None
     span = max(abs(drive.low), abs(drive.high))
-    if (
-        (g.word == "percent" or 1.5 < largest <= 100.0)
-        and (g.word == "percent" or g.name != drive.name)
-        and not 0.3 < largest / span < 1.01
-    ):
+    if g.word == "percent" and (span != 100.0 or unit_of(drive.name)):
         return (-100.0, 0.0, 100.0), f"per cent, {share}"
+    if g.name != drive.name and 1.5 < largest <= 100.0 and not 0.3 < largest / span < 1.01:
+        return (-100.0, 0.0, 100.0), f"per cent by its range, {share}"
     if largest <= 1.01 and span > 2.0:
         return (-1.0, 0.0, 1.0), f"-1 to 1, {share}"
     return None

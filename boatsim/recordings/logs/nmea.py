@@ -1,4 +1,4 @@
-"""NMEA 0183: sentences of instruments, some with the time of day; those without lie between their neighbours' times."""
+"""NMEA 0183: sentences of instruments, some with the time of day, which counts for those behind it."""
 
 import re
 from collections.abc import Callable
@@ -48,7 +48,7 @@ def read(path: Path) -> Log:
     kept, bad = _sentences(path, lines, pynmea2.parse)
     if not kept:
         raise refuse(path, "has no NMEA 0183 sentence that can be read; if it is a table, call it .csv")
-    t, counted = _times([when for when, *_ in kept])
+    t, counted = _times(kept)
     remarks = [f"{path}: {bad} of {len(lines)} lines are no whole sentences and are left out"] if bad else []
     if counted is None:
         raise refuse(
@@ -56,8 +56,8 @@ def read(path: Path) -> Log:
         )
     if counted:
         remarks.append(
-            f"{path}: {counted} of {len(t)} sentences have no time of their own; each is placed between the times "
-            "before and after it, evenly in the order of lines"
+            f"{path}: {counted} of {len(t)} sentences have no time of their own; each is taken to be of the time that "
+            "was told before it, several of one name evenly from there on"
         )
     return Log(path, _signals(kept, t), "NED", tuple(remarks))
 
@@ -144,20 +144,29 @@ def _float(sentence: Any, name: str) -> float:
         return float("nan")
 
 
-def _times(given: list[float | None]) -> tuple[Array, int | None]:
-    """(N,) times, those not given set evenly between neighbours; how many were not, None where none was given."""
-    t = np.array([np.nan if when is None else when for when in given])
+def _times(kept: "list[tuple[float | None, str, dict[str, float]]]") -> tuple[Array, int | None]:
+    """(N,) times [s], and how many sentences had none of their own; None where hardly any had one.
+
+    One that comes once between two times is of the first of them, as instruments send what belongs together in one go;
+    several of one name are spread evenly.
+    """
+    t = np.array([np.nan if when is None else when for when, *_ in kept])
     known = np.flatnonzero(np.isfinite(t))
     if len(known) < 2:
         return t, None
-    places = np.arange(len(t), dtype=float)
-    # the sentence with the time ends an epoch or begins it: even steps by line hold between two that have one
-    first = known[np.append(True, np.diff(t[known]) != 0.0)]  # of several of one epoch the first
-    steady = np.interp(places, first, t[first])
-    steady[: first[0]] = np.nan
-    steady[first[-1] + 1 :] = np.nan
-    steady[known] = t[known]
-    return steady, int(len(t) - len(known))
+    first = known[np.append(True, np.diff(t[known]) != 0.0)]  # of each time
+    if len(first) < 2:
+        return t, None
+    usual = float(np.median(np.diff(t[first])))
+    for begin, end in zip(first, np.append(first[1:], len(t)), strict=True):
+        step = min(t[end] - t[begin], usual) if end < len(t) else usual  # not over a gap of the log
+        rows = dict[str, list[int]]()
+        for i in range(begin, end):
+            if np.isnan(t[i]):
+                rows.setdefault(kept[i][1], []).append(i)
+        for places in rows.values():
+            t[places] = t[begin] + step * np.arange(len(places)) / len(places)
+    return t, int(len(t) - len(known))
 
 
 def _signals(kept: list[tuple[float | None, str, dict[str, float]]], t: Array) -> dict[str, Signal]:

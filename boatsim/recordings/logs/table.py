@@ -4,6 +4,7 @@ import csv
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -43,28 +44,31 @@ def _log(path: Path, columns: Mapping[str, Array], units: Mapping[str, str], rem
 
 def _parquet(path: Path) -> dict[str, Array]:
     import pyarrow as pa  # 60 ms, comes with rerun-sdk
-    from pyarrow import compute, parquet
+    from pyarrow import parquet
 
     try:
         file = parquet.ParquetFile(path)
         if file.metadata.num_rows * file.metadata.num_columns > MOST_VALUES:
             raise refuse(path, f"holds more than {MOST_VALUES:,} values; cut the log into shorter ones")
-        table = file.read()
+        table = file.read(columns=[f.name for f in file.schema_arrow if _is_number(pa.types, f.type)])
     except (pa.ArrowException, OSError, ValueError) as error:
         raise damaged(path, "Parquet", error) from error
     no_twins(path, table.column_names)
     columns: dict[str, Array] = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
         if pa.types.is_timestamp(column.type):
-            columns[name] = np.asarray(
-                column.cast(pa.timestamp("us"), safe=False).to_numpy().astype("M8[us]"), "M8[us]"
-            )
-            columns[name] = _since_1970(columns[name])
+            stamps = column.cast(pa.timestamp("us"), safe=False).to_numpy().astype("M8[us]")
+            columns[name] = np.where(np.isnat(stamps), np.nan, stamps.astype("i8") * 1e-6)
         if pa.types.is_boolean(column.type):
             column = column.cast("int8")
-        if pa.types.is_integer(column.type) or pa.types.is_floating(column.type) or pa.types.is_decimal(column.type):
+        if name not in columns:
             columns[name] = np.asarray(column.cast("float64", safe=False).to_numpy(), dtype=float)
     return columns
+
+
+def _is_number(types: Any, kind: Any) -> bool:
+    """Whether a column is numbers, true or false, or times; texts are not even unpacked."""
+    return any(getattr(types, f"is_{k}")(kind) for k in ("integer", "floating", "decimal", "boolean", "timestamp"))
 
 
 def _csv(path: Path) -> Log:
