@@ -37,7 +37,26 @@ def simulated() -> dict[str, np.ndarray]:
     start = [0.0] * 12
     start[5] = math.radians(350.0)
     states = boat.rollout(start, np.column_stack([port, starboard])[:-1], STEP)
-    named = dict(zip(["x_m", "y_m", "z_m", "phi_rad", "theta_rad", "psi_rad", "u_mps", "v_mps", "w_mps", "p_radps", "q_radps", "r_radps"], states.T, strict=True))  # noqa: E501
+    named = dict(
+        zip(
+            [
+                "x_m",
+                "y_m",
+                "z_m",
+                "phi_rad",
+                "theta_rad",
+                "psi_rad",
+                "u_mps",
+                "v_mps",
+                "w_mps",
+                "p_radps",
+                "q_radps",
+                "r_radps",
+            ],
+            states.T,
+            strict=True,
+        )
+    )  # noqa: E501
     keep = ("x_m", "y_m", "phi_rad", "theta_rad", "psi_rad", "r_radps")
     return {"t_s": t, **{n: named[n] for n in keep}, "n_port_radps": port, "n_starboard_radps": starboard}
 
@@ -72,12 +91,19 @@ def every(run: dict[str, np.ndarray], rate: float) -> list[dict[str, float]]:
 def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
     """w, x, y, z of yaw, then pitch, then roll."""
     (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a / 2), math.sin(a / 2)) for a in (roll, pitch, yaw))
-    return (cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy)  # noqa: E501
+    return (
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    )  # noqa: E501
 
 
 def streams(run: dict[str, np.ndarray], rates: Sequence[float]) -> list[tuple[float, int, dict[str, float]]]:
     """(time, number of the stream, row) in the order of time."""
-    return sorted(((row["t_s"], k, row) for k, rate in enumerate(rates) for row in every(run, rate)), key=lambda r: r[:2])
+    return sorted(
+        ((row["t_s"], k, row) for k, rate in enumerate(rates) for row in every(run, rate)), key=lambda r: r[:2]
+    )
 
 
 # ArduPilot -----------------------------------------------------------------------------------------------------------
@@ -109,7 +135,18 @@ def ardupilot(run: dict[str, np.ndarray], path: Path) -> None:
     for name, (number, format, columns, _, _) in MESSAGES.items():
         length = 3 + struct.calcsize("<" + "".join(SIZES[c] for c in format))
         out.append(packed("FMT", number, length, name, format, columns))
-    units = {"s": "s", "d": "deg", "h": "degheading", "E": "rad/s", "D": "deglatitude", "U": "deglongitude", "Y": "us", "#": "instance", "-": "", "b": "B"}  # noqa: E501
+    units = {
+        "s": "s",
+        "d": "deg",
+        "h": "degheading",
+        "E": "rad/s",
+        "D": "deglatitude",
+        "U": "deglongitude",
+        "Y": "us",
+        "#": "instance",
+        "-": "",
+        "b": "B",
+    }  # noqa: E501
     out += [packed("UNIT", us, ord(k), v) for k, v in units.items()]
     out += [packed("MULT", us, ord(k), v) for k, v in {"F": 1e-6, "G": 1e-7, "0": 1.0, "-": 0.0}.items()]
     out += [packed("FMTU", us, number, u, m) for number, _, _, u, m in MESSAGES.values()]
@@ -176,7 +213,11 @@ def ulog(run: dict[str, np.ndarray], path: Path) -> None:
 def messages(run: dict[str, np.ndarray], store: object) -> list[tuple[str, str, int, object]]:
     """Topic, type, time [ns], message."""
     types = store.types  # type: ignore[attr-defined]
-    stamp, header, vector = types["builtin_interfaces/msg/Time"], types["std_msgs/msg/Header"], types["geometry_msgs/msg/Vector3"]  # noqa: E501
+    stamp, header, vector = (
+        types["builtin_interfaces/msg/Time"],
+        types["std_msgs/msg/Header"],
+        types["geometry_msgs/msg/Vector3"],
+    )  # noqa: E501
     found = []
     for t, kind, row in streams(run, (10.0, 10.0, 10.0)):
         ns = round((EPOCH + t) * 1e9)
@@ -187,7 +228,14 @@ def messages(run: dict[str, np.ndarray], store: object) -> list[tuple[str, str, 
         if kind == 0:
             point = types["geometry_msgs/msg/Point"](x=row["y_m"], y=row["x_m"], z=0.0)
             pose = types["geometry_msgs/msg/Pose"](position=point, orientation=turned)
-            found.append(("/boat/pose", "geometry_msgs/msg/PoseStamped", ns, types["geometry_msgs/msg/PoseStamped"](header=head, pose=pose)))  # noqa: E501
+            found.append(
+                (
+                    "/boat/pose",
+                    "geometry_msgs/msg/PoseStamped",
+                    ns,
+                    types["geometry_msgs/msg/PoseStamped"](header=head, pose=pose),
+                )
+            )  # noqa: E501
         elif kind == 1:
             none, zero = np.zeros(9), vector(x=0.0, y=0.0, z=0.0)
             imu = types["sensor_msgs/msg/Imu"](
@@ -277,7 +325,9 @@ def nmea(run: dict[str, np.ndarray], path: Path) -> None:
         when = datetime.fromtimestamp(EPOCH + row["t_s"], UTC)
         lat, lon = geodetic(row["x_m"], row["y_m"])
         clock = f"{when:%H%M%S}.{when.microsecond // 10_000:02d}"
-        out.append(sentence(f"GPRMC,{clock},A,{angle(lat, 2, 'NS')},{angle(lon, 3, 'EW')},1.94,350.0,{when:%d%m%y},,,A"))
+        out.append(
+            sentence(f"GPRMC,{clock},A,{angle(lat, 2, 'NS')},{angle(lon, 3, 'EW')},1.94,350.0,{when:%d%m%y},,,A")
+        )
         out.append(sentence(f"HEHDT,{math.degrees(row['psi_rad']) % 360.0:.3f},T"))
         out.append(sentence(f"TIROT,{math.degrees(row['r_radps']) * 60.0:.2f},A"))
         for number, side in enumerate(("port", "starboard"), 1):

@@ -56,8 +56,9 @@ def with_angles(signals: Mapping[str, Signal]) -> dict[str, Signal]:
         if set(group) != set("wxyz") or len({len(s.t) for s in group.values()}) > 1:
             continue
         w, x, y, z = (group[part].values for part in "wxyz")
-        length = np.sqrt(w * w + x * x + y * y + z * z)
-        valid = np.abs(length - 1.0) < UNIT_LENGTH
+        with np.errstate(over="ignore", invalid="ignore"):
+            valid = np.abs(np.sqrt(w * w + x * x + y * y + z * z) - 1.0) < UNIT_LENGTH
+        w, x, y, z = (np.where(valid, part, np.nan) for part in (w, x, y, z))
         for name, angle in zip(("roll", "pitch", "yaw"), angles(w, x, y, z), strict=True):
-            found[f"{base}.{name}"] = Signal(group["w"].t, np.where(valid, angle, np.nan), "rad")
+            found[f"{base}.{name}"] = Signal(group["w"].t, angle, "rad")
     return found

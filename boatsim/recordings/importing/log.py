@@ -1,7 +1,10 @@
 """A log as it was written: many signals, each with its own times, units as far as the format knows them."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +18,7 @@ MOST_BYTES = 2_000_000_000  # of a file
 MOST_TEXT = 500_000_000  # [bytes] of a file of text, which takes several times as much memory
 MOST_VALUES = 50_000_000  # of all signals together; 400 MB
 MOST_SIGNALS = 5_000
+HUGE = 1e20  # times in ns since 1970 are 2e18; nothing that is measured is so large
 BAG = "metadata.yaml"  # a folder that holds one is a bag
 
 
@@ -65,12 +69,36 @@ def damaged(path: Path, what: str, error: BaseException) -> BadInput:
     return refuse(path, f"can not be read as {what} ({said})")
 
 
+@contextmanager
+def quiet() -> Iterator[None]:
+    """What a library prints of a damaged log, in Python or below it, goes nowhere: its reader says it in one line."""
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    kept = [os.dup(number) for number in (1, 2)]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        for number in (1, 2):
+            os.dup2(nowhere, number)
+        with open(os.devnull, "w") as file, redirect_stdout(file), redirect_stderr(file):
+            yield
+    finally:
+        for number, was in zip((1, 2), kept, strict=True):
+            os.dup2(was, number)
+        for number in (*kept, nowhere):
+            os.close(number)
+
+
 def open_log(path: Path) -> Log:
-    """A log read by the reader that its suffix asks for. Raises BadInput."""
+    """A log read by the reader that its suffix asks for; numbers that measure nothing are nan. Raises BadInput."""
     found = reader_for(path)(path)
     if not found.signals:
         raise refuse(path, "has no signals: nothing in it has numbers and times")
-    return found
+    return replace(found, signals={name: _plausible(signal) for name, signal in found.signals.items()})
+
+
+def _plausible(signal: Signal) -> Signal:
+    t, values = (np.where(np.abs(x) < HUGE, x, np.nan) for x in (signal.t, signal.values))
+    return replace(signal, t=t, values=values)
 
 
 def reader_for(path: Path) -> Callable[[Path], Log]:

@@ -1,8 +1,6 @@
 """ArduPilot's `.BIN`: messages that describe themselves; outputs are explained by the log's own parameters."""
 
-import os
 from collections.abc import Mapping
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.log import Log, Room, Signal, damaged, needs, numbered, signals_of
+from boatsim.recordings.importing.log import Log, Room, Signal, damaged, needs, numbered, quiet, signals_of
 from boatsim.recordings.raw import refuse
 
 SUFFIXES = (".bin",)
@@ -43,7 +41,7 @@ def read(path: Path) -> Log:
     # no clock is looked for: times are those since the autopilot started
     quick = type("Quick", (DFReader.DFReader_binary,), {"init_clock": lambda self: None})
     try:
-        with open(os.devnull, "w") as nowhere, redirect_stdout(nowhere), redirect_stderr(nowhere):
+        with quiet():
             index = quick(str(path))
         return _log(path, index)
     except BadInput:

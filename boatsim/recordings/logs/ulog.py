@@ -1,15 +1,13 @@
 """PX4's ULog: topics that describe themselves, times in microseconds since the autopilot started."""
 
-import os
 import re
-from contextlib import redirect_stdout
 from pathlib import Path
 
 import numpy as np
 
 from boatsim.errors import BadInput
 from boatsim.recordings.importing.frames import with_angles
-from boatsim.recordings.importing.log import Log, Room, Signal, damaged, needs, numbered, signals_of
+from boatsim.recordings.importing.log import Log, Room, Signal, damaged, needs, numbered, quiet, signals_of
 
 SUFFIXES = (".ulg", ".ulog")
 SCALED = {  # fields whose integers are not in the unit of their name (msg/SensorGps.msg, msg/VehicleGpsPosition.msg)
@@ -36,7 +34,7 @@ def read(path: Path) -> Log:
     except ImportError as error:
         raise needs(path, "pyulog", "px4") from error
     try:
-        with open(os.devnull, "w") as nowhere, redirect_stdout(nowhere):
+        with quiet():
             found = ULog(str(path))
         return _log(path, found.data_list, found.file_corruption)
     except BadInput:
