@@ -189,27 +189,31 @@ def test_the_log_itself_is_never_written_over(tmp_path):
     assert "that is what is read" in line_of(import_log, log, log, tmp_path / "m.toml", None, None, [])
 
 
+ENDS = {"signal": "RCOU.C1", "low": 1, "neutral": 2, "high": 3}
+PLACE = {"latitude": "GPS.Lat * deg", "longitude": "GPS.Lng * deg"}
+
 # what is wrong ------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
     "changes, said",
     [
-        ({"columns": {"psi_rad": "ATT.Ywa * deg"}}, "columns.psi_rad = 'ATT.Ywa * deg': rover.BIN has no signal 'ATT.Ywa'; did you mean 'ATT.Yaw'?"),
+        ({"columns": {"psi_rad": "ATT.Ywa * deg"}}, "rover.BIN has no signal 'ATT.Ywa'; did you mean 'ATT.Yaw'?"),
+        ({"columns": {"psi_rad": "ATT.Ywa * deg"}}, "map.toml: columns.psi_rad = 'ATT.Ywa * deg'"),
         ({"columns": {"psi_rad": "ATT.Yaw * dge"}}, "there is no unit 'dge'; did you mean 'deg'?"),
         ({"columns": {"psi_rad": 3}}, "psi_rad is 3; allowed is"),
-        ({"columns": {"n": {"signal": "RCOU.C1", "low": 1, "neutral": 5, "high": 2}}}, "neutral must lie between low and high"),
-        ({"columns": {"n": {"signal": "RCOU.C1", "low": 1, "neutral": 2, "hihg": 3}}}, "'hihg' does not exist; did you mean 'high'?"),
+        ({"columns": {"n": ENDS | {"neutral": 3}}}, "neutral must lie between low and high"),
+        ({"columns": {"n": ENDS | {"hihg": 3}}}, "'hihg' does not exist; did you mean 'high'?"),
         ({"columns": {"x_m": "ATT.Yaw"}}, "columns.x_m is what position makes"),
         ({"position": {"latitude": "GPS.Lat", "longitude": "GPS.Lng"}}, "are they in degrees?"),
-        ({"position": {"latitude": "GPS.Lat * deg", "longitude": "ATT.Yaw * deg"}}, "are of two streams"),
-        ({"position": {"latitude": "GPS.Lat * deg", "longitude": "GPS.Lng * deg", "origin": [95.0, 0.0]}}, "position.origin"),
+        ({"position": PLACE | {"longitude": "ATT.Yaw * deg"}}, "are of two streams"),
+        ({"position": PLACE | {"origin": [95.0, 0.0]}}, "position.origin"),
         ({"rate": 0}, "rate = 0"),
         ({"use": [3, 1]}, "the second larger"),
         ({"vesel": "otter"}, "'vesel' does not exist; did you mean 'vessel'?"),
         ({"columns": {"r_radps": "RCOU.C1"}, "use": [0.0, 1.5]}, "at least 20 are needed"),
     ],
-)  # fmt: skip
+)
 def test_a_mistake_in_a_map_is_one_line_with_its_key(changes, said):
     assert said in line_of(lambda: converted("rover.BIN", **changes))
 
@@ -222,8 +226,10 @@ def test_a_map_without_poses_says_so(tmp_path):
     assert "not a TOML file" in line_of(read_map, path)
 
 
-LIBRARIES = {"rover.BIN": ("pymavlink", "ardupilot"), "px4.ulg": ("pyulog", "px4"), "ros2.mcap": ("mcap", "ros"),
-             "ros1.bag": ("rosbags", "ros"), "ros2_bag": ("rosbags", "ros"), "instruments.nmea": ("pynmea2", "nmea")}  # fmt: skip
+LIBRARIES = {
+    "rover.BIN": ("pymavlink", "ardupilot"), "px4.ulg": ("pyulog", "px4"), "ros2.mcap": ("mcap", "ros"),
+    "ros1.bag": ("rosbags", "ros"), "ros2_bag": ("rosbags", "ros"), "instruments.nmea": ("pynmea2", "nmea"),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", LIBRARIES)
@@ -375,19 +381,25 @@ def test_a_bag_whose_definitions_are_code_runs_none(tmp_path):
     assert not mark.exists()
 
 
+LITTLE, BIG = b"\0\1\0\0", b"\0\0\0\0"  # what ROS 2 writes in front of a message
+ONE = b"\0\0\0\0\0\0\xf0\x3f"  # 1.0, little end first
+NUMBERS = "uint8 a\nfloat64 b\n"
+
+
 @pytest.mark.parametrize(
     "text, data, cdr, found",
     [
-        ("uint8 a\nfloat64 b\n", b"\0\1\0\0" + b"\x05" + bytes(7) + b"\0\0\0\0\0\0\xf0\x3f", True, {"a": 5.0, "b": 1.0}),
-        ("uint8 a\nfloat64 b\n", b"\x05" + b"\0\0\0\0\0\0\xf0\x3f", False, {"a": 5.0, "b": 1.0}),
-        ("uint8 a\nfloat64 b\n", b"\0\0\0\0" + b"\x05" + bytes(7) + b"\x3f\xf0\0\0\0\0\0\0", True, {"a": 5.0, "b": 1.0}),
-        ("string s\nint16 a\n", b"\0\1\0\0\x03\0\0\0hi\0\0\x07\0", True, {"a": 7.0}),
+        (NUMBERS, LITTLE + b"\x05" + bytes(7) + ONE, True, {"a": 5.0, "b": 1.0}),
+        (NUMBERS, BIG + b"\x05" + bytes(7) + ONE[::-1], True, {"a": 5.0, "b": 1.0}),
+        (NUMBERS, b"\x05" + ONE, False, {"a": 5.0, "b": 1.0}),
+        ("string s\nint16 a\n", LITTLE + b"\x03\0\0\0hi\0\0\x07\0", True, {"a": 7.0}),
         ("string s\nint16 a\n", b"\x02\0\0\0hi\x07\0", False, {"a": 7.0}),
         ("uint16[] c\n", b"\x02\0\0\0\x01\0\x02\0", False, {"c[0]": 1.0, "c[1]": 2.0}),
-        ("time stamp\nint8 K=3\nint8 a # note\n", b"\x01\0\0\0\x02\0\0\0\xff", False, {"stamp.sec": 1.0, "stamp.nanosec": 2.0, "a": -1.0}),
+        ("time t\n", b"\x01\0\0\0\x02\0\0\0", False, {"t.sec": 1.0, "t.nanosec": 2.0}),
+        ("int8 K=3\nint8 a # note\n", b"\xff", False, {"a": -1.0}),
         ("Part[2] p\n===\nMSG: m/Part\nint8 a\n", b"\x01\x02", False, {"p[0].a": 1.0, "p[1].a": 2.0}),
     ],
-)  # fmt: skip
+)
 def test_messages_are_decoded_by_their_definitions(text, data, cdr, found):
     from boatsim.recordings.importing.ros import Decoder
 
