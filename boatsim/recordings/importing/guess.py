@@ -18,7 +18,7 @@ WORDS = {  # units as formats spell them -> as expressions do; "" is the SI unit
     "deg/s": "degps", "degps": "degps", "°/s": "degps", "dps": "degps", "deg/min": "degpmin", "rad/s": "", "radps": "",
     "m/s": "", "mps": "", "kn": "kn", "kt": "kn", "kts": "kn", "knots": "kn", "km/h": "kmh", "kmh": "kmh",
     "kph": "kmh", "%": "percent", "percent": "percent", "pct": "percent", "rpm": "rpm", "1/min": "rpm", "r/min": "rpm",
-    "n": "", "kn_force": "kN", "us": "us", "µs": "us",
+    "n": "", "us": "us", "µs": "us",
 }  # fmt: skip
 NOT_MEASURED = set(  # what is wanted, off, or about a signal
     "des desired target setpoint sp ref reference cmd command commanded error err innov innovation bias cov covariance "
@@ -35,13 +35,21 @@ OUTPUTS = set(
 )
 SENSED = set("actual measured feedback fb telemetry esc state rsa sensed".split())
 STICKS = set("rcin joy stick joystick manual pilot".split())
-HELM = set("rudder steer steering nozzle azimuth helm delta jet angle".split())
+HELM = set("rudder steer steering nozzle azimuth helm delta jet angle pos".split())
 SIDES = {
     "port": "port", "left": "port", "ps": "port", "portside": "port", "starboard": "starboard", "stbd": "starboard",
     "right": "starboard", "sb": "starboard",
 }  # fmt: skip
+LETTERS = {"l": "port", "p": "port", "r": "starboard", "s": "starboard"}  # sides of drives
 PULSE = (800.0, 2200.0)  # [us] between which the pulses of all servos and motor controllers lie
-TURNS = {"r_radps": "z", "q_radps": "y", "p_radps": "x"}  # about which axis
+TURNS = {"r_radps": ("z", "yaw"), "q_radps": ("y", "pitch"), "p_radps": ("x", "roll")}  # about which axis
+SPEEDS = {"rate", "speed", "velocity", "vel"}
+BODY = {"odom", "odometry", "body", "base"}  # frames of a velocity in which x is forward
+SUPERFLUOUS = set("data value raw filtered est estimate estimated meas measured".split())  # ends of names
+OTHER = set("alt roll pitch yaw lat lon error err curr current volt voltage temp temperature vel power".split())
+NUMBERED = {"n", "shaft", *SIDES, *map(str, range(10)), *WORDS}  # what else a shaft speed's name has in it
+ANGLES = set("rudder steer steering nozzle azimuth helm delta".split())
+STEEPEST = 1.6  # [rad] beyond it an angle of a rudder is in degrees
 COLUMNS = (*POSE, *RATES)
 
 
@@ -59,9 +67,11 @@ class Guess:
 
 
 def tokens_of(name: str) -> list[str]:
-    """Words of a signal's name, lower case: ATT.DesYaw -> att, des, yaw."""
-    parted = re.sub(r"([a-z])([A-Z])", r"\1 \2", name)
-    return [t for t in re.split(r"[^A-Za-z0-9%°/]+|(?<=[A-Za-z])/(?=[A-Za-z]{3,})|^/", parted.lower()) if t]
+    """Words of a signal's name, lower case, numbers apart: ATT.DesYaw -> att, des, yaw; motor1 -> motor, 1."""
+    parted = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|(?<=\d)(?=[A-Za-z])", " ", name).lower()
+    parted = re.sub(r"\b(rad|deg|m)[_ ]?(?:/|p|per_?)?[_ ]?s(?:ec)?\b", r"\1/s", parted.replace("_", " "))
+    split = re.split(r"[^a-z0-9%°/]+", parted)
+    return [w for t in split for w in ([t] if t in WORDS else t.split("/")) if w]
 
 
 def guesses(log: Log, channels: Sequence[str] = ()) -> list[Guess]:
@@ -75,36 +85,43 @@ def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> 
     values = signal.values[np.isfinite(signal.values)]
     if len(values) < FEWEST:
         return None
-    words = [w for token in tokens_of(name) for w in token.split("/") if w]
+    words = tokens_of(name)
     tokens = frozenset(words)
-    last = [w for w in words if w not in WORDS or w == "n"] or words
+    last = [w for w in words if w not in (*WORDS, *SUPERFLUOUS) or w == "n"] or words
     moves = 10.0 if float(np.ptp(values)) > 0.0 else 0.0
     rate = min(rate_of(signal.t), 50.0) / 100.0  # of two alike the quicker
     for place, match in (("latitude", ("lat", "latitude")), ("longitude", ("lon", "lng", "long", "longitude"))):
         if last[-1] in match and not tokens & NOT_MEASURED and moves:
             return _degrees(name, signal, place, tokens, moves + rate + 10.0 * bool(tokens & SATELLITES))
     if kind := "command" if name in channels or is_command(name) else _drives(signal, tokens):
-        return Guess(name, signal, kind, _word(name, signal), moves + rate, "", tokens)
-    of_ours = name if name in COLUMNS else _motion(last, tokens, log)
-    if of_ours is None or tokens & NOT_MEASURED:
+        word, why = _word(name, signal), ""
+        if not (signal.unit or word) and tokens & ANGLES and STEEPEST < float(np.max(np.abs(values))) <= 90.0:
+            word, why = "deg", "degrees by its range"
+        return Guess(name, signal, kind, word, moves + rate, why, tokens)
+    column = name if name in COLUMNS else _motion(last, tokens, log)
+    if column is None or tokens & NOT_MEASURED:
         return None
-    column, word, why = of_ours, _word(name, signal), ""
-    if column.endswith(("_rad", "_radps")) and not (signal.unit or word or tokens & {"rad", "radps"}):
-        widest = 2.0 * pi + 0.3 if column.endswith("_rad") else pi
-        if float(np.max(np.abs(values))) > widest:
-            word, why = ("deg" if column.endswith("_rad") else "degps"), "degrees by its range"
-        else:
-            why = "radians by its range"
+    word, why = _angle(column, signal, tokens, _word(name, signal))
     own = 100.0 * (column == name) + 3.0 * (words[0] == "att") + 2.0 * bool(tokens & {"attitude", "imu", "odom"})
     return Guess(name, signal, column, word, moves + rate + own, why, tokens)
 
 
+def _angle(column: str, signal: Signal, tokens: frozenset[str], word: str) -> tuple[str, str]:
+    """Unit of an angle or its rate, by its range where nothing says it."""
+    if not column.endswith(("_rad", "_radps")) or signal.unit or word or tokens & {"rad", "radps", "rad/s"}:
+        return word, ""
+    angle = column.endswith("_rad")
+    if float(np.nanmax(np.abs(signal.values))) > (2.0 * pi + 0.3 if angle else pi):
+        return ("deg" if angle else "degps"), "degrees by its range"
+    return word, "radians by its range"
+
+
 def _word(name: str, signal: Signal) -> str:
-    """The unit as a word of expressions, by the format or else by the end of the name."""
+    """The unit as a word of expressions, by the format or else by the name."""
     if signal.unit:
-        return WORDS.get(signal.unit.lower() if signal.unit != "N" else "n", "")
-    last = (tokens_of(name) or [""])[-1]
-    return WORDS.get(last, "") if last != "n" else ""
+        return WORDS.get(signal.unit.lower(), "")
+    words = tokens_of(name) or [""]
+    return "rpm" if "rpm" in words else WORDS.get(words[-1], "")
 
 
 def _degrees(name: str, signal: Signal, column: str, tokens: frozenset[str], score: float) -> Guess | None:
@@ -122,21 +139,10 @@ def _degrees(name: str, signal: Signal, column: str, tokens: frozenset[str], sco
 def _drives(signal: Signal, tokens: frozenset[str]) -> str | None:
     """Whether a signal is the pilot's stick, what is sent to a drive, or what a drive is measured to do."""
     said = frozenset(tokens_of(signal.about))
-    if tokens & STICKS or {"input", "rc"} <= tokens or "stick" in said:
+    if tokens & STICKS or {"rc", "in"} <= tokens or {"rc", "input"} <= tokens or "stick" in said:
         return "stick"
-    if not (tokens & OUTPUTS or said) or tokens & {
-        "alt",
-        "roll",
-        "pitch",
-        "yaw",
-        "lat",
-        "lon",
-        "error",
-        "err",
-        "curr",
-        "volt",
-        "temp",
-    }:
+    driven = tokens & OUTPUTS or said or {"rc", "out"} <= tokens or "n" in tokens and not tokens - NUMBERED
+    if not driven or tokens & OTHER:
         return None
     return "actual" if tokens & SENSED and not tokens & {"cmd", "command", "commanded"} else "command"
 
@@ -144,32 +150,41 @@ def _drives(signal: Signal, tokens: frozenset[str]) -> str | None:
 def _motion(last: list[str], tokens: frozenset[str], log: Log) -> str | None:
     """The pose or rate that a name speaks of."""
     end = last[-1]
-    if end in ("yaw", "heading", "hdg", "psi") and not tokens & {"rate", "speed", "velocity"}:
+    if found := _turn(end, tokens):
+        return found
+    if end in ("yaw", "heading", "hdg", "psi", "compass"):
         return "psi_rad"
-    if end in ("roll", "phi", "heel", "pitch", "theta", "trim") and not tokens & {"rate", "speed", "velocity"}:
+    if end in ("roll", "phi", "heel", "pitch", "theta", "trim"):
         return "phi_rad" if end in ("roll", "phi", "heel") else "theta_rad"
-    for column, axis in TURNS.items():
-        turns = {"gyr", "gyro", "angular"} & tokens
-        if turns and end in (axis, str("xyz".index(axis))) and (end == axis or "xyz" in tokens):
-            return column
-        spelt = {"x": "roll", "y": "pitch", "z": "yaw"}[axis]
-        if (
-            spelt in tokens
-            and tokens & {"rate", "speed", "yawspeed", "velocity"}
-            or (axis == "z" and end in ("yawspeed", "rot"))
-        ):
-            return column
     if end in ("north", "northing", "pn"):
         return "x_m"
     if end in ("east", "easting", "pe"):
         return "y_m"
-    if end in ("x", "y") and not tokens & MOTIONS and (tokens & PLACES or len(last) == 1):
+    if end in ("x", "y") and not tokens & MOTIONS and (tokens & (PLACES | SATELLITES) or len(last) == 1):
         return {"x": "x_m", "y": "y_m"}[end]
-    if end in ("x", "y") and {"twist", "linear"} <= tokens and log.frame == "ENU":
+    if end in ("x", "y") and {"twist", "linear"} <= tokens and tokens & BODY and log.frame == "ENU":
         return {"x": "u_mps", "y": "v_mps"}[end]
-    return "u_mps" if end in ("surge", "u") else "v_mps" if end in ("sway", "v") and "u" not in tokens else None
+    if end in ("surge", "sway") or tokens & {"surge", "sway"} and tokens & SPEEDS:
+        return "u_mps" if "surge" in tokens else "v_mps"
+    return {"u": "u_mps", "v": "v_mps"}.get(end) if len(last) == 1 else None
+
+
+def _turn(end: str, tokens: frozenset[str]) -> str | None:
+    """The rate of turning that a name speaks of."""
+    for column, (axis, spelt) in TURNS.items():
+        number = str("xyz".index(axis))
+        by_axis = end == axis or end == number and tokens & {"xyz", "rad"}
+        if tokens & {"gyr", "gyro", "angular", "omega"} and by_axis or end in (f"g{axis}", f"gyr{axis}", f"gyro{axis}"):
+            return column
+        if tokens & {spelt} and (tokens & SPEEDS or tokens & {"rad/s", "deg/s", "dps", "radps", "degps"}):
+            return column
+        if end in (f"{spelt}rate", f"{spelt}speed"):
+            return column
+    rates = {"rot", "omega"} & {end} or {"turn", "rate"} <= tokens or end == "r" and not tokens - {"r"} - set(WORDS)
+    return "r_radps" if rates else None
 
 
 def side_of(tokens: frozenset[str]) -> str:
-    """port, starboard or "" by the words of a name."""
-    return next((SIDES[t] for t in sorted(tokens) if t in SIDES), "")
+    """port, starboard or "" by the words of a name; single letters where there is no word."""
+    found = next((SIDES[t] for t in sorted(tokens) if t in SIDES), "")
+    return found or next((LETTERS[t] for t in sorted(tokens) if t in LETTERS), "")

@@ -114,7 +114,8 @@ def _poses(log: Log, best: Mapping[str, list[Guess]], freedoms: Sequence[str]) -
             continue
         g = best[source][0]
         held = column in LEANS and (LEANS[column] not in freedoms or _still(g))
-        quarter = QUARTER if enu and column == "psi_rad" else ""
+        compass = column == "psi_rad" and "yaw" not in g.tokens  # which counts from north, clockwise
+        sign, quarter = ("", "") if compass else (sign, QUARTER if enu and column == "psi_rad" else "")
         lines.append(
             f"{'# ' if held else ''}{column} = {_text(sign + _expression(g) + quarter)}{_note(g, best[source])}"
         )
@@ -165,18 +166,26 @@ def _commands(found: Sequence[Guess], drives: Sequence[Drive]) -> tuple[list[str
         return [_drive_line(n, g, None) for n, g in zip(names, moving, strict=True)], list(moving)
     lines, taken = [], list[Guess]()
     matched = _matched(drives, moving)
-    left = [g for g in moving if g not in matched.values()]
+    missing = [d.name for d in drives if d.name not in matched]
+    by_order = dict(
+        zip(missing, _as_many([g for g in moving if g not in matched.values()], len(missing)), strict=False)
+    )
     for drive in drives:
-        g, note = matched.get(drive.name), ""
-        if g is None and len(left) == len(drives) - len(matched):
-            g, note = left.pop(0), "; by its order alone"
-            matched[drive.name] = g
+        g = matched.get(drive.name) or by_order.get(drive.name)
         if g is None:
             lines.append(f'# {drive.name} = "..."  # {drive.low:g} to {drive.high:g}; no signal is called like it')
         else:
             taken.append(g)
-            lines.append(_drive_line(drive.name, g, drive) + note)
-    return [*lines, *(f"# not used: {_safe(g.name)}" for g in left)], taken
+            lines.append(_drive_line(drive.name, g, drive) + ("; by its order alone" if drive.name in by_order else ""))
+    return [*lines, *(f"# not used: {_safe(g.name)}" for g in moving if g not in taken)], taken
+
+
+def _as_many(moving: Sequence[Guess], count: int) -> list[Guess]:
+    """The signals of the one stream that has just so many that move; none where no stream has."""
+    streams: dict[str, list[Guess]] = {}
+    for g in moving:
+        streams.setdefault(g.name.rpartition(".")[0], []).append(g)
+    return next((found for found in (*streams.values(), list(moving)) if len(found) == count), [])
 
 
 def _order(name: str) -> list[tuple[int, str]]:
