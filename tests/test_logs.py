@@ -309,6 +309,24 @@ def test_what_libraries_print_of_a_damaged_log_is_not_passed_on(tmp_path, capfd)
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.parametrize("name, module", [("ros2.mcap", "mcap"), ("ros1.bag", "rosbag")])
+def test_a_chunk_that_would_unpack_to_more_than_is_stated_is_refused(monkeypatch, name, module):
+    monkeypatch.setattr(f"boatsim.recordings.logs.{module}.MOST_CHUNK", 20_000)
+    assert "can not be read as" in line_of(open_log, LOGS / name)
+
+
+@pytest.mark.parametrize(
+    "key, value, said",
+    [("compression_mode", "FILE", "is compressed; unpack it"), ("storage_identifier", "mcap", "give the .mcap in it")],
+)
+def test_a_bag_that_is_compressed_or_holds_mcap_says_what_to_do(tmp_path, key, value, said):
+    path = tmp_path / "bag"
+    shutil.copytree(LOGS / "ros2_bag", path)
+    about = path / "metadata.yaml"
+    about.write_text(re.sub(rf"{key}: .*", f"{key}: {value}", about.read_text()))
+    assert said in line_of(open_log, path)
+
+
 def test_names_from_a_log_reach_neither_terminal_nor_map_as_they_are(tmp_path):
     path = tmp_path / "t.csv"
     header = 't_s,psi\x1b[31m,"he said ""x"" \\ y",heading'

@@ -15,8 +15,8 @@ from boatsim.physics.content import module_of, names
 from boatsim.recordings.raw import refuse
 
 MOST_BYTES = 2_000_000_000  # of a file
-MOST_TEXT = 500_000_000  # [bytes] of a file of text, which takes several times as much memory
-MOST_VALUES = 50_000_000  # of all signals together; 400 MB
+MOST_TEXT = 50_000_000  # [bytes] of a text that is read line by line, which takes 20 times as much memory
+MOST_VALUES = 25_000_000  # of all signals together; 200 MB
 MOST_SIGNALS = 5_000
 HUGE = 1e20  # times in ns since 1970 are 2e18; nothing that is measured is so large
 BAG = "metadata.yaml"  # a folder that holds one is a bag
@@ -93,12 +93,14 @@ def open_log(path: Path) -> Log:
     found = reader_for(path)(path)
     if not found.signals:
         raise refuse(path, "has no signals: nothing in it has numbers and times")
-    return replace(found, signals={name: _plausible(signal) for name, signal in found.signals.items()})
+    times = {id(s.t): _plausible(s.t) for s in found.signals.values()}  # which signals of one stream share
+    signals = {n: replace(s, t=times[id(s.t)], values=_plausible(s.values)) for n, s in found.signals.items()}
+    return replace(found, signals=signals)
 
 
-def _plausible(signal: Signal) -> Signal:
-    t, values = (np.where(np.abs(x) < HUGE, x, np.nan) for x in (signal.t, signal.values))
-    return replace(signal, t=t, values=values)
+def _plausible(values: Array) -> Array:
+    beyond = np.abs(values) >= HUGE
+    return np.where(beyond, np.nan, values) if beyond.any() else values
 
 
 def reader_for(path: Path) -> Callable[[Path], Log]:

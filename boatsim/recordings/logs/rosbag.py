@@ -1,5 +1,8 @@
 """Bags of ROS 1 (`.bag`) and of ROS 2 (the folder with its `metadata.yaml`, or the `.db3` in it)."""
 
+from bz2 import BZ2Decompressor
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +13,7 @@ from boatsim.recordings.raw import refuse
 
 SUFFIXES = (".bag", ".db3", "/")
 MOST_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
+MOST_ABOUT = 10_000_000  # [bytes] of what a bag says of itself
 
 
 def read(path: Path) -> Log:
@@ -26,7 +30,7 @@ def read(path: Path) -> Log:
         if path.suffix.lower() != ".bag":
             _check_folder(path, folder)
         with Bag1(path) if path.suffix.lower() == ".bag" else Bag2(folder) as bag:
-            _check_chunks(path, bag)
+            _bound(bag)
             _fill(path, bag, topics, remarks)
     except BadInput:
         raise
@@ -38,22 +42,40 @@ def read(path: Path) -> Log:
 
 
 def _check_folder(path: Path, folder: Path) -> None:
-    """A bag that is packed as a whole would be unpacked to a file of its own, which no reader here writes."""
+    """Refuse what the library would unpack without bounds, or to a file of its own, which no reader here writes."""
+    from ruamel.yaml import YAML  # which comes with rosbags
+
     about = folder / BAG
     if not about.is_file():
         raise refuse(path, f"a ROS 2 bag needs its {BAG} beside it")
-    if about.stat().st_size > 10_000_000:
+    if about.stat().st_size > MOST_ABOUT:
         raise refuse(about, "is too large for what a bag says of itself")
-    if "compression_mode: file" in about.read_text(encoding="utf-8", errors="replace").lower().replace('"', ""):
-        raise refuse(path, "is packed as a whole file; unpack its .zstd first (zstd -d), or record with message mode")
+    said = YAML(typ="safe").load(about.read_text(encoding="utf-8", errors="replace"))["rosbag2_bagfile_information"]
+    if str(said.get("compression_mode") or "none").lower() != "none":
+        raise refuse(path, "is compressed; unpack it first: ros2 bag convert, with compression_mode none")
+    if str(said.get("storage_identifier")) == "mcap":
+        raise refuse(path, "is a folder of MCAP files; give the .mcap in it")
     if sum(file.stat().st_size for file in folder.iterdir() if file.is_file()) > MOST_BYTES:
         raise refuse(path, f"has more than {MOST_BYTES:,} bytes; cut the log")
 
 
-def _check_chunks(path: Path, bag: Any) -> None:
-    chunks = getattr(bag, "chunks", {}).values()
-    if any(getattr(chunk, "size", 0) > MOST_CHUNK for chunk in chunks):
-        raise refuse(path, "has a chunk too large to unpack")
+def _bound(bag: Any) -> None:
+    """Let the chunks of a bag of ROS 1 be unpacked to so much and no more."""
+    for position, chunk in getattr(bag, "chunks", {}).items():
+        bag.chunks[position] = chunk._replace(decompressor=partial(_unpacked, chunk.decompressor))
+
+
+def _unpacked(usual: "Callable[[bytes], bytes]", data: bytes) -> bytes:
+    from lz4.frame import LZ4FrameDecompressor
+
+    library = str(usual.__module__).partition(".")[0]
+    if library not in ("bz2", "_bz2", "lz4"):  # not compressed at all
+        return usual(data)
+    machine: Any = LZ4FrameDecompressor() if library == "lz4" else BZ2Decompressor()
+    found = bytes(machine.decompress(data, max_length=MOST_CHUNK))
+    if not machine.eof:
+        raise ValueError("a chunk that is cut, or too large to unpack")
+    return found
 
 
 def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) -> None:

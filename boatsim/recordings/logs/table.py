@@ -3,6 +3,7 @@
 import csv
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ SEPARATORS = ",;\t|"
 COMMENT = ("#", "%", "//")
 BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Heading [deg]
 NOTHING = ("", "nan", "null", "none", "na", "n/a", "-")
+MOST_HEAD = 1_000_000  # [bytes] in which names and units stand
 csv.field_size_limit(1_000_000)
 
 
@@ -71,36 +73,92 @@ def _is_number(types: Any, kind: Any) -> bool:
     return any(getattr(types, f"is_{k}")(kind) for k in ("integer", "floating", "decimal", "boolean", "timestamp"))
 
 
+@dataclass(frozen=True)
+class _Head:
+    """What the begin of a table says of the rest."""
+
+    columns: list[str]
+    separator: str
+    units: dict[str, str]
+    row: int  # line of the file in which the first row of numbers stands, from 0
+
+
 def _csv(path: Path) -> Log:
-    if path.stat().st_size > MOST_TEXT:
-        raise refuse(path, f"has {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of text are read: cut the log")
-    text = _text(path)
-    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
+    head = _head(path)
+    columns, remarks = _quick(path, head), tuple[str, ...]()
+    if columns is None:
+        columns, remarks = _line_by_line(path, head)
+    return _log(path, {n: c for n, c in columns.items() if n}, head.units, remarks)
+
+
+def _head(path: Path) -> _Head:
+    """Separator, names and units of a table. Raises BadInput."""
+    with path.open("rb") as file:
+        begin = _text(path, file.read(MOST_HEAD))
+    lines = [(i, line) for i, line in enumerate(begin.splitlines()) if line.strip()]
     while lines and lines[0][1].lstrip().startswith(COMMENT) and not _may_be_header(lines):
         lines.pop(0)
     if len(lines) < 2:
         raise refuse(path, "has a header and no rows" if lines else "is empty")
-    head = lines[0][1].lstrip("#%/ ")
-    separator = max(SEPARATORS, key=head.count)
-    header = [name.strip() for name in next(csv.reader([head], delimiter=separator))]
+    first = lines[0][1].lstrip("#%/ ")
+    separator = max(SEPARATORS, key=first.count)
+    header = [name.strip() for name in next(csv.reader([first], delimiter=separator))]
     if len(header) > MOST_SIGNALS:
         raise refuse(path, f"has {len(header)} columns; no log of a boat has as many")
     no_twins(path, header)
     if all(_number(cell, separator) is not None for cell in header):
-        raise refuse(path, "has no header: its first row is numbers; names of columns are needed", lines[0][0])
+        raise refuse(path, "has no header: its first row is numbers; names of columns are needed", lines[0][0] + 1)
     units = {name: found[1].strip() for name in header if (found := BRACKETS.search(name))}
-    Room(path).take(len(header) * len(lines), len(header))
-    rows, remarks = _rows(path, lines[1:], separator, len(header))
-    if rows and _is_units(rows[0], header, separator):
-        units |= {n: u.strip("[]() ") for n, u in zip(header, rows.pop(0), strict=True)}
+    below = next(csv.reader([lines[1][1]], delimiter=separator), [])
+    if len(below) == len(header) and _is_units(below, header, separator):
+        if len(lines) < 3:
+            raise refuse(path, "has a header and no rows")
+        units |= {n: u.strip("[]() ") for n, u in zip(header, below, strict=True)}
+        lines.pop(0)
+    return _Head(header, separator, units, lines[1][0])
+
+
+def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
+    """The columns of a table that is nothing but numbers and empty cells; None of any other."""
+    import pyarrow as pa
+    from pyarrow import csv as arrow
+
+    if len(set(head.columns)) < len(head.columns) or "" in head.columns:
+        return None
+    try:
+        found = arrow.read_csv(
+            path,
+            arrow.ReadOptions(column_names=head.columns, skip_rows=head.row),
+            arrow.ParseOptions(delimiter=head.separator),
+            arrow.ConvertOptions(
+                column_types={name: pa.float64() for name in head.columns},
+                null_values=[*NOTHING, "NaN", "NAN", "NULL"],
+                decimal_point="." if head.separator == "," else ",",
+            ),
+        )
+    except (pa.ArrowException, OSError, ValueError):
+        return None
+    Room(path).take(found.num_rows * found.num_columns, found.num_columns)
+    return {name: np.array(found[name], dtype=float) for name in head.columns}
+
+
+def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """The columns of any other table: with dates and words, or with rows that are no rows, which are told by line."""
+    if path.stat().st_size > MOST_TEXT:
+        raise refuse(
+            path,
+            f"has words among its numbers and {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of such are read",
+        )
+    lines = enumerate(_text(path, path.read_bytes()).splitlines())
+    kept = [(i + 1, line) for i, line in lines if i >= head.row and line.strip()]
+    Room(path).take(len(head.columns) * len(kept), len(head.columns))
+    rows, remarks = _rows(path, kept, head.separator, len(head.columns))
     if not rows:
         raise refuse(path, "has a header and no rows")
-    columns = {n: _column([row[i] for row in rows], separator) for i, n in enumerate(header)}
-    return _log(path, {n: c for n, c in columns.items() if n}, units, remarks)
+    return {n: _column([row[i] for row in rows], head.separator) for i, n in enumerate(head.columns)}, remarks
 
 
-def _text(path: Path) -> str:
-    found = path.read_bytes()
+def _text(path: Path, found: bytes) -> str:
     if b"\0" in found[:4096]:
         raise refuse(path, "is not a text file")
     try:
