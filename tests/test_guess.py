@@ -91,6 +91,23 @@ def test_channels_get_the_signals_of_their_side_and_per_cent_becomes_their_range
     assert f'thrust_starboard_N = {{ signal = "motor_right", {ends} }}' in text
 
 
+def test_a_column_called_as_the_channel_is_that_channel_even_if_it_stands_still_and_no_other_kind_of_thing_is():
+    drives = [Drive("delta_rad", -0.7, 0.7), Drive("n_rps", 0.0, 30.0)]
+    signals = {"psi": (0.0, 3.0), "delta_rad": (-0.3, 0.3), "thrust_N": (39.0, 52.0)}
+    text = proposal(log_of(**signals), "v", drives)
+    assert 'delta_rad = "delta_rad"' in text and '# n_rps = "..."' in text
+    text = proposal(log_of(**signals, n_rps=(10.0, 10.0)), "v", drives)
+    assert 'n_rps = "n_rps"' in text
+
+
+def test_what_the_vessels_file_says_of_its_recordings_comes_before_any_guess():
+    stated = {"thrust_port_N": "force_right", "y_m": "-port", "x_m": "none"}
+    log = log_of(psi=(0.0, 3.0), force_right=(0.0, 1.0), port=(0.0, 9.0), y=(0.0, 3.0))
+    text = proposal(log, "v", [Drive("thrust_port_N", -1.0, 1.0)], (), stated)
+    assert 'thrust_port_N = "force_right"  # as' in text and 'y_m = "-port"  # as' in text and "none" not in text
+    assert text.count("y_m = ") == 1
+
+
 def test_channels_that_no_name_fits_get_the_outputs_in_order_and_it_is_said():
     drives = [Drive("thrust_port_N", -1.0, 1.0), Drive("rudder_rad", -0.5, 0.5)]
     text = proposal(log_of(psi=(0.0, 3.0), **{"rudder": (-0.4, 0.4), "motor 1": (-0.9, 0.9)}), "v", drives)

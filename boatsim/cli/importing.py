@@ -37,7 +37,7 @@ def import_log(
 def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]) -> int:
     boat = vessels.load(vessel, load) if vessel else None
     drives = [Drive(n, low, high) for n, (low, high) in boat.limits().items()] if boat else []
-    text = proposal(log, vessel, drives, boat.freedoms if boat else ())
+    text = proposal(log, vessel, drives, boat.freedoms if boat else (), boat.columns if boat else None)
     _say(log.remarks)
     print("\n".join(listing(log)))
     if propose:

@@ -1,11 +1,12 @@
 """A map proposed for a log, as text to be saved and checked, and the list of its signals."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from boatsim.recordings.expression import parse
 from boatsim.recordings.importing.guess import HELM, PULSE, Guess, guesses, side_of, tokens_of
 from boatsim.recordings.importing.log import Log, Signal, rate_of
 from boatsim.recordings.notes import unit_of
@@ -20,6 +21,7 @@ FROM_ENU = {
 }  # fmt: skip
 QUARTER = " + 90 * deg"  # heading from north = a quarter turn less the yaw from east
 SURE = ("x_m", "y_m", "psi_rad", "r_radps", "u_mps", "v_mps")
+KINDS = {"angle": ("rad", "deg"), "turning": ("rad/s", "deg/s", "1/s", "1/min", "rpm"), "force": ("N", "kN")}
 LEANS = {"phi_rad": "roll", "p_radps": "roll", "theta_rad": "pitch", "q_radps": "pitch"}
 
 
@@ -71,16 +73,31 @@ def _safe(name: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in name)[:120]
 
 
-def proposal(log: Log, vessel: str | None = None, drives: Sequence[Drive] = (), freedoms: Sequence[str] = ()) -> str:
-    """Text of a map: the likeliest signal of each column, the others beside it in comments."""
+def proposal(
+    log: Log,
+    vessel: str | None = None,
+    drives: Sequence[Drive] = (),
+    freedoms: Sequence[str] = (),
+    stated: Mapping[str, str] | None = None,
+) -> str:
+    """Text of a map: the likeliest signal of each column, the others beside it in comments.
+
+    `stated` is what the vessel's file says of the columns of its recordings: our name, and the expression of theirs.
+    """
+    known = {ours: e for ours, e in (stated or {}).items() if parse(e, log.signals.keys()).signal in log.signals}
+    spoken_for = {parse(e, log.signals.keys()).signal for e in known.values()}
     found = guesses(log, [d.name for d in drives])
+    found = [g for g in found if g.column not in known and g.name not in spoken_for]
     best: dict[str, list[Guess]] = {}
     for g in found:
         best.setdefault(g.column, []).append(g)
     lines = ["# Proposed from the names, units and ranges of the signals in the log: check every line."]
     lines += [f'vessel = "{vessel}"'] if vessel else ['# vessel = "NAME"']
-    body, used = _poses(log, best, freedoms)
-    commands, driven = _commands(best.get("command", []), drives)
+    body, used = _poses(log, best, freedoms, known)
+    body += [f"{_key(n)} = {_text(e)}  # as the vessel's file says" for n, e in known.items()]
+    open_drives = [d for d in drives if d.name not in known]
+    commands, driven = _commands(best.get("command", []), open_drives) if open_drives or not drives else ([], [])
+    commands = ["# all are above"] if drives and not open_drives else commands
     if (quickest := max((rate_of(g.signal.t) for g in (*used, *driven)), default=0.0)) > 1.01 * QUICKEST:
         lines.append(f"rate = {QUICKEST:g}  # [Hz] of rows; the quickest signal has {quickest:.3g}")
     lines += ["# use = [0.0, 60.0]  # [s] since the log begins, to leave out what was before and after", "", *body]
@@ -92,7 +109,9 @@ def proposal(log: Log, vessel: str | None = None, drives: Sequence[Drive] = (), 
     return "\n".join(lines) + "\n"
 
 
-def _poses(log: Log, best: Mapping[str, list[Guess]], freedoms: Sequence[str]) -> tuple[list[str], list[Guess]]:
+def _poses(
+    log: Log, best: Mapping[str, list[Guess]], freedoms: Sequence[str], known: Collection[str]
+) -> tuple[list[str], list[Guess]]:
     """Lines of position and columns of motion, and the guesses in them."""
     lines, used = [], list[Guess]()
     pair = _pair(best.get("latitude", []), best.get("longitude", []))
@@ -120,7 +139,7 @@ def _poses(log: Log, best: Mapping[str, list[Guess]], freedoms: Sequence[str]) -
             f"{'# ' if held else ''}{column} = {_text(sign + _expression(g) + quarter)}{_note(g, best[source])}"
         )
         used += [] if held else [g]
-    if "psi_rad" not in best:
+    if "psi_rad" not in {*best, *known}:
         lines.append('# psi_rad = "..."  # no heading was found; a vessel that turns can not be followed without one')
     return lines, used
 
@@ -159,17 +178,16 @@ def _text(value: str) -> str:
 
 def _commands(found: Sequence[Guess], drives: Sequence[Drive]) -> tuple[list[str], list[Guess]]:
     """Lines of the vessel's channels, or of all outputs that moved where there is no vessel."""
-    moving = [g for g in found if not _still(g)]
+    moving = [g for g in found if not _still(g) or g.name in [d.name for d in drives]]
     moving.sort(key=lambda g: _order(g.name))
     if not drives:
         names = _names([_called(g) for g in moving])
         return [_drive_line(n, g, None) for n, g in zip(names, moving, strict=True)], list(moving)
     lines, taken = [], list[Guess]()
     matched = _matched(drives, moving)
-    missing = [d.name for d in drives if d.name not in matched]
-    by_order = dict(
-        zip(missing, _as_many([g for g in moving if g not in matched.values()], len(missing)), strict=False)
-    )
+    missing = [d for d in drives if d.name not in matched]
+    left = _as_many([g for g in moving if g not in matched.values()], len(missing))
+    by_order = {d.name: g for d, g in zip(missing, left, strict=False) if _fits(d, g)}
     for drive in drives:
         g = matched.get(drive.name) or by_order.get(drive.name)
         if g is None:
@@ -214,9 +232,19 @@ def _likeness(drive: Drive, g: Guess) -> float:
     theirs = g.tokens | frozenset(tokens_of(g.signal.about))
     ours = frozenset(tokens_of(drive.name))
     mine, other = side_of(ours), side_of(theirs)
-    if mine != other and mine and other or bool(ours & HELM) != bool(theirs & HELM):
+    if not _fits(drive, g) or mine != other and mine and other or bool(ours & HELM) != bool(theirs & HELM):
         return 0.0
     return 1.0 * (mine == other and mine != "") + 1.0 * bool(ours & HELM) + 0.5 * len(ours & theirs)
+
+
+def _fits(drive: Drive, g: Guess) -> bool:
+    """Whether a channel can be of a signal's kind, as an angle is no force; pulses and plain numbers may be any."""
+    kinds = [next((k for k, units in KINDS.items() if u in units), "") for u in (unit_of(drive.name), _unit(g))]
+    return "" in kinds or kinds[0] == kinds[1]
+
+
+def _unit(g: Guess) -> str:
+    return g.signal.unit or {"deg": "deg", "rpm": "rpm", "degps": "deg/s"}.get(g.word, unit_of(g.name))
 
 
 def _drive_line(name: str, g: Guess, drive: Drive | None) -> str:
@@ -225,7 +253,7 @@ def _drive_line(name: str, g: Guess, drive: Drive | None) -> str:
     note = f"  # {rate_of(g.signal.t):.3g} Hz" + (f"; {_safe(g.signal.about)}" if g.signal.about else "")
     scale = _scale(g, values, drive)
     if scale is None:
-        return f"{_key(name)} = {_text(_converted(g, name))}{note}"
+        return f"{_key(name)} = {_text(g.name if g.name == name else _converted(g, name))}{note}"
     ends, why = scale
     if drive is None and g.column == "command" and low >= 0.0:
         low = 0.0
@@ -239,6 +267,8 @@ def _scale(
 ) -> tuple[tuple[float, float, float], str] | None:
     """Low, neutral and high of a signal that is a share of full command, and a word on where they come from."""
     share = "in proportion to full command"
+    if drive and g.name == drive.name:
+        return None
     if g.signal.pulse:
         return g.signal.pulse, share if drive else ""
     if PULSE[0] <= values.min() and values.max() <= PULSE[1]:
