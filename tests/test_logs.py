@@ -445,3 +445,9 @@ def test_the_logs_are_what_their_script_writes(tmp_path, monkeypatch):
         assert abs(len((tmp_path / name).read_bytes()) - len((LOGS / name).read_bytes())) < 100, name
         assert (tmp_path / name).stat().st_size < 200_000
     assert re.search(r"Otter", (LOGS / "README.md").read_text())
+
+
+def test_the_map_that_the_documents_show_is_one():
+    page = (Path(__file__).parents[1] / "docs" / "logs.md").read_text()
+    shown = tomllib.loads(re.search(r"```toml\n(.*?)```", page, re.DOTALL)[1])
+    assert map_of(shown, "map.toml").columns.keys() == shown["columns"].keys()
