@@ -18,6 +18,11 @@ HEAVY = {  # library -> the only modules that may import it
     "dm_env": {"simulate.env"},
     "rerun": {"view.rerun_log", "view.blueprint", "recordings.readers.rrd"},
     "jinja2": {"diagnose.report.page"},
+    "pymavlink": {"recordings.logs.ardupilot"},
+    "mcap": {"recordings.logs.mcap"},
+    "rosbags": {"recordings.logs.rosbag"},
+    "pyulog": {"recordings.logs.ulog"},
+    "pynmea2": {"recordings.logs.nmea"},
 }
 BY_ANY_NAME = {"physics.content", "physics.cache"}  # what files name, and programs composed on the spot
 CONTROLLERS = sorted((HOME / "controllers").glob("*.py"))

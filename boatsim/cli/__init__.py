@@ -1,4 +1,4 @@
-"""The command line: `boatsim run | list | margins | compare | replay | diagnose`."""
+"""The command line: `boatsim run | import | list | margins | compare | replay | diagnose`."""
 
 from boatsim.cli.commands import app, main
 

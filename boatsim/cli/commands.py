@@ -232,6 +232,27 @@ def diagnose(
     return commands.diagnose(runs, hold_out or [], vessel, _loads(load), out, library or [], without or [], horizon)
 
 
+@app.command("import")
+@guarded
+def import_(
+    log: Annotated[
+        Path,
+        typer.Argument(metavar="LOG", help="ArduPilot .BIN, ROS .mcap, .bag, .db3, PX4 .ulg, NMEA .nmea, .csv, ..."),
+    ],
+    out: Annotated[Path | None, typer.Option(metavar="RUN.csv", help="Recording to write; needs --map.")] = None,
+    map: Annotated[Path | None, typer.Option(metavar="MAP.toml", help="Which signal is which column.")] = None,
+    propose: Annotated[
+        Path | None, typer.Option(metavar="MAP.toml", help="Write the proposed map to this file.")
+    ] = None,
+    vessel: VesselName = None,
+    load: Load = None,
+) -> int:
+    """Turn a log into a recording by a map; without one, list its signals and propose a map."""
+    from boatsim.cli.importing import import_log
+
+    return import_log(log, out, map, propose, vessel, _loads(load))
+
+
 def _loads(given: list[str] | None) -> list[str]:
     return [name.strip() for text in given or [] for name in text.split(",") if name.strip()]
 

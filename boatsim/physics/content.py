@@ -20,6 +20,7 @@ PACKAGES = {  # kinds that are modules of ours, one a file
     "measure": "measures",
     "sensor": "simulate.sensors",
     "reader": "recordings.readers",
+    "log": "recordings.logs",
 }
 ENTRY = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE)  # of the shelf of effects
 KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}

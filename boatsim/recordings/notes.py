@@ -64,7 +64,9 @@ class NotesFile:
     """A `recording.toml` as it applies to one run: the notes, the names of columns, and what was not understood."""
 
     notes: Notes = field(default_factory=Notes)
-    columns: dict[str, str] = field(default_factory=dict)  # our name -> their column, "-" in front flips the sign
+    columns: dict[str, str] = field(
+        default_factory=dict
+    )  # our name -> expression of their column: "-delta", "heading_deg * deg"
     remarks: tuple[str, ...] = ()
 
 

@@ -4,14 +4,18 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from boatsim.errors import BadInput
 from boatsim.files import replacing
 from boatsim.physics.content import module_of, names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import units
+from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.notes import Notes, NotesFile, notes_for, unit_of
 from boatsim.recordings.raw import Raw, refuse
 
@@ -19,11 +23,13 @@ __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
 
 FEWEST_ROWS = 20
 # columns of our own runs beside pose, rates and commands; a sensor the boat has not got is nan
-OWN = re.compile(r"(sent|actual|sensed|camera|estimate|reference|force|wind)_|contacts$")
+OWN = re.compile(r"(sent|stick|actual|sensed|camera|estimate|reference|force|wind)_|contacts$")
 # what command channels of boats are called; others are known by the vessel
 COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))")
 HUGE = 1e12  # no time, place, speed or command here is anywhere near
 GAP = 60.0  # [s] between two rows; over a longer one no boat here can be followed
+NEAR = 0.8  # likeness from which a name that is not there is a misspelt one
+SLOW = 0.1  # share of empty rows from which a pose or rate is one that is measured less often than rows are written
 ROUNDING = 1e-3  # share of a channel's range by which a command rounded for the file may pass its limit
 
 
@@ -77,8 +83,12 @@ class Recording:
     def thinned(self, rate: float) -> "Recording":
         """Every n-th row, so that about `rate` rows a second are left, each with the mean command until the next.
 
-        The commands themselves stay at their own times, as its `orders`.
+        Of poses and rates that are not measured in every row, each keeps every n-th of its own samples. The commands
+        themselves stay at their own times, as its `orders`.
         """
+        measured = {k: v for k, v in self.signals.items() if k in (*POSE, *RATES)}
+        if any(np.isnan(v).any() for v in measured.values()):
+            return self._thinned_each(rate, measured)
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         if n == 1:
             return self
@@ -87,6 +97,28 @@ class Recording:
         signals = {k: v[::n] for k, v in self.signals.items()}
         signals |= {k: np.add.reduceat(v, ends[:-1]) / np.diff(ends) for k, v in commands.items()}
         return replace(self, t=self.t[::n], signals=signals, orders=self.orders or Orders(self.t, commands))
+
+    def _thinned_each(self, rate: float, measured: Mapping[str, Array]) -> "Recording":
+        """The rows in which some signal has a sample that it keeps."""
+        kept = {}
+        for name, values in measured.items():
+            there = np.flatnonzero(np.isfinite(values))
+            steps = np.diff(self.t[there])
+            kept[name] = there[:: max(1, round(1.0 / (rate * float(np.median(steps))))) if len(steps) else 1]
+        rows = np.unique(np.concatenate(list(kept.values())))
+        if len(rows) < 2:
+            return self
+        signals = {}
+        for name, values in self.signals.items():
+            if name in kept:
+                full = np.full(len(self.t), np.nan)
+                full[kept[name]] = values[kept[name]]
+                signals[name] = full[rows]
+            else:  # the mean until the next row, by time
+                lasts = np.append(np.diff(self.t), np.median(np.diff(self.t)))
+                signals[name] = np.add.reduceat(values * lasts, rows) / np.add.reduceat(lasts, rows)
+        commands = {k: v for k, v in self.signals.items() if k not in measured}
+        return replace(self, t=self.t[rows], signals=signals, orders=self.orders or Orders(self.t, commands))
 
     def used(self) -> "Recording":
         """The part its notes name in `use`, or all of it."""
@@ -106,15 +138,15 @@ def read(
     """
     path, channels = Path(path), channels or {}
     found = notes_for(path) if path.is_file() else NotesFile()
-    raw = _renamed(_raw(path), {**(columns or {}), **found.columns})
-    needed = [n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or _is_command(n)]
+    raw, absent = _renamed(_raw(path), columns or {}, found.columns)
+    needed = [n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or is_command(n)]
     _check_columns(raw, needed)
     _check_cells(raw, needed)
     _check_time(raw)
     _check_units(raw)
     _check_limits(raw, channels)
     signals, ignored = _signals(raw, needed)
-    remarks = (*found.remarks, *((f"{path}: columns not used: {', '.join(ignored)}",) if ignored else ()))
+    remarks = (*found.remarks, *absent, *((f"{path}: columns not used: {', '.join(ignored)}",) if ignored else ()))
     recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, remarks)
     if len(part := recording.used()) < FEWEST_ROWS:
         raise refuse(path, f"has {len(part)} rows in its part to use {found.notes.use}; at least {FEWEST_ROWS} needed")
@@ -150,18 +182,41 @@ def _raw(path: Path) -> Raw:
         raise refuse(path, f"can not be read ({error.strerror})") from error
 
 
-def _renamed(raw: Raw, columns: Mapping[str, str]) -> Raw:
-    """The table under our names; a mapping that does not fit this file's columns is left alone."""
-    theirs = {ours: column.removeprefix("-").strip() for ours, column in columns.items()}
-    theirs = {ours: column for ours, column in theirs.items() if column in raw.columns}
-    kept = {n: v for n, v in raw.columns.items() if n not in theirs.values() and n not in theirs}
-    for ours, column in theirs.items():
-        kept[ours] = raw.columns[column] * (-1.0 if columns[ours].startswith("-") else 1.0) + 0.0
-    text = {n: raw.text[n] for n in kept if n in raw.text and n not in theirs}
-    return replace(raw, columns=kept, text=text | {o: raw.text[c] for o, c in theirs.items() if c in raw.text})
+def _renamed(raw: Raw, of_vessel: Mapping[str, str], stated: Mapping[str, str]) -> tuple[Raw, tuple[str, ...]]:
+    """The table under our names, and a remark on what of the notes' own `[columns]` it has not.
+
+    A vessel's mapping that does not fit this file's columns is left alone; one that the notes state and that is a
+    letter off a column is refused.
+    """
+    made: dict[str, Expression] = {}
+    absent: list[str] = []
+    for ours, words in {**of_vessel, **stated}.items():
+        try:
+            found = parse(words, raw.columns)
+        except BadInput as error:
+            raise BadInput(f"{raw.path} by its recording.toml: columns.{ours} = {words!r}: {error}") from None
+        if found.signal in raw.columns:
+            made[ours] = found
+        elif ours in stated and ours not in raw.columns:
+            absent.append(f"{ours} = {words!r}")
+            if near := get_close_matches(found.signal, list(raw.columns), n=1, cutoff=NEAR):
+                raise BadInput(
+                    f"{raw.path} by its recording.toml: columns.{ours} = {words!r}, but there is no column "
+                    f"{found.signal!r}; did you mean {near[0]!r}? (there are: {', '.join(raw.columns)[:200]})"
+                )
+    used = {e.signal for e in made.values()}
+    kept = {n: v for n, v in raw.columns.items() if n not in used and n not in made}
+    text = {n: raw.text[n] for n in kept if n in raw.text}
+    for ours, e in made.items():
+        kept[ours] = e.of(raw.columns[e.signal])
+        if e.signal in raw.text:
+            text[ours] = raw.text[e.signal]
+    said = (f"{raw.path}: recording.toml names columns that it has not: {', '.join(absent)}",) if absent else ()
+    return replace(raw, columns=kept, text=text), said
 
 
-def _is_command(name: str) -> bool:
+def is_command(name: str) -> bool:
+    """Whether command channels of boats are called so."""
     return COMMAND.match(name) is not None
 
 
@@ -180,7 +235,8 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
             row, cell = raw.text[name]
             raise refuse(raw.path, f"{cell!r} is not a number", row, name)
     _check_overlap(raw, {name: np.isnan(raw.columns[name]) for name in needed})
-    unusable = {name: ~(np.abs(raw.columns[name]) < HUGE) for name in needed}
+    fair = fair_gaps({n: raw.columns[n] for n in needed})
+    unusable = {n: ~(np.abs(raw.columns[n]) < HUGE) & ~fair.get(n, False) for n in needed}
     first = [(int(np.argmax(where)), name) for name, where in unusable.items() if where.any()]
     if first:
         index, name = min(first, key=lambda found: found[0])
@@ -189,6 +245,20 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
         raise refuse(raw.path, f"{what}; every row needs a number here", raw.rows[index], name)
     if len(raw.rows) < FEWEST_ROWS:
         raise refuse(raw.path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed", raw.rows[-1])
+
+
+def fair_gaps(columns: Mapping[str, Array]) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
+    """Of each pose and rate the rows (N,) in which it may be empty: it is just not measured then.
+
+    One that is empty in many rows is measured less often than they are written. Another may be empty in rows that are
+    there for such a one. Elsewhere an empty cell is a fault of the file.
+    """
+    empty = {n: np.isnan(v) for n, v in columns.items() if n in (*POSE, *RATES)}
+    slow = {n: e for n, e in empty.items() if e.mean() >= SLOW and len(e) - int(e.sum()) >= FEWEST_ROWS}
+    if not slow:
+        return {}
+    theirs = np.any([~e for e in slow.values()], axis=0)
+    return {n: e if n in slow else e & theirs for n, e in empty.items()}
 
 
 def _check_overlap(raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]) -> None:
@@ -221,20 +291,32 @@ def _check_time(raw: Raw) -> None:
 
 
 def _check_units(raw: Raw) -> None:
-    columns = raw.columns
-    t = columns["t_s"]
     suspects: dict[str, int | None] = {}
-    if "psi_rad" in columns:
-        suspects["psi_rad"] = units.heading_in_degrees(t, columns["psi_rad"], columns)
-    if "phi_rad" in columns:
-        suspects["phi_rad"] = units.roll_in_degrees(t, columns["phi_rad"], columns.get("p_radps"))
-    for rate, angle in (("r_radps", "psi_rad"), ("p_radps", "phi_rad")):
-        if rate in columns:
-            suspects[rate] = units.rate_in_degrees(t, columns[rate], columns.get(angle))
+    if "psi_rad" in raw.columns:
+        rows, t, psi, others = _measured(raw, "psi_rad")
+        suspects["psi_rad"] = _row(rows, units.heading_in_degrees(t, psi, others))
+    if "phi_rad" in raw.columns:
+        rows, t, phi, others = _measured(raw, "phi_rad")
+        suspects["phi_rad"] = _row(rows, units.roll_in_degrees(t, phi, others.get("p_radps")))
+    for name, angle in (("r_radps", "psi_rad"), ("p_radps", "phi_rad")):
+        if name in raw.columns:
+            rows, t, rate, others = _measured(raw, name)
+            suspects[name] = _row(rows, units.rate_in_degrees(t, rate, others.get(angle)))
     for name, index in suspects.items():
         if index is not None:
-            message = f"{columns[name][index]:g} looks like degrees; allowed are radians ({unit_of(name)})"
+            message = f"{raw.columns[name][index]:g} looks like degrees; allowed are radians ({unit_of(name)})"
             raise refuse(raw.path, message, raw.rows[index], name)
+
+
+def _measured(raw: Raw, name: str) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
+    """The rows in which a column is measured: their numbers, times, its values, and those of what is full there."""
+    rows = np.flatnonzero(np.isfinite(raw.columns[name]))
+    there = {n: v[rows] for n, v in raw.columns.items()}
+    return rows, there["t_s"], there[name], {n: v for n, v in there.items() if np.isfinite(v).all()}
+
+
+def _row(rows: NDArray[np.int64], index: int | None) -> int | None:
+    return None if index is None else int(rows[index])
 
 
 def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None:

@@ -18,8 +18,8 @@ WHOLE = 0.5  # by which it may miss 1: honest positions give a share near 0, noi
 
 def in_one_frame(recording: Recording) -> Recording:
     """The recording without positions that contradict its velocities in this way; a remark says so."""
-    if any(name not in recording.signals for name in NEEDED):
-        return recording
+    if any(name not in recording.signals or np.isnan(recording[name]).any() for name in NEEDED):
+        return recording  # a position is no sum of velocities over rows that lack some
     share, sd = turned_share(recording)
     if not (abs(share - 1.0) < WHOLE and share > SURE * sd):
         return recording

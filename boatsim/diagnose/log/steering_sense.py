@@ -29,10 +29,13 @@ def turning(recording: Recording, name: str, length: float) -> float:
 
     Without the turning before, an unstable hull that is being checked would look as if its rudder acted backwards.
     """
-    t, psi, span = recording.t, recording.signals["psi_rad"], RESPONSE * np.sqrt(length / GRAVITY)
+    there = np.isfinite(recording.signals["psi_rad"])
+    t, psi, span = recording.t[there], recording.signals["psi_rad"][there], RESPONSE * np.sqrt(length / GRAVITY)
     inside = (t >= t[0] + span) & (t <= t[-1] - span)
     now = psi[inside]
     before, after = now - np.interp(t[inside] - span, t, psi), np.interp(t[inside] + span, t, psi) - now
-    drive, gained = (x - before * (x @ before) / (before @ before) for x in (recording.signals[name][inside], after))
+    drive, gained = (
+        x - before * (x @ before) / (before @ before) for x in (recording.signals[name][there][inside], after)
+    )
     size = np.linalg.norm(drive) * np.linalg.norm(gained)
     return float(drive @ gained / size) if size > 0.0 else 0.0

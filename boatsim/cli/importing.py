@@ -1,0 +1,85 @@
+"""What `boatsim import` does: a log's signals and a map proposed for them, or with a map a recording."""
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from boatsim.errors import BadInput
+from boatsim.files import replacing
+from boatsim.physics import vessel as vessels
+from boatsim.physics.content import vessel_address
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.importing.convert import convert, notes_of, position_fix
+from boatsim.recordings.importing.log import Log, open_log
+from boatsim.recordings.importing.mapping import read_map
+from boatsim.recordings.importing.propose import Drive, listing, proposal
+from boatsim.recordings.table import read, write_csv
+
+
+def import_log(
+    log: Path, out: Path | None, map: Path | None, propose: Path | None, vessel: str | None, load: Sequence[str]
+) -> int:
+    """List and propose, or convert. Raises BadInput."""
+    if map is None:
+        return _show(open_log(log), propose, out, vessel, load)
+    if propose:
+        raise BadInput("--propose writes a map, --map reads one; give one of them")
+    if out is None:
+        raise BadInput(f"{log}: with --map a recording is written; say where with --out run.csv")
+    if out.suffix.lower() != ".csv":
+        raise BadInput(f"--out {out}: a recording is written as CSV; call it .csv")
+    if any(out.resolve() == given.resolve() for given in (log, map)):
+        raise BadInput(f"--out {out}: that is what is read; give another name")
+    return _convert(open_log(log), out, map, vessel, load)
+
+
+def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]) -> int:
+    boat = vessels.load(vessel, load) if vessel else None
+    drives = [Drive(n, low, high) for n, (low, high) in boat.limits().items()] if boat else []
+    text = proposal(log, vessel, drives, boat.freedoms if boat else (), boat.columns if boat else None)
+    _say(log.remarks)
+    print("\n".join(listing(log)))
+    if propose:
+        with replacing(propose) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+        then = f"boatsim import {log.path} --map {propose} --out {out or 'run.csv'}"
+        print(f"\nwritten to {propose}: check every line, then: {then}")
+    else:
+        print(f"\nA map for it, which --propose map.toml writes; nothing is converted without --map:\n\n{text}", end="")
+    return 0
+
+
+def _convert(log: Log, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
+    found = read_map(map)
+    name = vessel or found.vessel
+    boat = vessels.load(name, load) if name else None
+    limits = boat.limits() if boat else {}
+    recording = convert(log, found, str(map), limits)
+    write_csv(recording, out)
+    _say(recording.remarks)
+    span = f"{len(recording)} rows over {recording.t[-1]:.6g} s"
+    print(f"written to {out}: {span}; {', '.join(recording.signals)}")
+    if boat is not None:
+        _note(out, boat, position_fix(found))
+    try:
+        read(out, limits, boat.columns if boat else None)
+    except BadInput as error:
+        _say([f"a diagnosis would refuse it: {error}"])
+    return 0
+
+
+def _note(out: Path, boat: Vessel, fix: str | None) -> None:
+    """Say of which vessel it is, in a recording.toml beside it; one that is there is left alone."""
+    file, text = out.parent / "recording.toml", notes_of(out, vessel_address(boat.file), fix)
+    if file.exists():
+        _say([f"{file} is there and left as it is; for this recording it should say: {' / '.join(text.splitlines())}"])
+        return
+    with replacing(file) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    print(f"written to {file}: {os.fspath(boat.name)}")
+
+
+def _say(remarks: Sequence[str]) -> None:
+    for line in remarks:
+        print(f"note: {line}", file=sys.stderr)

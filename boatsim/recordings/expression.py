@@ -1,0 +1,84 @@
+"""What a column is made of, `[-] name [* unit or number]... [+ number [* unit]]`: nothing in it is run as code."""
+
+import math
+import re
+from collections.abc import Collection
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from boatsim.errors import BadInput
+from boatsim.physics.base import Array
+
+UNITS = {  # word -> how much of the SI unit (rad, s, m, m/s, rad/s, N, m/s^2, 1) it is
+    "rad": 1.0, "deg": math.pi / 180.0, "rev": 2.0 * math.pi,
+    "radps": 1.0, "degps": math.pi / 180.0, "degpmin": math.pi / 180.0 / 60.0,
+    "rpm": 2.0 * math.pi / 60.0, "rps": 2.0 * math.pi,
+    "percent": 0.01, "permille": 0.001,
+    "s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0,
+    "m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "ft": 0.3048, "nmi": 1852.0,
+    "mps": 1.0, "cmps": 1e-2, "mmps": 1e-3, "kmh": 1.0 / 3.6, "kn": 1852.0 / 3600.0, "mph": 0.44704,
+    "mps2": 1.0, "g": 9.80665,  # standard gravity, 3rd CGPM 1901
+    "N": 1.0, "kN": 1e3, "kgf": 9.80665, "lbf": 4.4482216152605,
+}  # fmt: skip
+NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+OFFSET = re.compile(rf"(?<![*/\s])\s+([+-])\s*({NUMBER})(?:\s*\*\s*([A-Za-z]\w*))?\s*$")
+FACTOR = re.compile(r"(?:\s*\*\s*|\s+(/)\s+)([^\s*/]+)\s*$")
+MOST_FACTORS = 6
+
+
+@dataclass(frozen=True)
+class Expression:
+    """A signal by its name in a log or table, times a factor, plus an offset."""
+
+    signal: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+    def of(self, values: Array) -> Array:
+        """The column (N,) from the signal's values (N,)."""
+        return values * self.factor + self.offset
+
+
+def parse(text: str, known: Collection[str] = ()) -> Expression:
+    """An expression from its text; one of the `known` names is taken for that name, whatever characters it has.
+
+    Raises BadInput, which says what is allowed, without file and key.
+    """
+    rest = text.strip()
+    if rest in known:
+        return Expression(rest)
+    sign = -1.0 if rest.startswith("-") else 1.0
+    rest = rest.removeprefix("-").strip()
+    if rest in known:
+        return Expression(rest, sign)
+    offset, factor = 0.0, sign
+    if found := OFFSET.search(rest):
+        offset = float(f"{found[1]}{found[2]}") * (_unit(found[3]) if found[3] else 1.0)
+        rest = rest[: found.start()]
+    for _ in range(MOST_FACTORS):
+        found = None if rest in known else FACTOR.search(rest)
+        if found is None:
+            break
+        value = _value(found[2])
+        if found[1] and value == 0.0:
+            raise BadInput(f"{text!r} divides by zero")
+        factor = factor / value if found[1] else factor * value
+        rest = rest[: found.start()]
+    name = rest.strip()
+    if not name or "*" in name:
+        raise BadInput(f"{text[:80]!r} is no expression; allowed is [-] name [* unit or number] [+ number]")
+    if not (math.isfinite(factor) and math.isfinite(offset)):
+        raise BadInput(f"{text[:80]!r} has a number too large to use")
+    return Expression(name, factor, offset)
+
+
+def _value(word: str) -> float:
+    return float(word) if re.fullmatch(rf"[+-]?{NUMBER}", word) else _unit(word)
+
+
+def _unit(word: str) -> float:
+    if word in UNITS:
+        return UNITS[word]
+    near = get_close_matches(word, UNITS, n=1, cutoff=0.5)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    raise BadInput(f"there is no unit {word[:40]!r}{hint} (there are: {', '.join(sorted(UNITS))})")

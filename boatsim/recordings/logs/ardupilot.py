@@ -1,0 +1,145 @@
+"""ArduPilot's `.BIN`: messages that describe themselves; outputs are explained by the log's own parameters."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from boatsim.errors import BadInput
+from boatsim.recordings.importing.log import Log, Room, Signal, damaged, needs, numbered, quiet, signals_of
+from boatsim.recordings.raw import refuse
+
+SUFFIXES = (".bin",)
+# letter of a FMT message -> numpy type and factor (libraries/AP_Logger/LogStructure.h); arrays and texts have none
+LETTERS: dict[str, tuple[str, float | None]] = {
+    "a": ("V64", None), "b": ("i1", 1.0), "B": ("u1", 1.0), "g": ("f2", 1.0), "h": ("i2", 1.0), "H": ("u2", 1.0),
+    "i": ("i4", 1.0), "I": ("u4", 1.0), "f": ("f4", 1.0), "d": ("f8", 1.0), "n": ("V4", None), "N": ("V16", None),
+    "Z": ("V64", None), "c": ("i2", 0.01), "C": ("u2", 0.01), "e": ("i4", 0.01), "E": ("u4", 0.01),
+    "L": ("i4", 1e-7), "M": ("u1", 1.0), "q": ("i8", 1.0), "Q": ("u8", 1.0),
+}  # fmt: skip
+CLOCKS = {"TimeUS": 1e-6, "TimeMS": 1e-3}  # [s]
+ITS_OWN = ("FMT", "FMTU", "UNIT", "MULT", "PARM", "MSG", "FILE")  # about the log, not about the boat
+UNITS = {"degheading": "deg", "deglatitude": "deg", "deglongitude": "deg", "µs": "us"}  # its words, ours
+FUNCTIONS = {  # of SERVOn_FUNCTION, from the list of parameters of Rover
+    0: "disabled", 1: "passed through from the pilot", 26: "ground steering", 70: "throttle", 73: "throttle left",
+    74: "throttle right", **{32 + k: f"motor {k}" for k in range(1, 9)},
+}  # fmt: skip
+STICK, OUTPUT = "pilot's stick", "output"
+
+
+def read(path: Path) -> Log:
+    """Every message with a time and numbers: `ATT.Yaw`, `GPS[1].Lat`. Raises BadInput."""
+    try:
+        from pymavlink import DFReader
+    except ImportError as error:
+        raise needs(path, "pymavlink", "ardupilot") from error
+    if path.stat().st_size == 0:
+        raise refuse(path, "is empty")
+    # no clock is looked for: times are those since the autopilot started
+    quick = type("Quick", (DFReader.DFReader_binary,), {"init_clock": lambda self: None})
+    try:
+        with quiet():
+            index = quick(str(path))
+        return _log(path, index)
+    except BadInput:
+        raise
+    except Exception as error:  # whatever the library finds in a damaged file
+        raise damaged(path, "an ArduPilot log", error) from error
+
+
+def _log(path: Path, index: Any) -> Log:
+    data, room = np.fromfile(path, dtype=np.uint8), Room(path)
+    streams: dict[tuple[str, int], dict[str, Signal]] = {}
+    skipped: list[str] = []
+    for number, format in index.formats.items():
+        rows = _rows(data, np.asarray(index.offsets[number], dtype=np.int64), format)
+        if rows is None:
+            skipped.append(format.name)
+        elif len(rows) and format.name not in ITS_OWN:
+            for instance, part in _instances(rows, format):
+                room.take(part.size * len(format.columns), len(streams))
+                if found := _signals(part, format):
+                    streams[format.name, instance] = found
+    called = numbered(list(streams))
+    signals = {f"{called[key]}.{name}": s for key, found in streams.items() for name, s in found.items()}
+    remark = f"{path}: not read, its length is not that of its format: {', '.join(skipped)[:200]}"
+    explained = _explained(signals, _parameters(data, index))
+    return Log(path, explained, "NED", (remark,) if skipped else ())
+
+
+def _rows(data: NDArray[np.uint8], offsets: NDArray[np.int64], format: Any) -> "NDArray[Any] | None":
+    """(N,) records of a message, those left out that the file cuts; None where format and length disagree."""
+    kinds = [LETTERS[letter][0] for letter in format.format]
+    names = [f"{i} {name}" for i, name in enumerate(format.columns)]
+    if len(names) != len(kinds):
+        return None
+    kind = np.dtype([(n, f"<{k}") for n, k in zip(names, kinds, strict=True)])
+    if kind.itemsize != format.len - 3 or not kind.itemsize:
+        return None
+    offsets = offsets[offsets + format.len <= len(data)]
+    if not len(offsets):
+        return np.zeros(0, dtype=kind)
+    windows = np.lib.stride_tricks.sliding_window_view(data, kind.itemsize)
+    return np.ascontiguousarray(windows[offsets + 3]).view(kind)[:, 0]
+
+
+def _instances(rows: "NDArray[Any]", format: Any) -> list[tuple[int, "NDArray[Any]"]]:
+    """The records of each sensor of several, by its number."""
+    if not format.instance_field or LETTERS[format.format[format.columns.index(format.instance_field)]][1] is None:
+        return [(0, rows)]
+    number = rows[_field(format, format.instance_field)]
+    return [(int(i), rows[number == i]) for i in np.unique(number)]
+
+
+def _field(format: Any, name: str) -> str:
+    return f"{format.columns.index(name)} {name}"
+
+
+def _signals(rows: "NDArray[Any]", format: Any) -> dict[str, Signal]:
+    """The numbers of one stream; none where it has no time."""
+    clock = next((c for c in CLOCKS if c in format.columns), None)
+    if clock is None:
+        return {}
+    t = rows[_field(format, clock)] * CLOCKS[clock]
+    units = format.units or [""] * len(format.columns)
+    fields, said = {}, {}
+    for i, (name, letter) in enumerate(zip(format.columns, format.format, strict=True)):
+        factor = LETTERS[letter][1]
+        if factor is not None and name not in (clock, format.instance_field):
+            fields[name] = rows[f"{i} {name}"] * factor
+            said[name] = UNITS.get(units[i], units[i])
+    return signals_of("", t, fields, said)
+
+
+def _parameters(data: NDArray[np.uint8], index: Any) -> dict[str, float]:
+    """The autopilot's parameters as the log gives them, the last word of each."""
+    number = index.name_to_id.get("PARM")
+    format = index.formats.get(number)
+    if format is None or not {"Name", "Value"} <= set(format.columns):
+        return {}
+    rows = _rows(data, np.asarray(index.offsets[number], dtype=np.int64), format)
+    if rows is None or LETTERS[format.format[format.columns.index("Value")]][1] is None:
+        return {}
+    names = [bytes(n).split(b"\0")[0].decode("ascii", "replace") for n in rows[_field(format, "Name")]]
+    values = rows[_field(format, "Value")].astype(float)
+    return {n: float(v) for n, v in zip(names, values, strict=True) if np.isfinite(v)}
+
+
+def _explained(signals: Mapping[str, Signal], parameters: Mapping[str, float]) -> dict[str, Signal]:
+    """Outputs with what they drive and the pulses [us] of their range, the pilot's sticks named as such."""
+    found = dict(signals)
+    for name, signal in signals.items():
+        stream, _, field = name.partition(".")
+        number = field.removeprefix("C")
+        if stream == "RCIN" and number.isdigit():
+            found[name] = replace(signal, unit="us", about=f"{STICK} {number}")
+        elif stream == "RCOU" and number.isdigit():
+            drives = FUNCTIONS.get(int(parameters.get(f"SERVO{number}_FUNCTION", -1)), f"{OUTPUT} {number}")
+            ends = [parameters.get(f"SERVO{number}_{end}", np.nan) for end in ("MIN", "TRIM", "MAX")]
+            low, neutral, high = ends[::-1] if parameters.get(f"SERVO{number}_REVERSED") else ends
+            known = low < neutral < high or low > neutral > high
+            found[name] = replace(signal, unit="us", about=drives, pulse=(low, neutral, high) if known else None)
+    return found

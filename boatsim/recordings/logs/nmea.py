@@ -1,0 +1,183 @@
+"""NMEA 0183: sentences of instruments, some with the time of day, which counts for those behind it."""
+
+import re
+from collections.abc import Callable
+from datetime import UTC, date, datetime, time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from boatsim.physics.base import Array
+from boatsim.recordings.importing.log import MOST_TEXT, Log, Room, Signal, needs
+from boatsim.recordings.raw import refuse
+
+SUFFIXES = (".nmea", ".0183", ".txt", ".log")
+FIELDS: dict[str, dict[str, tuple[str, str]]] = {  # sentence -> our field: attribute of the library, unit
+    "GGA": {"latitude": ("latitude", "deg"), "longitude": ("longitude", "deg"), "quality": ("gps_qual", "")},
+    "GLL": {"latitude": ("latitude", "deg"), "longitude": ("longitude", "deg")},
+    "RMC": {
+        "latitude": ("latitude", "deg"), "longitude": ("longitude", "deg"), "speed": ("spd_over_grnd", "kn"),
+        "course": ("true_course", "deg"),
+    },
+    "VTG": {"course": ("true_track", "deg"), "speed": ("spd_over_grnd_kts", "kn")},
+    "HDT": {"heading": ("heading", "deg")},
+    "HDM": {"heading_magnetic": ("heading", "deg")},
+    "HDG": {"heading_magnetic": ("heading", "deg")},
+    "ROT": {"yaw_rate": ("rate_of_turn", "deg/min")},
+    "RSA": {"rudder_starboard": ("rsa_starboard", "deg"), "rudder_port": ("rsa_port", "deg")},
+    "RPM": {"shaft": ("speed", "rpm")},
+    "VHW": {"speed_water": ("water_speed_knots", "kn")},
+}  # fmt: skip
+NUMBERED = {"RPM": "engine_no"}  # several of these are told apart
+STATUS = {"RMC": "status", "GLL": "status"}  # "A" where the fix is valid
+SENTENCE = re.compile(r"[$!][A-Za-z]{1,5}[\w]*,[^\r\n]*")
+STAMP = re.compile(r"(?:^|[\s,;\\]|c:)(\d{9,13}(?:\.\d+)?)(?=[\s,;*\\])")  # of the logger: s or ms since 1970
+DAY = 86400.0  # [s]
+
+
+def read(path: Path) -> Log:
+    """Numbers of the sentences that speak of a boat's motion: `RMC.latitude`, `HDT.heading`. Raises BadInput."""
+    try:
+        import pynmea2
+    except ImportError as error:
+        raise needs(path, "pynmea2", "nmea") from error
+    if path.stat().st_size > MOST_TEXT:
+        raise refuse(path, f"has {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of text are read: cut the log")
+    lines = path.read_bytes().decode("ascii", "replace").splitlines()
+    kept, bad = _sentences(path, lines, pynmea2.parse)
+    if not kept:
+        raise refuse(path, "has no NMEA 0183 sentence that can be read; if it is a table, call it .csv")
+    t, counted = _times(kept)
+    remarks = [f"{path}: {bad} of {len(lines)} lines are no whole sentences and are left out"] if bad else []
+    if counted is None:
+        raise refuse(
+            path, "no sentence has a time (GGA, RMC, GLL, or a logger's stamp in front); without one none can be placed"
+        )
+    if counted:
+        remarks.append(
+            f"{path}: {counted} of {len(t)} sentences have no time of their own; each is taken to be of the time that "
+            "was told before it, several of one name evenly from there on"
+        )
+    return Log(path, _signals(kept, t), "NED", tuple(remarks))
+
+
+def _sentences(
+    path: Path, lines: list[str], parse: "Callable[..., Any]"
+) -> tuple[list[tuple[float | None, str, dict[str, float]]], int]:
+    """Time (None where it has none), name and numbers of every sentence; how many lines are none."""
+    found: list[tuple[float | None, str, dict[str, float]]] = []
+    room, bad = Room(path), 0
+    stamped, clock = any(_stamp(line) is not None for line in lines[:50]), _Clock()
+    for line in lines:
+        sentence = _whole(line, parse)
+        if sentence is None:
+            bad += bool(line.strip())
+            continue
+        name = getattr(sentence, "sentence_type", "")
+        if name not in FIELDS:
+            continue
+        when = _stamp(line) if stamped else clock.read(sentence)
+        valid = name not in STATUS or getattr(sentence, STATUS[name], "A") == "A"
+        numbers = {ours: _float(sentence, theirs) for ours, (theirs, _) in FIELDS[name].items()} if valid else {}
+        number = _float(sentence, NUMBERED[name]) if name in NUMBERED else 0.0
+        room.take(len(numbers) + 1)
+        found.append((when, f"{name}[{number:.0f}]" if name in NUMBERED else name, numbers))
+    return [(when if when is None else when + clock.midnight, name, values) for when, name, values in found], bad
+
+
+class _Clock:
+    """Time of day that runs on over midnight, and the midnight it counts from once a sentence has told the date."""
+
+    def __init__(self) -> None:
+        self.last, self.days, self.midnight = -1.0, 0.0, 0.0
+
+    def read(self, sentence: Any) -> float | None:
+        """Seconds since the first midnight; None for a sentence without a time."""
+        of_day = getattr(sentence, "timestamp", None)
+        if not isinstance(of_day, time):
+            return None
+        now = of_day.hour * 3600.0 + of_day.minute * 60.0 + of_day.second + of_day.microsecond * 1e-6
+        self.days += DAY if now < self.last - 0.5 * DAY else 0.0
+        self.last = now
+        day = getattr(sentence, "datestamp", None)
+        if not self.midnight and isinstance(day, date):
+            self.midnight = datetime.combine(day, time(), UTC).timestamp() - self.days
+        return now + self.days
+
+
+def _whole(line: str, parse: "Callable[..., Any]") -> Any:
+    """The sentence in a line; None where there is none, or where its sum is wrong."""
+    found = SENTENCE.search(line)
+    if found is None or not _sum_is_right(found[0]):
+        return None
+    try:
+        return parse(found[0], check=False)
+    except Exception:  # whatever a line of noise does to the library
+        return None
+
+
+def _sum_is_right(text: str) -> bool:
+    """Whether a sentence's check sum is that of its characters; one without a sum is taken as it is."""
+    body, star, given = text[1:].partition("*")
+    if not star:
+        return True
+    total = 0
+    for character in body:
+        total ^= ord(character)
+    return given[:2].upper() == f"{total:02X}"
+
+
+def _stamp(line: str) -> float | None:
+    """The logger's own time in front of a sentence, s since 1970."""
+    found = STAMP.search(line.partition("$")[0].partition("!")[0])
+    if not found:
+        return None
+    value = float(found[1])
+    return value * 1e-3 if value > 1e11 else value
+
+
+def _float(sentence: Any, name: str) -> float:
+    try:
+        return float(getattr(sentence, name))
+    except (TypeError, ValueError, AttributeError, IndexError):
+        return float("nan")
+
+
+def _times(kept: "list[tuple[float | None, str, dict[str, float]]]") -> tuple[Array, int | None]:
+    """(N,) times [s], and how many sentences had none of their own; None where hardly any had one.
+
+    One that comes once between two times is of the first of them, as instruments send what belongs together in one go;
+    several of one name are spread evenly.
+    """
+    t = np.array([np.nan if when is None else when for when, *_ in kept])
+    known = np.flatnonzero(np.isfinite(t))
+    if len(known) < 2:
+        return t, None
+    first = known[np.append(True, np.diff(t[known]) != 0.0)]  # of each time
+    if len(first) < 2:
+        return t, None
+    usual = float(np.median(np.diff(t[first])))
+    for begin, end in zip(first, np.append(first[1:], len(t)), strict=True):
+        step = min(t[end] - t[begin], usual) if end < len(t) else usual  # not over a gap of the log
+        rows = dict[str, list[int]]()
+        for i in range(begin, end):
+            if np.isnan(t[i]):
+                rows.setdefault(kept[i][1], []).append(i)
+        for places in rows.values():
+            t[places] = t[begin] + step * np.arange(len(places)) / len(places)
+    return t, int(len(t) - len(known))
+
+
+def _signals(kept: list[tuple[float | None, str, dict[str, float]]], t: Array) -> dict[str, Signal]:
+    rows: dict[str, list[int]] = {}
+    for i, (_, name, _) in enumerate(kept):
+        if np.isfinite(t[i]):
+            rows.setdefault(name, []).append(i)
+    found: dict[str, Signal] = {}
+    for name, at in rows.items():
+        for ours, (_, unit) in FIELDS[name.partition("[")[0]].items():
+            values = np.array([kept[i][2].get(ours, np.nan) for i in at])
+            if np.isfinite(values).any():
+                found[f"{name}.{ours}"] = Signal(t[at], values, unit)
+    return found

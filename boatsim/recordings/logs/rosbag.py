@@ -1,0 +1,106 @@
+"""Bags of ROS 1 (`.bag`) and of ROS 2 (the folder with its `metadata.yaml`, or the `.db3` in it)."""
+
+from bz2 import BZ2Decompressor
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from boatsim.errors import BadInput
+from boatsim.recordings.importing.log import BAG, MOST_BYTES, Log, Room, damaged, needs
+from boatsim.recordings.importing.ros import MOST_SIZE, Decoder, Topic, log_of
+from boatsim.recordings.raw import refuse
+
+SUFFIXES = (".bag", ".db3", "/")
+MOST_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
+MOST_ABOUT = 10_000_000  # [bytes] of what a bag says of itself
+
+
+def read(path: Path) -> Log:
+    """Every number of every topic: `/imu.angular_velocity.z`. Raises BadInput."""
+    try:
+        from rosbags.rosbag1 import Reader as Bag1
+        from rosbags.rosbag2 import Reader as Bag2
+    except ImportError as error:
+        raise needs(path, "rosbags", "ros") from error
+    topics: dict[str, Topic] = {}
+    remarks: list[str] = []
+    try:
+        folder = path if path.is_dir() else path.parent
+        if path.suffix.lower() != ".bag":
+            _check_folder(path, folder)
+        with Bag1(path) if path.suffix.lower() == ".bag" else Bag2(folder) as bag:
+            _bound(bag)
+            _fill(path, bag, topics, remarks)
+    except BadInput:
+        raise
+    except Exception as error:  # whatever the library finds in a damaged file
+        if not any(len(topic.logged) for topic in topics.values()):
+            raise damaged(path, "a bag of ROS", error) from error
+        remarks.append(f"{path}: ends early or is damaged; what stands before is used")
+    return log_of(path, {name: topic for name, topic in topics.items() if len(topic.logged)}, remarks)
+
+
+def _check_folder(path: Path, folder: Path) -> None:
+    """Refuse what the library would unpack without bounds, or to a file of its own, which no reader here writes."""
+    from ruamel.yaml import YAML  # which comes with rosbags
+
+    about = folder / BAG
+    if not about.is_file():
+        raise refuse(path, f"a ROS 2 bag needs its {BAG} beside it")
+    if about.stat().st_size > MOST_ABOUT:
+        raise refuse(about, "is too large for what a bag says of itself")
+    said = YAML(typ="safe").load(about.read_text(encoding="utf-8", errors="replace"))["rosbag2_bagfile_information"]
+    if str(said.get("compression_mode") or "none").lower() != "none":
+        raise refuse(path, "is compressed; unpack it first: ros2 bag convert, with compression_mode none")
+    if str(said.get("storage_identifier")) == "mcap":
+        raise refuse(path, "is a folder of MCAP files; give the .mcap in it")
+    if sum(file.stat().st_size for file in folder.iterdir() if file.is_file()) > MOST_BYTES:
+        raise refuse(path, f"has more than {MOST_BYTES:,} bytes; cut the log")
+
+
+def _bound(bag: Any) -> None:
+    """Let the chunks of a bag of ROS 1 be unpacked to so much and no more."""
+    for position, chunk in getattr(bag, "chunks", {}).items():
+        bag.chunks[position] = chunk._replace(decompressor=partial(_unpacked, chunk.decompressor))
+
+
+def _unpacked(usual: "Callable[[bytes], bytes]", data: bytes) -> bytes:
+    from lz4.frame import LZ4FrameDecompressor
+
+    library = str(usual.__module__).partition(".")[0]
+    if library not in ("bz2", "_bz2", "lz4"):  # not compressed at all
+        return usual(data)
+    machine: Any = LZ4FrameDecompressor() if library == "lz4" else BZ2Decompressor()
+    found = bytes(machine.decompress(data, max_length=MOST_CHUNK))
+    if not machine.eof:
+        raise ValueError("a chunk that is cut, or too large to unpack")
+    return found
+
+
+def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) -> None:
+    room, read = Room(path), []
+    for connection in bag.connections:
+        try:
+            text = connection.msgdef.data or _usual(connection.msgtype)
+            cdr = hasattr(connection.ext, "serialization_format")
+            topics.setdefault(connection.topic, Topic(Decoder(text, connection.msgtype, cdr)))
+            read.append(connection)
+        except (ValueError, RecursionError) as error:
+            remarks.append(f"{path}: {connection.topic} is not read ({error})")
+    for connection, when, data in bag.messages(connections=read) if read else ():
+        if len(data) <= MOST_SIZE:
+            try:
+                topics[connection.topic].add(when * 1e-9, bytes(data), room)
+            except ValueError as error:
+                remarks.append(f"{path}: messages of {connection.topic} that can not be read are left out ({error})")
+
+
+def _usual(name: str) -> str:
+    """Definition of a message of ROS 2 itself, for bags that do not bring theirs. Raises ValueError."""
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    if name not in store.fielddefs:
+        raise ValueError(f"the bag does not define {name}, and ROS 2 has none of this name")
+    return str(store.generate_msgdef(name, ros_version=2)[0])

@@ -1,0 +1,229 @@
+"""Any table: CSV with commas, semicolons, tabs or bars, comments above, a row of units below its header; Parquet."""
+
+import csv
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from boatsim.physics.base import Array
+from boatsim.recordings.importing.clocks import clock_of, dates, seconds
+from boatsim.recordings.importing.log import MOST_SIGNALS, MOST_TEXT, MOST_VALUES, Log, Room, Signal, damaged
+from boatsim.recordings.notes import unit_of
+from boatsim.recordings.raw import no_twins, refuse
+
+SUFFIXES = (".csv", ".tsv", ".parquet", ".pq")
+SEPARATORS = ",;\t|"
+COMMENT = ("#", "%", "//")
+BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Heading [deg]
+NOTHING = ("", "nan", "null", "none", "na", "n/a", "-")
+MOST_HEAD = 1_000_000  # [bytes] in which names and units stand
+csv.field_size_limit(1_000_000)
+
+
+def read(path: Path) -> Log:
+    """Every column with numbers, at the times of the column that is the time. Raises BadInput."""
+    if path.suffix.lower() in (".parquet", ".pq"):
+        return _log(path, _parquet(path), {})
+    return _csv(path)
+
+
+def _log(path: Path, columns: Mapping[str, Array], units: Mapping[str, str], remarks: tuple[str, ...] = ()) -> Log:
+    clock = clock_of(columns)
+    count = len(next(iter(columns.values()), ()))
+    t = np.arange(count, dtype=float) if clock is None else seconds(clock, columns[clock])
+    signals = {
+        name: Signal(t, values, "s" if name == clock else units.get(name, "") or unit_of(name))
+        for name, values in columns.items()
+        if np.isfinite(values).any()
+    }
+    untimed = (f"{path}: no column is called a time: rows are counted; the map can say `time`",) if not clock else ()
+    return Log(path, signals, remarks=(*remarks, *untimed))
+
+
+def _parquet(path: Path) -> dict[str, Array]:
+    import pyarrow as pa  # 60 ms, comes with rerun-sdk
+    from pyarrow import parquet
+
+    try:
+        file = parquet.ParquetFile(path)
+        if file.metadata.num_rows * file.metadata.num_columns > MOST_VALUES:
+            raise refuse(path, f"holds more than {MOST_VALUES:,} values; cut the log into shorter ones")
+        table = file.read(columns=[f.name for f in file.schema_arrow if _is_number(pa.types, f.type)])
+    except (pa.ArrowException, OSError, ValueError) as error:
+        raise damaged(path, "Parquet", error) from error
+    no_twins(path, table.column_names)
+    columns: dict[str, Array] = {}
+    for name, column in zip(table.column_names, table.columns, strict=True):
+        if pa.types.is_timestamp(column.type):
+            stamps = column.cast(pa.timestamp("us"), safe=False).to_numpy().astype("M8[us]")
+            columns[name] = np.where(np.isnat(stamps), np.nan, stamps.astype("i8") * 1e-6)
+        if pa.types.is_boolean(column.type):
+            column = column.cast("int8")
+        if name not in columns:
+            columns[name] = np.asarray(column.cast("float64", safe=False).to_numpy(), dtype=float)
+    return columns
+
+
+def _is_number(types: Any, kind: Any) -> bool:
+    """Whether a column is numbers, true or false, or times; texts are not even unpacked."""
+    return any(getattr(types, f"is_{k}")(kind) for k in ("integer", "floating", "decimal", "boolean", "timestamp"))
+
+
+@dataclass(frozen=True)
+class _Head:
+    """What the begin of a table says of the rest."""
+
+    columns: list[str]
+    separator: str
+    units: dict[str, str]
+    row: int  # line of the file in which the first row of numbers stands, from 0
+
+
+def _csv(path: Path) -> Log:
+    head = _head(path)
+    columns, remarks = _quick(path, head), tuple[str, ...]()
+    if columns is None:
+        columns, remarks = _line_by_line(path, head)
+    return _log(path, {n: c for n, c in columns.items() if n}, head.units, remarks)
+
+
+def _head(path: Path) -> _Head:
+    """Separator, names and units of a table. Raises BadInput."""
+    with path.open("rb") as file:
+        begin = _text(path, file.read(MOST_HEAD))
+    lines = [(i, line) for i, line in enumerate(begin.splitlines()) if line.strip()]
+    while lines and lines[0][1].lstrip().startswith(COMMENT) and not _may_be_header(lines):
+        lines.pop(0)
+    if len(lines) < 2:
+        raise refuse(path, "has a header and no rows" if lines else "is empty")
+    first = lines[0][1].lstrip("#%/ ")
+    separator = max(SEPARATORS, key=first.count)
+    header = [name.strip() for name in next(csv.reader([first], delimiter=separator))]
+    if len(header) > MOST_SIGNALS:
+        raise refuse(path, f"has {len(header)} columns; no log of a boat has as many")
+    no_twins(path, header)
+    if all(_number(cell, separator) is not None for cell in header):
+        raise refuse(path, "has no header: its first row is numbers; names of columns are needed", lines[0][0] + 1)
+    units = {name: found[1].strip() for name in header if (found := BRACKETS.search(name))}
+    below = next(csv.reader([lines[1][1]], delimiter=separator), [])
+    if len(below) == len(header) and _is_units(below, header, separator):
+        if len(lines) < 3:
+            raise refuse(path, "has a header and no rows")
+        units |= {n: u.strip("[]() ") for n, u in zip(header, below, strict=True)}
+        lines.pop(0)
+    return _Head(header, separator, units, lines[1][0])
+
+
+def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
+    """The columns of a table that is nothing but numbers and empty cells; None of any other."""
+    import pyarrow as pa
+    from pyarrow import csv as arrow
+
+    if len(set(head.columns)) < len(head.columns) or "" in head.columns:
+        return None
+    try:
+        found = arrow.read_csv(
+            path,
+            arrow.ReadOptions(column_names=head.columns, skip_rows=head.row),
+            arrow.ParseOptions(delimiter=head.separator),
+            arrow.ConvertOptions(
+                column_types={name: pa.float64() for name in head.columns},
+                null_values=[*NOTHING, "NaN", "NAN", "NULL"],
+                decimal_point="." if head.separator == "," else ",",
+            ),
+        )
+    except (pa.ArrowException, OSError, ValueError):
+        return None
+    Room(path).take(found.num_rows * found.num_columns, found.num_columns)
+    return {name: np.array(found[name], dtype=float) for name in head.columns}
+
+
+def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """The columns of any other table: with dates and words, or with rows that are no rows, which are told by line."""
+    if path.stat().st_size > MOST_TEXT:
+        raise refuse(
+            path,
+            f"has words among its numbers and {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of such are read",
+        )
+    lines = enumerate(_text(path, path.read_bytes()).splitlines())
+    kept = [(i + 1, line) for i, line in lines if i >= head.row and line.strip()]
+    Room(path).take(len(head.columns) * len(kept), len(head.columns))
+    rows, remarks = _rows(path, kept, head.separator, len(head.columns))
+    if not rows:
+        raise refuse(path, "has a header and no rows")
+    return {n: _column([row[i] for row in rows], head.separator) for i, n in enumerate(head.columns)}, remarks
+
+
+def _text(path: Path, found: bytes) -> str:
+    if b"\0" in found[:4096]:
+        raise refuse(path, "is not a text file")
+    try:
+        return found.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return found.decode("latin-1")  # degree signs of programs that know nothing else
+
+
+def _may_be_header(lines: Sequence[tuple[int, str]]) -> bool:
+    """Whether a commented line is the header: the next is no comment and has as many cells."""
+    if len(lines) < 2 or lines[1][1].lstrip().startswith(COMMENT):
+        return False
+    separator = max(SEPARATORS, key=lines[1][1].count)
+    return lines[0][1].count(separator) == lines[1][1].count(separator) > 0
+
+
+def _rows(
+    path: Path, lines: Sequence[tuple[int, str]], separator: str, width: int
+) -> tuple[list[list[str]], tuple[str, ...]]:
+    """Rows of as many cells as the header; a last one that is cut is left out."""
+    rows: list[list[str]] = []
+    for k, (number, line) in enumerate(lines):
+        if line.lstrip().startswith(COMMENT):
+            continue
+        try:
+            cells = next(csv.reader([line], delimiter=separator), [])
+        except csv.Error as error:
+            raise refuse(path, f"is not CSV ({error})", number) from error
+        if len(cells) == width + 1 and not cells[-1].strip():
+            cells.pop()  # a separator at the end
+        if len(cells) != width:
+            if k == len(lines) - 1:
+                return rows, (f"{path}: its last row is cut and left out",)
+            raise refuse(path, f"has {len(cells)} cells; the header has {width} columns", number)
+        rows.append(cells)
+    return rows, ()
+
+
+def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool:
+    """Whether the row below the header says units: no numbers, and few long words."""
+    filled = [cell for cell in row if cell.strip()]
+    words = [c for c in filled if _number(c, separator) is None and len(c.strip()) <= 10 and dates([c]) is None]
+    return bool(filled) and len(words) == len(filled) and 2 * len(filled) >= len(header)
+
+
+def _column(cells: Sequence[str], separator: str) -> Array:
+    """(N,) floats; nan where a cell is empty or a word. Dates become s since 1970."""
+    try:
+        return np.array([float(c) if "_" not in c else np.nan for c in cells])
+    except ValueError:
+        pass
+    found = [_number(cell, separator) for cell in cells]
+    if all(x is None or x != x for x in found) and (when := dates(cells)) is not None:
+        return when
+    return np.array([np.nan if x is None else x for x in found])
+
+
+def _number(cell: str, separator: str) -> float | None:
+    """The number of a cell, nan where it is empty, None where it is a word."""
+    text = cell.strip()
+    if text.lower() in NOTHING:
+        return float("nan")
+    if separator != ",":
+        text = text.replace(",", ".")
+    try:
+        return float(text) if "_" not in text else None
+    except ValueError:
+        return {"true": 1.0, "false": 0.0}.get(text.lower())

@@ -1,0 +1,64 @@
+"""PX4's ULog: topics that describe themselves, times in microseconds since the autopilot started."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.errors import BadInput
+from boatsim.recordings.importing.frames import with_angles
+from boatsim.recordings.importing.log import Log, Room, Signal, damaged, needs, numbered, quiet, signals_of
+
+SUFFIXES = (".ulg", ".ulog")
+SCALED = {  # fields whose integers are not in the unit of their name (msg/SensorGps.msg, msg/VehicleGpsPosition.msg)
+    ("vehicle_gps_position", "lat"): (1e-7, "deg"), ("vehicle_gps_position", "lon"): (1e-7, "deg"),
+    ("sensor_gps", "lat"): (1e-7, "deg"), ("sensor_gps", "lon"): (1e-7, "deg"),
+}  # fmt: skip
+UNITS = {  # of PX4's messages (msg/*.msg), by topic and field
+    "latitude_deg": "deg", "longitude_deg": "deg", "heading": "rad", "roll": "rad", "pitch": "rad", "yaw": "rad",
+}  # fmt: skip
+LOCAL = {"x": "m", "y": "m", "z": "m", "vx": "m/s", "vy": "m/s", "vz": "m/s"}
+TOPICS = {
+    "vehicle_local_position": LOCAL,
+    "vehicle_visual_odometry": LOCAL,
+    "vehicle_angular_velocity": {f"xyz[{i}]": "rad/s" for i in range(3)},
+    "vehicle_global_position": {"lat": "deg", "lon": "deg"},
+}
+PULSES = re.compile(r"actuator_outputs|input_rc")  # channels are pulses [us] there
+
+
+def read(path: Path) -> Log:
+    """Every number of every topic: `vehicle_local_position.x`, `actuator_outputs.output[0]`. Raises BadInput."""
+    try:
+        from pyulog import ULog
+    except ImportError as error:
+        raise needs(path, "pyulog", "px4") from error
+    try:
+        with quiet():
+            found = ULog(str(path))
+        return _log(path, found.data_list, found.file_corruption)
+    except BadInput:
+        raise
+    except Exception as error:  # whatever the library finds in a damaged file
+        raise damaged(path, "a ULog", error) from error
+
+
+def _log(path: Path, topics: list, corrupt: bool) -> Log:  # type: ignore[type-arg]
+    room, signals = Room(path), dict[str, Signal]()
+    called = numbered([(topic.name, int(topic.multi_id)) for topic in topics])
+    for topic in topics:
+        t = topic.data.get("timestamp")
+        if t is None or not len(t):
+            continue
+        fields = {n: v for n, v in topic.data.items() if "timestamp" not in n and "_padding" not in n}
+        room.take(len(t) * len(fields), len(signals) + len(fields))
+        known = UNITS | TOPICS.get(topic.name, {})
+        units = {n: "us" if PULSES.match(topic.name) and "[" in n else known.get(n, "") for n in fields}
+        for name in fields:
+            if (topic.name, name) in SCALED:
+                factor, units[name] = SCALED[topic.name, name]
+                fields[name] = fields[name] * factor
+        stream = called[topic.name, int(topic.multi_id)]
+        signals |= signals_of(stream, np.asarray(t, dtype=float) * 1e-6, fields, units)
+    remark = f"{path}: is damaged in places; what could be read is used"
+    return Log(path, with_angles(signals), "NED", (remark,) if corrupt else ())

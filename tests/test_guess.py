@@ -1,0 +1,116 @@
+"""What signals are taken for, by names that autopilots, robots and spreadsheets really use."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from boatsim.recordings.importing.guess import guess
+from boatsim.recordings.importing.log import Log, Signal
+from boatsim.recordings.importing.propose import Drive, proposal
+
+T = np.linspace(0.0, 60.0, 600)
+NAMES = """
+GPS.Lat 59 60 deg latitude deg
+vehicle_global_position.lat 50 51 deg latitude deg
+/fix.latitude -33 -32 deg latitude deg
+lat 500000000 510000000 - latitude deg*1e-7
+lon_deg 8 9 deg longitude deg
+vehicle_local_position.ref_lat 50 51 - nothing -
+ATT.Yaw 0 359 deg psi_rad deg
+ATT.DesYaw 0 359 deg nothing -
+/imu/data.orientation.yaw -3 3 rad psi_rad -
+hdg 0 359 - psi_rad deg
+psi -3 3 - psi_rad -
+Heading_(deg) 0 359 deg psi_rad deg
+Course 0 359 - nothing -
+IMU.GyrZ -0.2 0.2 rad/s r_radps -
+sensor_combined.gyro_rad[2] -0.2 0.2 - r_radps -
+/odom.twist.twist.angular.z -1 1 rad/s r_radps -
+yawrate_dps -20 20 - r_radps degps
+rate_of_turn -99 99 deg/min r_radps degpmin
+yaw_rad_s -0.3 0.3 - r_radps -
+XKF1.PN 0 30 m x_m -
+y_east 0 30 - y_m -
+pos_x 0 30 - x_m -
+vehicle_local_position.x 0 30 m x_m -
+vehicle_local_position.vx 0 3 m/s nothing -
+vehicle_local_position_setpoint.x 0 3 m nothing -
+surge_velocity 0 2 - u_mps -
+roll_deg -3 3 deg phi_rad deg
+RCOU.C1 1100 1900 us command us
+RCIN.C1 1100 1900 us stick us
+/mavros/rc/out.channels[0] 1100 1900 - command -
+/mavros/rc/in.channels[0] 1100 1900 - stick -
+manual_control_setpoint.throttle -1 1 - stick -
+/joy.axes[1] -1 1 - stick -
+ESC.RPM 0 3000 rpm actual rpm
+rudder -20 20 - command deg
+rudder_rad -0.3 0.3 rad command -
+motor1 1100 1900 - command -
+rpm_port 0 800 - command rpm
+n1 0 10 - command -
+/cmd_vel.linear.x 0 1 m/s nothing -
+battery_voltage 11 12 - nothing -
+BARO.Temp 20 30 - nothing -
+wind_speed 0 9 - nothing -
+"""
+
+
+def log_of(frame: str = "", **signals: tuple[float, float]) -> Log:
+    return Log(Path("log"), {n: Signal(T, np.linspace(*ends, 600)) for n, ends in signals.items()}, frame)
+
+
+@pytest.mark.parametrize("line", NAMES.strip().splitlines(), ids=lambda line: line.split()[0])
+def test_a_name_with_its_unit_and_range_says_what_a_signal_is(line):
+    name, low, high, unit, column, word = line.split()
+    frame = "ENU" if name.startswith("/") else "NED" if "." in name else ""
+    signal = Signal(T, np.linspace(float(low), float(high), 600), "" if unit == "-" else unit)
+    found = guess(name.replace("_(", " ("), signal, Log(Path("log"), {}, frame))
+    assert (found.column if found else "nothing") == column
+    assert ((found.word.replace(" ", "") if found else "") or "-") == word
+
+
+def test_what_stands_still_is_no_latitude_and_what_has_few_samples_is_nothing():
+    assert guess("lat", Signal(T, np.zeros(600)), log_of()) is None
+    assert guess("yaw", Signal(T[:5], T[:5]), log_of()) is None
+
+
+def test_a_compass_counts_from_north_in_a_log_of_ros_too():
+    signals = {"/compass_hdg.data": Signal(T, np.linspace(0.0, 350.0, 600))}
+    assert 'psi_rad = "/compass_hdg.data * deg"' in proposal(Log(Path("log"), signals, "ENU"))
+    signals = {"/imu.orientation.yaw": Signal(T, np.linspace(0.0, 3.0, 600), "rad")}
+    assert 'psi_rad = "-/imu.orientation.yaw + 90 * deg"' in proposal(Log(Path("log"), signals, "ENU"))
+
+
+def test_channels_get_the_signals_of_their_side_and_per_cent_becomes_their_range():
+    drives = [Drive("thrust_port_N", -27.7, 55.3), Drive("thrust_starboard_N", -27.7, 55.3)]
+    text = proposal(log_of(motor_right=(-80.0, 90.0), motor_left=(-80.0, 91.0), psi=(0.0, 3.0)), "v", drives)
+    ends = "low = -100, neutral = 0, high = 100, least = -27.7, most = 55.3"
+    assert f'thrust_port_N = {{ signal = "motor_left", {ends} }}' in text
+    assert f'thrust_starboard_N = {{ signal = "motor_right", {ends} }}' in text
+
+
+def test_a_column_called_as_the_channel_is_that_channel_even_if_it_stands_still_and_no_other_kind_of_thing_is():
+    drives = [Drive("delta_rad", -0.7, 0.7), Drive("n_rps", 0.0, 30.0)]
+    signals = {"psi": (0.0, 3.0), "delta_rad": (-0.3, 0.3), "thrust_N": (39.0, 52.0)}
+    text = proposal(log_of(**signals), "v", drives)
+    assert 'delta_rad = "delta_rad"' in text and '# n_rps = "..."' in text
+    text = proposal(log_of(**signals, n_rps=(10.0, 10.0)), "v", drives)
+    assert 'n_rps = "n_rps"' in text
+
+
+def test_what_the_vessels_file_says_of_its_recordings_comes_before_any_guess():
+    stated = {"thrust_port_N": "force_right", "y_m": "-port", "x_m": "none"}
+    log = log_of(psi=(0.0, 3.0), force_right=(0.0, 1.0), port=(0.0, 9.0), y=(0.0, 3.0))
+    text = proposal(log, "v", [Drive("thrust_port_N", -1.0, 1.0)], (), stated)
+    assert 'thrust_port_N = "force_right"  # as' in text and 'y_m = "-port"  # as' in text and "none" not in text
+    assert text.count("y_m = ") == 1
+
+
+def test_channels_that_no_name_fits_get_the_outputs_in_order_and_it_is_said():
+    drives = [Drive("thrust_port_N", -1.0, 1.0), Drive("rudder_rad", -0.5, 0.5)]
+    text = proposal(log_of(psi=(0.0, 3.0), **{"rudder": (-0.4, 0.4), "motor 1": (-0.9, 0.9)}), "v", drives)
+    assert 'rudder_rad = "rudder"' in text and "by its order alone" in text
+    text = proposal(log_of(psi=(0.0, 3.0)), "v", drives)
+    assert '# rudder_rad = "..."' in text
