@@ -87,7 +87,7 @@ def _reversals(track: Track) -> Iterator[Idea]:
     late = held.copy()
     for row in range(1, len(held)):
         late[row, angles] = np.clip(late[row - 1, angles], held[row, angles] - PLAY / 2, held[row, angles] + PLAY / 2)
-    for k, name in enumerate(track.program.composition.held[len(vessel.actuators) :], len(vessel.actuators)):
+    for k, name in enumerate(vessel.held[len(vessel.actuators) :], len(vessel.actuators)):
         part, angle = name.split("_", 1)
         late[:, k] = getattr(np, part)(late[:, vessel.actuators.index(angle)])
     yield Idea("steering reversals", ((_at_rest(track, late) - _at_rest(track, held)) / PLAY,), _play)

@@ -8,6 +8,8 @@ from boatsim.errors import BadInput
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 from boatsim.physics.signals import Course
 
+WHOLE = "*"  # the station behind those of all actuators
+
 
 def actuators(program: Composed) -> Sequence[Station]:
     """Each actuator's signal begins as its command, held over the step, and ends in the rows of `act`."""
@@ -24,12 +26,13 @@ def actuators(program: Composed) -> Sequence[Station]:
         ]
         begin = (f"c = commands[{program.commands.index(name)}]", "x = Course(c, c, c)")
         stations.append(Station(begin, tuple(end), name))
-    return stations
+    return [*stations, Station(channel=WHOLE)]
 
 
 def pausing(program: Composed) -> Sequence[Station]:
     """Each actuator's command."""
-    return [Station((f"x = commands[{program.commands.index(name)}]",), (), name) for name in program.actuators]
+    begins = {name: (f"x = commands[{program.commands.index(name)}]",) for name in program.actuators}
+    return [*(Station(begin, (), name) for name, begin in begins.items()), Station(channel=WHOLE)]
 
 
 # Stages: what is wrong with a command comes before the actuator that follows it, what is wrong with its deed after it

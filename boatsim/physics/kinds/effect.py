@@ -49,7 +49,7 @@ class Effect(Checked):
     random: ClassVar[bool] = False  # only its spectrum can be fitted: the filter follows its course, a free run can not
     alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
     described: ClassVar[bool] = False  # a law that the diagnosis writes itself, of terms: no entry of the library
-    sees_held: ClassVar[bool] = False  # its law takes all actuators besides, `act` and `at`, as its last arguments
+    sees_held: ClassVar[bool] = False  # its law takes all actuators besides: `act`, `at`, the place of what it recalls
     rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
 
     filled: frozenset[str] = field(  # parameters by `completed`, which nobody stated
@@ -243,7 +243,7 @@ class Composed(Protocol):
     effects: tuple[Effect, ...]
     actuators: tuple[str, ...]
     commands: tuple[str, ...]
-    held: Sequence[str]  # what `act` holds: the actuators, then cosine and sine of those that are angles
+    held: Sequence[str]  # what `act` holds: the actuators, cosine and sine of those that are angles, what is recalled
 
     def sites(self, number: int) -> Sequence[Site]:
         """The calls of an effect's laws: one, or one for each instance that it rides on."""
@@ -258,7 +258,10 @@ class Composed(Protocol):
         """-1 port, +1 starboard, 0 middle of what an actuator drives."""
 
     def memory(self, number: int, actuator: str) -> int:
-        """Where a channel effect's memory of an actuator begins."""
+        """Where an effect's memory of an actuator begins."""
+
+    def own(self, number: int) -> int:
+        """Place in `held` of what an effect recalls; 0 of one that does not look back."""
 
     def behind(self, number: int) -> Sequence[int]:
         """The effects that come after one in the program."""
