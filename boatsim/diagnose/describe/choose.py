@@ -22,6 +22,7 @@ progress = logging.getLogger("boatsim.diagnose")
 MOST = 5  # terms
 TRIED = 4  # of those that promise most, in the filter
 TOLD = 0.1  # [nats] by which a move must gain
+TURNS = 4  # of moving a term by the filter and fitting all else
 ROUNDS = 3  # moves of a term's times or wavelength at one fineness
 
 
@@ -109,14 +110,28 @@ def _finer(
 def _polished(
     problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[Track]
 ) -> tuple[Described, Fit]:
-    """The same by the filter itself, all else held, and the fit then made: what is left over says it but roughly."""
+    """The same by the filter itself, all else held, and the fit then made: what is left over says it but roughly.
+
+    In turns, for what is held may go along: a force that follows more slowly must be the stronger one.
+    """
+    for _ in range(TURNS):
+        moved = _moved(problem, slot, term, found, tracks)
+        write(problem, slot, moved, tracks)
+        if moved == term:
+            break
+        term, found = moved, fit(problem, found)
+    return term, found
+
+
+def _moved(problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[Track]) -> Described:
+    """A term moved to where the filter finds the recordings likeliest, the fit held."""
     on = problem.program.switches(found.suspects)
 
     def likelihood(one: Described) -> float:
         write(problem, slot, one, tracks)
         return problem.likelihood(found.free, found.theta, on, found.levels)
 
-    best = begun = likelihood(term)
+    best = likelihood(term)
     for by in FINEST:
         for _ in range(ROUNDS):
             scores = [(likelihood(t), i, t) for i, t in enumerate(neighbours(term, problem.tracks, by))]
@@ -124,8 +139,7 @@ def _polished(
             if not score > best + TOLD:
                 break
             term, best = ahead, score
-    write(problem, slot, term, tracks)
-    return term, fit(problem, found) if best > begun else found
+    return term
 
 
 def _pruned(problem: Problem, so_far: Chosen) -> Chosen:
