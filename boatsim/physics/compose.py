@@ -4,7 +4,7 @@ Kinds say what they add (`boatsim.physics.kinds`); this module gathers their lin
 be read: `python -m boatsim.physics.program VESSEL` prints it.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from inspect import getsourcefile
 from math import cos, sin
@@ -37,9 +37,11 @@ class Composition:
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.effects = tuple(effects)
         self.actuators, self.commands = vessel.actuators, tuple(vessel.commands)
+        self.sums: Mapping[str, Sequence[str]] = vessel.sums if any(type(e).sees_held for e in self.effects) else {}
         looking = [i for i, e in enumerate(self.effects) if isinstance(e, Recall) and self._may_look_back(i, e)]
-        self._own = {i: len(vessel.held) + k for k, i in enumerate(looking)}
-        self.held: Sequence[str] = (*vessel.held, *(f"recalled by {self.effects[i].name}" for i in looking))
+        shown = (*vessel.held, *self.sums)
+        self._own = {i: len(shown) + k for k, i in enumerate(looking)}
+        self.held: Sequence[str] = (*shown, *(f"recalled by {self.effects[i].name}" for i in looking))
 
     # What kinds may ask -----------------------------------------------------------------------------------------------
 

@@ -164,8 +164,20 @@ class Vessel:
         """What laws see of its actuators: themselves, then cosine and sine of those that are angles."""
         return (*self.actuators, *(f"{part}_{a}" for a in self.angles for part in ("cos", "sin")))
 
+    @cached_property
+    def sums(self) -> Mapping[str, tuple[str, ...]]:
+        """Actuators that several share a role, by the role: together they are the `thrust`, whatever each is called."""
+        alike = {role: tuple(n for n in self.actuators if self.roles[n] == role) for role in self.roles.values()}
+        return {role: names for role, names in alike.items() if len(names) > 1 and role not in self.commands}
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """What described laws see of its actuators: what is held, then the sums."""
+        return (*self.held, *self.sums)
+
     def unit(self, actuator: str) -> str:
-        """Unit of an actuator: that of the role in which an effect takes it."""
+        """Unit of an actuator, or of a sum: that of the role in which an effect takes it."""
+        actuator = self.sums.get(actuator, (actuator,))[0]
         units = (type(e).roles[r].unit for e in self.effects for r, c in self.stated(e).items() if c == actuator)
         return next(units, "")
 

@@ -16,6 +16,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.described import EVER, Described
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import SENSES, SIDES, DescribedThrust
+from boatsim.physics.signals import AXES
 from boatsim.physics.terms import BEYOND, RIPPLES, SPEEDS
 from boatsim.physics.vessel import Vessel
 
@@ -57,6 +58,9 @@ def terms(
     for axis in (*axes, *level):
         for run, acts, begin, end in (*lasting, *swinging):
             yield DescribedForce(axis=axis, acts=acts, begin=begin, end=end, run=run)
+    for axis, speed in ((a, SPEEDS[AXES.index(a)]) for a in axes):  # what hinders her for a while: weed, ropes
+        for run, acts, begin, end in lasting if speed in moves else ():
+            yield DescribedForce(axis=axis, of=(speed,), acts=acts, begin=begin, end=end, run=run)
     if vessel.all_of(DescribedThrust.rides):
         for side in SIDES if _sided(vessel) else ("all",):
             for sense in SENSES:
@@ -64,9 +68,17 @@ def terms(
                     yield DescribedThrust(side=side, sense=sense, acts=acts, begin=begin, end=end, run=run)
                 for speed in moves:
                     yield DescribedThrust(side=side, sense=sense, of=(f"abs_{speed}",))
-                for drive in (c for c in given if vessel.roles[c] in PUSHES and SIDES[side] in (0.0, vessel.side(c))):
+                for drive in (c for c in given if _pushes(vessel, c, SIDES[side])):
                     for memory in memories:
                         yield DescribedThrust(side=side, sense=sense, of=(f"recent_abs_{drive}",), memory=memory)
+
+
+def _pushes(vessel: Vessel, signal: str, side: float) -> bool:
+    """Whether a signal is of drives on this side; 0: of all together, or of the only one."""
+    (first, *others) = vessel.sums.get(signal, (signal,))
+    if vessel.roles[first] not in PUSHES:
+        return False
+    return vessel.side(signal) == side if side else bool(others) or vessel.roles[first] not in vessel.sums
 
 
 def _sided(vessel: Vessel) -> bool:
@@ -85,7 +97,7 @@ def _products(vessel: Vessel, moves: Sequence[str], given: Sequence[str]) -> Ite
         yield from ((c,), (f"abs_{c}",), (c, f"abs_{c}"))
         for s in moves:
             yield from ((c, s), (f"abs_{c}", s), (c, f"abs_{s}"))
-    for a, b in combinations(given, 2):
+    for a, b in combinations((c for c in given if c in vessel.actuators), 2):
         yield (a, b)
     if "yaw" in vessel.freedoms:
         for bearing in ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading"):
@@ -96,6 +108,9 @@ def _products(vessel: Vessel, moves: Sequence[str], given: Sequence[str]) -> Ite
     for axis, angle in (("roll", "roll_angle"), ("pitch", "pitch_angle")):
         if axis in vessel.freedoms:
             yield from ((angle,), (angle, angle), (angle, angle, angle))
+            yield from ((angle, s) for s in moves)
+    if {"surge", "sway"} <= set(vessel.freedoms):
+        yield from ((place, s) for place in ("north", "east") for s in moves if s in LEVEL)
 
 
 def _histories(moves: Sequence[str], given: Sequence[str]) -> Iterator[tuple[str, ...]]:

@@ -111,8 +111,8 @@ class Way:
         size = np.asarray(terms.course.py_func(self.track.times, acts, term.begin, term.end))
         little = term.completed(vessel).little if set(term.of) & set(terms.SENSES) else 1.0
         detail = (term.wavelength, term.crest, little, term.beyond)
-        late = (*terms.looks(term.name, term.of, vessel.held), term.memory) if term.looks_back else NEVER
-        for number in terms.codes(term.name, term.of, vessel.held)[: len(term.of)]:
+        late = (*terms.looks(term.name, term.of, vessel.signals), term.memory) if term.looks_back else NEVER
+        for number in terms.codes(term.name, term.of, vessel.signals)[: len(term.of)]:
             size = size * self.factor(number, detail, late)
         return size
 

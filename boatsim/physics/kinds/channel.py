@@ -26,7 +26,15 @@ def actuators(program: Composed) -> Sequence[Station]:
         ]
         begin = (f"c = commands[{program.commands.index(name)}]", "x = Course(c, c, c)")
         stations.append(Station(begin, tuple(end), name))
-    return [*stations, Station(channel=WHOLE)]
+    return [*stations, Station(tuple(sums(program)), (), WHOLE)]
+
+
+def sums(program: Composed) -> Iterator[str]:
+    """What several actuators come to together."""
+    for name, parts in program.sums.items():
+        for row in ("", "held + ", "2 * held + "):
+            total = " + ".join(f"act[{row}{program.held.index(part)}]" for part in parts)
+            yield f"act[{row}{program.held.index(name)}] = {total}"
 
 
 def pausing(program: Composed) -> Sequence[Station]:

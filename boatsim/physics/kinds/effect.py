@@ -207,8 +207,8 @@ class Boat(Protocol):
         """The rigid body."""
 
     @property
-    def held(self) -> Sequence[str]:
-        """What laws see of its actuators: themselves, then cosine and sine of those that are angles."""
+    def signals(self) -> Sequence[str]:
+        """What described laws see of its actuators: themselves, cosine and sine of angles, the sums of several."""
 
     def effect(self, name: str) -> Effect | None:
         """Its own effect of that name, or the only one of that idea."""
@@ -243,7 +243,8 @@ class Composed(Protocol):
     effects: tuple[Effect, ...]
     actuators: tuple[str, ...]
     commands: tuple[str, ...]
-    held: Sequence[str]  # what `act` holds: the actuators, cosine and sine of those that are angles, what is recalled
+    held: Sequence[str]  # what `act` holds: actuators, cosine and sine of angles, and for described laws sums, recalled
+    sums: Mapping[str, Sequence[str]]  # of these, the actuators that each sum is of
 
     def sites(self, number: int) -> Sequence[Site]:
         """The calls of an effect's laws: one, or one for each instance that it rides on."""
