@@ -67,8 +67,9 @@ def over_words(over: str) -> str:
     how, signal = looking(over, ())
     if how:
         words = "of late" if how == "recent" else "beyond what it was of late"
-        name, _, unit = over_words(signal).partition(" [")
-        return f"{name} {words} [{unit}" if unit else f"{name} {words}"
+        size = "the size of " if signal.startswith("abs_") else ""
+        name, _, unit = over_words(signal.removeprefix("abs_")).partition(" [")
+        return f"{size}{name} {words} [{unit}" if unit else f"{size}{name} {words}"
     unit = UNITS.get(over, "")
     return f"{FACTORS.get(over, plain(over))} [{unit}]" if unit else parameter(over)[0]
 
