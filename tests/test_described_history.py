@@ -126,6 +126,13 @@ def test_words_of_the_past_that_do_not_exist_are_named(table: dict[str, Any], li
         DescribedForce.from_settings(table).completed(BOAT)
 
 
+def test_a_law_stands_behind_the_drives_by_which_signals_have_their_places(tmp_path: Path) -> None:
+    law = '[[effect]]\nuse = "described_force"\nof = ["steer_port_rad"]\ncoefficient = 1.0\n\n'
+    last = boats.PLANAR.rindex("[[effect]]")  # the other thruster
+    with pytest.raises(BadInput, match="described_force stands before an effect by which a channel acts"):
+        vessel.load(str(boats.written(tmp_path, "early", boats.PLANAR[:last] + law + boats.PLANAR[last:])))
+
+
 def test_a_term_that_looks_back_is_said_in_words_with_its_unit() -> None:
     def said(axis: str, *of: str) -> tuple[str, str]:
         term = DescribedForce(axis=axis, of=of, memory=5.0)

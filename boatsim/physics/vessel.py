@@ -323,6 +323,8 @@ def check_bindings(vessel: Vessel, label: str) -> None:
             raise BadInput(f"{what} is there {names.count(effect.name)} times; give each a name of its own")
         _check_roles(vessel, effect, what)
         kind = type(effect)
+        if kind.sees_held and not effect.still_as_on(vessel):
+            raise BadInput(f"{what} stands before an effect by which a channel acts; put it behind all of these")
         if isinstance(effect, Channel):
             for name in (*effect.on, *effect.fed_by):
                 if name not in vessel.commands:

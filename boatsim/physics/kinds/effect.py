@@ -2,7 +2,7 @@
 
 from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from math import cos, isfinite, sin
 from operator import attrgetter
@@ -144,6 +144,11 @@ class Effect(Checked):
     def rules(self, vessel: "Boat") -> dict[str, float]:
         """Parameters by a rule of the effect's own, for those that nobody states; what follows is filled in before."""
         return {}
+
+    def still_as_on(self, vessel: "Boat") -> bool:
+        """Whether what `rules` gave for words that no file may state is still so, now that the vessel is whole."""
+        ruled = self.rules(vessel)
+        return all(ruled[f.name] == getattr(self, f.name) for f in fields(self) if {"param", "ours"} <= set(f.metadata))
 
     def _left(self) -> list[str]:
         """Parameters without a value."""
