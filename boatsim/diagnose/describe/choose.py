@@ -54,6 +54,8 @@ def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
         if found.evidence - so_far.fit.evidence < max(price(len(ordered)), SLIGHT * gained):
             break
         so_far = _pruned(problem, Chosen(found, so_far.terms | {slot: term}))
+        if len(so_far.terms) > 1:
+            so_far = _beside(problem, so_far, everywhere)
         progress.info("described: %d terms (%.0f nats)", len(so_far.terms), found.evidence - best.evidence)
     return so_far
 
@@ -114,17 +116,28 @@ def _polished(
 
     In turns, for what is held may go along: a force that follows more slowly must be the stronger one.
     """
-    for _ in range(TURNS):
+    for _ in range(TURNS if neighbours(term, problem.tracks, FINEST[0]) else 0):
         moved = _moved(problem, slot, term, found, tracks)
-        write(problem, slot, moved, tracks)
         if moved == term:
             break
-        term, found = moved, fit(problem, found)
+        again = fit(problem, found)
+        if not again.evidence > found.evidence:
+            write(problem, slot, term, tracks)
+            break
+        term, found = moved, again
     return term, found
 
 
+def _beside(problem: Problem, so_far: Chosen, tracks: Sequence[Track]) -> Chosen:
+    """All terms moved once more, each beside the others: the first ones stood for a part of those that came later."""
+    terms, found = dict(so_far.terms), so_far.fit
+    for slot, term in terms.items():
+        terms[slot], found = _polished(problem, slot, term, found, tracks)
+    return so_far if found is so_far.fit else Chosen(converge(problem, found), terms)
+
+
 def _moved(problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[Track]) -> Described:
-    """A term moved to where the filter finds the recordings likeliest, the fit held."""
+    """A term, written into its slot, moved to where the filter finds the recordings likeliest, the fit held."""
     on = problem.program.switches(found.suspects)
 
     def likelihood(one: Described) -> float:
@@ -139,6 +152,7 @@ def _moved(problem: Problem, slot: str, term: Described, found: Fit, tracks: Seq
             if not score > best + TOLD:
                 break
             term, best = ahead, score
+    write(problem, slot, term, tracks)
     return term
 
 
