@@ -16,7 +16,6 @@ from boatsim.physics.base import Array
 from boatsim.physics.described import EVER, Described
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import SENSES, SIDES, DescribedThrust
-from boatsim.physics.signals import AXES
 from boatsim.physics.terms import BEYOND, RIPPLES, SPEEDS
 from boatsim.physics.vessel import Vessel
 
@@ -58,9 +57,6 @@ def terms(
     for axis in (*axes, *level):
         for run, acts, begin, end in (*lasting, *swinging):
             yield DescribedForce(axis=axis, acts=acts, begin=begin, end=end, run=run)
-    for axis, speed in ((a, SPEEDS[AXES.index(a)]) for a in axes):  # what hinders her for a while: weed, ropes
-        for run, acts, begin, end in lasting if speed in moves else ():
-            yield DescribedForce(axis=axis, of=(speed,), acts=acts, begin=begin, end=end, run=run)
     if vessel.all_of(DescribedThrust.rides):
         for side in SIDES if _sided(vessel) else ("all",):
             for sense in SENSES:
