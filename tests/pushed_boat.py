@@ -20,7 +20,8 @@ M, IZ, A11, A22, A66 = 4.6, 0.6, 0.3, 9.0, 0.7  # kg, kg m^2
 DAMPING, X_MOTOR, Y_MOTOR = np.array([3.0, 10.0, 1.0]), -0.6, 0.19
 RATE, ROWS = 6.0, 240
 COMMANDS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
-Missing = Callable[[float, Array, Array], Array]  # t, (x, y, psi, u, v, r), commands -> X, Y, N
+Missing = Callable[[float, Array, Array], Array]  # t, (x, y, psi, u, v, r, and what is late), commands -> X, Y, N
+Late = tuple[float, Callable[[Array], float]]  # time constant [s] with which something follows the commands, and what
 
 
 def push(thrust: Array, steer: Array) -> Array:
@@ -28,20 +29,24 @@ def push(thrust: Array, steer: Array) -> Array:
     return np.array([X.sum(), Y.sum(), X_MOTOR * Y.sum() + Y_MOTOR * (X[0] - X[1])])
 
 
-def sail(name: str, seed: int, missing: Missing, facts: dict[str, Any] | None = None) -> tuple[Recording, Array]:
+def sail(
+    name: str, seed: int, missing: Missing, facts: dict[str, Any] | None = None, late: Late | None = None
+) -> tuple[Recording, Array]:
     """A recording of the trial boat under a further force, and that force at every row."""
     rng = np.random.default_rng(seed)
     levels = np.column_stack([rng.uniform(-0.9, 0.9, (ROWS // 8, 2)), rng.uniform(-0.6, 0.6, (ROWS // 8, 2))])
     commands = np.repeat(levels, 8, axis=0)
 
     def slope(y: Array, t: float, command: Array) -> list[float]:
-        u, v, r = y[3:]
-        X, Y, moment = push(command[:2], command[2:]) - DAMPING * y[3:] + missing(t, y, command)
+        u, v, r = y[3:6]
+        X, Y, moment = push(command[:2], command[2:]) - DAMPING * y[3:6] + missing(t, y, command)
         c, s = np.cos(y[2]), np.sin(y[2])
         du, dv = (X + M * v * r) / (M + A11), (Y - M * u * r) / (M + A22)
-        return [u * c - v * s, u * s + v * c, r, du, dv, moment / (IZ + A66)]
+        slow = [(late[1](command) - y[6]) / late[0]] if late else []
+        return [u * c - v * s, u * s + v * c, r, du, dv, moment / (IZ + A66), *slow]
 
     t, y, poses, forces = np.arange(ROWS) / RATE, np.zeros(6), [], []
+    y = np.append(y, late[1](commands[0]) if late else [])
     for now, command in zip(t, commands, strict=True):
         poses.append(y[:3])
         fine = np.linspace(now, now + 1 / RATE, 5)

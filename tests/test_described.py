@@ -9,7 +9,7 @@ from typing import Any
 import boats
 import numpy as np
 import pytest
-from pushed_boat import BOAT, Missing, sail
+from pushed_boat import BOAT, Late, Missing, sail
 
 from boatsim.diagnose.analysis import Diagnosis, diagnose_recordings
 from boatsim.diagnose.filter import track
@@ -22,6 +22,7 @@ from boatsim.physics.described import EVER
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.effects.thruster import Thruster
+from boatsim.recordings.table import Recording
 
 ACTS = np.array([0.8, -0.4, 0.3, 0.1, cos(0.3), sin(0.3), cos(0.1), sin(0.1)])  # of the trial boat
 AT = motion(t=7.0, x=2.0, y=-3.0, phi=0.1, psi=0.7, u=1.5, v=-0.4, p=0.02, r=0.6)
@@ -48,7 +49,7 @@ CLOSED: Mapping[str, tuple[dict[str, Any], Callable[[Motion], float]]] = {
 
 def force(effect: DescribedForce) -> Wrench:
     """At one motion, with the trial boat's actuators."""
-    return effect.completed(BOAT).wrench(AT, ACTS, 0)
+    return effect.completed(BOAT).wrench(AT, ACTS, 0, 0)
 
 
 @pytest.mark.parametrize("name", CLOSED)
@@ -76,7 +77,7 @@ def test_a_change_of_thrust_is_a_share_of_what_the_drive_gives(table: dict[str, 
     law = DescribedThrust.from_settings({"coefficient": 0.2, **table}).completed(BOAT)
     drive = Thruster(x=-0.6, y=-0.19, gain=1.1)
     on, found = Thruster.signals(thrust=0.8, angle=0.3), drive.wrench(AT, thrust=0.8, angle=0.3)
-    more = law.wrench(AT, on, drive.values(), ACTS, 0)
+    more = law.wrench(AT, on, drive.values(), ACTS, 0, 0)
     assert more == pytest.approx(tuple(share * x for x in found))
 
 
@@ -101,7 +102,7 @@ def test_a_described_law_in_a_vessel_file_acts_on_engine_and_twin_alike(tmp_path
     boat = vessel.load(str(boats.written(tmp_path, "odd", boats.PLANAR + law)))
     (own,) = (e for e in boat.effects if isinstance(e, DescribedForce))
     assert own.shape() == {"axis": "yaw", "of": ["surge_speed", "abs_yaw_rate"], "acts": "always"}
-    assert own.wrench(motion(u=2.0, r=-0.5), np.zeros(9), 0).N == pytest.approx(-0.4)
+    assert own.wrench(motion(u=2.0, r=-0.5), np.zeros(9), 0, 0).N == pytest.approx(-0.4)
 
 
 def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
@@ -130,9 +131,9 @@ def nothing(t: float, y: Array, command: Array) -> Array:
     return np.zeros(3)
 
 
-def diagnosed(*causes: Missing) -> Diagnosis:
+def diagnosed(*causes: Missing, late: Late | None = None) -> Diagnosis:
     """Of recordings under these causes, the last one kept unseen."""
-    runs = [sail(f"run_{i + 1}", 40 + i, cause)[0] for i, cause in enumerate(causes)]
+    runs = [sail(f"run_{i + 1}", 40 + i, cause, late=late)[0] for i, cause in enumerate(causes)]
     return diagnose_recordings(runs[:-1], runs[-1:], {None: BOAT}, "kept unseen: the last")
 
 
@@ -140,6 +141,24 @@ def halved(found: Diagnosis, signal: str) -> bool:
     """Whether the patched boat errs half as much as the recalibrated one on unseen data."""
     rms = found.findings.answer["fit"][signal]  # type: ignore[literal-required]
     return bool(rms["patched"] < 0.5 * rms["recalibrated"])
+
+
+def replays(found: Diagnosis, unseen: Recording, folder: Path) -> None:
+    """Whether the patched vessel does on an unseen recording what the fitted one does."""
+    patch.write(found.problem, found.vessel, found.ranking.best, folder / "patched.toml", found.ranking.laws)
+    program, on = composed(vessel.load(str(folder / "patched.toml")))
+    fit, levels = found.ranking.best, found.ranking.best.levels
+    laid = track(unseen, found.problem.program)
+    for slot, term in found.ranking.laws.items():
+        for key, x in term.completed(BOAT).by_name().items():
+            laid.values[found.problem.program.index(slot, key)] = x
+    here = found.problem.values(laid, fit.free, fit.theta)
+    again = track(unseen, program)
+    ours = laid.free_runs(here, found.problem.program.switches(tuple(found.ranking.laws)), levels, 6.0)
+    theirs = again.free_runs(again.values, program.switches(on), levels, 6.0)
+    for (a, path), (b, other) in zip(ours, theirs, strict=True):
+        assert a == b
+        np.testing.assert_allclose(other, path, atol=2e-3)  # started at each program's own smoothed state
 
 
 def test_a_moment_that_swings_is_described_with_its_period_and_carries_over(tmp_path: Path) -> None:
@@ -153,22 +172,7 @@ def test_a_moment_that_swings_is_described_with_its_period_and_carries_over(tmp_
     best = next(w for w in found.findings.described if w.term.name in found.ranking.laws)
     assert abs(best.term.coefficient) == pytest.approx(0.14, abs=3 * best.sd)
     assert best.term.end - best.term.begin == pytest.approx(6.5, rel=0.01)
-    # the patched vessel does on the unseen recording what the fitted one does
-    patch.write(found.problem, found.vessel, found.ranking.best, tmp_path / "patched.toml", found.ranking.laws)
-    program, on = composed(vessel.load(str(tmp_path / "patched.toml")))
-    unseen = sail("run_3", 42, swinging)[0]
-    fit, levels = found.ranking.best, found.ranking.best.levels
-    laid = track(unseen, found.problem.program)
-    for slot, term in found.ranking.laws.items():
-        for key, x in term.completed(BOAT).by_name().items():
-            laid.values[found.problem.program.index(slot, key)] = x
-    here = found.problem.values(laid, fit.free, fit.theta)
-    again = track(unseen, program)
-    ours = laid.free_runs(here, found.problem.program.switches(tuple(found.ranking.laws)), levels, 6.0)
-    theirs = again.free_runs(again.values, program.switches(on), levels, 6.0)
-    for (a, path), (b, other) in zip(ours, theirs, strict=True):
-        assert a == b
-        np.testing.assert_allclose(other, path, atol=2e-3)  # started at each program's own smoothed state
+    replays(found, sail("run_3", 42, swinging)[0], tmp_path)
 
 
 def test_a_side_force_with_the_square_of_the_yaw_rate_is_described_as_one() -> None:

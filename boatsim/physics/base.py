@@ -15,6 +15,7 @@ from boatsim.physics.kinds.force import Force
 from boatsim.physics.kinds.inertia import Inertia
 from boatsim.physics.kinds.measurement import Measurement
 from boatsim.physics.kinds.reaction import Reaction
+from boatsim.physics.kinds.recall import Recall
 from boatsim.physics.kinds.release import Change, Release
 from boatsim.physics.kinds.unsteady import Unsteady
 from boatsim.physics.kinds.wandering import Wandering
@@ -32,6 +33,7 @@ from boatsim.physics.signals import (
     Wrench,
     course,
     followed,
+    lagged,
     mass,
     mean_of,
     wrench,
@@ -39,10 +41,10 @@ from boatsim.physics.signals import (
 
 __all__ = [
     "AXES", "UNSET", "Array", "Boat", "Change", "Channel", "Checked", "Course", "Effect", "Flow", "Force", "Inertia",
-    "Mass", "Measurement", "Motion", "Param", "Reaction", "Release", "Role", "Shown", "Swell", "Unsteady",
+    "Mass", "Measurement", "Motion", "Param", "Reaction", "Recall", "Release", "Role", "Shown", "Swell", "Unsteady",
     "Wander", "Wandering", "Wrench",
-    "course", "factor", "followed", "mass", "mean_of", "motion", "number", "param", "preset", "shift", "snake_case",
-    "wrench",
+    "course", "factor", "followed", "lagged", "mass", "mean_of", "motion", "number", "param", "preset", "shift",
+    "snake_case", "wrench",
 ]  # fmt: skip
 
 

@@ -4,15 +4,16 @@ Kinds say what they add (`boatsim.physics.kinds`); this module gathers their lin
 be read: `python -m boatsim.physics.program VESSEL` prints it.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from inspect import getsourcefile
 from math import cos, sin
 
 from boatsim.errors import BadInput
 from boatsim.physics.content import address, load_class, module_of, names
-from boatsim.physics.kinds.channel import Channel
+from boatsim.physics.kinds.channel import WHOLE, Channel
 from boatsim.physics.kinds.effect import Effect, Kind, Part, Site
+from boatsim.physics.kinds.recall import Recall
 from boatsim.physics.vessel import Vessel
 
 
@@ -36,7 +37,11 @@ class Composition:
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.effects = tuple(effects)
         self.signals, self.commands = (*vessel.actuators, *vessel.readings), vessel.inputs
-        self.held: Sequence[str] = vessel.held
+        self.sums: Mapping[str, Sequence[str]] = vessel.sums if any(type(e).sees_held for e in self.effects) else {}
+        looking = [i for i, e in enumerate(self.effects) if isinstance(e, Recall) and self._may_look_back(i, e)]
+        shown = (*vessel.held, *self.sums)
+        self._own = {i: len(shown) + k for k, i in enumerate(looking)}
+        self.held: Sequence[str] = (*shown, *(f"recalled by {self.effects[i].name}" for i in looking))
 
     # What kinds may ask -----------------------------------------------------------------------------------------------
 
@@ -44,7 +49,7 @@ class Composition:
         """The calls of an effect's laws: one, or one for each instance that it rides on."""
         effect = self.effects[number]
         own = self._values(number)
-        held = ("act", "at") if type(effect).sees_held else ()
+        held = ("act", "at", f"np.int64({self.own(number)})") if type(effect).sees_held else ()
         if type(effect).rides:
             carriers = [self.effects.index(e) for e in self.vessel.ridden(effect)]
             return [Site(number, own, (self._carried(i, type(effect).rides), self._values(i), *held)) for i in carriers]
@@ -63,8 +68,16 @@ class Composition:
         return self.vessel.side(actuator)
 
     def memory(self, number: int, actuator: str) -> int:
-        """Where a channel effect's memory of an actuator begins."""
+        """Where an effect's memory of an actuator begins."""
         return self._memory[number, actuator]
+
+    def own(self, number: int) -> int:
+        """Place in `held` of what an effect recalls; 0 of one that does not look back."""
+        return self._own.get(number, 0)
+
+    def _may_look_back(self, number: int, effect: Recall) -> bool:
+        """A slot of a diagnosis may come to, whatever is written into it; the vessel's own do or do not."""
+        return number >= len(self.vessel.effects) or effect.looks_back
 
     def behind(self, number: int) -> Sequence[int]:
         """The effects that come after one in the program."""
@@ -77,8 +90,9 @@ class Composition:
 
     @cached_property
     def memory_size(self) -> int:
-        """Floats that all channels together remember."""
-        return sum(type(e).slots * len(self.targets(i)) for i, e in enumerate(self.effects) if isinstance(e, Channel))
+        """Floats that all channels, and laws that look back, together remember."""
+        channels = ((i, e) for i, e in enumerate(self.effects) if isinstance(e, Channel))
+        return sum(type(e).slots * len(self.targets(i)) for i, e in channels) + len(self._own)
 
     @cached_property
     def _memory(self) -> dict[tuple[int, str], int]:
@@ -87,7 +101,7 @@ class Composition:
             for i, effect in enumerate(self.effects):
                 if isinstance(effect, Channel) and actuator in self.targets(i):
                     found[i, actuator], at = at, at + type(effect).slots
-        return found
+        return found | {(i, WHOLE): at + k for k, i in enumerate(self._own)}
 
     def _values(self, i: int) -> str:
         """`V3(p[7], p[8])`: an effect's parameters as its law receives them."""

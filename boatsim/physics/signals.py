@@ -212,6 +212,21 @@ def followed(lag: float) -> float:
 
 
 @njit(inline="always")
+def lagged(x: Course, time_constant: float, memory: Array, at: int, dt: float) -> Course:
+    """A first-order lag behind a signal, exact where its course is a parabola; memory[at] is its value.
+
+    T y' = x - y with x = b + c s + d s^2, s in steps, has the solution f + g s + d s^2 beside a decaying rest.
+    """
+    y, quick = memory[at], dt / time_constant
+    c, d = 4.0 * x.middle - 3.0 * x.begin - x.end, 2.0 * (x.begin + x.end) - 4.0 * x.middle
+    g = c - 2.0 * d / quick
+    f = x.begin - g / quick
+    decay = np.exp(-quick)
+    memory[at] = f + g + d + (y - f) * decay
+    return course(y, f + 0.5 * g + d / 3.0 + (y - f) * (1.0 - decay) / quick, memory[at])
+
+
+@njit(inline="always")
 def mean_of(x: Course) -> float:
     """Mean over the step; that of a signal that stands still is the signal, to the last bit."""
     return x.begin + (4.0 * (x.middle - x.begin) + (x.end - x.begin)) / 6.0

@@ -13,7 +13,7 @@ from numba import njit
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.kernel.compiling import apart
-from boatsim.physics.signals import Wrench, wrench
+from boatsim.physics.signals import Course, Wrench, followed, lagged, wrench
 
 SPEEDS = ("surge_speed", "sway_speed", "heave_speed", "roll_rate", "pitch_rate", "yaw_rate")  # through the water
 SIZES, SENSES = tuple(f"abs_{s}" for s in SPEEDS), tuple(f"sign_{s}" for s in SPEEDS)
@@ -22,6 +22,8 @@ PLACES = ("north", "east", "depth", "roll_angle", "pitch_angle")
 RIPPLES = ("ripple_north", "ripple_east")  # a pattern that lies still, along north or east
 BEYOND = tuple(f"beyond_{s}" for s in SPEEDS)  # what a speed is above a threshold either way, with its sign
 FACTORS = ("", *SPEEDS, *SIZES, *SENSES, *BEARINGS, *PLACES, *RIPPLES, *BEYOND)  # a factor's number is its place here;
+HISTORIES = ("recent", "changed")  # in front of an actuator signal: what it was of late, and by how much it is beyond
+RECALLED = 90  # number of what a term recalls, of its size one more
 FIRST_HELD = 100  # that of a vessel's k-th actuator signal this and 2 k, of its size one more
 MOST = 3  # factors of a term
 COURSES = ("always", "within", "rising", "fading", "swinging")
@@ -38,12 +40,12 @@ WITHIN, RISING, FADING, SWINGING = (float(COURSES.index(c)) for c in COURSES[1:]
 
 
 @apart
-def factor(m: Any, act: Any, at: Any, number: float, detail: Detail) -> Any:
-    """One factor; a sense turns within `little`, a ripple is one at its crest."""
+def factor(m: Any, act: Any, at: Any, own: Any, number: float, detail: Detail) -> Any:
+    """One factor; a sense turns within `little`, a ripple is one at its crest, act[at + own] is what is recalled."""
     k, (wavelength, crest, little, beyond) = int(number), detail
-    if k >= FIRST_HELD:
-        value = act[at + (k - FIRST_HELD) // 2]
-        return abs(value) if (k - FIRST_HELD) % 2 else value
+    if k >= RECALLED:
+        value = act[at + (own if k < FIRST_HELD else (k - FIRST_HELD) // 2)]
+        return abs(value) if k % 2 else value
     if RIPPLE <= k < ABOVE:
         return np.cos(2.0 * pi / wavelength * ((m.x if k == RIPPLE else m.y) - crest))
     if PLACE <= k < ABOVE:
@@ -75,15 +77,47 @@ def course(t: Any, acts: float, begin: float, end: float) -> Any:
 
 
 @njit(inline="always")
-def term(m: Any, q: Any, act: Any, at: Any) -> Any:
+def term(m: Any, q: Any, act: Any, at: Any, own: Any) -> Any:
     """The product of a described law's factors and its course."""
     detail = (q.wavelength, q.crest, q.little, q.beyond)
     return (
-        factor(m, act, at, q.first, detail)
-        * factor(m, act, at, q.second, detail)
-        * factor(m, act, at, q.third, detail)
+        factor(m, act, at, own, q.first, detail)
+        * factor(m, act, at, own, q.second, detail)
+        * factor(m, act, at, own, q.third, detail)
         * course(m.t, q.course, q.begin, q.end)
     )
+
+
+@apart
+def recalled(
+    act: Any, held: Any, own: Any, kept: Any, at: Any, dt: float, looks_at: float, beyond: float, memory: float
+) -> None:
+    """What a term recalls over a step, to act: a signal or its size as it was of late, by a lag, or by how much beyond.
+
+    `looks_at` and `beyond` are by `looks`; kept[at] is the lag's own.
+    """
+    if looks_at < FIRST_HELD:
+        return
+    k, sign = (int(looks_at) - FIRST_HELD) // 2, 1.0 - 2.0 * beyond
+    begin, middle, end = act[k], act[held + k], act[2 * held + k]
+    if int(looks_at) % 2:
+        begin, middle, end = abs(begin), abs(middle), abs(end)
+    late = lagged(Course(begin, middle, end), memory, kept, at, dt)
+    act[own] = beyond * begin + sign * late.begin
+    act[held + own] = beyond * middle + sign * late.middle
+    act[2 * held + own] = beyond * end + sign * late.end
+
+
+@njit(inline="always")
+def recall(act: Any, held: Any, own: Any, kept: Any, at: Any, dt: float, q: Any) -> None:
+    """`recalled` of a described law."""
+    recalled(act, held, own, kept, at, dt, q.looks_at, q.looks, q.memory)
+
+
+@njit(inline="always")
+def reach(q: Any) -> float:
+    """For how many s three points tell what a described law recalls."""
+    return followed(q.memory) if q.looks_at > 0.0 else np.inf
 
 
 @apart
@@ -102,7 +136,26 @@ def along(m: Any, direction: float, force: float) -> Wrench:
 
 def names_for(held: Sequence[str]) -> tuple[str, ...]:
     """Names of all factors on a vessel with these actuator signals."""
-    return (*FACTORS[1:], *(name for h in held for name in (h, f"abs_{h}")))
+    signals = [name for h in held for name in (h, f"abs_{h}")]
+    late = [f"{how}_{signal}" for how in HISTORIES for signal in signals]
+    return (*FACTORS[1:], *signals, *late, *(f"abs_{how}_{h}" for how in HISTORIES for h in held))
+
+
+def looking(name: str, held: Sequence[str]) -> tuple[str, str]:
+    """How a factor looks back, and at which signal or its size, ("recent", "abs_thrust_N"); "", "" if it does not."""
+    bare = name.removeprefix("abs_")
+    how = next((h for h in HISTORIES if bare.startswith(f"{h}_") and bare not in held), "")
+    return (how, bare.removeprefix(f"{how}_")) if how else ("", "")
+
+
+def looks(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, float]:
+    """Numbers of the signal that a term looks back at, and how; 0, 0 where it does not. Raises BadInput for several."""
+    found = sorted({looking(name, held) for name in of} - {("", "")})
+    if len(found) > 1:
+        raise BadInput(f"{what}: of = {list(of)}; allowed is to look back at one signal, in one way")
+    for how, signal in found:
+        return codes(what, (signal,), held)[0], float(HISTORIES.index(how))
+    return 0.0, 0.0
 
 
 def codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, ...]:
@@ -117,6 +170,8 @@ def codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, ...
             found.append(float(FIRST_HELD + 2 * list(held).index(size if of_size else name) + of_size))
         elif name and name in FACTORS:
             found.append(float(FACTORS.index(name)))
+        elif name in names_for(held):
+            found.append(float(RECALLED + name.startswith("abs_")))
         else:
             raise BadInput(unknown_name(f"{what}: of", name, names_for(held)))
     return (*found, *[0.0] * (MOST - len(found)))

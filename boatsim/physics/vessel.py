@@ -190,8 +190,20 @@ class Vessel:
         parts = ((*all_of, *(f"{part}_{a}" for a in angles for part in ("cos", "sin"))) for all_of, angles in pairs)
         return tuple(n for names in parts for n in names)
 
+    @cached_property
+    def sums(self) -> Mapping[str, tuple[str, ...]]:
+        """Actuators that several share a role, by the role: together they are the `thrust`, whatever each is called."""
+        alike = {role: tuple(n for n in self.actuators if self.roles[n] == role) for role in self.roles.values()}
+        return {role: names for role, names in alike.items() if len(names) > 1 and role not in self.inputs}
+
+    @property
+    def seen(self) -> tuple[str, ...]:
+        """What described laws see of its actuators: what is held, then the sums."""
+        return (*self.held, *self.sums)
+
     def unit(self, channel: str) -> str:
-        """Unit of an actuator or a reading: that of the role in which an effect takes it."""
+        """Unit of an actuator, a reading or a sum: that of the role in which an effect takes it."""
+        channel = self.sums.get(channel, (channel,))[0]
         units = (type(e).roles[r].unit for e in self.effects for r, c in self.stated(e).items() if c == channel)
         return next(units, "")
 
@@ -351,6 +363,8 @@ def check_bindings(vessel: Vessel, label: str) -> None:
             raise BadInput(f"{what} is there {names.count(effect.name)} times; give each a name of its own")
         _check_roles(vessel, effect, what)
         kind = type(effect)
+        if kind.sees_held and not effect.still_as_on(vessel):
+            raise BadInput(f"{what} stands before an effect by which a channel acts; put it behind all of these")
         if isinstance(effect, Channel):
             for name in (*effect.on, *effect.fed_by):
                 if name not in vessel.commands:

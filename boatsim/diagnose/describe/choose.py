@@ -22,6 +22,7 @@ progress = logging.getLogger("boatsim.diagnose")
 MOST = 5  # terms
 TRIED = 4  # of those that promise most, in the filter
 TOLD = 0.1  # [nats] by which a move must gain
+TURNS = 4  # of moving a term by the filter and fitting all else
 ROUNDS = 3  # moves of a term's times or wavelength at one fineness
 
 
@@ -57,6 +58,8 @@ def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
             refused.add(likeness(w.term))
             continue
         so_far = _pruned(problem, further)
+        if len(so_far.terms) > 1:
+            so_far = _beside(problem, so_far, everywhere)
         progress.info("described: %d terms (%.0f nats)", len(so_far.terms), found.evidence - best.evidence)
     return so_far
 
@@ -119,14 +122,39 @@ def _finer(
 def _polished(
     problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[Track]
 ) -> tuple[Described, Fit]:
-    """The same by the filter itself, all else held, and the fit then made: what is left over says it but roughly."""
+    """The same by the filter itself, all else held, and the fit then made: what is left over says it but roughly.
+
+    In turns, for what is held may go along: a force that follows more slowly must be the stronger one.
+    """
+    for _ in range(TURNS if neighbours(term, problem.tracks, FINEST[0]) else 0):
+        moved = _moved(problem, slot, term, found, tracks)
+        if moved == term:
+            break
+        again = fit(problem, found)
+        if not again.evidence > found.evidence:
+            write(problem, slot, term, tracks)
+            break
+        term, found = moved, again
+    return term, found
+
+
+def _beside(problem: Problem, so_far: Chosen, tracks: Sequence[Track]) -> Chosen:
+    """All terms moved once more, each beside the others: the first ones stood for a part of those that came later."""
+    terms, found = dict(so_far.terms), so_far.fit
+    for slot, term in terms.items():
+        terms[slot], found = _polished(problem, slot, term, found, tracks)
+    return so_far if found is so_far.fit else Chosen(converge(problem, found), terms)
+
+
+def _moved(problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[Track]) -> Described:
+    """A term, written into its slot, moved to where the filter finds the recordings likeliest, the fit held."""
     on = problem.program.switches(found.suspects)
 
     def likelihood(one: Described) -> float:
         write(problem, slot, one, tracks)
         return problem.likelihood(found.free, found.theta, on, found.levels)
 
-    best = begun = likelihood(term)
+    best = likelihood(term)
     for by in FINEST:
         for _ in range(ROUNDS):
             scores = [(likelihood(t), i, t) for i, t in enumerate(neighbours(term, problem.tracks, by))]
@@ -135,7 +163,7 @@ def _polished(
                 break
             term, best = ahead, score
     write(problem, slot, term, tracks)
-    return term, fit(problem, found) if best > begun else found
+    return term
 
 
 def _said_already(problem: Problem, before: Chosen, further: Chosen) -> bool:

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from boatsim.diagnose.describe.shapes import Way
+from boatsim.diagnose.describe.shapes import NEVER, Way
 from boatsim.diagnose.description import Curve
 from boatsim.physics.base import Array
 from boatsim.physics.described import Described
-from boatsim.physics.terms import RIPPLES, codes
+from boatsim.physics.terms import RIPPLES, codes, looks
 
 BINS = 40  # of a curve
 FEWEST = 3  # rows of a bin that is drawn
@@ -63,5 +63,6 @@ def _values(way: Way, term: Described, over: str, size: Array) -> Array:
         return size
     if over in RIPPLES:
         return np.asarray(way.motion.x if over.endswith("north") else way.motion.y)
-    (number, *_) = codes(term.name, (over,), way.problem.program.vessel.held)
-    return way.factor(number, (1.0, 0.0, 1.0, 0.0))
+    held = way.problem.program.vessel.seen
+    (number, *_), late = codes(term.name, (over,), held), looks(term.name, (over,), held)
+    return way.factor(number, (1.0, 0.0, 1.0, 0.0), (*late, term.memory) if late[0] else NEVER)

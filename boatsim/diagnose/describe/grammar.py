@@ -1,8 +1,8 @@
 """The grammar of described laws: all terms that are weighed on a vessel, and what lies next to one.
 
-A term is a described effect without a coefficient. Forces go with powers and products of speeds, commands, heading and
-place, changes of thrust with the drives; either may act for a while: within a stretch, rising, fading, swinging. What
-acts within a stretch of one recording is an event of that run.
+A term is a described effect without a coefficient. Forces go with powers and products of speeds, commands, what these
+were of late, heading and place, changes of thrust with the drives; either may act for a while: within a stretch,
+rising, fading, swinging. What acts within a stretch of one recording is an event of that run.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,7 +26,10 @@ SWINGS, OF_THRUST = 60, 8  # what swings does so up to so many times in a record
 SHORTEST_SWING = 6  # rows
 BELOW = (0.2, 0.4, 0.6, 0.8)  # shares of the rows that lie below a threshold
 WAVES, SHORTEST_WAVE = 24, 0.5  # lengths of a pattern on the water: so many, from so many boat lengths to what was seen
-# How near neighbours of a term lie: of a part, a span, the step between periods or wavelengths, a threshold
+MEMORIES, SHORTEST_MEMORY, LONGEST_MEMORY = 6, 2, 0.25  # time constants from so many rows to a share of a recording
+LEVEL = (SPEEDS[0], SPEEDS[1], SPEEDS[5])  # speeds of a hull on level water
+PUSHES = ("thrust", "shaft")  # roles of actuators that drive
+# How near neighbours of a term lie: of a part, a span, the step between periods or wavelengths, a threshold, a memory
 FINER, FINEST = (0.5, 0.25), (0.12, 0.06, 0.03, 0.015)
 
 
@@ -34,12 +37,15 @@ def terms(
     vessel: Vessel, tracks: Sequence[Track], moves: Mapping[str, Array], given: Sequence[str]
 ) -> Iterator[Described]:
     """All terms that are weighed: `moves` are the speeds [SI], `given` the actuators that vary in the recordings."""
-    lasting, swinging = list(_lasting(tracks)), list(_swinging(tracks, SWINGS))
+    lasting, swinging, memories = list(_lasting(tracks)), list(_swinging(tracks, SWINGS)), _memories(tracks)
     axes = axes_of(vessel)
     level = ("north", "east") if {"surge", "sway"} <= set(axes) else ()
     for axis in axes:
         for of in _products(vessel, list(moves), given):
             yield DescribedForce(axis=axis, of=of)
+        for of in _histories(list(moves), given):
+            for memory in memories:
+                yield DescribedForce(axis=axis, of=of, memory=memory)
         for speed, beyond in _thresholds(moves):
             yield DescribedForce(axis=axis, of=(speed,), beyond=beyond)
             yield DescribedForce(axis=axis, of=(speed, speed), beyond=beyond)
@@ -58,6 +64,17 @@ def terms(
                     yield DescribedThrust(side=side, sense=sense, acts=acts, begin=begin, end=end, run=run)
                 for speed in moves:
                     yield DescribedThrust(side=side, sense=sense, of=(f"abs_{speed}",))
+                for drive in (c for c in given if _pushes(vessel, c, SIDES[side])):
+                    for memory in memories:
+                        yield DescribedThrust(side=side, sense=sense, of=(f"recent_abs_{drive}",), memory=memory)
+
+
+def _pushes(vessel: Vessel, signal: str, side: float) -> bool:
+    """Whether a signal is of drives on this side; 0: of all together, or of the only one."""
+    (first, *others) = vessel.sums.get(signal, (signal,))
+    if vessel.roles[first] not in PUSHES:
+        return False
+    return vessel.side(signal) == side if side else bool(others) or vessel.roles[first] not in vessel.sums
 
 
 def _sided(vessel: Vessel) -> bool:
@@ -76,17 +93,42 @@ def _products(vessel: Vessel, moves: Sequence[str], given: Sequence[str]) -> Ite
         yield from ((c,), (f"abs_{c}",), (c, f"abs_{c}"))
         for s in moves:
             yield from ((c, s), (f"abs_{c}", s), (c, f"abs_{s}"))
-    for a, b in combinations(given, 2):
+    for a, b in combinations((c for c in given if c in vessel.actuators), 2):
         yield (a, b)
     if "yaw" in vessel.freedoms:
         for bearing in ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading"):
             yield (bearing,)
-            yield from ((bearing, s) for s in moves if s == SPEEDS[0])
+            yield from ((bearing, s) for s in moves if s in LEVEL)
     if "heave" in vessel.freedoms:
         yield ("depth",)
     for axis, angle in (("roll", "roll_angle"), ("pitch", "pitch_angle")):
         if axis in vessel.freedoms:
             yield from ((angle,), (angle, angle), (angle, angle, angle))
+            yield from ((angle, s) for s in moves)
+    if {"surge", "sway"} <= set(vessel.freedoms):
+        yield from ((place, s) for place in ("north", "east") for s in moves if s in LEVEL)
+
+
+def _histories(moves: Sequence[str], given: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Factors of forces that go with what was commanded of late, or with a change of it that dies out."""
+    for c in given:
+        yield from ((f"recent_{c}",), (f"recent_abs_{c}",), (f"changed_{c}",))
+        for s in moves:
+            yield from ((f"recent_{c}", s), (f"recent_abs_{c}", s))
+
+
+def _memories(tracks: Sequence[Track]) -> list[float]:
+    """Time constants [s] of what was commanded of late: what is shorter no row shows, what is longer looks constant."""
+    rows = max(float(np.median(np.diff(t.times))) for t in tracks)
+    whole = max(float(t.times[-1] - t.times[0]) for t in tracks)
+    shortest, longest = SHORTEST_MEMORY * rows, max(LONGEST_MEMORY, SHORTEST_MEMORY * rows / whole) * whole
+    return [_memory(x) for x in np.geomspace(shortest, longest, MEMORIES).tolist()]
+
+
+def _memory(seconds: float) -> float:
+    """The nearest time constant [s] that a law may have."""
+    about = Described.params()["memory"]
+    return min(max(seconds, about.low), about.high)
 
 
 def _thresholds(moves: Mapping[str, Array]) -> Iterator[tuple[str, float]]:
@@ -182,4 +224,6 @@ def neighbours(term: Described, tracks: Sequence[Track], by: float) -> list[Desc
                     found.append(replace(term, wavelength=wavelength, crest=crest))
     if set(term.of) & set(BEYOND):
         found += [replace(term, beyond=term.beyond * x) for x in (1.0 + by, 1.0 / (1.0 + by))]
+    if term.looks_back:
+        found += [replace(term, memory=_memory(term.memory * x)) for x in (1.0 + by, 1.0 / (1.0 + by))]
     return found

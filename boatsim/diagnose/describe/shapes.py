@@ -16,7 +16,20 @@ from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.signals import AXES
 
-WATER = ("u", "v", "w")
+Late = tuple[float, float, float]  # what is recalled, by `terms.looks`, and its time constant [s]
+NEVER: Late = (0.0, 0.0, 1.0)
+
+
+def lagged(signals: Array, times: Array, time_constant: float) -> Array:
+    """(K, N) means, from row to row, of what follows signals (K, N) with a lag; each is held from row to row."""
+    steps = np.append(np.diff(times), times[-1] - times[-2]) / time_constant
+    decay = np.exp(-steps)
+    out, y = np.empty_like(signals), signals[:, 0]
+    for row, (step, kept) in enumerate(zip(steps.tolist(), decay.tolist(), strict=True)):
+        x = signals[:, row]
+        out[:, row] = x + (y - x) * ((1.0 - kept) / step)
+        y = x + (y - x) * kept
+    return out
 
 
 @dataclass(frozen=True)
@@ -67,7 +80,11 @@ class Way:
         return {}
 
     @cached_property
-    def _factors(self) -> dict[tuple[float, terms.Detail], Array]:
+    def _factors(self) -> dict[tuple[float, terms.Detail, Late], Array]:
+        return {}
+
+    @cached_property
+    def _lagged(self) -> dict[float, Array]:
         return {}
 
     def along(self, term: Described) -> Array:
@@ -94,16 +111,30 @@ class Way:
         size = np.asarray(terms.course.py_func(self.track.times, acts, term.begin, term.end))
         little = term.completed(vessel).little if set(term.of) & set(terms.SENSES) else 1.0
         detail = (term.wavelength, term.crest, little, term.beyond)
-        for number in terms.codes(term.name, term.of, vessel.held)[: len(term.of)]:
-            size = size * self.factor(number, detail)
+        late = (*terms.looks(term.name, term.of, vessel.seen), term.memory) if term.looks_back else NEVER
+        for number in terms.codes(term.name, term.of, vessel.seen)[: len(term.of)]:
+            size = size * self.factor(number, detail, late)
         return size
 
-    def factor(self, number: float, detail: terms.Detail) -> Array:
+    def factor(self, number: float, detail: terms.Detail, late: Late = NEVER) -> Array:
         """(N,) one factor."""
-        if (number, detail) not in self._factors:
-            found = terms.factor.py_func(self.motion, self.held, 0, number, detail)
-            self._factors[number, detail] = np.asarray(found, dtype=float)
-        return self._factors[number, detail]
+        key = number, detail, late
+        if key not in self._factors:
+            held = self.recalled(*late)[None] if late[0] else self.held
+            held = held if terms.RECALLED <= number < terms.FIRST_HELD else self.held
+            found = terms.factor.py_func(self.motion, held, 0, 0, number, detail)
+            self._factors[key] = np.asarray(found, dtype=float)
+        return self._factors[key]
+
+    def recalled(self, looks_at: float, beyond: float, memory: float) -> Array:
+        """(N,) an actuator signal, or its size, as it was of late, or by how much it is beyond that; row to row."""
+        signals = np.repeat(self.held, 2, axis=0)
+        signals[1::2] = np.abs(signals[1::2])
+        if memory not in self._lagged:
+            self._lagged[memory] = lagged(signals, self.track.times, memory)
+        k = int(looks_at) - terms.FIRST_HELD
+        late = self._lagged[memory][k]
+        return np.asarray(signals[k] - late if beyond else late)
 
     def thrust(self, side: str, sense: str) -> Array:
         """(N, axes) force of the drives on one side while they push in one sense."""

@@ -88,4 +88,5 @@ def varying(ways: Sequence[Way]) -> tuple[dict[str, Array], list[str]]:
     speeds = {names[a]: np.concatenate([getattr(w.motion, fields[a]) for w in ways]) for a in axes_of(vessel)}
     held = np.concatenate([w.held for w in ways], axis=1)
     moves = {n: x for n, x in speeds.items() if np.ptp(x) > 0.0}
-    return moves, [a for i, a in enumerate(vessel.actuators) if np.ptp(held[i]) > 0.0]
+    given = (*vessel.actuators, *vessel.sums)
+    return moves, [a for a in given if np.ptp(held[vessel.seen.index(a)]) > 0.0]

@@ -10,7 +10,7 @@ from boatsim.diagnose.report.words import listed, number, parameter, plain, quan
 from boatsim.physics.described import EVER, Described
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
-from boatsim.physics.terms import BEYOND, RIPPLES, UNITS
+from boatsim.physics.terms import BEYOND, RIPPLES, UNITS, looking
 from boatsim.physics.vessel import Vessel
 
 FORCES = {
@@ -64,6 +64,12 @@ def over_words(over: str) -> str:
         return f"how far {over.removeprefix('ripple_')} she is [m]"
     if over in ("time", "product"):
         return "time [s]" if over == "time" else "product of the factors [SI]"
+    how, signal = looking(over, ())
+    if how:
+        words = "of late" if how == "recent" else "beyond what it was of late"
+        size = "the size of " if signal.startswith("abs_") else ""
+        name, _, unit = over_words(signal.removeprefix("abs_")).partition(" [")
+        return f"{size}{name} {words} [{unit}" if unit else f"{size}{name} {words}"
     unit = UNITS.get(over, "")
     return f"{FACTORS.get(over, plain(over))} [{unit}]" if unit else parameter(over)[0]
 
@@ -163,6 +169,11 @@ def _factor(name: str, term: Described) -> str:
     for mark, words in (("abs_", "the size of "), ("sign_", "the sense of ")):
         if name.startswith(mark):
             return words + _factor(name.removeprefix(mark), term)
+    if term.looks_back and (looks := looking(name, ()))[0]:
+        how, signal = looks
+        said = _factor(signal, term)
+        late = f"of the last {number(term.memory)} s"
+        return f"{said} {late}" if how == "recent" else f"what {said} is beyond that {late}"
     return parameter(name)[0] if name not in UNITS else plain(name)
 
 
@@ -173,7 +184,8 @@ def unit_of(term: Described, vessel: Vessel) -> str:
         powers["N"] = 1
         powers["m"] = int(term.axis in TURNING)
     for name in term.of:
-        unit = UNITS.get(name) or vessel.unit(name.removeprefix("abs_"))
+        signal = looking(name, vessel.seen)[1] or name
+        unit = UNITS.get(name) or vessel.unit(signal.removeprefix("abs_"))
         above, _, below = unit.partition("/")
         for part, sign in ((above, -1), (below, 1)):
             for symbol in part.split():

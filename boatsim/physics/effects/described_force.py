@@ -12,9 +12,9 @@ from boatsim.physics.param import code
 
 
 @njit(inline="always")
-def law(m: Any, q: Any, act: Any, at: Any) -> Wrench:
+def law(m: Any, q: Any, act: Any, at: Any, own: Any) -> Wrench:
     """Coefficient times its factors times its course, along one axis of the hull or of the earth."""
-    return terms.along(m, q.direction, q.coefficient * terms.term(m, q, act, at))
+    return terms.along(m, q.direction, q.coefficient * terms.term(m, q, act, at, own))
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,11 @@ SENSES = {"both": 0.0, "ahead": 1.0, "astern": -1.0}
 
 
 @njit(inline="always")
-def law(m: Any, q: Any, s: Any, t: Any, act: Any, at: Any) -> Wrench:
+def law(m: Any, q: Any, s: Any, t: Any, act: Any, at: Any, own: Any) -> Wrench:
     """Each drive's thrust times coefficient, factors and course, on the side and in the sense it is about."""
     thrust = t.gain * s.thrust
     about = (q.where == 0.0 or q.where * t.y > 0.0) and q.way * thrust >= 0.0
-    return at_mount(q.coefficient * terms.term(m, q, act, at) * thrust if about else 0.0, s, t)
+    return at_mount(q.coefficient * terms.term(m, q, act, at, own) * thrust if about else 0.0, s, t)
 
 
 @dataclass(frozen=True)

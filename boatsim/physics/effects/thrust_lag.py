@@ -1,12 +1,12 @@
 """Thrust lag: motor and propeller take time to follow the command."""
 
 from dataclasses import dataclass
-from math import exp, inf, log
+from math import inf, log
 from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Array, Channel, Course, course, followed, param
+from boatsim.physics.base import Array, Channel, Course, followed, lagged, param
 
 NONE = 1e-4  # [s] a shorter lag is none
 SAME = 1e-9  # of a command: what is left of the other way round is nothing
@@ -14,21 +14,11 @@ SAME = 1e-9  # of a command: what is left of the other way round is nothing
 
 @njit(inline="always")
 def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
-    """First-order lag, exact for a command whose course is a parabola.
-
-    T y' = x - y with x = b + c s + d s^2, s in steps, has the solution f + g s + d s^2 beside a decaying rest.
-    """
-    y = memory[at]
+    """First-order lag, exact for a command whose course is a parabola."""
     if q.time_constant < NONE:
         memory[at] = x.end
         return x
-    quick = dt / q.time_constant
-    c, d = 4.0 * x.middle - 3.0 * x.begin - x.end, 2.0 * (x.begin + x.end) - 4.0 * x.middle
-    g = c - 2.0 * d / quick
-    f = x.begin - g / quick
-    decay = exp(-quick)
-    memory[at] = f + g + d + (y - f) * decay
-    return course(y, f + 0.5 * g + d / 3.0 + (y - f) * (1.0 - decay) / quick, memory[at])
+    return lagged(x, q.time_constant, memory, at, dt)
 
 
 @njit(inline="always")

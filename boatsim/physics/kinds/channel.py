@@ -8,6 +8,8 @@ from boatsim.errors import BadInput
 from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 from boatsim.physics.signals import Course
 
+WHOLE = "*"  # the station behind those of all actuators
+
 
 def actuators(program: Composed) -> Sequence[Station]:
     """Each signal begins as its command or reading, held over the step, and ends in the rows of `act`."""
@@ -24,12 +26,21 @@ def actuators(program: Composed) -> Sequence[Station]:
         ]
         begin = (f"c = commands[{program.commands.index(name)}]", "x = Course(c, c, c)")
         stations.append(Station(begin, tuple(end), name))
-    return stations
+    return [*stations, Station(tuple(sums(program)), (), WHOLE)]
+
+
+def sums(program: Composed) -> Iterator[str]:
+    """What several actuators come to together."""
+    for name, parts in program.sums.items():
+        for row in ("", "held + ", "2 * held + "):
+            total = " + ".join(f"act[{row}{program.held.index(part)}]" for part in parts)
+            yield f"act[{row}{program.held.index(name)}] = {total}"
 
 
 def pausing(program: Composed) -> Sequence[Station]:
     """Each signal's command or reading."""
-    return [Station((f"x = commands[{program.commands.index(name)}]",), (), name) for name in program.signals]
+    begins = {name: (f"x = commands[{program.commands.index(name)}]",) for name in program.signals}
+    return [*(Station(begin, (), name) for name, begin in begins.items()), Station(channel=WHOLE)]
 
 
 # Stages: what is wrong with a command comes before the actuator that follows it, what is wrong with its deed after it

@@ -2,7 +2,7 @@
 
 from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from math import cos, isfinite, sin
 from operator import attrgetter
@@ -49,7 +49,7 @@ class Effect(Checked):
     random: ClassVar[bool] = False  # only its spectrum can be fitted: the filter follows its course, a free run can not
     alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
     described: ClassVar[bool] = False  # a law that the diagnosis writes itself, of terms: no entry of the library
-    sees_held: ClassVar[bool] = False  # its law takes all actuators besides, `act` and `at`, as its last arguments
+    sees_held: ClassVar[bool] = False  # its law takes all actuators besides: `act`, `at`, the place of what it recalls
     rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
 
     filled: frozenset[str] = field(  # parameters by `completed`, which nobody stated
@@ -145,6 +145,11 @@ class Effect(Checked):
         """Parameters by a rule of the effect's own, for those that nobody states; what follows is filled in before."""
         return {}
 
+    def still_as_on(self, vessel: "Boat") -> bool:
+        """Whether what `rules` gave for words that no file may state is still so, now that the vessel is whole."""
+        ruled = self.rules(vessel)
+        return all(ruled[f.name] == getattr(self, f.name) for f in fields(self) if {"param", "ours"} <= set(f.metadata))
+
     def _left(self) -> list[str]:
         """Parameters without a value."""
         return [n for n in type(self).params() if not self.stated(n)]
@@ -207,8 +212,8 @@ class Boat(Protocol):
         """The rigid body."""
 
     @property
-    def held(self) -> Sequence[str]:
-        """What laws see of its actuators: themselves, then cosine and sine of those that are angles."""
+    def seen(self) -> Sequence[str]:
+        """What described laws see of its actuators: themselves, cosine and sine of angles, the sums of several."""
 
     def effect(self, name: str) -> Effect | None:
         """Its own effect of that name, or the only one of that idea."""
@@ -243,7 +248,8 @@ class Composed(Protocol):
     effects: tuple[Effect, ...]
     signals: tuple[str, ...]  # actuators, and readings of what is measured around the boat
     commands: tuple[str, ...]  # what the vessel takes: commands, then what is measured
-    held: Sequence[str]  # what `act` holds: the signals, with cosine and sine of those that are angles
+    held: Sequence[str]  # what `act` holds: signals, cosine and sine of angles; for described laws sums, recalled
+    sums: Mapping[str, Sequence[str]]  # of these, the actuators that each sum is of
 
     def sites(self, number: int) -> Sequence[Site]:
         """The calls of an effect's laws: one, or one for each instance that it rides on."""
@@ -258,7 +264,10 @@ class Composed(Protocol):
         """-1 port, +1 starboard, 0 middle of what an actuator drives."""
 
     def memory(self, number: int, actuator: str) -> int:
-        """Where a channel effect's memory of an actuator begins."""
+        """Where an effect's memory of an actuator begins."""
+
+    def own(self, number: int) -> int:
+        """Place in `held` of what an effect recalls; 0 of one that does not look back."""
 
     def behind(self, number: int) -> Sequence[int]:
         """The effects that come after one in the program."""
