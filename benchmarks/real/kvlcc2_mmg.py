@@ -23,6 +23,7 @@ from boatsim.recordings.table import Recording
 
 NAME = "kvlcc2_mmg"
 VESSELS = {"hsva": "kvlcc2_mmg", "marin": "kvlcc2_mmg_full_scale"}
+FACTS = {"steering_measured": True}  # both tanks measured the rudder's angle
 GOAL = 0.5  # of the recalibrated model's error
 COUNT = ("first", "second")  # overshoots that are looked at
 HELD = 0.97  # of the rudder angle of one side of a zig-zag: below it the rudder is on its way to the other side
@@ -156,7 +157,8 @@ def main() -> None:
         name, unseen, horizon, judge = TANKS[tank]
         runs = runs_of(name)
         fitted = [path for n, path in runs.items() if n not in unseen]
-        found = analysis.diagnose(fitted, [runs[n] for n in unseen], VESSELS[tank], horizon=horizon)
+        kept = [runs[n] for n in unseen]
+        found = analysis.diagnose(fitted, kept, VESSELS[tank], horizon=horizon, facts=FACTS)
         print(f"\n{name}, {VESSELS[tank]}")
         report(found, f"{NAME}_{tank}")
         print_verdict(found)
