@@ -7,6 +7,7 @@ of kvlcc2_hsva_zigzag (7 m model) and kvlcc2_marin_free (full-scale values), rea
 
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,11 @@ from benchmarks.real import kvlcc2_marin_free as marin
 from benchmarks.real.common import print_verdict, report, runs_of, table
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
+from boatsim.diagnose.filter import Track
+from boatsim.diagnose.fit import converge, descend
+from boatsim.diagnose.free_runs import errors, free_runs
+from boatsim.diagnose.levels import fit_force, force_prior
+from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report.show import MODELS, fits_of
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
@@ -27,6 +33,7 @@ FACTS = {"steering_measured": True}  # both tanks measured the rudder's angle
 GOAL = 0.5  # of the recalibrated model's error
 COUNT = ("first", "second")  # overshoots that are looked at
 HELD = 0.97  # of the rudder angle of one side of a zig-zag: below it the rudder is on its way to the other side
+DRAWS = 50  # of coefficients from what the fitted runs leave open
 TOLD = 0.5  # share of its prior sd below which the sd of a coefficient says that the recordings know it
 
 
@@ -130,17 +137,68 @@ def opened(runs: dict[str, Path], vessel: str) -> dict[str, Recording]:
 
 # ---- the two tanks
 
+Errors = dict[str, float]
+
+
+def likely(problem: Problem, found: Fit) -> float:
+    """Log likelihood [nats] of the recordings by these coefficients, the water as rough as it then must be."""
+    there = fit_force(problem, found)
+    on = problem.program.switches(there.suspects)
+    return problem.likelihood(there.free, there.theta, on, there.levels) + force_prior(problem, there.levels)
+
+
+def print_room(found: Diagnosis, unseen: Sequence[Track], judged: Callable[[Fit], Errors]) -> None:
+    """How far the recalibrated model is off on unseen runs for its structure, how far for what it was not told.
+
+    The same coefficients refitted with the unseen runs among the fitted ones show what the structure can do; those
+    drawn from what the fitted runs leave open show what errors they let one expect.
+    """
+    before = found.ranking.recalibrated
+    everything = found.problem.on([*found.problem.tracks, *unseen])
+    whole = converge(everything, descend(everything, before, 6, 0.1))
+    taught = judged(whole)
+    rng = np.random.default_rng(0)
+    low, high = ([getattr(f, end) for f in before.free] for end in ("low", "high"))
+    drawn = np.clip(rng.multivariate_normal(before.theta, before.covariance, DRAWS), low, high)
+    might = [judged(replace(before, theta=theta)) for theta in drawn]
+    rows = []
+    for what, error in judged(before).items():
+        least, most = np.quantile([m[what] for m in might], [0.1, 0.9])
+        rows.append([what, f"{error:.3f}", f"{taught[what]:.3f}", f"{least:.3f} to {most:.3f}"])
+    header = [
+        "rms error",
+        "recalibrated",
+        "told the unseen runs too",
+        "coefficients as the fitted runs leave them open",
+    ]
+    table(f"what the structure can do, and the middle 80 % of {DRAWS} draws", header, rows)
+    cost = likely(found.problem, before) - likely(found.problem, whole)
+    print(f"told the unseen runs too, the model makes the fitted ones {cost:.0f} nats unlikelier")
+
 
 def of_hsva(found: Diagnosis, runs: dict[str, Recording]) -> None:
     """All runs are zig-zags."""
+    unseen = [found.laid(runs[n]) for n in hsva.UNSEEN]
+
+    def judged(fit: Fit) -> Errors:
+        off = errors(free_runs(found.problem, {"": fit}, unseen, hsva.HORIZON))
+        return {what: off[family][""] * factor for family, (what, factor) in hsva.UNITS.items()}
+
     print_overshoots(found, runs)
     hsva.print_unseen(found, dict.fromkeys(hsva.UNITS, GOAL))
+    print_room(found, unseen, judged)
 
 
 def of_marin(found: Diagnosis, runs: dict[str, Recording]) -> None:
     """Zig-zags, and the circle on which they are judged."""
+    circle = found.laid(runs[marin.UNSEEN])
+
+    def judged(fit: Fit) -> Errors:
+        return dict(zip(marin.GOALS, marin.turn(found, fit, circle).tolist(), strict=True))
+
     print_overshoots(found, {n: runs[n] for n in marin.FITTED})
-    marin.print_circle(found, found.laid(runs[marin.UNSEEN]), dict.fromkeys(marin.GOALS, GOAL))
+    marin.print_circle(found, circle, dict.fromkeys(marin.GOALS, GOAL))
+    print_room(found, [circle], judged)
 
 
 TANKS: dict[str, tuple[str, tuple[str, ...], float, Callable[[Diagnosis, dict[str, Recording]], None]]] = {
