@@ -9,7 +9,7 @@ import pytest
 
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.problem import check_taken_up
-from boatsim.diagnose.tried import called, fittable, library_for
+from boatsim.diagnose.tried import called, fittable, library_for, without_ruled_out
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.effects.added_mass import AddedMass
@@ -62,6 +62,14 @@ def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None
     assert library_for(planar).left_out["tether"] == "the vessel's reason: nothing is tied to it"
     with pytest.raises(BadInput, match="leave_out 'tehter' does not exist; did you mean 'tether'"):
         library_for(of(boats.PLANAR + reasons.replace("tether", "tehter"), tmp_path))
+
+
+def test_what_facts_rule_out_does_not_act_either_where_it_is_the_vessels_own() -> None:
+    """A measured angle is behind the steering machine: its limit would hold it back once more."""
+    ship = vessel.load("kvlcc2_mmg")
+    measured = without_ruled_out(ship, {"steering_measured": True})
+    assert [e.name for e in ship.effects if e not in measured.effects] == ["steering_rate_limit"]
+    assert without_ruled_out(ship, {"steering_measured": False, "indoors": True}).effects == ship.effects
 
 
 def test_an_entry_that_shows_as_another_does_is_tried_where_it_is_asked_for() -> None:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.real.common import report, runs_of, table
+from benchmarks.real.common import print_verdict, report, runs_of, table
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
 from boatsim.diagnose.correlation_time import timed
@@ -148,19 +148,6 @@ def _medians(before: Sequence[float], after: Sequence[float]) -> list[str]:
         return ["", "", ""]
     a, b = float(np.median(before)), float(np.median(after))
     return [f"{a:.4f}", f"{b:.4f}", f"{b / a:.3f}"]
-
-
-def print_verdict(found: Diagnosis) -> None:
-    """Physics and measurement apart, in order of gain, with parameters."""
-    for kind, words in (("physics", "left out of the boat"), ("measurement", "wrong with the instruments")):
-        print(f"\n{words}:")
-        effects = [e for e in found.findings.answer["effects"] if e["kind"] == kind]
-        for e in sorted(effects, key=lambda e: -e["gain_nats"]):
-            values = ", ".join(f"{k} {p['value']:.3g} +- {p['sd']:.2g}" for k, p in e["parameters"].items())
-            tied = f"; hardly to be told from {', '.join(e['tied_with'])}" if e["tied_with"] else ""
-            print(f"  {e['name']} ({e['gain_nats']:.0f} nats): {values}{tied}")
-        if not effects:
-            print("  nothing found")
 
 
 def main() -> None:

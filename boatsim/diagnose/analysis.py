@@ -28,8 +28,9 @@ from boatsim.diagnose.report.answer import compose, meanings
 from boatsim.diagnose.report.findings import Findings, Missing
 from boatsim.diagnose.search.rank import Ranking, rank
 from boatsim.diagnose.spread import widened
-from boatsim.diagnose.tried import less, library_for, with_stated_errors
+from boatsim.diagnose.tried import less, library_for, with_stated_errors, without_ruled_out
 from boatsim.errors import BadInput
+from boatsim.files import Value
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -98,13 +99,17 @@ def diagnose(
     library: Sequence[str] = (),
     without: Sequence[str] = (),
     horizon: float | None = None,
+    facts: Mapping[str, Value] | None = None,
 ) -> Diagnosis:
     """Locate, name and model what the vessel leaves out of the recordings. Raises BadInput.
 
-    `horizon` is the length [s] of the free runs by which it is judged, if not the usual one.
+    `horizon` is the length [s] of the free runs by which it is judged, if not the usual one; `facts` are those of all
+    the recordings that their notes do not state.
     """
     _check_apart([*runs, *hold_out])
     opened = [open_recording(path, vessel, load) for path in (*runs, *hold_out)]
+    stated = [replace(r.notes, facts={**(facts or {}), **r.notes.facts}) for r, _ in opened]
+    opened = [(replace(r, notes=notes), b) for (r, b), notes in zip(opened, stated, strict=True)]
     boats = [boat for _, boat in opened]
     if len({(b.file, b.freedoms) for b in boats}) > 1:
         raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}")
@@ -132,7 +137,7 @@ def diagnose_recordings(
     """
     boat, facts = boats[fitted[0].path], fitted[0].notes.facts
     columns = sorted({c for r in fitted for c in r.signals})
-    known = {path: with_stated_errors(b, facts) for path, b in boats.items()}
+    known = {path: with_stated_errors(without_ruled_out(b, facts), facts) for path, b in boats.items()}
     there = {path: library_for(b, library, facts, columns) for path, b in known.items()}
     programs = {path: Program(b, there[path].compiled) for path, b in known.items()}
     stated = noise_of(boat, fitted)

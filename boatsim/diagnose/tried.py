@@ -188,6 +188,15 @@ def called(name: str) -> str:
     return name.removeprefix(REORDERED).removeprefix(FURTHER)
 
 
+def without_ruled_out(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
+    """The vessel without those of its own effects that facts rule out, as they rule entries out.
+
+    A steering angle that was measured is behind the steering machine: a limit of it acts on commands, not once more.
+    """
+    known = {**vessel.diagnosis.facts, **facts}
+    return replace(vessel, effects=tuple(e for e in vessel.effects if not ruled_out(type(e).ruled_out_by, known)))
+
+
 def with_stated_errors(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
     """The vessel with the wandering error of its fixes that facts state: the filter then knows it from the start."""
     known = {**vessel.diagnosis.facts, **facts}

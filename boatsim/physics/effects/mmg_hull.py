@@ -7,7 +7,6 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
-from boatsim.physics.effects.abkowitz_hull import derivative
 
 BOW_ON = 2.0  # R_0 is taken whole where u / U is above its inverse, up to 60 deg of drift; the model is for much less
 FASTEST = 3.0  # [-] r L / U up to which the polynomials are taken; the tightest turns of a ship under way are below 1.5
@@ -30,6 +29,11 @@ def law(m: Any, q: Any) -> Wrench:
     return wrench(X=k * X + q.m_y * m.vr * m.r, Y=k * Y - q.m_x * m.ur * m.r, N=k * q.length * N)
 
 
+def derivative(name: str, axis: str) -> float:
+    """A nondimensional derivative from captive tests, known as well as these are."""
+    return param(0.0, low=-10.0, high=10.0, unit="", words=f"{name}', nondimensional", calibrates="damping", axis=axis)
+
+
 @dataclass(frozen=True)
 class MmgHull(Force):
     """Of a ship that goes ahead; needs added_mass with coriolis = 0. The origin of motion is midship."""
@@ -44,20 +48,20 @@ class MmgHull(Force):
     density: float = param(1000.0, low=0.0, high=1100.0, unit="kg/m^3", words="of the water")
     m_x: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge")
     m_y: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway")
-    R_0: float = derivative("R_0")
-    X_vv: float = derivative("X_vv")
-    X_vr: float = derivative("X_vr")
-    X_rr: float = derivative("X_rr")
-    X_vvvv: float = derivative("X_vvvv")
-    Y_v: float = derivative("Y_v")
-    Y_r: float = derivative("Y_r")
-    Y_vvv: float = derivative("Y_vvv")
-    Y_vvr: float = derivative("Y_vvr")
-    Y_vrr: float = derivative("Y_vrr")
-    Y_rrr: float = derivative("Y_rrr")
-    N_v: float = derivative("N_v")
-    N_r: float = derivative("N_r")
-    N_vvv: float = derivative("N_vvv")
-    N_vvr: float = derivative("N_vvr")
-    N_vrr: float = derivative("N_vrr")
-    N_rrr: float = derivative("N_rrr")
+    R_0: float = derivative("R_0", "surge")
+    X_vv: float = derivative("X_vv", "surge")
+    X_vr: float = derivative("X_vr", "surge")
+    X_rr: float = derivative("X_rr", "surge")
+    X_vvvv: float = derivative("X_vvvv", "surge")
+    Y_v: float = derivative("Y_v", "sway")
+    Y_r: float = derivative("Y_r", "sway")
+    Y_vvv: float = derivative("Y_vvv", "sway")
+    Y_vvr: float = derivative("Y_vvr", "sway")
+    Y_vrr: float = derivative("Y_vrr", "sway")
+    Y_rrr: float = derivative("Y_rrr", "sway")
+    N_v: float = derivative("N_v", "yaw")
+    N_r: float = derivative("N_r", "yaw")
+    N_vvv: float = derivative("N_vvv", "yaw")
+    N_vvr: float = derivative("N_vvr", "yaw")
+    N_vrr: float = derivative("N_vrr", "yaw")
+    N_rrr: float = derivative("N_rrr", "yaw")

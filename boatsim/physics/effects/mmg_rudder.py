@@ -69,12 +69,18 @@ class MmgRudder(Force):
     span: float = param(1.0, low=0.001, high=50.0, unit="m", words="H_R")
     slope: float = param(0.0, low=0.0, high=10.0, unit="", words="f_alpha, of the normal force coefficient")
     steering_deduction: float = param(0.0, low=0.0, high=1.0, unit="", words="t_R")
-    hull_share: float = param(0.0, low=0.0, high=2.0, unit="", words="a_H, sway force on the hull per rudder force")
+    hull_share: float = param(
+        0.0, low=0.0, high=2.0, unit="", words="a_H, sway force on the hull per rudder force", calibrates="thrust"
+    )
     hull_at: float = param(0.0, low=-1.0, high=1.0, unit="", words="x_H', where it acts, lengths ahead of midship")
     rudder_at: float = param(-0.5, low=-1.0, high=1.0, unit="", words="x_R', lengths ahead of midship")
     flow_at: float = param(-1.0, low=-2.0, high=2.0, unit="", words="l_R', effective place in the flow")
-    straightening_port: float = param(1.0, low=0.0, high=2.0, unit="", words="gamma_R for water from port, beta_R > 0")
-    straightening_starboard: float = param(1.0, low=0.0, high=2.0, unit="", words="gamma_R for water from starboard")
+    straightening_port: float = param(
+        1.0, low=0.0, high=2.0, unit="", words="gamma_R for water from port, beta_R > 0", calibrates="thrust"
+    )
+    straightening_starboard: float = param(
+        1.0, low=0.0, high=2.0, unit="", words="gamma_R for water from starboard", calibrates="thrust"
+    )
     epsilon: float = param(1.0, low=0.0, high=3.0, unit="", words="wake at the rudder over wake at the propeller")
     kappa: float = param(0.5, low=0.0, high=2.0, unit="", words="share of the race's speed that reaches the rudder")
     stall: float = param(NEVER, low=0.02, high=NEVER, unit="rad", words="angle of attack at which F_N stops growing")
