@@ -83,3 +83,11 @@ def replacing(path: Path | str) -> Iterator[Path]:
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def home_folder() -> Path | None:
+    """The user's home by its real place; None where nobody says which it is."""
+    try:
+        return Path.home().resolve()
+    except (RuntimeError, OSError):
+        return None

@@ -2,14 +2,16 @@
 
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from itertools import pairwise
 from pathlib import Path
+from stat import S_IWOTH
 from typing import TypedDict
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import Value
+from boatsim.files import Value, home_folder
 from boatsim.physics.facts import wrong
 from boatsim.physics.signals import AXES
 
@@ -69,12 +71,25 @@ class NotesFile:
 
 
 def notes_for(recording: Path) -> NotesFile:
-    """Notes of one recording from the `recording.toml` in its folder or the nearest folder above."""
-    for folder in recording.resolve().parents:
+    """Notes of one recording from the `recording.toml` in its folder or the nearest folder above that it belongs to."""
+    for folder in _belonging(recording.resolve().parent):
         file = folder / "recording.toml"
         if file.is_file():
             return _parse(file, recording.stem)
     return NotesFile()
+
+
+def _belonging(folder: Path) -> Iterator[Path]:
+    """A recording's folder and those above it, up to the user's home or the repository, whichever comes first.
+
+    A folder that everybody may write to, such as /tmp, ends it too: what lies there may be anybody's.
+    """
+    home = home_folder()
+    yield folder
+    for inner, above in pairwise((folder, *folder.parents)):
+        if inner == home or (inner / ".git").exists() or above.stat().st_mode & S_IWOTH:
+            return
+        yield above
 
 
 def _parse(file: Path, stem: str) -> NotesFile:
