@@ -269,7 +269,7 @@ def test_notes_come_from_the_nearest_folder_above_and_a_run_overrides_them(tmp_p
 @pytest.mark.parametrize(
     "text, said",
     [
-        ("vessel = ", "can not be read as TOML"),
+        ("vessel = ", "not a TOML file"),
         ("vessel = 3", "vessel = 3; allowed is a text"),
         ("load = [1]", "load = [1]; allowed is a text or a list of texts"),
         ("use = [5, 2]", "use = [5, 2]; allowed is [from_s, to_s]"),

@@ -51,6 +51,14 @@ VesselName = Annotated[
     str | None,
     typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="Nominal vessel, instead of recording.toml's."),
 ]
+
+
+def _folder(given: str | Path) -> Path:
+    if not str(given):
+        raise typer.BadParameter("it is empty; allowed is the name of a folder")
+    return Path(given)
+
+
 Load = Annotated[
     list[str] | None, typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide.")
 ]
@@ -84,6 +92,9 @@ def _code(command: Callable[[], int]) -> int:
     except KeyboardInterrupt:
         complain("interrupted")
         return Exit.INTERRUPTED
+    except MemoryError:
+        complain("this needs more memory than there is; a shorter recording, or a longer step or `log`, needs less")
+        return Exit.BAD_INPUT
     except Exception as error:
         if not type(error).__module__.startswith("numba."):
             raise
@@ -118,7 +129,9 @@ def options(
 @guarded
 def run(
     scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")],
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder [default: out/VESSEL/SCENARIO].")] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder [default: out/VESSEL/SCENARIO].")
+    ] = None,
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
     seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,
     live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer while it runs.")] = False,
@@ -149,7 +162,7 @@ def manoeuvre(
         typer.Option(metavar="DEG", help="Zig-zag: heading that reverses the helm [default: angle]."),
     ] = None,
     speed: Annotated[float | None, typer.Option(min=1e-3, metavar="M/S", help="Where the approach begins.")] = None,
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder for the files.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder for the files.")] = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
@@ -196,9 +209,9 @@ def margins(
 @guarded
 def compare(
     run: OneRun,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for compare.csv and compare.rrd.")] = Path(
-        "out/compare"
-    ),
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for compare.csv and compare.rrd.")
+    ] = Path("out/compare"),
     vessel: VesselName = None,
     load: Load = None,
     scenario: Annotated[
@@ -218,7 +231,9 @@ def compare(
 @guarded
 def replay(
     run: OneRun,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for replay.csv.")] = Path("out/replay"),
+    out: Annotated[Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for replay.csv.")] = Path(
+        "out/replay"
+    ),
     vessel: VesselName = None,
     load: Load = None,
     horizon: Annotated[float, typer.Option(min=0.1, metavar="S", help="Length of each free run [s].")] = 6.0,
@@ -236,9 +251,9 @@ def replay(
 @guarded
 def diagnose(
     runs: Runs,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for report.html and the other files.")] = Path(
-        "out/diagnosis"
-    ),
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for report.html and the other files.")
+    ] = Path("out/diagnosis"),
     hold_out: Annotated[
         list[Path] | None, typer.Option(metavar="RUN", help="Judge the result on this one, unseen; may be repeated.")
     ] = None,

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from boatsim.errors import BadInput, unknown_name
 from boatsim.files import replacing
 from boatsim.physics.content import module_of, names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import units
-from boatsim.recordings.notes import Notes, NotesFile, notes_for, unit_of
+from boatsim.recordings.notes import Notes, notes_for, unit_of
 from boatsim.recordings.raw import Raw, refuse
 
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
@@ -25,6 +26,10 @@ COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevat
 HUGE = 1e12  # no time, place, speed or command here is anywhere near
 GAP = 60.0  # [s] between two rows; over a longer one no boat here can be followed
 ROUNDING = 1e-3  # share of a channel's range by which a command rounded for the file may pass its limit
+
+
+class NoSignal(BadInput):
+    """A recording lacks a signal that somebody asks for."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +62,9 @@ class Recording:
         return len(self.t)
 
     def __getitem__(self, name: str) -> Array:
-        """The signal (N,) of this name."""
+        """The signal (N,) of this name. Raises NoSignal."""
+        if name not in self.signals:
+            raise NoSignal(unknown_name(f"{self.name}: signal", name, self.signals))
         return self.signals[name]
 
     def unit(self, name: str) -> str:
@@ -105,7 +112,7 @@ def read(
     BadInput, one line with file, row and column, for anything that can not be used.
     """
     path, channels = Path(path), channels or {}
-    found = notes_for(path) if path.is_file() else NotesFile()
+    found = notes_for(path)
     raw = _renamed(_raw(path), {**(columns or {}), **found.columns})
     needed = [n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or _is_command(n)]
     _check_columns(raw, needed)

@@ -55,6 +55,8 @@ def content(given: str) -> tuple[dict[str, Value], Place]:
 def meant(given: str) -> list[str]:
     """The scenarios that a word on the command line stands for: a name, a folder, a pattern, or a file's cases."""
     shipped = known("scenario")
+    if not given:
+        raise BadInput(f"the name of a scenario is empty; {unknown_name('scenario', given, shipped)}")
     if given in shipped:
         return [given]
     inside = [n for n in shipped if n.startswith(f"{given.rstrip('/')}/")]
