@@ -54,8 +54,8 @@ VesselName = Annotated[
 
 
 def _folder(given: str | Path) -> Path:
-    if not str(given):
-        raise typer.BadParameter("it is empty; allowed is the name of a folder")
+    if not str(given) or "\0" in str(given):
+        raise typer.BadParameter(f"{str(given)!r}; allowed is the name of a folder")
     return Path(given)
 
 

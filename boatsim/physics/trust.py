@@ -72,8 +72,8 @@ def check(path: Path) -> None:
         trust.answers[real.parent] = trust.ask(real.parent)
     if not trust.answers.get(real.parent):
         raise BadInput(
-            f"{path}: this Python file is not run, for only data name it; --trust runs those beside the files on the "
-            "command line, --content FOLDER those of a folder"
+            f"{path} is not run: only data name this Python file; --trust (those beside the files given) or "
+            "--content FOLDER allows it"
         )
 
 

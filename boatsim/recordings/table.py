@@ -12,7 +12,7 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.files import replacing
 from boatsim.physics.content import module_of, names
 from boatsim.physics.signals import POSE, RATES, Array
-from boatsim.recordings import units
+from boatsim.recordings import limits, units
 from boatsim.recordings.notes import Notes, notes_for, unit_of
 from boatsim.recordings.raw import Raw, refuse
 
@@ -147,11 +147,13 @@ def _raw(path: Path) -> Raw:
     if not path.is_file():
         raise refuse(path, "there is no such file")
     try:
+        limits.check_file(path)
         suffix = path.suffix.removeprefix(".").lower()
         format = suffix if suffix in names("reader") else "csv"
         found = module_of("reader", format).read(path)
         if not isinstance(found, Raw):
             raise refuse(path, f"read of the reader {format}.py gives {type(found).__name__}; a Raw is wanted")
+        limits.check_shape(path, len(found.columns))
         return found
     except OSError as error:
         raise refuse(path, f"can not be read ({error.strerror})") from error

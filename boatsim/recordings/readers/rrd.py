@@ -9,6 +9,7 @@ from rerun.chunk import RrdReader
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
+from boatsim.recordings.limits import check_shape
 from boatsim.recordings.raw import Raw
 
 TIMELINE = "sim_time"
@@ -18,16 +19,20 @@ SIGNALS = "signals"
 def read(path: Path) -> Raw:
     """The columns of a run's `.rrd`, t_s first; rows in which a signal was not logged are nan. Raises BadInput."""
     series: dict[str, tuple[list[Array], list[Array]]] = {}
+    cells = 0
     try:
         for name, nanoseconds, values in _scalars(path):
             times, pieces = series.setdefault(name, ([], []))
             times.append(nanoseconds)
             pieces.append(values)
+            cells += len(values)
+            check_shape(path, len(series), cells)
     except (ValueError, OSError, RuntimeError) as error:
         raise BadInput(f"{path}: can not be read as .rrd ({' '.join(str(error).split())[:200]})") from error
     if not series:
         raise BadInput(f"{path}: is not the log of a boatsim run; it has nothing under /{SIGNALS}")
     rows = np.unique(np.concatenate([part for times, _ in series.values() for part in times]))
+    check_shape(path, len(series), len(series) * len(rows))
     columns = {"t_s": rows * 1e-9}
     for name, (times, pieces) in series.items():
         columns[name] = np.full(len(rows), math.nan)
