@@ -36,5 +36,5 @@ def shown(text: str, longest: int | None = None) -> str:
     plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
     if longest is None or len(plain) <= longest:
         return plain
-    tail = longest // 3
+    tail = longest // 2
     return f"{plain[: longest - tail - len(GAP)]}{GAP}{plain[-tail:]}"

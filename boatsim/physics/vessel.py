@@ -371,7 +371,10 @@ def with_effects(
 
 def added(vessel: Vessel, effect: Effect) -> Vessel:
     """The vessel with one more effect; a release changes the numbers it names, now."""
-    effect = effect.completed(vessel)
+    try:
+        effect = effect.completed(vessel)
+    except (ArithmeticError, ValueError) as error:  # a rule divides by what is 0, or takes a root of what is below it
+        raise BadInput(f"{vessel.name}: {effect.name}: no number follows from what is stated ({error})") from None
     if not isinstance(effect, Release):
         return replace(vessel, effects=(*vessel.effects, effect))
     for change in effect.changes(vessel):
