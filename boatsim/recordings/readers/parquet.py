@@ -34,7 +34,7 @@ def read(path: Path) -> Raw:
                 raw.columns[name] = np.array(column.cast("float64", safe=False).to_numpy(), dtype=float)
             else:
                 raw.columns[name] = numbers(raw, name, ["" if cell is None else cell for cell in _cells(column)])
-    except (ArrowException, OSError, ValueError) as error:
+    except (ArrowException, OSError, ValueError, LookupError) as error:
         raise refuse(path, f"is not a Parquet file ({error})") from error
     return raw
 
@@ -42,10 +42,8 @@ def read(path: Path) -> Raw:
 def _check(path: Path, about: "FileMetaData") -> None:
     """Refuse, by what the file says of itself, what is larger than it looks: runs of one value take no room in it."""
     check_shape(path, about.num_columns)
-    groups = [about.row_group(i) for i in range(about.num_row_groups)]
-    chunks = [group.column(k) for group in groups for k in range(group.num_columns)]
     check_shape(path, about.num_columns, about.num_rows * about.num_columns)
-    check_memory(path, 2 * sum(chunk.total_uncompressed_size for chunk in chunks))
+    check_memory(path, 2 * sum(about.row_group(i).total_byte_size for i in range(about.num_row_groups)))
 
 
 def _cells(column: "ChunkedArray") -> list[object]:
