@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+GAP = " ... "  # in place of the middle of a line that is too long
+
 
 class BoatsimError(Exception):
     """Base of all errors raised on purpose by boatsim; the command line prints its message as one line."""
@@ -24,3 +26,15 @@ def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:
     near = [ends.get(n, n) for n in near]
     hint = f"; did you mean {near[0]!r}?" if near else ""
     return f"{what} {found!r} does not exist{hint} (there are: {', '.join(names) or 'none'})"
+
+
+def shown(text: str, longest: int | None = None) -> str:
+    """Text of others as a terminal may show it: what steers one, or turns the way of reading, is written as an escape.
+
+    What is longer than `longest` characters loses its middle: the file stands in front, what is wrong with it behind.
+    """
+    plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+    if longest is None or len(plain) <= longest:
+        return plain
+    tail = longest // 2
+    return f"{plain[: longest - tail - len(GAP)]}{GAP}{plain[-tail:]}"

@@ -1,6 +1,7 @@
 """Files in and out: TOML checked against a pydantic model, each mistake one clear line; writing all or nothing."""
 
 import os
+import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -15,6 +16,11 @@ from boatsim.errors import BadInput, unknown_name
 # What TOML and JSON say, as tomllib and json read it; a point in time is a date
 Value: TypeAlias = "None | str | bool | int | float | date | time | Sequence[Value] | Mapping[str, Value]"
 
+LARGEST = 1 << 20  # bytes of a TOML file
+DEEPEST = 32  # tables and lists within each other
+WHOLE = 1 << 63  # beyond all integers that TOML promises to read
+DOTTED = re.compile(r"""(?<![\w-])(?:(?:[\w-]{1,200}+|"[^"\n]{0,200}"|'[^'\n]{0,200}')[ \t]{0,9}\.[ \t]{0,9}){32}""")
+
 
 class Table(BaseModel):
     """A table of a file: unknown keys are refused, numbers must be finite."""
@@ -26,13 +32,40 @@ T = TypeVar("T", bound=Table)
 
 
 def read_toml(path: Path) -> dict[str, Value]:
-    """Raw content; raises BadInput with the parser's own line and column."""
+    """Raw content; raises BadInput with the parser's own line and column, or for what is no honest size."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        with path.open("rb") as file:
+            raw = file.read(LARGEST + 1)
+        if len(raw) > LARGEST:
+            raise BadInput(f"{path}: more than {LARGEST} bytes; no file of ours is that large")
+        text = raw.decode("utf-8-sig")
+        if DOTTED.search(text):  # the parser's time grows with the square of their number
+            raise RecursionError
+        found: dict[str, Value] = tomllib.loads(text)
+        _check_sizes(found)
+        return found
     except FileNotFoundError:
         raise BadInput(f"{path}: no such file") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, IsADirectoryError, PermissionError) as error:
-        raise BadInput(f"{path.name}: not a TOML file ({error})".replace("\n", " ")) from None
+    except RecursionError:
+        raise BadInput(f"{path}: not a TOML file (tables or lists more than {DEEPEST} deep)") from None
+    except (ValueError, OSError) as error:
+        said = error.strerror if isinstance(error, OSError) else str(error).partition("; use sys.")[0]
+        raise BadInput(f"{path}: not a TOML file ({said})".replace("\n", " ")) from None
+
+
+def _check_sizes(content: Mapping[str, Value]) -> None:
+    """Raises RecursionError for what is nested too deep, ValueError for an integer that TOML has no room for."""
+    left: list[tuple[str, object, int]] = [("", content, 0)]
+    while left:
+        key, value, depth = left.pop()
+        if depth > DEEPEST:
+            raise RecursionError
+        if isinstance(value, dict):
+            left += [(str(k), v, depth + 1) for k, v in value.items()]
+        elif isinstance(value, list):
+            left += [(key, v, depth + 1) for v in value]
+        elif isinstance(value, int) and abs(value) >= WHOLE:
+            raise ValueError(f"{key} is an integer of {len(str(abs(value)))} digits; allowed are those of 64 bits")
 
 
 def checked(model: type[T], data: Mapping[str, object], file: str) -> T:
@@ -83,3 +116,11 @@ def replacing(path: Path | str) -> Iterator[Path]:
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def home_folder() -> Path | None:
+    """The user's home by its real place; None where nobody says which it is."""
+    try:
+        return Path.home().resolve()
+    except (RuntimeError, OSError):
+        return None

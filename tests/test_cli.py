@@ -171,7 +171,7 @@ def test_a_ctrl_c_keeps_what_was_logged(tmp_path: Path) -> None:
     (tmp_path / "quitter.py").write_text(QUITTER)
     text = PLAIN.replace('"l1_joystick"', '"quitter.py"').replace("[[goal]]\nsway_mps = 0.07\n", "")
     quits, good = write(tmp_path / "quits.toml", text), write(tmp_path / "good.toml")
-    result = boatsim("run", quits, good, "--out", tmp_path / "out")
+    result = boatsim("run", quits, good, "--out", tmp_path / "out", "--trust")
     assert result.exit_code == 130
     assert [f.name for f in (tmp_path / "out").iterdir()] == ["quits"]  # the next one was not begun
     assert norms_of(tmp_path / "out" / "quits")["complete"] is False
@@ -382,6 +382,6 @@ def test_a_mistake_in_an_effect_of_ones_own_is_a_line_that_says_where(
     (tmp_path / "mine" / "drift.toml").write_text(
         'vessel = "./vessel.toml"\nduration = 1.0\n[controller]\nuse = "open_loop"\n'
     )
-    found = boatsim("run", str(tmp_path / "mine"), "--out", str(tmp_path / "out"))
+    found = boatsim("run", str(tmp_path / "mine"), "--out", str(tmp_path / "out"), "--trust")
     assert found.exit_code == 2 and said in found.stderr and found.stderr.count("\n") == 1
     assert not (tmp_path / "out").exists()

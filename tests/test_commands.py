@@ -24,6 +24,8 @@ from boatsim.simulate.engine import Engine
 from boatsim.simulate.run import Run, run
 from boatsim.simulate.twin import Twin
 
+pytestmark = pytest.mark.usefixtures("trusted")
+
 WILD = {"thrust_port_N": 500.0, "thrust_starboard_N": -500.0, "steer_port_rad": 9.0}
 TAMED = {"thrust_port_N": 100.0, "thrust_starboard_N": -100.0, "steer_port_rad": 3.2}
 STUBBORN = """

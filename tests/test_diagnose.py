@@ -396,7 +396,7 @@ def test_own_preset_of_a_shipped_law_is_found_by_its_own_file(tmp_path):
         "from boatsim.physics.effects.damping import LinearDamping\n"
         'Weed = preset(LinearDamping, "Weed", words="weed", fixed={"roll_exponent": 3.0})\n'
     )
-    assert address(load_class("effect", str(file))) == str(file.resolve())
+    assert address(load_class("effect", str(file), named=True)) == str(file.resolve())
 
 
 @pytest.mark.slow

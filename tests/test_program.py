@@ -56,8 +56,10 @@ import sys
 import numpy as np
 from boatsim.physics import vessel
 from boatsim.physics.program import Program
+from boatsim.physics.trust import trusting
 
-program = Program(vessel.load(sys.argv[1]))
+with trusting(sys.argv[1]):
+    program = Program(vessel.load(sys.argv[1]))
 act = np.zeros(program.held_size)
 print(program.module.forces(0.0, np.array([0.1, 0.0]), act, np.int64(0), program.values(), program.switches())[0])
 """
@@ -95,6 +97,7 @@ def test_an_edited_law_gives_its_new_number(tmp_path: Path, monkeypatch: pytest.
     assert len(list((tmp_path / "cache").glob("program_*"))) == 2
 
 
+@pytest.mark.usefixtures("trusted")
 def test_a_law_edited_while_the_program_runs_gives_its_new_number(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -106,6 +109,7 @@ def test_a_law_edited_while_the_program_runs_gives_its_new_number(
         assert forces(Program(vessel.load(str(place))), [0.1, 0.0]) == pytest.approx([-0.1 * (2.0 + factor)])
 
 
+@pytest.mark.usefixtures("trusted")
 def test_effects_of_one_name_beside_two_vessels_are_two_effects(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -221,6 +221,7 @@ class Listener(Controller):
 """
 
 
+@pytest.mark.usefixtures("trusted")
 def test_a_sensor_is_one_file_whose_readings_reach_the_controller_and_the_log(tmp_path: Path) -> None:
     (tmp_path / "motor_log.py").write_text(LOG_OF_THE_MOTORS)
     (tmp_path / "listener.py").write_text(LISTENER)

@@ -191,6 +191,7 @@ def test_a_mistake_in_a_vessel_file_is_one_line(tmp_path: Path, change: tuple[st
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.usefixtures("trusted")
 def test_a_class_that_is_no_effect_is_one_line(tmp_path: Path) -> None:
     boats.written(tmp_path, "test_boat", boats.PLANAR.replace('use = "current"', 'use = "plain.py"'))
     (tmp_path / "test_boat" / "plain.py").write_text("class Plain:\n    pass\n")

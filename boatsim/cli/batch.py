@@ -14,6 +14,7 @@ from pathlib import Path
 from boatsim.cli import show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput
+from boatsim.physics import trust
 from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.cases import meant
 from boatsim.simulate.norms import RunEntry
@@ -145,7 +146,7 @@ def _in_turn(tasks: Sequence[Task], report: Report) -> list[Outcome]:
 def _in_processes(tasks: Sequence[Task], jobs: int, report: Report) -> list[Outcome]:
     context = get_context("spawn")  # a fork would copy MuJoCo's and rerun's threads half alive
     stop, reached = context.Event(), context.Array("d", len(tasks))
-    with ProcessPoolExecutor(jobs, context, _begin, (stop, reached)) as pool:
+    with ProcessPoolExecutor(jobs, context, _begin, (stop, reached, trust.now())) as pool:
         with _ignoring_interrupts():  # processes inherit it
             futures = [pool.submit(_work, number, task) for number, task in enumerate(tasks)]
         while True:
@@ -174,9 +175,10 @@ def _result(task: Task, future: Future[Outcome]) -> Outcome:
         return Outcome(task, error=f"{task.name}: its process was killed (out of memory?)")
 
 
-def _begin(stop: Event, reached: "SynchronizedArray[float]") -> None:
-    """First thing in a new process: what it shares with the one that watches."""
+def _begin(stop: Event, reached: "SynchronizedArray[float]", trusted: trust.Trust) -> None:
+    """First thing in a new process: what it shares with the one that watches, and may run what that one may."""
     global _stop, _reached
+    trust.adopt(trusted)
     _stop, _reached = stop, reached
 
 

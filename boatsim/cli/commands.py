@@ -11,7 +11,8 @@ import typer
 from typer.core import TyperGroup
 
 import boatsim
-from boatsim.cli.exits import FAULTS, Exit, complain, words
+from boatsim.cli.asking import asking
+from boatsim.cli.exits import FAULTS, Exit, any_terminal, complain, say, words
 
 P = ParamSpec("P")
 UsageError: Any = typer.BadParameter.__base__  # of all mistakes on the command line typer gives a name to this one only
@@ -25,6 +26,7 @@ class OneLine(TyperGroup):
     ) -> NoReturn:
         """Run the program and leave with its exit code."""
         given = list(sys.argv[1:] if args is None else args)
+        any_terminal()
         try:
             code = super().main(given or ["--help"], prog_name, standalone_mode=False)
         except UsageError as error:
@@ -49,8 +51,24 @@ VesselName = Annotated[
     str | None,
     typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="Nominal vessel, instead of recording.toml's."),
 ]
+
+
+def _folder(given: str | Path) -> Path:
+    if not str(given) or "\0" in str(given):
+        raise typer.BadParameter(f"{str(given)!r}; allowed is the name of a folder")
+    return Path(given)
+
+
 Load = Annotated[
     list[str] | None, typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide.")
+]
+
+Content = Annotated[
+    list[Path] | None,
+    typer.Option("--content", metavar="DIR", help="A folder of your own content, trusted to run; may be repeated."),
+]
+Trusted = Annotated[
+    bool, typer.Option("--trust", help="Let the Python files run that lie beside the files named here.")
 ]
 
 
@@ -74,6 +92,9 @@ def _code(command: Callable[[], int]) -> int:
     except KeyboardInterrupt:
         complain("interrupted")
         return Exit.INTERRUPTED
+    except MemoryError:
+        complain("this needs more memory than there is; a shorter recording, or a longer step or `log`, needs less")
+        return Exit.BAD_INPUT
     except Exception as error:
         if not type(error).__module__.startswith("numba."):
             raise
@@ -108,15 +129,20 @@ def options(
 @guarded
 def run(
     scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")],
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder [default: out/VESSEL/SCENARIO].")] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder [default: out/VESSEL/SCENARIO].")
+    ] = None,
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
     seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,
     live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer while it runs.")] = False,
+    content: Content = None,
+    trust: Trusted = False,
 ) -> int:
     """Run scenarios: recording.csv, norms.json, camera.csv, run.rrd, and a table of norms beside their bars."""
     from boatsim.cli.batch import run_all
 
-    return run_all(scenarios, out, jobs, seed, live)
+    with asking(content, trust, scenarios):
+        return run_all(scenarios, out, jobs, seed, live)
 
 
 @app.command()
@@ -136,14 +162,17 @@ def manoeuvre(
         typer.Option(metavar="DEG", help="Zig-zag: heading that reverses the helm [default: angle]."),
     ] = None,
     speed: Annotated[float | None, typer.Option(min=1e-3, metavar="M/S", help="Where the approach begins.")] = None,
-    out: Annotated[Path | None, typer.Option(metavar="DIR", help="Folder for the files.")] = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder for the files.")] = None,
+    content: Content = None,
+    trust: Trusted = False,
 ) -> int:
     """Run a standard manoeuvre of a vessel: its figures beside the limits of the IMO, and the files of a run."""
     from boatsim.cli.batch import run_manoeuvre
     from boatsim.simulate.manoeuvre import scenario_of
 
-    made = scenario_of(name, vessel, _loads(load), angle, speed, heading)
-    return run_manoeuvre(made, out or Path("out") / f"{made.vessel.name}_{name}")
+    with asking(content, trust, [vessel]):
+        made = scenario_of(name, vessel, _loads(load), angle, speed, heading)
+        return run_manoeuvre(made, out or Path("out") / f"{made.vessel.name}_{name}")
 
 
 @app.command("list")
@@ -153,64 +182,78 @@ def list_(
         Literal["vessels", "controllers", "effects", "sensors", "measures", "scenarios"] | None,
         typer.Argument(help="Only these."),
     ] = None,
+    content: Content = None,
 ) -> None:
     """List vessels, controllers, effects, measures and scenarios, a line each."""
     from boatsim.cli.show import listing
 
-    print("\n".join(listing(kind)))
+    with asking(content):
+        say(listing(kind))
 
 
 @app.command()
 @guarded
-def margins(controller: Annotated[str, typer.Argument(help="Name of a controller, or its .py file.")]) -> None:
+def margins(
+    controller: Annotated[str, typer.Argument(help="Name of a controller, or its .py file.")],
+    content: Content = None,
+) -> None:
     """Print L1 norm, crossover, phase margin and delay margin of a controller's feedback channels."""
     from boatsim.control import margins as found
-    from boatsim.physics import content
+    from boatsim.physics.content import load_class
 
-    print(found.text(found.table(content.load_class("controller", controller)())))
+    with asking(content):
+        print(found.text(found.table(load_class("controller", controller, named=True)())))
 
 
 @app.command()
 @guarded
 def compare(
     run: OneRun,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for compare.csv and compare.rrd.")] = Path(
-        "out/compare"
-    ),
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for compare.csv and compare.rrd.")
+    ] = Path("out/compare"),
     vessel: VesselName = None,
     load: Load = None,
     scenario: Annotated[
         str | None, typer.Option(metavar="NAME|FILE", help="Simulate this, not the recorded commands.")
     ] = None,
+    content: Content = None,
+    trust: Trusted = False,
 ) -> int:
     """Compare a recording with a simulation of its commands, or of a scenario."""
     from boatsim.cli import diagnosis as commands
 
-    return commands.compare(run, vessel, _loads(load), scenario, out)
+    with asking(content, trust, [run, vessel, scenario]):
+        return commands.compare(run, vessel, _loads(load), scenario, out)
 
 
 @app.command()
 @guarded
 def replay(
     run: OneRun,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for replay.csv.")] = Path("out/replay"),
+    out: Annotated[Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for replay.csv.")] = Path(
+        "out/replay"
+    ),
     vessel: VesselName = None,
     load: Load = None,
     horizon: Annotated[float, typer.Option(min=0.1, metavar="S", help="Length of each free run [s].")] = 6.0,
+    content: Content = None,
+    trust: Trusted = False,
 ) -> int:
     """Simulate a recording in free runs, each driven by the recorded commands alone."""
     from boatsim.cli import diagnosis as commands
 
-    return commands.replay(run, vessel, _loads(load), horizon, out)
+    with asking(content, trust, [run, vessel]):
+        return commands.replay(run, vessel, _loads(load), horizon, out)
 
 
 @app.command()
 @guarded
 def diagnose(
     runs: Runs,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for report.html and the other files.")] = Path(
-        "out/diagnosis"
-    ),
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for report.html and the other files.")
+    ] = Path("out/diagnosis"),
     hold_out: Annotated[
         list[Path] | None, typer.Option(metavar="RUN", help="Judge the result on this one, unseen; may be repeated.")
     ] = None,
@@ -225,11 +268,15 @@ def diagnose(
     horizon: Annotated[
         float | None, typer.Option(min=0.1, metavar="S", help="Length of each free run [s], if not the usual one.")
     ] = None,
+    content: Content = None,
+    trust: Trusted = False,
 ) -> int:
     """Say which physics a vessel's model leaves out of recordings of the real one."""
     from boatsim.cli import diagnosis as commands
 
-    return commands.diagnose(runs, hold_out or [], vessel, _loads(load), out, library or [], without or [], horizon)
+    held, own, left_out = hold_out or [], library or [], without or []
+    with asking(content, trust, [*runs, *held, vessel]):
+        return commands.diagnose(runs, held, vessel, _loads(load), out, own, left_out, horizon)
 
 
 @app.command("import")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from boatsim.cli.exits import remark, say
 from boatsim.diagnose.analysis import NEXT, Diagnosis, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.filter import nominal_levels, track
@@ -43,13 +44,12 @@ def diagnose(
     """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
     _show_progress()
     found = analyse(runs, hold_out, vessel, load, library, without, horizon)
-    _say(found.remarks)
+    for line in found.remarks:
+        remark(line)
     write(found, out)
-    for line in summary(found):
-        print(line)
     plan = [NEXT] if found.plan else []
     files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *plan, "diagnosis.rrd"]
-    print(f"written to {out}: {', '.join(files)}")
+    say([*summary(found), f"written to {out}: {', '.join(files)}"])
     return 0
 
 
@@ -60,12 +60,6 @@ def _show_progress() -> None:
     progress = logging.getLogger("boatsim.diagnose")
     progress.handlers = [logging.StreamHandler()]
     progress.setLevel(logging.INFO)
-
-
-def _say(remarks: Sequence[str]) -> None:
-    """Remarks on the input, to stderr, a line each."""
-    for line in remarks:
-        print(f"note: {line}", file=sys.stderr)
 
 
 def write(found: Diagnosis, out: Path) -> None:
@@ -178,15 +172,16 @@ def _of_model(stretch: FreeRun, model: str) -> Recording:
 def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:
     """Free runs of a vessel over a recording, driven by the recorded commands alone: replay.csv and rms errors."""
     recording, boat = open_recording(run, vessel, load)
-    _say(recording.remarks)
+    for line in recording.remarks:
+        remark(line)
     problem, fitted = _as_written(recording, boat)
     stretches = free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
     if not stretches:
         raise BadInput(f"{run}: {recording.t[-1] - recording.t[0]:g} s long; a free run of {horizon:g} s does not fit")
     _write_replay(stretches, out / "replay.csv")
     for family, found in errors(stretches).items():
-        print(f"{family}: {found['simulated']:.5g} ({len(stretches)} free runs of {horizon:g} s)")
-    print(f"written to {out}: replay.csv")
+        say([f"{family}: {found['simulated']:.5g} ({len(stretches)} free runs of {horizon:g} s)"])
+    say([f"written to {out}: replay.csv"])
     return 0
 
 
@@ -211,7 +206,8 @@ def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
 def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None, out: Path) -> int:
     """A recording beside a simulation: of its own commands from its smoothed first state, or of a scenario."""
     recording, boat = open_recording(run, vessel, load)
-    _say(recording.remarks)
+    for line in recording.remarks:
+        remark(line)
     if scenario:
         simulated = _of_scenario(recording, scenario)
     else:
@@ -229,8 +225,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
     with filling(out) as new:
         write_csv(Recording(recording.name, recording.t, signals, Notes()), new / "compare.csv")
         _compare_rrd(boat, recording, simulated, new / "compare.rrd")
-    print("\n".join(lines))
-    print(f"written to {out}: compare.csv, compare.rrd")
+    say([*lines, f"written to {out}: compare.csv, compare.rrd"])
     return 0
 
 

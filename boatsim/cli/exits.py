@@ -1,9 +1,13 @@
 """How the program ends: one exit code, and one line for what went wrong."""
 
 import sys
+from collections.abc import Iterable
 from enum import IntEnum
+from io import TextIOWrapper
 
-from boatsim.errors import BoatsimError
+from boatsim.errors import BoatsimError, shown
+
+LONGEST = 300  # characters of a line of ours, its head and its end kept
 
 
 class Exit(IntEnum):
@@ -27,4 +31,21 @@ def words(error: BaseException) -> str:
 
 def complain(message: str) -> None:
     """One line to stderr."""
-    print(f"boatsim: {message}", file=sys.stderr)
+    print(shown(f"boatsim: {message}", LONGEST), file=sys.stderr)
+
+
+def remark(message: str) -> None:
+    """One line to stderr about what was read and not used."""
+    print(shown(f"note: {message}", LONGEST), file=sys.stderr)
+
+
+def say(lines: Iterable[str]) -> None:
+    """Lines of a result to stdout."""
+    print("\n".join(shown(part) for line in lines for part in line.split("\n")))
+
+
+def any_terminal() -> None:
+    """Let stdout and stderr take any character, written as an escape where their encoding lacks it."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")

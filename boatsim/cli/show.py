@@ -6,6 +6,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from boatsim.errors import shown
 from boatsim.files import read_toml
 from boatsim.physics import content
 from boatsim.simulate import cases
@@ -39,14 +40,14 @@ def norms(found: "RunEntry", folder: Path) -> None:
     short = {REPRODUCED: "same", MISSED: "[bold]differs[/]", UNSTATED: "unstated"}  # in a table 80 columns wide
     state = "" if found["complete"] else ", interrupted"
     table = Table(
-        title=Text(f"{found['scenario']}, {found['controller']}, seed {found['seed']}{state}"), pad_edge=False
+        title=Text(shown(f"{found['scenario']}, {found['controller']}, seed {found['seed']}{state}")), pad_edge=False
     )
     table.add_column("norm", no_wrap=True)
     for heading in ("value", "published"):
         table.add_column(heading, justify="right", no_wrap=True)
     for heading in ("verdict", "guard", "met"):
         table.add_column(heading, no_wrap=True)
-    for name, norm in found["norms"].items():
+    for name, norm in ((shown(n), norm) for n, norm in found["norms"].items()):
         published = "" if norm["published"] is None else f"{norm['published']:.4g}"
         verdict = short.get(norm["verdict"] or "", "")
         table.add_row(name, _value(norm), published, verdict, _guard(norm["guard"]), _met(norm["ok"]))
@@ -55,7 +56,7 @@ def norms(found: "RunEntry", folder: Path) -> None:
         console.print(table)
     else:
         console.print(table.title)
-    console.print(Text(f"written to {folder}"), soft_wrap=True)
+    console.print(Text(shown(f"written to {folder}")), soft_wrap=True)
 
 
 def _value(norm: "NormEntry") -> str:
@@ -79,7 +80,7 @@ def listing(only: str | None) -> list[str]:
     kinds = [only] if only else ["vessels", "controllers", "effects", "sensors", "measures", "scenarios"]
     lines: list[str] = []
     for kind in kinds:
-        names = content.names(kind.removesuffix("s"))
+        names = content.known(kind.removesuffix("s"))
         width = max(map(len, names), default=0)
         lines += [*([""] if lines else []), f"{kind}:"]
         lines += [f"  {name:{width}}  {_about(kind.removesuffix('s'), name)}" for name in names]

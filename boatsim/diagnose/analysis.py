@@ -1,5 +1,6 @@
 """A whole diagnosis: recordings and a vessel in, findings out."""
 
+import os
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -63,14 +64,15 @@ class Diagnosis:
 
 def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
     """The vessel of a recording: the name on the command line, else the one its notes give. Raises BadInput."""
-    notes = notes_for(path).notes
-    name = vessel or notes.vessel
+    file = notes_for(path)
+    notes, name = file.notes, file.notes.vessel if vessel is None else vessel
+    beside = file.folder if vessel is None else None
     if not path.exists():
         raise BadInput(f"{path}: there is no such file")
     if not name:
         raise BadInput(f"{path}: no vessel given; name one with --vessel or in a recording.toml beside it")
     try:
-        found = vessels.load(name, load or notes.load, notes.settings)
+        found = vessels.load(name, load or notes.load, notes.settings, beside=beside)
     except BadInput as error:
         by_notes = not vessel or notes.settings or (notes.load and not load)
         raise BadInput(f"{path} by its recording.toml: {error}" if by_notes else str(error)) from None
@@ -172,11 +174,11 @@ def diagnose_recordings(
 
 def _check_apart(paths: Sequence[Path]) -> None:
     """What is judged on must not be what was fitted."""
-    seen: set[Path] = set()
+    seen: set[str] = set()
     for path in paths:
-        if path.resolve() in seen:
+        if (real := os.path.realpath(path)) in seen:
             raise BadInput(f"{path}: given twice; a recording is either fitted or held out, once")
-        seen.add(path.resolve())
+        seen.add(real)
 
 
 def _names(paths: Sequence[Path]) -> list[str]:

@@ -7,7 +7,6 @@ the vessel) and which facts rule it out, and the vessel's data decide.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count, islice
-from pathlib import Path
 
 import numpy as np
 
@@ -60,8 +59,7 @@ def library_for(
         if name not in names("effect"):
             raise BadInput(unknown_name(f"{vessel.name}: diagnosis.leave_out", name, names("effect")))
     entries, left_out, idle = dict[str, Effect](), dict[str, str](), dict[str, str]()
-    for table, folder, asked in _tables(vessel, own):
-        kind: type[Effect] = load_class("effect", str(table.get("use")), folder)
+    for table, kind, asked in _tables(vessel, own):
         called = str(table.get("name", kind.idea()))
         if not fittable(kind):
             if asked:
@@ -107,14 +105,14 @@ def _either_side(effect: Effect, vessel: Vessel) -> tuple[Effect, ...]:
     return effect, replace(effect, name=REORDERED + effect.name, other_side=True)
 
 
-def _tables(vessel: Vessel, own: Sequence[str]) -> Iterator[tuple[Mapping[str, object], Path, bool]]:
-    """Every entry of the shelf, what the vessel asks to be tried besides, the user's files: table, folder, asked."""
+def _tables(vessel: Vessel, own: Sequence[str]) -> Iterator[tuple[Mapping[str, object], type[Effect], bool]]:
+    """Every entry of the shelf, what the vessel asks to be tried besides, the user's files: table, class, asked."""
     for name in names("effect"):
-        yield {"use": name}, Path(), False
+        yield {"use": name}, load_class("effect", name), False
     for table in vessel.diagnosis.also:
-        yield table, vessel.path, True
+        yield table, load_class("effect", str(table.get("use")), vessel.path), True
     for name in own:
-        yield {"use": name}, Path(), True
+        yield {"use": name}, load_class("effect", name, named=True), True
 
 
 def fittable(kind: type[Effect]) -> bool:

@@ -1,15 +1,19 @@
 """Keeps composed programs on disk, so that numba compiles each once.
 
+What lies there is run: the folder is the user's alone, and a program that is not as it was written is written anew.
+
 A program is a package of its own in the user's cache folder: the generated `laws.py` and `motion.py` beside copies of
 the kernel's files, under a name made from their content and from the content of every file that a law can reach. Numba
 watches each file's own content only; a law, a constant or a kernel edited since has another name.
 """
 
 import ast
+import atexit
 import hashlib
 import importlib.util
 import os
 import shutil
+import stat
 import sys
 import tempfile
 import time
@@ -49,12 +53,12 @@ def module(written: dict[str, str], classes: Iterable[type[Effect]]) -> ModuleTy
     stamp = stamp_of(files, classes)
     folder = cache_folder()
     path = folder / f"program_{stamp}"
-    if (path / "__init__.py").exists():
-        with suppress(OSError):
-            os.utime(path)  # it is in use
-    else:
+    if not _whole(files, path):
+        shutil.rmtree(path, ignore_errors=True)
         _write(files, path)
         _prune(folder)
+    with suppress(OSError):
+        os.utime(path)  # it is in use
     return _imported(path, f"boatsim_program_{stamp}")
 
 
@@ -118,16 +122,44 @@ def _file_of(name: str) -> Path | None:
 
 
 def cache_folder() -> Path:
-    """~/.cache/boatsim, or a folder of the user's own under the temporary one where home is not writable."""
-    wanted = Path(os.environ.get("BOATSIM_CACHE") or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")) / "boatsim")
-    for folder in (wanted.expanduser(), Path(tempfile.gettempdir()) / f"boatsim-{os.getuid()}"):
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            if os.access(folder, os.W_OK):
-                return folder
-        except OSError:
-            continue
-    raise BadInput(f"{wanted}: no folder to keep compiled programs in; set BOATSIM_CACHE to one that can be written")
+    """~/.cache/boatsim, or a private folder that goes with the process where home can not be written. Raises BadInput.
+
+    Code that lies in it is run, so it must be the user's own, and nobody else may write to it.
+    """
+    wanted = os.environ.get("BOATSIM_CACHE") or Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache") / "boatsim"
+    try:
+        folder = Path(wanted).expanduser()
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        found = folder.stat()
+    except (OSError, RuntimeError):  # not to be written; no home to be found
+        return _fleeting()
+    if found.st_uid != os.geteuid() or found.st_mode & stat.S_IWOTH:
+        whose = "everybody may write to it" if found.st_uid == os.geteuid() else "it belongs to somebody else"
+        raise BadInput(f"{folder}: no folder for compiled programs: {whose}; set BOATSIM_CACHE to one of your own")
+    if found.st_mode & 0o077:
+        with suppress(OSError):
+            folder.chmod(0o700)
+    return folder if os.access(folder, os.W_OK | os.X_OK) else _fleeting()
+
+
+@cache
+def _fleeting() -> Path:
+    """A folder of this process and those it starts, gone at its end."""
+    try:
+        folder = Path(tempfile.mkdtemp(prefix="boatsim-"))  # 0700, under a name that nobody can know before
+    except OSError as error:
+        raise BadInput(f"no folder for compiled programs ({error.strerror}); set BOATSIM_CACHE to one") from None
+    os.environ["BOATSIM_CACHE"] = str(folder)
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def _whole(files: dict[str, str], path: Path) -> bool:
+    """Whether a program lies there as it was written."""
+    try:
+        return all((path / name).read_bytes() == text.encode() for name, text in files.items())
+    except OSError:
+        return False
 
 
 def _write(files: dict[str, str], path: Path) -> None:

@@ -4,6 +4,7 @@ Kinds say what they add (`boatsim.physics.kinds`); this module gathers their lin
 be read: `python -m boatsim.physics.program VESSEL` prints it.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from inspect import getsourcefile
@@ -158,7 +159,7 @@ class Composition:
 
     def _head(self, used: set[str]) -> Iterator[str]:
         """Imports, and the compiled functions and types that the text below calls by number."""
-        yield f'"""Effects of {self.vessel.name}, composed by boatsim; not meant to be edited."""'
+        yield f'"""Effects of {_remark(self.vessel.name)}, composed by boatsim; not meant to be edited."""'
         yield ""
         yield "from math import cos, sin"
         yield ""
@@ -171,7 +172,7 @@ class Composition:
         yield f"E = classes_of({[address(type(e)) for e in self.effects]!r})"
         for i, effect in enumerate(self.effects):
             if f"V{i}" in used:
-                yield f"V{i} = E[{i}].values_type()  # {effect.name}"
+                yield f"V{i} = E[{i}].values_type()  # {_remark(effect.name)}"
             if f"S{i}" in used:
                 yield f"S{i} = E[{i}].signals_type()"
             for law in dict.fromkeys(law for kind in type(effect).__mro__ for law in getattr(kind, "laws", ())):
@@ -198,6 +199,11 @@ class Composition:
                 body += lines
             body += station.end
         return body, busy
+
+
+def _remark(name: str) -> str:
+    """A name of the user's as it may stand in a comment or a docstring of a program: it must end neither."""
+    return re.sub(r"[^\w .+-]", "?", name)
 
 
 def _check_compiled(kind: type[Effect], law: str) -> None:

@@ -1,4 +1,8 @@
-"""Finds content by name: vessels, controllers and scenarios are files, and a file's name is its name everywhere."""
+"""Finds content by name: vessels, controllers and scenarios are files, and a file's name is its name everywhere.
+
+A name stands for what the library has, else for what lies beside the file that says it, else for what lies in a folder
+of the user's own content. What is found may be data, which are read, or a Python file, which `trust` has to allow.
+"""
 
 import hashlib
 import importlib
@@ -13,6 +17,7 @@ from typing import Any
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import read_toml, tables
+from boatsim.physics import trust
 
 PACKAGES = {  # kinds that are modules of ours, one a file
     "kind": "physics.kinds",
@@ -24,6 +29,7 @@ PACKAGES = {  # kinds that are modules of ours, one a file
 }
 ENTRY = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE)  # of the shelf of effects
 KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
+OWN = {**KINDS, "effect": "effects", "measure": "measures", "sensor": "sensors"}  # folders of a user's own content
 
 
 @cache
@@ -35,7 +41,7 @@ def root() -> Path:
 
 
 def names(kind: str) -> list[str]:
-    """Every vessel, controller, effect, measure or scenario (folder/file, folder/case) there is."""
+    """Every vessel, controller, effect, measure or scenario (folder/file, folder/case) of the library."""
     if kind == "effect":
         return sorted(_shelf())
     if kind in PACKAGES:
@@ -45,7 +51,7 @@ def names(kind: str) -> list[str]:
         return sorted(p.parent.name for p in folder.glob("*/vessel.toml"))
     if kind == "controller":
         return sorted(p.stem for p in folder.glob("[!_]*.py"))
-    return sorted(_scenarios())
+    return sorted(_scenarios(root()))
 
 
 def _package(kind: str) -> Path:
@@ -63,34 +69,77 @@ def _shelf() -> dict[str, str]:
     return {snake_case(name): file.stem for file in files for name in ENTRY.findall(file.read_text(encoding="utf-8"))}
 
 
-def find(kind: str, name: str, beside: Path | None = None) -> Path:
-    """Path of a vessel.toml, controller .py or scenario .toml, given by name or by a path of the user's own.
-
-    `beside` is the folder a relative path starts from; if nothing is there, the working directory. Raises BadInput.
-    """
-    suffix = ".py" if kind == "controller" else ".toml"
-    for folder in [*([beside] if beside else []), Path()]:
-        own = folder / name
-        if own.suffix == suffix and own.is_file():
-            return own.resolve()
-        if beside and kind == "controller" and name not in names(kind) and (folder / f"{name}{suffix}").is_file():
-            return (folder / f"{name}{suffix}").resolve()
-        if kind == "vessel" and (own / "vessel.toml").is_file() and "/" in name:
-            return (own / "vessel.toml").resolve()
-    if name in names(kind):
-        folder = root() / KINDS[kind]
+def own_names(kind: str) -> list[str]:
+    """What the folders of the user's own content add to `names`."""
+    found: set[str] = set()
+    for folder in trust.content() if kind in OWN else ():
+        inside = folder / OWN[kind]
         if kind == "scenario":
-            return _scenarios()[name]
-        return folder / name / "vessel.toml" if kind == "vessel" else folder / f"{name}{suffix}"
-    if name.endswith(suffix):
+            found |= _scenarios(folder).keys()
+        elif kind == "vessel":
+            found |= {p.parent.name for place in (inside, folder) for p in place.glob("*/vessel.toml")}
+        else:
+            found |= {p.stem for p in inside.glob("[!_]*.py")}
+    return sorted(found - set(names(kind)))
+
+
+def known(kind: str) -> list[str]:
+    """All names that stand for something of a kind."""
+    return sorted([*names(kind), *own_names(kind)])
+
+
+def find(kind: str, name: str, beside: Path | None = None) -> Path:
+    """Path of a vessel.toml, controller .py or scenario .toml, given by name or by a path.
+
+    A relative path starts from `beside`, the folder of the file that says it; without one a user says it, and it starts
+    from the working directory. Raises BadInput.
+    """
+    found = _by_path(kind, name, beside) or _shipped(kind, name) or _in_content(kind, name)
+    if found is not None:
+        return found
+    if name.endswith((".py", ".toml")):
         raise BadInput(f"{name}: no such file")
-    raise BadInput(unknown_name(kind, name, names(kind)))
+    raise BadInput(unknown_name(kind, name, known(kind)))
 
 
-def _scenarios() -> dict[str, Path]:
-    """File of every shipped scenario, by name: folder/file, or folder/case for each case of a file. Raises BadInput."""
+def _by_path(kind: str, name: str, beside: Path | None) -> Path | None:
+    """The file of a path, or of the bare name of a controller beside the file that says it."""
+    suffix, own = ".py" if kind == "controller" else ".toml", (beside or Path()) / name
+    if own.suffix == suffix and own.is_file():
+        return own.resolve()
+    if beside and kind == "controller" and name not in names(kind) and (beside / f"{name}{suffix}").is_file():
+        return (beside / f"{name}{suffix}").resolve()
+    if kind == "vessel" and "/" in name and (own / "vessel.toml").is_file():
+        return (own / "vessel.toml").resolve()
+    return None
+
+
+def _shipped(kind: str, name: str) -> Path | None:
+    """What the library has of that name."""
+    if name not in names(kind):
+        return None
+    folder = root() / KINDS[kind]
+    if kind == "scenario":
+        return _scenarios(root())[name]
+    return folder / name / "vessel.toml" if kind == "vessel" else folder / f"{name}.py"
+
+
+def _in_content(kind: str, name: str) -> Path | None:
+    """What the folders of the user's own content have of that name."""
+    if kind == "scenario":
+        return next((found[name] for folder in trust.content() if name in (found := _scenarios(folder))), None)
+    file = f"{name}/vessel.toml" if kind == "vessel" else name if name.endswith(".py") else f"{name}.py"
+    places = (place / file for folder in trust.content() for place in (folder / OWN[kind], folder))
+    return next((p.resolve() for p in places if p.is_file()), None)
+
+
+def _scenarios(home: Path) -> dict[str, Path]:
+    """File of every scenario of the library, or of one's own content, by name: folder/file, or folder/case.
+
+    Raises BadInput.
+    """
     found: dict[str, Path] = {}
-    for path in sorted((root() / KINDS["scenario"]).glob("*/[!_]*.toml")):
+    for path in sorted((home / KINDS["scenario"]).glob("*/[!_]*.toml")):
         for name in _cases(path, path.stat().st_mtime_ns) or (path.stem,):
             full = f"{path.parent.name}/{name}"
             if full in found:
@@ -146,21 +195,19 @@ def module_of(kind: str, name: str) -> ModuleType:
     return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{name}")
 
 
-def load_class(kind: str, name: str, beside: Path | None = None) -> type[Any]:
-    """The class of an effect, measure or controller: CamelCase of its file's name. Raises BadInput where not found."""
+def load_class(kind: str, name: str, beside: Path | None = None, named: bool = False) -> type[Any]:
+    """The class of an effect, measure or controller: CamelCase of its file's name.
+
+    `beside` is the folder of the file that says so. `named`: the user himself does, so that it may run wherever it is.
+    Raises BadInput where not found, or where it is a Python file that nobody vouches for.
+    """
     if kind in PACKAGES and name in names(kind):
         module = module_of(kind, name)
-    elif kind in PACKAGES:
-        file = name if name.endswith(".py") else f"{name}.py"
-        path = next((p for p in ((beside or Path()) / file, Path(file)) if p.is_file()), None)
-        if path is None:
-            raise BadInput(unknown_name(kind, name, names(kind)))
-        name, module = path.stem, _own_module(path)
     else:
-        path = find("controller", name, beside)
+        path = find("controller", name, beside) if kind == "controller" else _own_file(kind, name, beside)
         shipped = path.parent == root() / KINDS["controller"]
         name = path.stem
-        module = module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path)
+        module = module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path, named)
     found = getattr(module, camel_case(name), None)
     if not isinstance(found, type):
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
@@ -168,6 +215,15 @@ def load_class(kind: str, name: str, beside: Path | None = None) -> type[Any]:
         raise BadInput(
             f"{module.__file__}: class {camel_case(name)} is no {kind}; it must derive from one's base class"
         )
+    return found
+
+
+def _own_file(kind: str, name: str, beside: Path | None) -> Path:
+    """Path of an effect, measure or sensor of one's own. Raises BadInput."""
+    path = (beside or Path()) / (name if name.endswith(".py") else f"{name}.py")
+    found = path if path.is_file() else _in_content(kind, name)
+    if found is None:
+        raise BadInput(unknown_name(kind, name, known(kind)))
     return found
 
 
@@ -183,8 +239,11 @@ def vessel_address(file: Path) -> str:
     return file.parent.name if file.parent.parent == root() / KINDS["vessel"] else str(file.resolve())
 
 
-def _own_module(path: Path) -> ModuleType:
+def _own_module(path: Path, named: bool) -> ModuleType:
     """A user's own file: two folders may each have a push.py, and it may be edited while we run."""
     path = path.resolve()
     stamp = hashlib.sha256(str(path).encode() + path.read_bytes()).hexdigest()[:16]
-    return module_at(path, f"boatsim_own_{path.stem}_{stamp}")
+    name = f"boatsim_own_{path.stem}_{stamp}"
+    if not named and name not in sys.modules:  # one that has run in this process was vouched for
+        trust.check(path)
+    return module_at(path, name)

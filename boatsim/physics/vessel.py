@@ -1,5 +1,6 @@
 """A vessel is data: hull, freedoms, effects with values, channels, loads, and what a diagnosis may assume."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,6 +18,7 @@ from boatsim.physics.kernel.equations import tilts
 from boatsim.physics.kinds.channel import Channel
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import Change, Release
+from boatsim.physics.signals import POSE, RATES
 
 Freedom = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]  # AXES, as a type checker reads it
 
@@ -52,6 +54,9 @@ class MeasuredChannel(Table):
     about: str = ""
 
 
+NAME = re.compile(r"[\w.+-]{1,60}")  # of a channel: it is a column of every log
+OURS = ("t_s", "contacts", *POSE, *RATES)
+PREFIXES = ("sent_", "actual_", "sensed_", "camera_", "estimate_", "reference_", "force_", "wind_")  # of other columns
 OVERRIDES = ("ambient", "horizon", "rate", "noise")  # of the rules of a diagnosis, which need a reason
 
 
@@ -341,6 +346,11 @@ def load(
 def _check_channels(channels: Mapping[str, CommandChannel], label: str) -> None:
     """Every channel has a range, and its neutral lies within."""
     for name, c in channels.items():
+        if not NAME.fullmatch(name) or name in OURS or name.startswith(PREFIXES):
+            why = (
+                "columns of a run are called so" if NAME.fullmatch(name) else "allowed are letters, digits and _ . + -"
+            )
+            raise BadInput(f"{label}: channels: {name!r} can not be the name of one: {why}")
         if not c.low < c.high:
             raise BadInput(f"{label}: channels.{name}: low = {c.low:g}, high = {c.high:g}; low must be below high")
         if not c.low <= c.neutral <= c.high:
@@ -415,7 +425,10 @@ def with_effects(
 
 def added(vessel: Vessel, effect: Effect) -> Vessel:
     """The vessel with one more effect; a release changes the numbers it names, now."""
-    effect = effect.completed(vessel)
+    try:
+        effect = effect.completed(vessel)
+    except (ArithmeticError, ValueError) as error:  # a rule divides by what is 0, or takes a root of what is below it
+        raise BadInput(f"{vessel.name}: {effect.name}: no number follows from what is stated ({error})") from None
     if not isinstance(effect, Release):
         return replace(vessel, effects=(*vessel.effects, effect))
     for change in effect.changes(vessel):

@@ -1,15 +1,16 @@
 """What a `recording.toml` says about the recordings in its folder: vessel, loads, columns, noise, facts."""
 
 import math
-import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from itertools import pairwise
 from pathlib import Path
+from stat import S_IWOTH
 from typing import TypedDict
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.files import Value
+from boatsim.files import Value, home_folder, read_toml
 from boatsim.physics.facts import wrong
 from boatsim.physics.signals import AXES
 
@@ -68,22 +69,35 @@ class NotesFile:
         default_factory=dict
     )  # our name -> expression of their column: "-delta", "heading_deg * deg"
     remarks: tuple[str, ...] = ()
+    folder: Path | None = None  # in which it lies, and where its own paths start
 
 
 def notes_for(recording: Path) -> NotesFile:
-    """Notes of one recording from the `recording.toml` in its folder or the nearest folder above."""
-    for folder in recording.resolve().parents:
+    """Notes of one recording from the `recording.toml` in its folder or the nearest folder above that it belongs to."""
+    if not recording.is_file():  # nor is a ring of links
+        return NotesFile()
+    for folder in _belonging(recording.resolve().parent):
         file = folder / "recording.toml"
         if file.is_file():
             return _parse(file, recording.stem)
     return NotesFile()
 
 
+def _belonging(folder: Path) -> Iterator[Path]:
+    """A recording's folder and those above it, up to the user's home or the repository, whichever comes first.
+
+    A folder that everybody may write to, such as /tmp, ends it too: what lies there may be anybody's.
+    """
+    home = home_folder()
+    yield folder
+    for inner, above in pairwise((folder, *folder.parents)):
+        if inner == home or (inner / ".git").exists() or above.stat().st_mode & S_IWOTH:
+            return
+        yield above
+
+
 def _parse(file: Path, stem: str) -> NotesFile:
-    try:
-        table: dict[str, Value] = tomllib.loads(file.read_bytes().decode("utf-8-sig"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError, RecursionError) as error:
-        raise BadInput(f"{file}: can not be read as TOML ({' '.join(str(error).split())})") from error
+    table = read_toml(file)
     runs = _Reader(file, table).table("runs")
     merged = _merge({k: v for k, v in table.items() if k != "runs"}, _Reader(file, runs, "runs.").table(stem))
     return _Reader(file, merged).notes()
@@ -208,7 +222,8 @@ class _Reader:
         strange = [self.strange(key, KEYS) for key in self.content if key not in known and key not in facts]
         for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):
             strange += [self.strange(f"{table}.{k}", allowed) for k in self.table(table) if k not in allowed]
-        return NotesFile(notes, self.columns(), (f"{self.file}: not used: {', '.join(strange)}",) if strange else ())
+        remarks = (f"{self.file}: not used: {', '.join(strange)}",) if strange else ()
+        return NotesFile(notes, self.columns(), remarks, self.file.parent)
 
     def strange(self, key: str, allowed: tuple[str, ...]) -> str:
         near = get_close_matches(key.rpartition(".")[2], allowed, n=1, cutoff=0.5)

@@ -1,5 +1,6 @@
 """A table as a reader found it: named columns of cells, with the row each bad cell stands in."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,8 +29,8 @@ def refuse(path: Path, message: str, row: int | None = None, column: str | None 
 
 def no_twins(path: Path, header: list[str]) -> None:
     """Refuse a header that names a column twice. Raises BadInput."""
-    for name in header:
-        if header.count(name) > 1:
+    for name, count in Counter(header).items():
+        if count > 1:
             raise refuse(path, "there are two columns of this name", 1, name or "(no name)")
 
 

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, unknown_name
 from boatsim.files import replacing
 from boatsim.physics.content import module_of, names
 from boatsim.physics.signals import POSE, RATES, Array
-from boatsim.recordings import units
+from boatsim.recordings import limits, units
 from boatsim.recordings.expression import Expression, parse
-from boatsim.recordings.notes import Notes, NotesFile, notes_for, unit_of
+from boatsim.recordings.notes import Notes, notes_for, unit_of
 from boatsim.recordings.raw import Raw, refuse
 
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
@@ -31,6 +31,10 @@ GAP = 60.0  # [s] between two rows; over a longer one no boat here can be follow
 NEAR = 0.8  # likeness from which a name that is not there is a misspelt one
 SLOW = 0.1  # share of empty rows from which a pose or rate is one that is measured less often than rows are written
 ROUNDING = 1e-3  # share of a channel's range by which a command rounded for the file may pass its limit
+
+
+class NoSignal(BadInput):
+    """A recording lacks a signal that somebody asks for."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,9 @@ class Recording:
         return len(self.t)
 
     def __getitem__(self, name: str) -> Array:
-        """The signal (N,) of this name."""
+        """The signal (N,) of this name. Raises NoSignal."""
+        if name not in self.signals:
+            raise NoSignal(unknown_name(f"{self.name}: signal", name, self.signals))
         return self.signals[name]
 
     def unit(self, name: str) -> str:
@@ -137,7 +143,7 @@ def read(
     BadInput, one line with file, row and column, for anything that can not be used.
     """
     path, channels = Path(path), channels or {}
-    found = notes_for(path) if path.is_file() else NotesFile()
+    found = notes_for(path)
     raw, absent = _renamed(_raw(path), columns or {}, found.columns)
     needed = [n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or is_command(n)]
     _check_columns(raw, needed)
@@ -172,11 +178,13 @@ def _raw(path: Path) -> Raw:
     if not path.is_file():
         raise refuse(path, "there is no such file")
     try:
+        limits.check_file(path)
         suffix = path.suffix.removeprefix(".").lower()
         format = suffix if suffix in names("reader") else "csv"
         found = module_of("reader", format).read(path)
         if not isinstance(found, Raw):
             raise refuse(path, f"read of the reader {format}.py gives {type(found).__name__}; a Raw is wanted")
+        limits.check_shape(path, len(found.columns))
         return found
     except OSError as error:
         raise refuse(path, f"can not be read ({error.strerror})") from error

@@ -17,7 +17,8 @@ from pathlib import Path
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Value, read_toml, tables
-from boatsim.physics.content import find, names, root
+from boatsim.physics import trust
+from boatsim.physics.content import find, known, root
 
 NAME = re.compile(r"[\w.+-]+")
 OTHERS = ("vessel.toml", "patched.toml", "recording.toml")  # files of a folder that are no scenarios
@@ -37,10 +38,12 @@ class Place:
 
     @property
     def name(self) -> str:
-        """vessel/case for shipped scenarios, the case or the file's stem for a user's own."""
-        own, folder = self.case or self.path.stem, root() / "scenarios"
-        inside = self.path.is_relative_to(folder)
-        return str(self.path.parent.relative_to(folder) / own) if inside else own
+        """vessel/case for scenarios that are found by name, the case or the file's stem for a file of the user's."""
+        own = self.case or self.path.stem
+        for home in (root(), *trust.content()):
+            if self.path.parent.parent == home / "scenarios":
+                return f"{self.path.parent.name}/{own}"
+        return own
 
 
 def content(given: str) -> tuple[dict[str, Value], Place]:
@@ -51,7 +54,9 @@ def content(given: str) -> tuple[dict[str, Value], Place]:
 
 def meant(given: str) -> list[str]:
     """The scenarios that a word on the command line stands for: a name, a folder, a pattern, or a file's cases."""
-    shipped = names("scenario")
+    shipped = known("scenario")
+    if not given:
+        raise BadInput(f"the name of a scenario is empty; {unknown_name('scenario', given, shipped)}")
     if given in shipped:
         return [given]
     inside = [n for n in shipped if n.startswith(f"{given.rstrip('/')}/")]
@@ -143,7 +148,7 @@ def _base(given: Value, place: Place) -> Place:
         if given in there:
             return Place(place.path, given)
         if "/" not in given and ".toml" not in given:
-            raise BadInput(unknown_name("scenario", given, [*there, *names("scenario")]))
+            raise BadInput(unknown_name("scenario", given, [*there, *known("scenario")]))
         return located(given, place.path.parent)
     except BadInput as error:
         raise BadInput(f"{place.label}: base: {error}") from None

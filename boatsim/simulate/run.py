@@ -7,15 +7,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from inspect import getsourcefile
 from math import inf, nan
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
 from boatsim.control.base import Controller, Sense
-from boatsim.errors import BadInput, BoatsimError
+from boatsim.errors import BadInput, BoatsimError, unknown_name
 from boatsim.physics.base import Force, motion
 from boatsim.physics.commands import beyond, sent_row
 from boatsim.physics.signals import AXES, COMPONENTS, signals_of
-from boatsim.recordings.table import Notes, Recording
+from boatsim.recordings.table import NoSignal, Notes, Recording
 from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.scenario import Scenario
@@ -27,6 +28,7 @@ FIELDS = ("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
 SEEN = ("x_m", "y_m", "psi_rad")  # the pose that a camera frame gives
 SHORTEST = 1e-6  # [s] of a part of a step
 CHUNK = 500  # [rows] handed to a listener at a time
+STILL = 50  # rows of a boat that stays as it is, by which a measure is asked what it reads
 Listener = Callable[[Recording], None]
 
 
@@ -100,6 +102,7 @@ class Runner:
         """Run to the end, or to an interruption, which keeps what was logged. `progress` gets the time reached [s]."""
         complete = False
         self._start()  # an interruption in here has nothing to keep
+        self._check_measured()
         try:
             while not self._finished():
                 self._advance()
@@ -133,6 +136,28 @@ class Runner:
         self._average: list[tuple[list[float], float]] = []  # commands in force, and for how long [s]
         self._frames = self._shoot(state, state)
         self._write_row()
+
+    def _check_measured(self) -> None:
+        """Raises NoSignal before the run for what its measure or a check wants and the log lacks.
+
+        The measure is asked for the values of a boat that stays as it is: what it can not tell of that is no matter.
+        """
+        first = self.log.recording(self.scenario.name, Notes())
+        for check in self.scenario.file.check:
+            if check.signal not in first.signals:
+                raise BadInput(unknown_name("[[check]] signal", check.signal, first.signals))
+        if self.scenario.measure is None:
+            return
+        t = np.linspace(first.t[0], first.t[0] + self.scenario.file.duration, STILL)
+        still = Recording(first.name, t, {n: np.full(STILL, x[0]) for n, x in first.signals.items()})
+        try:
+            with np.errstate(all="ignore"), catch_warnings():
+                simplefilter("ignore")
+                self.scenario.measure.values(still)
+        except NoSignal:
+            raise
+        except Exception:
+            return
 
     def _columns(self) -> list[str]:
         """Beside motion and the commands that act: `sent_` what the controller sent before a range limited it.
@@ -328,6 +353,8 @@ def _what_went_wrong(error: Exception, controller: Controller) -> str:
     """An error on purpose in its own words; any other with its kind, and the controller's line it came from."""
     if isinstance(error, BoatsimError):
         return str(error)
+    if isinstance(error, KeyError) and error.args[0] in type(controller).goals:
+        return f"no [[goal]] in force says {error.args[0]}; it takes {', '.join(type(controller).goals)}"
     file = getsourcefile(type(controller))
     lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == file]
     return f"{type(error).__name__}: {error}" + (f" ({file}, line {lines[-1]})" if lines else "")

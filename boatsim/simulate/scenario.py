@@ -14,7 +14,7 @@ from boatsim.control.base import Controller
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Table, checked
 from boatsim.physics import vessel as vessels
-from boatsim.physics.content import load_class, names
+from boatsim.physics.content import load_class
 from boatsim.physics.signals import STATE
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.camera import Camera, camera_over
@@ -220,8 +220,6 @@ def _measure(given: str | Mapping[str, object] | None, folder: Path) -> Measure 
     if given is None:
         return None
     table = {"use": given} if isinstance(given, str) else given
-    if isinstance(use := table.get("use"), str) and use not in names("measure") and not use.endswith(".py"):
-        raise BadInput(unknown_name("measure", use, names("measure")))
     return _made(Measure, table, folder)
 
 

@@ -82,7 +82,10 @@ def build(
         add_contacts(spec, wall_solref or SOFT_WALL, friction)
     if not show:
         remove_looks(spec)
-    model = spec.compile()
+    try:
+        model = spec.compile()
+    except ValueError as error:  # sizes, masses and meshes of the hull: the tank is ours
+        raise BadInput(f"{Path(vessel.path) / vessel.hull}: no hull that MuJoCo can build: {error}") from None
     check_mass_matrix(model, vessel)
     return model
 
@@ -162,14 +165,18 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
     """The hull's file, and length and draught [m] it was drawn for (the vessel's own where it says nothing)."""
     try:
         drawing = mujoco.MjSpec.from_file(str(path))
-    except ValueError as error:
-        raise BadInput(f"{path}: no hull that MuJoCo can read: {' '.join(str(error).split())}") from None
+    except (ValueError, TypeError) as error:  # a TypeError for a path that is not UTF-8
+        said = "its path is not UTF-8" if isinstance(error, TypeError) else " ".join(str(error).split())
+        raise BadInput(f"{path}: no hull that MuJoCo can read: {said}") from None
     if drawing.body("hull") is None:
         raise BadInput(unknown_name(f"{path}: body", "hull", (b.name for b in drawing.bodies if b.name != "world")))
     drawn_for = drawing.numeric("drawn_for")
     if drawn_for is None:
         return drawing, (vessel.length, vessel.draught)
-    length, _, draught = list(drawn_for.data)
+    data = list(drawn_for.data)
+    if len(data) != 3 or not all(0.0 < x < math.inf for x in data):
+        raise BadInput(f"{path}: drawn_for = {data}; allowed are length, beam and draught in m")
+    length, _, draught = data
     drawing.delete(drawn_for)
     return drawing, (length, draught)
 
@@ -181,7 +188,7 @@ def place_fittings(
     for side, name in ((1, "outboard_port"), (-1, "outboard_starboard")):
         body = drawing.body(name)
         if body is not None and "motor_half_spacing" in at:
-            body.pos = (at["motor_ahead_of_cg"], side * at["motor_half_spacing"], body.pos[2])
+            body.pos = (_stated(at, "motor_ahead_of_cg"), side * at["motor_half_spacing"], body.pos[2])
     for name, (ahead, starboard) in marks.items():
         if (geom := drawing.geom(name)) is not None:
             geom.pos = (ahead, -starboard, geom.pos[2])
@@ -190,9 +197,15 @@ def place_fittings(
         mount.size = (mount.size[0], at.get("motor_half_spacing", mount.size[1]), mount.size[2])
     if (ballast := drawing.geom("ballast")) is not None:
         if at.get("ballast_mass", 0.0) > 0:
-            ballast.pos = (at["ballast_from_transom"] + shift[0], 0, ballast.pos[2])
+            ballast.pos = (_stated(at, "ballast_from_transom") + shift[0], 0, ballast.pos[2])
         else:
             drawing.delete(ballast)
+
+
+def _stated(geometry: Mapping[str, float], key: str) -> float:
+    if key not in geometry:
+        raise BadInput(f"geometry.{key} is missing; the hull that is drawn needs it")
+    return geometry[key]
 
 
 def set_inertia(hull: mujoco.MjsBody, vessel: Vessel) -> None:

@@ -27,7 +27,7 @@ def patched(
     """
     events = {e.name for e in problem.program.suspects if type(e).described} - set(described or {})
     suspects = [(described or {}).get(e.name, e) for e in problem.program.suspects if e.name not in events]
-    text = vessel.file.read_text(encoding="utf-8")
+    text = vessel.file.read_text(encoding="utf-8-sig")
     base = tomlkit.parse(text).get("based_on")
     for key, empty in (("found", "[]"), ("based_on", '""')):  # new keys go first, above the tables
         if key not in tomlkit.parse(text):

@@ -8,11 +8,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import carray, cfunc, types
+from numba import carray, types
 from numba.core import cgutils
+from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 
-from boatsim.physics.kernel.compiling import inlined, lean
+from boatsim.physics.kernel.compiling import inlined, lean, on_disk
 from boatsim.physics.signals import Array
 
 from .laws import HELD
@@ -55,7 +56,6 @@ def make_native(offsets: dict[str, int], size: int) -> Callable[..., Any]:
     words = max(offsets.values()) + 1
     n = size - 3 * HELD - 2 - K
 
-    @cfunc(types.void(types.voidptr, types.voidptr), nopython=True, error_model="numpy", cache=True)
     def called(model, data):  # type: ignore[no-untyped-def]
         if carray(model, (of_size + 1,), np.int32)[of_size] != size:
             return
@@ -69,4 +69,7 @@ def make_native(offsets: dict[str, int], size: int) -> Callable[..., Any]:
         passive(t, q, qd, user, n, f, M)
         factor_mass(model, data)
 
-    return called
+    options = {"nopython": True, "error_model": "numpy"}
+    native = on_disk(CFunc(called, ((types.voidptr, types.voidptr), types.void), {}, options), called)
+    native.compile()
+    return native

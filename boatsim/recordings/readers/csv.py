@@ -3,6 +3,7 @@
 import csv
 from pathlib import Path
 
+from boatsim.recordings.limits import LONGEST_HEADER, check_shape
 from boatsim.recordings.raw import Raw, no_twins, numbers, refuse
 
 
@@ -21,6 +22,11 @@ def read(path: Path) -> Raw:
 
 def _cells(path: Path) -> tuple[list[str], list[list[str]], list[int]]:
     """Header, rows of cells, line number of each row."""
+    with path.open("rb") as file:
+        first = file.readline(LONGEST_HEADER + 1)
+    if len(first) > LONGEST_HEADER:
+        raise refuse(path, f"the first line has more than {LONGEST_HEADER} bytes", 1)
+    check_shape(path, first.count(b",") + 1)
     try:
         text = path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:

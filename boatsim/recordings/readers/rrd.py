@@ -1,38 +1,86 @@
-"""The `.rrd` of our own runs: every column lies as scalars under `signals/` on one time line."""
+"""The `.rrd` of our own runs: every column lies as scalars under `signals/` on one time line.
 
+A process of its own reads it: on a damaged file rerun's native code ends the process that it runs in.
+"""
+
+import json
 import math
+import os
+import subprocess
+import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from rerun.chunk import RrdReader
 
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
+from boatsim.recordings.limits import check_shape
 from boatsim.recordings.raw import Raw
 
 TIMELINE = "sim_time"
 SIGNALS = "signals"
+READ = """
+import json, sys
+sys.path[:] = json.loads(sys.argv[1])
+from boatsim.recordings.readers import rrd
+rrd.child()
+"""
+REFUSED = 3  # exit code of that process where it says why, in one line
 
 
 def read(path: Path) -> Raw:
     """The columns of a run's `.rrd`, t_s first; rows in which a signal was not logged are nan. Raises BadInput."""
+    with tempfile.TemporaryDirectory(prefix="boatsim-") as folder:
+        table = Path(folder) / "table.npz"
+        words = [sys.executable, "-P", "-c", READ, json.dumps(sys.path), os.fspath(path), os.fspath(table)]
+        done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+        if done.returncode == REFUSED:
+            raise BadInput(done.stdout.decode("utf-8", "replace"))
+        if done.returncode != 0:
+            raise BadInput(f"{path}: can not be read as .rrd (rerun's reader breaks on it)")
+        with np.load(table, allow_pickle=False) as found:
+            columns = {str(name): found[f"c{i}"] for i, name in enumerate(found["names"])}
+    return Raw(path, columns, range(1, 1 + len(columns["t_s"])))
+
+
+def child() -> None:
+    """What that process does: `sys.argv` has the path of the `.rrd` and of the table to write."""
+    path, table = map(Path, sys.argv[2:])
+    try:
+        columns = columns_of(path)
+    except BadInput as error:
+        sys.stdout.buffer.write(str(error).encode("utf-8", "replace"))
+        sys.exit(REFUSED)
+    arrays: dict[str, Any] = {f"c{i}": values for i, values in enumerate(columns.values())}
+    np.savez(table, names=np.array(list(columns)), **arrays)
+
+
+def columns_of(path: Path) -> dict[str, Array]:
+    """Columns by name, each (N,). Raises BadInput, and whatever a damaged file makes rerun do."""
     series: dict[str, tuple[list[Array], list[Array]]] = {}
+    cells = 0
     try:
         for name, nanoseconds, values in _scalars(path):
             times, pieces = series.setdefault(name, ([], []))
             times.append(nanoseconds)
             pieces.append(values)
+            cells += len(values)
+            check_shape(path, len(series), cells)
     except (ValueError, OSError, RuntimeError) as error:
         raise BadInput(f"{path}: can not be read as .rrd ({' '.join(str(error).split())[:200]})") from error
     if not series:
         raise BadInput(f"{path}: is not the log of a boatsim run; it has nothing under /{SIGNALS}")
     rows = np.unique(np.concatenate([part for times, _ in series.values() for part in times]))
+    check_shape(path, len(series), len(series) * len(rows))
     columns = {"t_s": rows * 1e-9}
     for name, (times, pieces) in series.items():
         columns[name] = np.full(len(rows), math.nan)
         columns[name][np.searchsorted(rows, np.concatenate(times))] = np.concatenate(pieces)
-    return Raw(path, columns, range(1, 1 + len(rows)))
+    return columns
 
 
 def last_time(path: Path | str) -> float:
