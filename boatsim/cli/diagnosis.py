@@ -16,6 +16,7 @@ from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.log.first_orders import begun
 from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import page as report
@@ -188,7 +189,8 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
 def _as_written(recording: Recording, boat: Vessel) -> tuple[Problem, Fit]:
     """A vessel file on a recording, nothing fitted but the noise that the smoothed starts need."""
     program, acting = composed(boat)
-    problem = Problem([track(recording, program)], nominal_levels(boat, [recording]), {})
+    levels = nominal_levels(boat, [recording])
+    problem = Problem([begun(track(recording, program), levels)], levels, {})
     return problem, fit_noise(problem, replace(problem.nominal(), suspects=acting))
 
 

@@ -17,6 +17,7 @@ from boatsim.diagnose.filter import Track, axes_of, noise_beside, noise_of, nomi
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
+from boatsim.diagnose.log.first_orders import begun
 from boatsim.diagnose.log.held_fixes import without_repeats
 from boatsim.diagnose.log.outlying_fixes import without_outliers
 from boatsim.diagnose.log.position_frame import in_one_frame
@@ -56,7 +57,7 @@ class Diagnosis:
 
     def laid(self, recording: Recording, stated: Mapping[str, float] | None = None) -> Track:
         """A further recording on the same program, with the laws that were described; `stated` is sensor noise."""
-        made = track(recording, self.problem.program, stated)
+        made = begun(track(recording, self.problem.program, stated), self.problem.ambient)
         for w in self.ranking.description.terms if self.ranking.description else ():
             write(self.problem, w.term.name, w.term, [made])
         return made
@@ -150,8 +151,10 @@ def diagnose_recordings(
     for r in (*fitted, *unseen):
         check_taken_up(boats[r.path], r.notes.coefficient_uncertainty, f"{r.path or r.name} by its recording.toml")
     uncertainty |= fitted[0].notes.coefficient_uncertainty
+    levels = nominal_levels(boat, fitted)
+    laid = [begun(t, levels) for t in laid]
     unseen_tracks = laid[len(fitted) :]
-    problem = Problem(laid[: len(fitted)], nominal_levels(boat, fitted), uncertainty, horizon)
+    problem = Problem(laid[: len(fitted)], levels, uncertainty, horizon)
     candidates = less(there[fitted[0].path], without)
     _compile(problem)
     begin = time.perf_counter()

@@ -75,7 +75,7 @@ class Track:
     def __post_init__(self) -> None:
         if not len(self.given):
             self.given, self.orders = changes(self.times, self.commands)
-        self.rate, smooth = quickest(self.program, self.values, self.orders[0])
+        self.rate, smooth = quickest(self.program, self.values, self.commands[0])
         usual = FIT_STEP * rules.froude_time(self.program.vessel)
         self.step = min(usual, AT_REST / max(self.rate, 1e-9), smooth)
         self.inertia = inertia_of(self.program, self.values, self.program.switches())

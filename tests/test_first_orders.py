@@ -1,0 +1,47 @@
+"""Recordings that begin with the manoeuvre: the actuators are on their way then, and that is no missing physics."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from boatsim.cli.diagnosis import _as_written
+from boatsim.diagnose.filter import nominal_levels, track
+from boatsim.diagnose.free_runs import errors, free_runs
+from boatsim.diagnose.log.first_orders import begun
+from boatsim.diagnose.tried import composed
+from boatsim.recordings.table import Recording
+from boatsim.simulate import scenario
+from boatsim.simulate.run import run
+
+
+@pytest.fixture(scope="module")
+def log() -> Recording:
+    """An Otter from rest, its propellers told to turn in the first row; they take a tenth of a second to follow."""
+    found = run(scenario.load("otter/turn")).recording
+    shown = {n: found[n] for n in ("x_m", "y_m", "psi_rad", "n_port_radps", "n_starboard_radps")}
+    return Recording("turn", found.t, shown)
+
+
+def test_a_log_from_rest_is_replayed_as_it_was(log: Recording) -> None:
+    problem, fitted = _as_written(log, scenario.load("otter/turn").vessel)
+    off = errors(free_runs(problem, {"simulated": fitted}, problem.tracks, 6.0))
+    assert off["position_rms_m"]["simulated"] < 1e-4
+    assert off["heading_rms_rad"]["simulated"] < 1e-4
+
+
+def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recording) -> None:
+    boat = scenario.load("otter/turn").vessel
+    program, _ = composed(boat)
+    levels = nominal_levels(boat, [log])
+    late = log.between(3.0, 20.0)
+    for recording, rows in ((log, 2), (late, 1)):  # of commands, which stay as they are
+        assert len(begun(track(recording, program), levels).orders) == rows
+
+
+def test_where_nothing_tells_the_actuators_have_settled(log: Recording) -> None:
+    boat = scenario.load("otter/turn").vessel
+    program, _ = composed(boat)
+    still = replace(log, signals=log.signals | {n: np.zeros(len(log)) for n in boat.commands})
+    laid = track(still, program)
+    assert begun(laid, nominal_levels(boat, [still])) is laid
