@@ -426,6 +426,30 @@ def test_every_verdict_is_one_sentence(verdict, effects, text):
     assert report.sentence(answer, MEANT) == text
 
 
+LAW = {"statement": "a side force of 2 N", "carries_over": True}
+EVENT = {"statement": "a push at 3 s of run_1", "carries_over": False}
+
+
+@pytest.mark.parametrize(
+    ("effects", "described", "text"),
+    [
+        ([], [LAW], "A side force of 2 N."),
+        ([], [EVENT, EVENT], "A push at 3 s of run_1; a push at 3 s of run_1."),
+        ([DAMPED], [LAW], "The model leaves out one thing: damping grows; besides, a side force of 2 N."),
+        ([LATE], [EVENT], f"The measurement is off, not the physics: {CLOCK}; besides, one event of a run is left "
+         "over, a push at 3 s of run_1."),
+        ([DAMPED], [EVENT, LAW, EVENT], "The model leaves out one thing: damping grows; besides, a side force of 2 N; "
+         "2 events of single runs are left over, first a push at 3 s of run_1."),
+    ],
+)  # fmt: skip
+def test_what_has_a_name_comes_before_laws_and_events_are_counted(effects, described, text):
+    answer = {
+        "verdict": "described", "effects": effects, "where": {"axes": {}}, "candidates": [{"name": "wind"}],
+        "unknown": {"flag": True}, "described": described,
+    }  # fmt: skip
+    assert report.sentence(answer, MEANT) == text
+
+
 @pytest.mark.parametrize(
     ("verdict", "begins"),
     [

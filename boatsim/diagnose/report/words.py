@@ -189,25 +189,34 @@ def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
         return f"{capital(_untried(answer))}."
     physics = [_clause(e, words or {}) for e in effects if e["kind"] != "measurement"]
     measured = [_clause(e, words or {}) for e in effects if e["kind"] == "measurement"]
-    unknown = answer["unknown"]["flag"]
-    parts = [d["statement"] for d in answer["described"]][:MOST]
-    if unknown and not parts:
+    unknown, described = answer["unknown"]["flag"], _described(answer, bool(effects))
+    parts = []
+    if unknown and not described:
         parts = [f"something is missing that no entry of the library explains{_sizes(answer)}{_with(answer)}"]
-    before = len(parts)
     if physics:
         count = COUNTS[len(physics)] if len(physics) < len(COUNTS) else f"{len(physics)} things"
-        parts.append(f"the model leaves out {count}: {_clauses(physics)}")
+        parts.append(f"{'besides, ' if parts else ''}the model leaves out {count}: {_clauses(physics)}")
     if measured:
         also, only = "the measurement is off as well, which is not physics", "the measurement is off, not the physics"
         parts.append(f"{also if parts else only}: {_clauses(measured)}")
+    if described:
+        parts += [f"{'besides, ' if parts else ''}{described[0]}", *described[1:]]
     if not parts:
         return "Nothing is missing that these recordings could show: the vessel explains them to within their noise."
-    if unknown and physics:
-        parts[before] = f"besides, {parts[before]}"
     ties = [f"{plain(e['name'])} from {listed(map(plain, e['tied_with']), 'or')}" for e in effects if e["tied_with"]]
     if ties:
         parts.append(f"but these recordings cannot tell {listed(ties)}")
     return f"{capital('; '.join(parts))}."
+
+
+def _described(answer: Answer, beside: bool) -> list[str]:
+    """Laws that were written down, those first that carry over; events of runs in full only where there is no more."""
+    lasting = [d["statement"] for d in answer["described"] if d["carries_over"]][:MOST]
+    events = [d["statement"] for d in answer["described"] if not d["carries_over"]]
+    if not events or not (lasting or beside):
+        return lasting + events[:MOST]
+    count = "one event of a run is" if len(events) == 1 else f"{len(events)} events of single runs are"
+    return [*lasting, f"{count} left over, {'' if len(events) == 1 else 'first '}{events[0]}"]
 
 
 def tried(answer: Answer) -> bool:
