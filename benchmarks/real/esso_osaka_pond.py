@@ -21,8 +21,9 @@ from benchmarks.real.common import OUT, RECORDINGS, report, runs_of, table
 from benchmarks.real.esso_osaka_vessel import NAME, SOURCE, written
 from boatsim.diagnose import analysis, rules
 from boatsim.diagnose.analysis import Diagnosis
+from boatsim.diagnose.climb import climbed
 from boatsim.diagnose.filter import Track, noise_of, segments
-from boatsim.diagnose.fit import converge, descend, fit
+from boatsim.diagnose.fit import converge, fit
 from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.log.outlying_fixes import without_outliers
 from boatsim.diagnose.problem import Fit, Free, Problem
@@ -45,6 +46,7 @@ WEATHER = ("force", "toward")  # of the wind: the rest says how the hull takes i
 ROUNDS = 3  # of ship and winds in turn
 STARTS = (0.0, 0.5 * np.pi, np.pi, -0.5 * np.pi)  # [rad] the wind may blow to
 USUAL = 0.5  # [N] of a breeze, to begin with
+NEARLY = 0.1  # [nats] that a wind is near enough its best
 SHORTEST = 15.0  # [s] of a stretch that is used
 SMOOTH, AROUND = 2.0, 5.0  # [s] over which a rate is taken; about a defect not compared
 LEAP, STEP = 0.1, 0.03  # [m], [rad] in a row of 0.1 s: twice as fast as the ship ever goes or turns
@@ -164,6 +166,11 @@ class Wind:
         return float(np.sqrt(self.force / per_square()))
 
 
+def towards(push: Array) -> Wind:
+    """The wind that pushes so far north and east [N]."""
+    return Wind(float(np.hypot(*push)), float(np.arctan2(push[1], push[0])))
+
+
 def measured(name: str) -> Wind:
     """By the anemometer: the steady wind with the mean push of the gusts."""
     d = np.genfromtxt(RECORDINGS / NAME / "wind" / f"{name}.csv", delimiter=",", names=True)
@@ -200,13 +207,23 @@ class Weather:
         return Fit(self.ship.suspects, free, x, np.diag([f.sd**2 for f in free]), self.ship.levels, -np.inf)
 
     def wind(self, tracks: Sequence[Track]) -> Wind:
-        """The wind common to some tracks, with the ship as fitted."""
+        """The wind common to some tracks, with the ship as fitted.
+
+        Sought as a push north and one east, each as likely either way: a force and its bearing would make calm likelier
+        than any one wind, though there always is some.
+        """
         part = self._part(self.rest)
         held = [replace(t, values=self.problem.values(t, part.free, part.theta)) for t in tracks]
-        on = self.problem.on(held)
-        fits = [descend(on, self._part(self.own, np.array([USUAL, toward])), 6, 0.1) for toward in STARTS]
-        best = max(fits, key=lambda f: f.evidence)
-        return Wind(best.value("wind", "force")[0], best.value("wind", "toward")[0])
+        on = self.problem.program.switches(self.ship.suspects)
+        usual = next(self.ship.free[i].sd for i in self.own if self.ship.free[i].name == "force")
+
+        def score(x: Array) -> float:
+            blown = self.problem.on([self.blown(t, towards(x)) for t in held])
+            likelihood = blown.likelihood((), np.zeros(0), on, self.ship.levels)
+            return likelihood - 0.5 * float(x @ x) / usual**2
+
+        begun = [USUAL * np.array([np.cos(a), np.sin(a)]) for a in STARTS]
+        return towards(max((climbed(score, x, USUAL, NEARLY) for x in begun), key=lambda found: found[0])[1])
 
     def blown(self, one: Track, wind: Wind) -> Track:
         """A track with that wind among its own values."""

@@ -95,7 +95,7 @@ def of_overlay(
     motion = [_plot(TITLES.get(n, words(n)), [f"{boat}/{n}" for boat in boats], span=span) for n in moved]
     forces = [
         _plot(
-            f"Missing {axis} {'force [N]' if axis in ('surge', 'sway') else 'moment [N m]'}",
+            f"Missing {axis} {'force [N]' if axis in ('surge', 'sway', 'heave') else 'moment [N m]'}",
             [n for n in (name, f"{name}_low", f"{name}_high", f"{name}_flagged")],
             "missing",
             span,
