@@ -21,6 +21,7 @@ from boatsim.diagnose.filter import Track
 from boatsim.diagnose.fit import converge, descend
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.levels import fit_force, force_prior
+from boatsim.diagnose.log.outlying_fixes import without_outliers
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report.show import MODELS, fits_of
 from boatsim.errors import BadInput, unknown_name
@@ -30,6 +31,7 @@ from boatsim.recordings.table import Recording
 NAME = "kvlcc2_mmg"
 VESSELS = {"hsva": "kvlcc2_mmg", "marin": "kvlcc2_mmg_full_scale"}
 FACTS = {"steering_measured": True}  # both tanks measured the rudder's angle
+RATE = 3.0  # [Hz] of rows at most, for the time it takes: the 7 m model needs half a minute for a swing
 GOAL = 0.5  # of the recalibrated model's error
 COUNT = ("first", "second")  # overshoots that are looked at
 HELD = 0.97  # of the rudder angle of one side of a zig-zag: below it the rudder is on its way to the other side
@@ -130,9 +132,17 @@ def print_left(found: Diagnosis) -> None:
 
 
 def opened(runs: dict[str, Path], vessel: str) -> dict[str, Recording]:
-    """Recordings as a diagnosis takes them."""
+    """Recordings as the diagnosis takes them."""
     read = {n: analysis.open_recording(path, vessel, ()) for n, path in runs.items()}
-    return {n: recording.thinned(rules.rate(boat)) for n, (recording, boat) in read.items()}
+    thin = {n: without_outliers(r.thinned(min(RATE, rules.rate(b))), b) for n, (r, b) in read.items()}
+    return {n: replace(r, name=n, notes=replace(r.notes, facts={**FACTS, **r.notes.facts})) for n, r in thin.items()}
+
+
+def diagnosed(runs: dict[str, Recording], unseen: Sequence[str], vessel: str, horizon: float) -> Diagnosis:
+    """What the model leaves out of the recordings that are not kept unseen."""
+    boats = {r.path: analysis.vessel_for(r.path, vessel, ()) for r in runs.values() if r.path}
+    fitted, kept = [r for n, r in runs.items() if n not in unseen], [runs[n] for n in unseen]
+    return analysis.diagnose_recordings(fitted, kept, boats, f"kept unseen: {', '.join(unseen)}", horizon=horizon)
 
 
 # ---- the two tanks
@@ -214,15 +224,14 @@ def main() -> None:
             raise BadInput(unknown_name("tank", tank, TANKS))
         name, unseen, horizon, judge = TANKS[tank]
         runs = runs_of(name)
-        fitted = [path for n, path in runs.items() if n not in unseen]
-        kept = [runs[n] for n in unseen]
-        found = analysis.diagnose(fitted, kept, VESSELS[tank], horizon=horizon, facts=FACTS)
+        read = opened(runs, VESSELS[tank])
+        found = diagnosed(read, unseen, VESSELS[tank], horizon)
         print(f"\n{name}, {VESSELS[tank]}")
         report(found, f"{NAME}_{tank}")
         print_verdict(found)
         print_left(found)
         print_coefficients(found)
-        judge(found, opened(runs, VESSELS[tank]))
+        judge(found, read)
 
 
 if __name__ == "__main__":
