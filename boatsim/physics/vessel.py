@@ -18,7 +18,7 @@ from boatsim.physics.kernel.equations import tilts
 from boatsim.physics.kinds.channel import Channel
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import Change, Release
-from boatsim.physics.signals import POSE, RATES
+from boatsim.physics.signals import COMPONENTS, POSE, RATES
 
 Freedom = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]  # AXES, as a type checker reads it
 
@@ -55,8 +55,9 @@ class MeasuredChannel(Table):
 
 
 NAME = re.compile(r"[\w.+-]{1,60}")  # of a channel: it is a column of every log
-OURS = ("t_s", "contacts", *POSE, *RATES)
-PREFIXES = ("sent_", "actual_", "sensed_", "camera_", "estimate_", "reference_", "force_", "wind_")  # of other columns
+FORCES = tuple(f"{what}_{component}" for what in ("force", "wind") for component in COMPONENTS.values())
+OURS = ("t_s", "contacts", *POSE, *RATES, *FORCES)
+PREFIXES = ("sent_", "actual_", "sensed_", "camera_", "estimate_", "reference_")  # of other columns
 OVERRIDES = ("ambient", "horizon", "rate", "noise")  # of the rules of a diagnosis, which need a reason
 
 

@@ -57,6 +57,4 @@ class Wind(Force):
         spread=0.1,
         within=(-0.6, 0.6),
     )
-    end_on: float = param(
-        0.5, low=0.0, high=2.0, unit="", words="end-on force per beam-on force", fit=True, spread=0.25
-    )
+    end_on: float = param(0.5, low=0.0, high=2.0, unit="", words="end-on force per beam-on force")
