@@ -16,7 +16,7 @@ HEAVY = {  # library -> the only modules that may import it
     "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")},
     "dm_control": {"simulate.env"},
     "dm_env": {"simulate.env"},
-    "rerun": {"view.rerun_log", "view.blueprint", "recordings.readers.rrd"},
+    "rerun": {"view.rerun_log", "view.blueprint", "view.stream", "recordings.readers.rrd"},
     "jinja2": {"diagnose.report.page"},
     "pymavlink": {"recordings.logs.ardupilot"},
     "mcap": {"recordings.logs.mcap"},

@@ -22,7 +22,7 @@ from boatsim.cli.batch import plan
 from boatsim.physics import content
 from boatsim.recordings import table as recording
 
-FIELDS = {"value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor"}
+FIELDS = {"value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor", "lacking"}
 FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"}
 PLAIN = """
 about = "Two seconds to starboard."

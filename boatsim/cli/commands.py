@@ -13,6 +13,7 @@ from typer.core import TyperGroup
 import boatsim
 from boatsim.cli.asking import asking
 from boatsim.cli.exits import FAULTS, Exit, any_terminal, complain, say, words
+from boatsim.interruption import heed, leave_quietly
 
 P = ParamSpec("P")
 UsageError: Any = typer.BadParameter.__base__  # of all mistakes on the command line typer gives a name to this one only
@@ -305,5 +306,9 @@ def _loads(given: list[str] | None) -> list[str]:
 
 
 def main() -> None:
-    """Entry point of the program; leaves with its exit code."""
-    app()
+    """The program from here on; leaves with its exit code. A kill and a terminal that closes are as Ctrl-C is."""
+    heed()
+    try:
+        app()
+    finally:
+        leave_quietly()
