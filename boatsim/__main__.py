@@ -1,6 +1,6 @@
 """`python -m boatsim` is `boatsim`."""
 
-from boatsim.interruption import leave_quietly
+from boatsim.quiet import leave_quietly
 
 
 def main() -> None:

@@ -1,24 +1,25 @@
 """Signals that end the program: Ctrl-C, a kill, a terminal that closes. What is being written is finished first."""
 
-import os
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import current_thread, main_thread
 from types import FrameType
 from typing import Any
 
-# what a user, a supervisor and a terminal that closes send; there is no SIGHUP on every system
-SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+from boatsim.quiet import SIGNALS
+
 Handler = Callable[[int, FrameType | None], Any] | int | None  # as the signal module has it
-CODE = 130  # exit code of what was interrupted: 128 + SIGINT, as shells have it
+
+AGAIN = 0.05  # [s] until one that was lost strikes again
 
 
 class Stop:
-    """Whether somebody wants a run to end; the run asks it at every step."""
+    """Whether somebody wants what is done in a block of `noted` to end; it asks at every step."""
 
     def __init__(self) -> None:
-        self.asked = self.over = False
+        self.asked, self.over = struck(), False
 
     def __call__(self) -> bool:
         """Whether to end now."""
@@ -26,6 +27,8 @@ class Stop:
 
     def note(self, *_: object) -> None:
         """A signal has come. A second one while the first waits, as for a controller that hangs, ends it by force."""
+        global _struck
+        _struck = True
         if self.asked and not self.over:
             raise KeyboardInterrupt
         self.asked = True
@@ -35,11 +38,19 @@ class Stop:
 def noted() -> Iterator[Stop]:
     """Signals are noted and do not strike: a run ends at its next step, and its files are written whatever comes.
 
-    The block says `stop.over = True` once nothing waits for an answer. Outside the main thread nothing changes.
+    The block says `stop.over = True` once nothing waits for an answer; one within another is a part of it. Outside the
+    main thread nothing changes.
     """
-    stop = Stop()
-    with _handled(stop.note):
-        yield stop
+    global _block
+    if _block is not None:
+        yield _block
+        return
+    _block = Stop()
+    try:
+        with _handled(_block.note):
+            yield _block
+    finally:
+        _block = None
 
 
 @contextmanager
@@ -63,20 +74,35 @@ def _handled(how: Handler) -> Iterator[None]:
 
 
 def heed() -> None:
-    """From now every one of them is a KeyboardInterrupt, as Ctrl-C is."""
-    _handle(_strike)
-
-
-def leave_quietly() -> None:
-    """From now every one of them ends the program without a word: nothing was begun yet, or all is done."""
-    _handle(lambda *_: os._exit(CODE))
-
-
-def _handle(how: Handler) -> None:
+    """From now each of them is a KeyboardInterrupt, as Ctrl-C is."""
     for s in SIGNALS:
         if signal.getsignal(s) != signal.SIG_IGN:
-            signal.signal(s, how)
+            signal.signal(s, _strike)
+    sys.unraisablehook = _lost
+
+
+def struck() -> bool:
+    """Whether one of them has come. A KeyboardInterrupt may be lost where a library catches or replaces it."""
+    return _struck
 
 
 def _strike(number: int, frame: FrameType | None) -> None:
+    global _struck
+    _struck = True
+    if _block is not None:
+        _block.asked = True
+        return
     raise KeyboardInterrupt
+
+
+def _lost(what: "sys.UnraisableHookArgs") -> None:
+    """One that struck in a callback of native code, such as the compiler's, goes no further: it strikes once more."""
+    if not _struck or not issubclass(what.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(what)
+    elif hasattr(signal, "setitimer"):
+        signal.signal(signal.SIGALRM, _strike)
+        signal.setitimer(signal.ITIMER_REAL, AGAIN)
+
+
+_struck = False
+_block: Stop | None = None

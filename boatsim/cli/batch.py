@@ -14,7 +14,7 @@ from threading import Lock, Thread
 from boatsim.cli import show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput
-from boatsim.interruption import ignored
+from boatsim.interruption import ignored, struck
 from boatsim.physics import trust
 from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.cases import meant
@@ -135,6 +135,9 @@ def carry_out(task: Task, progress: Callable[[float], None]) -> Outcome:
 def _in_turn(tasks: Sequence[Task], report: Report) -> list[Outcome]:
     outcomes: list[Outcome] = []
     for number, task in enumerate(tasks):
+        if struck():  # while the files of the one before were written
+            outcomes.append(Outcome(task))
+            break
         outcomes.append(carry_out(task, lambda t, number=number: report(number, t)))  # type: ignore[misc]
         report(number, task.duration)
         if outcomes[-1].code == Exit.INTERRUPTED:
