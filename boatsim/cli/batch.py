@@ -150,9 +150,10 @@ def _in_turn(tasks: Sequence[Task], report: Report) -> list[Outcome]:
 
 def _in_processes(tasks: Sequence[Task], jobs: int, report: Report) -> list[Outcome]:
     context = get_context("spawn")  # a fork would copy MuJoCo's and rerun's threads half alive
-    stop, reached = context.Event(), context.Array("d", len(tasks))
+    with ignored():  # processes inherit it, the one that looks after shared memory too
+        stop, reached = context.Event(), context.Array("d", len(tasks))
     with ProcessPoolExecutor(jobs, context, _begin, (stop, reached, trust.now())) as pool:
-        with ignored():  # processes inherit it
+        with ignored():
             futures = [pool.submit(_work, number, task) for number, task in enumerate(tasks)]
         while True:
             try:
