@@ -304,7 +304,7 @@ def test_ctrl_c_stops_all_processes_and_keeps_what_each_had(tmp_path: Path) -> N
         command, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heeding
     ) as running:
         until = time.monotonic() + 120.0
-        while len(list(out.glob(".[ab].*/run.rrd"))) < 2 and time.monotonic() < until:
+        while len(list(out.glob("[ab].part-*/run.rrd"))) < 2 and time.monotonic() < until:
             time.sleep(0.1)
         os.killpg(running.pid, signal.SIGINT)  # as a terminal sends it: to all of them
         try:

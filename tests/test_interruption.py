@@ -237,7 +237,7 @@ def _small(most: int) -> None:
 
 
 def test_a_run_on_a_full_disk_ends_with_one_line_and_keeps_what_was_whole(endless: Path, tmp_path: Path) -> None:
-    running = begin("run", endless, "--out", tmp_path / "out", before=partial(_small, 400_000))
+    running = begin("run", endless, "--out", tmp_path / "out", before=partial(_small, 2_000_000))
     code, said = end(running)
     (left,) = tmp_path.glob("out.part-*")
     assert code == 2 and said.count("\n") == 1 and f"stays in {left}" in said, said

@@ -74,6 +74,7 @@ class RunLog:
             _draw_tank(self.stream, scene)
             _draw_hull(self.stream, scene, "boat")
             self._say("Norms follow when the run is over.")
+            self.stream.keep()
 
     def chunk(self, rows: Recording) -> None:
         """Log new rows, which follow those logged before."""
