@@ -22,7 +22,7 @@ from boatsim.physics.content import PACKAGES
 HOME = Path(__file__).parents[1]
 OUT = HOME / "docs" / "arrows.svg"
 LAYERS = (  # a module may import from its own folder and from those in the lines above it
-    "__init__ errors files",
+    "__init__ errors files quiet interruption",
     "physics",
     "recordings control",
     "simulate",
@@ -179,7 +179,7 @@ def _notes(found: Mapping[tuple[str, str], int], height: int) -> Iterator[str]:
     ground = sum(n for (a, b), n in found.items() if b in LAYERS[0].split() and a in ABOUT)
     text = (
         "Data go from left to right. An arrow goes from the folder that imports to the one imported, with the number "
-        f"of imports. Not drawn: {ground} of errors.py and files.py."
+        f"of imports. Not drawn: {ground} of the files that lie in no folder (errors.py, files.py, ...)."
     )
     yield f'<text class="note" x="{EDGE}" y="{height - 12}">{escape(text)}</text>'
 

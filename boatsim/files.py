@@ -4,10 +4,10 @@ import os
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import date, time
 from pathlib import Path
-from typing import TypeAlias, TypeVar
+from typing import IO, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -105,12 +105,47 @@ def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
     return list(model.model_fields)
 
 
+class Growing:
+    """A file that grows by whole pieces: of one that can not be written, such as on a full disk, nothing stays."""
+
+    def __init__(self, file: IO[bytes], path: Path) -> None:
+        """`file` is open for writing and not buffered, `path` its name for whoever reads the error."""
+        self._file, self._path, self._whole = file, path, 0
+
+    def add(self, data: bytes) -> None:
+        """One more piece. Raises OSError that names the file."""
+        left = memoryview(data)
+        try:
+            self._file.seek(self._whole)
+            while left:
+                left = left[self._file.write(left) :]
+        except BaseException as error:
+            with suppress(OSError):
+                self._file.truncate(self._whole)
+            if isinstance(error, OSError):
+                raise OSError(error.errno, error.strerror, str(self._path)) from error
+            raise
+        self._whole += len(data)
+
+    def take_back(self, count: int) -> None:
+        """The last `count` bytes do not count: what comes next is written over them."""
+        self._whole -= count
+
+    def close(self) -> None:
+        """No more pieces."""
+        self._file.close()
+
+
 @contextmanager
 def replacing(path: Path | str) -> Iterator[Path]:
-    """A temporary name beside `path` to write to; it takes the place of `path` at the end if nothing was raised."""
+    """A temporary name beside `path` to write to; it takes the place of `path` at the end if nothing was raised.
+
+    Only a process that is killed leaves it behind, and it says what it is: `run.part-1234.csv`.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{os.getpid()}.{path.name}")  # keeps the ending, by which writers choose the format
+    # keeps the ending, by which writers choose the format
+    temporary = path.with_name(f"{path.stem}.part-{os.getpid()}{path.suffix}")
     try:
         yield temporary
         os.replace(temporary, path)

@@ -22,7 +22,7 @@ from boatsim.cli.batch import plan
 from boatsim.physics import content
 from boatsim.recordings import table as recording
 
-FIELDS = {"value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor"}
+FIELDS = {"value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor", "lacking"}
 FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"}
 PLAIN = """
 about = "Two seconds to starboard."
@@ -304,7 +304,7 @@ def test_ctrl_c_stops_all_processes_and_keeps_what_each_had(tmp_path: Path) -> N
         command, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heeding
     ) as running:
         until = time.monotonic() + 120.0
-        while len(list(out.glob(".[ab].*/run.rrd"))) < 2 and time.monotonic() < until:
+        while len(list(out.glob("[ab].part-*/run.rrd"))) < 2 and time.monotonic() < until:
             time.sleep(0.1)
         os.killpg(running.pid, signal.SIGINT)  # as a terminal sends it: to all of them
         try:

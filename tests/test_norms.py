@@ -316,7 +316,8 @@ def test_json_has_the_fields_and_names_that_were_agreed(measure: str, pose: Call
     assert tuple(content["norms"]) == tuple(type(run.scenario.measure).units)
     for norm in content["norms"].values():
         assert set(norm) == {
-            "value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor"
+            "value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor",
+                "lacking",
         }  # fmt: skip
         assert norm["guard"] is None or len(norm["guard"]) == 2
 

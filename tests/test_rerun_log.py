@@ -10,7 +10,7 @@ from rerun.chunk import RrdReader
 from boatsim.errors import BadInput
 from boatsim.recordings.readers.rrd import last_time
 from boatsim.recordings.table import Recording, read, write_csv
-from boatsim.view import blueprint, rerun_log
+from boatsim.view import blueprint, rerun_log, stream
 from boatsim.view.rerun_log import RunLog, log_overlay, norms_table
 from boatsim.view.scene import Thruster, plain_scene, scene_from
 
@@ -168,8 +168,8 @@ def test_the_outline_is_that_of_the_hull_from_above():
 
 
 def test_a_run_goes_on_where_no_viewer_can_be_shown(tmp_path, monkeypatch):
-    monkeypatch.setattr(rerun_log, "_listening", lambda: False)
-    monkeypatch.setattr(rerun_log.rr, "spawn", lambda **_: None)
+    monkeypatch.setattr(stream, "_listening", lambda: False)
+    monkeypatch.setattr(stream.rr, "spawn", lambda **_: None)
     with pytest.warns(UserWarning, match="no rerun viewer"), RunLog(tmp_path / "run.rrd", True, SCENE) as log:
         log.chunk(circle())
     assert len(read(tmp_path / "run.rrd")) == len(circle())

@@ -1,19 +1,20 @@
 """Runs scenarios one after another or in processes of their own, with a progress bar and one exit code for all."""
 
-import signal
-from collections.abc import Callable, Iterator, Sequence
+import os
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from multiprocessing.sharedctypes import SynchronizedArray
 from multiprocessing.synchronize import Event
 from pathlib import Path
+from threading import Lock, Thread
 
 from boatsim.cli import show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput
+from boatsim.interruption import ignored, struck
 from boatsim.physics import trust
 from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.cases import meant
@@ -21,6 +22,7 @@ from boatsim.simulate.norms import RunEntry
 from boatsim.simulate.scenario import Scenario
 
 POLL = 0.1  # [s] between two looks at the processes
+PATIENCE = 60.0  # [s] for a run to be written whose watcher is gone
 
 Report = Callable[[int, float], None]  # number of a task, simulated time it has reached [s]
 
@@ -133,6 +135,9 @@ def carry_out(task: Task, progress: Callable[[float], None]) -> Outcome:
 def _in_turn(tasks: Sequence[Task], report: Report) -> list[Outcome]:
     outcomes: list[Outcome] = []
     for number, task in enumerate(tasks):
+        if struck():  # while the files of the one before were written
+            outcomes.append(Outcome(task))
+            break
         outcomes.append(carry_out(task, lambda t, number=number: report(number, t)))  # type: ignore[misc]
         report(number, task.duration)
         if outcomes[-1].code == Exit.INTERRUPTED:
@@ -140,14 +145,15 @@ def _in_turn(tasks: Sequence[Task], report: Report) -> list[Outcome]:
     return outcomes
 
 
-# Several processes: Ctrl-C reaches this one only, which asks the others to stop --------------------------------------
+# Several processes: a signal is heeded by this one only, which asks the others to stop; they end with it -------------
 
 
 def _in_processes(tasks: Sequence[Task], jobs: int, report: Report) -> list[Outcome]:
     context = get_context("spawn")  # a fork would copy MuJoCo's and rerun's threads half alive
-    stop, reached = context.Event(), context.Array("d", len(tasks))
+    with ignored():  # processes inherit it, the one that looks after shared memory too
+        stop, reached = context.Event(), context.Array("d", len(tasks))
     with ProcessPoolExecutor(jobs, context, _begin, (stop, reached, trust.now())) as pool:
-        with _ignoring_interrupts():  # processes inherit it
+        with ignored():
             futures = [pool.submit(_work, number, task) for number, task in enumerate(tasks)]
         while True:
             try:
@@ -180,6 +186,16 @@ def _begin(stop: Event, reached: "SynchronizedArray[float]", trusted: trust.Trus
     global _stop, _reached
     trust.adopt(trusted)
     _stop, _reached = stop, reached
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Once the process that watches is gone, killed perhaps: what runs here is kept as far as it is, and that is it."""
+    if watcher := parent_process():
+        watcher.join()
+        _stop.set()
+        _at_work.acquire(timeout=PATIENCE)
+        os._exit(Exit.INTERRUPTED)
 
 
 def _work(number: int, task: Task) -> Outcome:
@@ -190,17 +206,10 @@ def _work(number: int, task: Task) -> Outcome:
         if _stop.is_set():
             raise KeyboardInterrupt
 
-    return Outcome(task) if _stop.is_set() else carry_out(task, progress)
+    with _at_work:
+        return Outcome(task) if _stop.is_set() else carry_out(task, progress)
 
 
 _stop: Event
 _reached: "SynchronizedArray[float]"
-
-
-@contextmanager
-def _ignoring_interrupts() -> Iterator[None]:
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+_at_work = Lock()

@@ -1,6 +1,7 @@
 """The commands and their options; what they do is imported when they are called, so that `--help` is quick."""
 
 import functools
+import os
 import re
 import sys
 from collections.abc import Callable, Sequence
@@ -13,6 +14,8 @@ from typer.core import TyperGroup
 import boatsim
 from boatsim.cli.asking import asking
 from boatsim.cli.exits import FAULTS, Exit, any_terminal, complain, say, words
+from boatsim.interruption import heed, struck
+from boatsim.quiet import leave_quietly
 
 P = ParamSpec("P")
 UsageError: Any = typer.BadParameter.__base__  # of all mistakes on the command line typer gives a name to this one only
@@ -96,6 +99,9 @@ def _code(command: Callable[[], int]) -> int:
         complain("this needs more memory than there is; a shorter recording, or a longer step or `log`, needs less")
         return Exit.BAD_INPUT
     except Exception as error:
+        if struck():  # in the middle of something that could not take it, such as numba
+            complain("interrupted")
+            return Exit.INTERRUPTED
         if not type(error).__module__.startswith("numba."):
             raise
         complain(f"the law of an effect can not be compiled: {_said(error)}; a law takes floats and allocates nothing")
@@ -305,5 +311,15 @@ def _loads(given: list[str] | None) -> list[str]:
 
 
 def main() -> None:
-    """Entry point of the program; leaves with its exit code."""
-    app()
+    """The program from here on; leaves with its exit code. A kill and a terminal that closes are as Ctrl-C is."""
+    heed()
+    try:
+        app()
+    except SystemExit as leaving:
+        leave_quietly()
+        if not struck():
+            raise
+        # Python takes a Ctrl-C that passed through code of its own making for one that nobody handled
+        for stream in (sys.stdout, sys.stderr):
+            stream.flush()
+        os._exit(int(leaving.code or 0))

@@ -47,7 +47,11 @@ def diagnose(
     found = analyse(runs, hold_out, vessel, load, library, without, horizon)
     for line in found.remarks:
         remark(line)
-    write(found, out)
+    try:
+        write(found, out)
+    except OSError:  # a disk that is full does not cost the answer
+        say(summary(found))
+        raise
     plan = [NEXT] if found.plan else []
     files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *plan, "diagnosis.rrd"]
     say([*summary(found), f"written to {out}: {', '.join(files)}"])

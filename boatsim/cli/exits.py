@@ -6,6 +6,7 @@ from enum import IntEnum
 from io import TextIOWrapper
 
 from boatsim.errors import BoatsimError, shown
+from boatsim.quiet import CODE
 
 LONGEST = 300  # characters of a line of ours, its head and its end kept
 
@@ -16,7 +17,7 @@ class Exit(IntEnum):
     MET = 0  # done, all bars met
     MISSED = 1  # a bar missed
     BAD_INPUT = 2
-    INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+    INTERRUPTED = CODE
 
 
 FAULTS = (BoatsimError, OSError)  # what a user can put right; anything else is a defect and keeps its traceback

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,7 +60,7 @@ def norms(found: "RunEntry", folder: Path) -> None:
 
 def _value(norm: "NormEntry") -> str:
     value = norm["value"]
-    return "not reached" if value is None or not isfinite(value) else f"{value:.4g} {norm['unit']}".rstrip()
+    return norm["lacking"] or "not reached" if value is None else f"{value:.4g} {norm['unit']}".rstrip()
 
 
 def _guard(guard: Sequence[float | None] | None) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Activity(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Both over the same rows."""
-        seen = log.t >= self.since - 1e-9
-        y = (degrees(1.0) if unit_of(self.signal) == "rad" else 1.0) * log[self.signal][seen]
-        rate = np.diff(y) / np.diff(log.t[seen])
+        rows = seen(log, self.since, least=2)
+        y = (degrees(1.0) if unit_of(self.signal) == "rad" else 1.0) * log[self.signal][rows]
+        rate = np.diff(y) / np.diff(log.t[rows])
         return {"peak": float(np.abs(y).max()), "rate_rms": float(np.sqrt(np.mean(rate**2)))}

@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.physics.base import Array, param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure, crossing, travelled
+from boatsim.simulate.measure import Measure, crossing, seen, travelled
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,7 @@ class Arrival(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Time, integral of the surge speed and straight line until there; closest and last place of the whole run."""
+        seen(log)
         x, y = log[self.x_signal], log[self.y_signal]
         away = np.hypot(self.x - x, self.y - y)
         found = {"closest": float(away.min()), "end_x": float(x[-1]), "end_y": float(y[-1])}

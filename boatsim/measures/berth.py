@@ -8,7 +8,7 @@ import numpy as np
 
 from boatsim.control.base import wrap
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 
 @dataclass(frozen=True)
@@ -20,6 +20,7 @@ class Berth(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Distance of the CG from its first place, heading beside the half turn, steps with the hull at a wall."""
+        seen(log)
         x, y, psi = (log[name][-1] - log[name][0] for name in ("x_m", "y_m", "psi_rad"))
         return {
             "return_distance": hypot(x, y),

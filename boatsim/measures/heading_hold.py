@@ -8,7 +8,7 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class HeadingHold(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Each rms is about the mean; rates are central differences between rows of the log."""
-        seen = log.t >= self.since - 1e-9
-        off, angle = log["psi_rad"][seen] - self.target, log[self.steering][seen]
-        rate = np.gradient(angle, log.t[seen])
+        rows = seen(log, self.since, least=2)
+        off, angle = log["psi_rad"][rows] - self.target, log[self.steering][rows]
+        rate = np.gradient(angle, log.t[rows])
         found = (off.mean(), off.std(), abs(off).max(), angle.mean(), angle.std(), np.sqrt(np.mean(rate**2)))
         return {name: degrees(x) for name, x in zip(type(self).units, found, strict=True)}

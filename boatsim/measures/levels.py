@@ -6,7 +6,7 @@ from typing import ClassVar
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 MOST = 12  # levels
 
@@ -27,6 +27,7 @@ class Levels(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many whole intervals as the log has."""
+        seen(log)
         ends = [i * self.every for i in range(1, MOST + 1) if i * self.every <= log.t[-1] + 1e-6]
         rows = [int(abs(log.t - end).argmin()) for end in ends]
         return {f"level_{i}": float(log[self.signal][row]) for i, row in enumerate(rows, 1)}

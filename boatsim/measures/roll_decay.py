@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 SMALLEST = 0.02  # share of the release below which peaks are left out
 
@@ -23,6 +23,7 @@ class RollDecay(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """None for a hull that does not swing or was not heeled."""
+        seen(log, least=3)
         t, phi = log.t, log["phi_rad"]
         inner = phi[1:-1]
         rows = 1 + np.flatnonzero((inner - phi[:-2]) * (inner - phi[2:]) > 0.0)

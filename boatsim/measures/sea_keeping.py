@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,7 @@ class SeaKeeping(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """The three norms; a signal that the log has not is left out."""
+        seen(log)
         named = {"yaw_rms": self.heading, "roll_rms": self.roll, "rudder_rms": self.rudder}
         return {norm: rms(log, signal) for norm, signal in named.items() if signal in log.signals}
 

@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,7 @@ class Settling(Measure):
         """rise: first crossing once off the target; settling: last time out of the band; extremes about the end."""
         if self.signal not in log.signals:
             raise BadInput(unknown_name("settling: signal", self.signal, log.signals))
+        seen(log)
         t, x = log.t - log.t[0], log[self.signal] - self.target
         if not (t >= self.late).any():
             return {}

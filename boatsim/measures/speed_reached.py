@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure, crossing, travelled
+from boatsim.simulate.measure import Measure, crossing, seen, travelled
 
 
 @dataclass(frozen=True)
@@ -21,6 +21,7 @@ class SpeedReached(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Time, integral of the surge speed and straight line until then; the largest surge speed of the run."""
+        seen(log)
         found, u = {"top_speed": float(log["u_mps"].max())}, log["u_mps"]
         time = crossing(log.t, u - self.speed)
         if time is None:

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 SAME = 1e-6  # [rad] between two helm angles that are one
 
@@ -28,6 +28,7 @@ class Spiral(Measure):
 
         None unless the helm came back to its first angle.
         """
+        seen(log)
         helm = log["reference_helm_rad"]
         begin = int(np.argmax(helm != 0.0))
         ends = np.array([*(begin + np.flatnonzero(np.abs(np.diff(helm[begin:])) > SAME)), len(helm) - 1])

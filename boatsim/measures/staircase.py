@@ -7,7 +7,7 @@ from boatsim.measures.step_response import first
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, TooShort, seen
 
 MOST = 8  # steps of a staircase
 
@@ -33,13 +33,18 @@ class Staircase(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many whole steps as the log has; a time that is not reached is left out."""
+        seen(log, self.since)
         count = min(MOST, int((log.t[-1] - self.since) / self.every + 1e-6))
+        if count < 1:
+            return {}
         found: dict[str, float | None] = {}
         worst = {"overshoot": 0.0, "end_error": 0.0}
         for i in range(count):
             begin = self.since + i * self.every
-            seen = (log.t >= begin - 1e-9) & (log.t < begin + self.every - 1e-9)
-            t, done = log.t[seen] - begin, (log[self.signal][seen] - self.bottom) / self.height - i
+            rows = (log.t >= begin - 1e-9) & (log.t < begin + self.every - 1e-9)
+            if not rows.any():
+                raise TooShort(f"{log.name}: no rows from {begin:g} s on")
+            t, done = log.t[rows] - begin, (log[self.signal][rows] - self.bottom) / self.height - i
             tenth, most = first(t, done, 0.1), first(t, done, 0.9)
             found[f"time_95_{i + 1}"] = first(t, done, 0.95)
             found[f"rise_{i + 1}"] = most - tenth if most is not None and tenth is not None else None

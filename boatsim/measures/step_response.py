@@ -1,6 +1,7 @@
 """Step response: how a signal answers a step of what is wanted of it."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from boatsim.physics.base import Array, param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 BAND = 0.05  # of the step: what counts as settled
 
@@ -34,8 +35,10 @@ class StepResponse(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Times from the step on, interpolated between rows; `rise` from 10 to 90 %; errors in per cent of the step."""
-        seen = (log.t >= self.since - 1e-9) & (log.t <= (self.until or log.t[-1]) + 1e-9)
-        t, y = log.t[seen] - self.since, log[self.signal][seen]
+        rows = seen(log, self.since, self.until or inf, least=2)
+        t, y = log.t[rows] - self.since, log[self.signal][rows]
+        if y[0] == self.target:  # no step
+            return {"end": float(y[-1])}
         done = (y - y[0]) / (self.target - y[0])
         found = {f"time_{share}": first(t, done, 0.01 * share) for share in (50, 90, 95)}
         found["time_63"] = first(t, done, 1.0 - np.exp(-1.0))

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 
 @dataclass(frozen=True)
@@ -21,6 +21,7 @@ class SwayHold(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Largest yaw rate, its rms in the last half, largest heading change, mean angle in the last half."""
+        seen(log)
         last = log.t >= 0.5 * (log.t[0] + log.t[-1])
         r, psi = np.degrees(log["r_radps"]), np.degrees(log["psi_rad"] - log["psi_rad"][0])
         return {

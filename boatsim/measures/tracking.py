@@ -1,7 +1,7 @@
 """Tracking: how far a signal is from the one it is to follow."""
 
 from dataclasses import dataclass
-from math import degrees
+from math import degrees, inf
 from typing import ClassVar
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.physics.base import Array, param
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 
 @dataclass(frozen=True)
@@ -31,16 +31,16 @@ class Tracking(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Rms and largest error; rms of the error against the goal, and that error's mean over the last second."""
-        seen = (log.t >= self.since - 1e-9) & (log.t <= (self.until or log.t[-1]) + 1e-9)
+        rows = seen(log, self.since, self.until or inf)
         scale = degrees(1.0) if unit_of(self.signal).startswith("rad") else 1.0
 
         def error(name: str) -> Array:
-            return np.asarray(scale * (log[self.signal] - (log[name] if name else 0.0))[seen])
+            return np.asarray(scale * (log[self.signal] - (log[name] if name else 0.0))[rows])
 
         off = error(self.reference)
         found = {"rms": float(np.sqrt(np.mean(off**2))), "max": float(np.abs(off).max())}
         if self.goal:
             off = error(self.goal)
-            late = log.t[seen] > log.t[seen][-1] - 1.0
+            late = log.t[rows] > log.t[rows][-1] - 1.0
             found |= {"rms_goal": float(np.sqrt(np.mean(off**2))), "goal_error": float(np.mean(off[late]))}
         return found

@@ -8,7 +8,7 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure, at
+from boatsim.simulate.measure import Measure, at, seen
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,7 @@ class TurningCircle(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """What the turn reached."""
+        seen(log)
         line = self.execute if self.course < 0.0 else self.course
         psi0 = at(log, line, "psi_rad")
         c, s = np.cos(psi0), np.sin(psi0)

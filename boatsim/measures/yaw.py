@@ -32,6 +32,8 @@ class Yaw(FilmMeasure):
 
     def of_film(self, film: Film) -> dict[str, float]:
         """Distances of the mark as the camera has them, the rest as it was."""
+        if not len(film.t):
+            return {}
         frame = first(np.abs(film.psi - film.psi[0]) >= 2.0 * pi)
         if frame is None:
             return {}

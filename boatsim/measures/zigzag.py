@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure, track
+from boatsim.simulate.measure import Measure, seen, track
 
 COUNT = ("first", "second", "third")
 
@@ -30,6 +30,7 @@ class Zigzag(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many reversals as there were."""
+        seen(log)
         helm, psi = log["reference_helm_rad"], log["psi_rad"] - log["psi_rad"][0]
         reversals = 1 + np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0)
         if not len(reversals):

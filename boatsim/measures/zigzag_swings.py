@@ -8,7 +8,7 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, seen
 
 REVERSALS = 4
 
@@ -28,15 +28,15 @@ class ZigzagSwings(Measure):
 
     def values(self, log: Recording) -> dict[str, float]:
         """Reversals the run gets as far as; the period is the mean of two half swings that follow the first."""
-        seen = log.t >= self.since - 1e-9
-        t, helm = log.t[seen], log[self.signal][seen]
+        rows = seen(log, self.since)
+        t, helm = log.t[rows], log[self.signal][rows]
         at = t[1:][np.diff(np.sign(helm)) != 0] - self.since
         found = {f"reversal_{i}": float(time) for i, time in enumerate(at[:REVERSALS], 1)}
         if len(at) > 2:
             found["period"] = float(at[-1] - at[0]) / (len(at) - 1) * 2.0
         angles = {"heading": "psi_rad", "yaw_rate": "r_radps", "roll": "phi_rad"}
-        found |= {n: degrees(float(np.abs(log[s][seen]).max())) for n, s in angles.items() if s in log.signals}
-        u = log["u_mps"][seen]
+        found |= {n: degrees(float(np.abs(log[s][rows]).max())) for n, s in angles.items() if s in log.signals}
+        u = log["u_mps"][rows]
         return found | {
-            "sway": float(np.abs(log["v_mps"][seen]).max()), "speed": float(u.max()), "slowest": float(u.min()),
+            "sway": float(np.abs(log["v_mps"][rows]).max()), "speed": float(u.max()), "slowest": float(u.min()),
         }  # fmt: skip

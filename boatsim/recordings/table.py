@@ -161,15 +161,23 @@ def read(
 
 def write_csv(recording: Recording, path: Path | str) -> None:
     """Write all signals, t_s first, to 12 digits: the same recording gives the same bytes. Raises OSError."""
-    names = ["t_s", *recording.signals]
-    columns = [recording.t, *recording.signals.values()]
-    line = ",".join(["%.12g"] * len(names)) + "\n"
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        file.write(",".join(names) + "\n")
+        file.write(csv_header(recording))
         for start in range(0, len(recording), 10_000):  # an hour of rows is not formatted in one piece of memory
-            part = np.column_stack([c[start : start + 10_000] for c in columns]) + 0.0  # -0 becomes 0
-            rows = part.tolist()
-            file.write("".join([line % tuple(row) for row in rows]).replace("nan", ""))
+            file.write(csv_rows(recording, start, start + 10_000))
+
+
+def csv_header(recording: Recording) -> str:
+    """First line of its CSV."""
+    return ",".join(["t_s", *recording.signals]) + "\n"
+
+
+def csv_rows(recording: Recording, start: int = 0, end: int | None = None) -> str:
+    """Lines of its CSV from row `start` to row `end`; nan is an empty cell."""
+    columns = [recording.t, *recording.signals.values()]
+    line = ",".join(["%.12g"] * len(columns)) + "\n"
+    part = np.column_stack([c[start:end] for c in columns]) + 0.0  # -0 becomes 0
+    return "".join([line % tuple(row) for row in part.tolist()]).replace("nan", "")
 
 
 def _raw(path: Path) -> Raw:

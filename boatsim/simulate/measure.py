@@ -2,12 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
+from boatsim.errors import BoatsimError
 from boatsim.physics.base import Array, Checked
 from boatsim.recordings.table import Recording
+
+
+class TooShort(BoatsimError):
+    """A log ends before there is what a measure asks of it: that of a run that was interrupted, say."""
 
 
 @dataclass(frozen=True)
@@ -25,8 +32,16 @@ class Measure(Checked):
         return type(self).units[norm]
 
     def values(self, log: Recording) -> dict[str, float]:
-        """Norms of a run; one that the run never got as far as is left out."""
+        """Norms of a run; one that the run never got as far as is left out. Raises TooShort if none can be told."""
         raise NotImplementedError
+
+
+def seen(log: Recording, since: float = -inf, until: float = inf, least: int = 1) -> NDArray[np.bool_]:
+    """Which rows (N,) lie between two times [s]. Raises TooShort if they are fewer than `least`."""
+    found = (log.t >= since - 1e-9) & (log.t <= until + 1e-9)
+    if (count := int(np.count_nonzero(found))) < least:
+        raise TooShort(f"{log.name}: {count} rows where at least {least} are needed")
+    return np.asarray(found)
 
 
 def crossing(t: Array, above: Array) -> float | None:

@@ -1,7 +1,7 @@
 """Judges a run: the norms of its measure and the checks of its signals, beside the values they are held against."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, sqrt
 from typing import TypedDict
 
@@ -11,9 +11,11 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 from boatsim.simulate.film import FilmMeasure, film
+from boatsim.simulate.measure import Measure, TooShort
 from boatsim.simulate.run import Run
 from boatsim.simulate.scenario import CheckTable, NormTable
 
+SHORT, NOT_REACHED = "too short", "not reached"  # a log that ends too soon; what a whole run never did
 REPRODUCED, MISSED, UNSTATED = "reproduced", "not reproduced", "no tolerance stated"
 
 
@@ -29,6 +31,7 @@ class NormEntry(TypedDict):
     at_reported: float | None
     noise_floor: float | None
     verdict: str | None
+    lacking: str | None  # why there is no value
 
 
 class RunEntry(TypedDict):
@@ -55,6 +58,7 @@ class Norm:
     ok: bool | None = None  # whether the value lies within the guard; None: there is none
     at_reported: float | None = None  # of measures on camera frames: at the rate reported beside the one scored
     noise_floor: float | None = None  # what the camera's noise alone would give, error-free motion, as many frames
+    lacking: str | None = None  # why there is no value
 
     @property
     def verdict(self) -> str | None:
@@ -78,6 +82,7 @@ class Norm:
             "at_reported": self.at_reported,
             "noise_floor": self.noise_floor,
             "verdict": self.verdict,
+            "lacking": self.lacking,
         }
 
 
@@ -90,15 +95,35 @@ def norms(run: Run) -> dict[str, Norm]:
     """All norms the scenario asks for, by name: those of its `measure`, then its checks. Raises BadInput."""
     measure = run.scenario.measure
     found: dict[str, Norm] = {}
-    if isinstance(measure, FilmMeasure):
-        values, beside = film_values(run, measure, measure.scored), film_values(run, measure, measure.reported)
-        floor = measure.noise_floor(round(values["frames"]), run.scenario.camera) if values else {}
-        for name, unit in type(measure).units.items():
-            found[name] = _judged(run, name, values.get(name), unit, beside.get(name), floor.get(name))
-    elif measure:
-        values = measure.values(run.recording)
-        found = {n: _judged(run, n, values.get(n), measure.unit(n)) for n in type(measure).units}
+    try:
+        found = _measured(run, measure) if measure else {}
+    except TooShort:
+        found = _of_nothing(run, measure)
+    except BadInput:
+        raise
+    except Exception:
+        if run.complete:
+            raise
+        found = _of_nothing(run, measure)  # of an interrupted run a measure may make nothing; its log is kept
     return found | {f"{c.signal}_{c.norm}": _checked(run.recording, c) for c in run.scenario.file.check}
+
+
+def _measured(run: Run, measure: Measure) -> dict[str, Norm]:
+    """Norms of a measure, on the log or on the camera's frames."""
+    units = type(measure).units
+    if not isinstance(measure, FilmMeasure):
+        values = measure.values(run.recording)
+        return {n: _judged(run, n, values.get(n), measure.unit(n)) for n in units}
+    values, beside = film_values(run, measure, measure.scored), film_values(run, measure, measure.reported)
+    floor = measure.noise_floor(round(values["frames"]), run.scenario.camera) if values else {}
+    return {n: _judged(run, n, values.get(n), unit, beside.get(n), floor.get(n)) for n, unit in units.items()}
+
+
+def _of_nothing(run: Run, measure: Measure | None) -> dict[str, Norm]:
+    """Norms of a measure that the log is too short for."""
+    if measure is None:
+        return {}
+    return {n: replace(_judged(run, n, None, measure.unit(n)), lacking=SHORT) for n in type(measure).units}
 
 
 def to_json(run: Run, norms: Mapping[str, Norm]) -> RunEntry:
@@ -128,7 +153,7 @@ def signal_norm(t: Array, x: Array, kind: str) -> float:
     integrals that do not depend on the step.
     """
     known = np.abs(x[np.isfinite(x)])
-    span = float(t[-1] - t[0])
+    span = float(t[-1] - t[0]) if len(t) else 0.0
     return {
         "inf": float(known.max(initial=0.0)),
         "rms": sqrt((known**2).mean()) if len(known) else 0.0,
@@ -155,9 +180,11 @@ def _judged(
 ) -> Norm:
     """The norm beside what the scenario says of it; its guard may be widened by the noise floor."""
     table = run.scenario.file.norms.get(name, NormTable())
+    value = value if value is not None and isfinite(value) else None
     guard, ok = table.guard, None
     if guard is not None:
         more = floor if run.scenario.file.noise_widens_guards and floor is not None else 0.0
         guard = (guard[0] - more, guard[1] + more)
         ok = value is not None and guard[0] <= value <= guard[1]
-    return Norm(value, unit, table.published, table.tolerance, guard, ok, at_reported, floor)
+    lacking = None if value is not None else NOT_REACHED if run.complete else SHORT
+    return Norm(value, unit, table.published, table.tolerance, guard, ok, at_reported, floor, lacking)

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from inspect import getsourcefile
 from math import inf, nan
+from pathlib import Path
+from time import monotonic
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
@@ -19,6 +21,7 @@ from boatsim.physics.signals import AXES, COMPONENTS, signals_of
 from boatsim.recordings.table import NoSignal, Notes, Recording
 from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.log import FiledLog, Log
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.sensing import sensed
 from boatsim.simulate.world import Tank
@@ -28,29 +31,9 @@ FIELDS = ("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
 SEEN = ("x_m", "y_m", "psi_rad")  # the pose that a camera frame gives
 SHORTEST = 1e-6  # [s] of a part of a step
 CHUNK = 500  # [rows] handed to a listener at a time
+OFTEN = 0.5  # [s] after which it gets fewer: a process that is killed loses no more than a second
 STILL = 50  # rows of a boat that stays as it is, by which a measure is asked what it reads
 Listener = Callable[[Recording], None]
-
-
-class Log:
-    """A table filled row by row, one float a column; laid out by columns, so that a recording of it copies nothing."""
-
-    def __init__(self, names: list[str], most: int) -> None:
-        """`most` is how many rows are expected; memory is taken only as rows come."""
-        self.names, self.count = names, 0
-        self.columns = np.empty((len(names), most))
-
-    def add(self, row: list[float]) -> None:
-        """One more row."""
-        if self.count == self.columns.shape[1]:
-            self.columns = np.concatenate([self.columns, np.empty_like(self.columns)], axis=1)
-        self.columns[:, self.count] = row
-        self.count += 1
-
-    def recording(self, name: str, notes: Notes, start: int = 0) -> Recording:
-        """The rows from `start` on; the first column is time."""
-        t, *signals = self.columns[:, start : self.count]
-        return Recording(name, t, dict(zip(self.names[1:], signals, strict=True)), notes)
 
 
 @dataclass(frozen=True)
@@ -67,12 +50,17 @@ class Run:
 
 
 class Runner:
-    """One run in progress. `listen` gets the new rows about every 500 steps, for a live view."""
+    """One run in progress. `listen` gets new rows of the log, `watch` those of the camera: every 500, or every second.
+
+    The log lies in memory, or where `folder` says in a file there, and then a run may be of any length.
+    """
 
     def __init__(self, scenario: Scenario, seed: int | None = None, listen: Listener | None = None) -> None:
         """Build the engine; raises BadInput or BadPhysics."""
         file = scenario.file
         self.scenario, self.listen = scenario, listen
+        self.watch: Listener | None = None
+        self.folder: Path | None = None
         self.seed = file.seed if seed is None else seed
         tank = Tank(**file.tank.model_dump()) if file.tank else None
         vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
@@ -96,23 +84,26 @@ class Runner:
         self._due = 0.0
         self._early = inf  # [s] when the controller wants to act within its period
         self._row_due = 0.0
-        self._shown = 0  # rows the listener has
+        self._shown = self._watched = 0  # rows the listeners have
+        self._told = monotonic()  # when they last had any
 
-    def run(self, progress: Callable[[float], None] | None = None) -> Run:
-        """Run to the end, or to an interruption, which keeps what was logged. `progress` gets the time reached [s]."""
+    def run(self, progress: Callable[[float], None] | None = None, stop: Callable[[], bool] = bool) -> Run:
+        """Run to the end, or to an interruption, which keeps what was logged; `stop` is asked every step for one.
+
+        `progress` gets the time reached [s].
+        """
         complete = False
         self._start()  # an interruption in here has nothing to keep
         self._check_measured()
         try:
-            while not self._finished():
+            while not (complete := self._finished()) and not stop():
                 self._advance()
-                if progress and self.log.count % 100 == 0:
+                if progress and self._steps % 100 == 0:
                     progress(self._state.t)
-            complete = True
         except KeyboardInterrupt:
             pass
-        self._show(0)
-        notes = self._notes()
+        self._show(over=True)
+        notes = self.notes()
         name = self.scenario.name.replace("/", "_")
         log, film = self.log.recording(name, notes), self._film.recording("camera", notes)
         return Run(self.scenario, self.seed, log, film, complete, self._steps, dict(self._saturated))
@@ -130,12 +121,16 @@ class Runner:
             self._estimates = list(controller.estimates())
         duration = self.scenario.file.duration
         between = max(self.scenario.file.log, self.scenario.file.step)
-        self.log = Log(self._columns(), round(duration / between) + 3)
-        seen = ["t_s", *SEEN, *self._marks, *self._sent_channels]
-        self._film = Log(seen, round(duration * self.scenario.camera.rate) + 2)
+        self.log = self._table(self._columns(), duration / between)
+        self._film = self._table(
+            ["t_s", *SEEN, *self._marks, *self._sent_channels], duration * self.scenario.camera.rate
+        )
         self._average: list[tuple[list[float], float]] = []  # commands in force, and for how long [s]
         self._frames = self._shoot(state, state)
         self._write_row()
+
+    def _table(self, names: list[str], rows: float) -> Log:
+        return FiledLog(names, self.folder) if self.folder else Log(names, round(rows) + 3)
 
     def _check_measured(self) -> None:
         """Raises NoSignal before the run for what its measure or a check wants and the log lacks.
@@ -266,7 +261,7 @@ class Runner:
         if self._film.count and self._average:
             commands, seconds = zip(*self._average, strict=True)
             first = 1 + len(SEEN) + len(self._marks)
-            self._film.columns[first:, self._film.count - 1] = np.average(commands, 0, seconds)
+            self._film.amend(first, np.average(commands, 0, seconds))
         self._average.clear()
 
     def _write_row(self) -> None:
@@ -296,8 +291,7 @@ class Runner:
                 *(estimates[n].value for n in self._estimates if n.startswith("reference_")),
             ]
         )
-        if self.log.count - self._shown >= CHUNK:
-            self._show(CHUNK)
+        self._show()
 
     def _in_force(self) -> list[float]:
         """Commands that act, of the channels the controller sets."""
@@ -316,11 +310,18 @@ class Runner:
             total = [a + b for a, b in zip(total, w, strict=True)]
         return total
 
-    def _show(self, least: int) -> None:
-        """New rows to the listener."""
-        if self.listen and self.log.count > self._shown and self.log.count - self._shown >= least:
+    def _show(self, over: bool = False) -> None:
+        """New rows to the listeners, if there are enough or it is time; a frame once its commands are known."""
+        now = monotonic()
+        if not over and self.log.count - self._shown < CHUNK and now - self._told < OFTEN:
+            return
+        self._told = now
+        if self.listen and self.log.count > self._shown:
             self.listen(self.log.recording(self.scenario.name, Notes(), self._shown))
-            self._shown = self.log.count
+        ready = self._film.count if over else max(self._film.count - 1, 0)
+        if self.watch and (ready > self._watched or not self._watched):
+            self.watch(self._film.recording("camera", Notes(), self._watched, ready))
+        self._shown, self._watched = self.log.count, ready
 
     def _finished(self) -> bool:
         file, s = self.scenario.file, self._state
@@ -333,7 +334,7 @@ class Runner:
         out = file.until.starboard is not None and starboard >= file.until.starboard
         return bool(out or (file.until.turned is not None and abs(s.psi - file.start.psi) >= file.until.turned))
 
-    def _notes(self) -> Notes:
+    def notes(self) -> Notes:
         """What a diagnosis of this run may know: vessel, load, values set, noise of the camera."""
         file, noise = self.scenario.file, self.scenario.camera.noise()
         return Notes(vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise)

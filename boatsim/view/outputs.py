@@ -1,26 +1,31 @@
-"""What a run leaves in its folder: recording.csv, camera.csv with recording.toml, norms.json, run.rrd, all or none."""
+"""What a run leaves in its folder: recording.csv, camera.csv with recording.toml, norms.json, run.rrd, all or none.
+
+They are written as the run goes, in a folder beside it that is called `.part-...`: one that is killed leaves that.
+"""
 
 import json
 import os
 import shutil
-import signal
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, BoatsimError
+from boatsim.files import Growing
+from boatsim.interruption import noted
 from boatsim.physics.content import vessel_address
-from boatsim.recordings.table import write_csv
+from boatsim.recordings.table import Notes, Recording, csv_header, csv_rows
 from boatsim.simulate import norms as judged
 from boatsim.simulate.norms import RunEntry
-from boatsim.simulate.run import Run, Runner
+from boatsim.simulate.run import Runner
 from boatsim.simulate.scenario import Scenario
 
 if TYPE_CHECKING:
     from boatsim.view.rerun_log import RunLog
 
+PART = ".part-"  # of the name of a folder that is being filled
 CAMERA = "camera"  # stem of the file a diagnosis reads
 
 
@@ -31,40 +36,64 @@ def run_into(
     live: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> RunEntry:
-    """Run a scenario, logging to rerun as it goes, and put its files into `folder`; returns what norms.json says.
+    """Run a scenario, writing its log as it goes, and put its files into `folder`; returns what norms.json says.
 
-    An interruption ends the run, and what was logged is kept. Raises BadInput, BadPhysics or OSError, and then
-    `folder` is as it was.
+    An interruption ends the run, and what was logged is kept with its norms so far. Raises BadInput, BadPhysics or
+    OSError, and then `folder` is as it was; of a disk that is full the line says where the whole part of the log lies.
     """
     runner = Runner(scenario, seed)
-    with _interrupts() as ignore, filling(folder) as new, _log(new / "run.rrd", runner, live) as log:
-        runner.listen = log.chunk
-        run = runner.run(progress)
-        ignore()  # a second Ctrl-C must not cost the files of a run that the first one ended
-        found = judged.norms(run)
-        log.finish({name: norm.to_json() for name, norm in found.items()})
+    with noted() as stop, filling(folder, keep="recording.csv") as new:
+        runner.folder = new
+        (new / "recording.toml").write_text(notes_toml(runner.scenario, runner.notes(), runner.seed, False), "utf-8")
+        with ExitStack() as open_files:
+            log = open_files.enter_context(_log(new / "run.rrd", runner, live))
+            table = open_files.enter_context(CsvFile(new / "recording.csv"))
+
+            def listen(rows: Recording) -> None:
+                table.add(rows)
+                log.chunk(rows)
+
+            runner.listen = listen
+            if "yaw" in scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
+                runner.watch = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv")).add
+            run = runner.run(progress, stop)
+            stop.over = True  # nothing that comes now may cost the files
+            found = judged.norms(run)
+            log.finish({name: norm.to_json() for name, norm in found.items()})
         content = judged.to_json(run, found)
-        write(run, content, new)
+        text = notes_toml(scenario, run.recording.notes, run.seed, run.complete)
+        (new / "recording.toml").write_text(text, "utf-8")
+        (new / "norms.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     return content
 
 
-def write(run: Run, content: RunEntry, folder: Path) -> None:
-    """The files of a run but its rerun log; `content` is that of norms.json."""
-    write_csv(run.recording, folder / "recording.csv")
-    if "yaw" in run.scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
-        write_csv(run.camera, folder / f"{CAMERA}.csv")
-    (folder / "recording.toml").write_text(notes_toml(run), encoding="utf-8")
-    (folder / "norms.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+class CsvFile:
+    """A CSV of a recording that comes in pieces; it is whole rows at any time."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = Growing(path.open("wb", buffering=0), path)
+        self._begun = False
+
+    def add(self, rows: Recording) -> None:
+        """The rows that follow. Raises OSError, and then none of them is there."""
+        head = "" if self._begun else csv_header(rows)
+        self._file.add((head + csv_rows(rows)).encode())
+        self._begun = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
 
 
-def notes_toml(run: Run) -> str:
+def notes_toml(scenario: Scenario, notes: Notes, seed: int, complete: bool) -> str:
     """recording.toml: what a diagnosis of the run may know. Effects the scenario adds are what it has to find."""
-    vessel, notes = run.scenario.vessel, run.recording.notes
-    lines = [f"vessel = {_value(vessel_address(vessel.file))}", f"load = {_value(list(notes.load))}"]
+    lines = [f"vessel = {_value(vessel_address(scenario.vessel.file))}", f"load = {_value(list(notes.load))}"]
     for effect, values in notes.settings.items():
         lines += _table(f"set.{_key(effect)}", values)
     lines += _table(f"runs.{CAMERA}.noise", notes.noise)  # recording.csv has none: it is the truth
-    facts = {"scenario": run.scenario.name, "seed": run.seed, "complete": run.complete}
+    facts = {"scenario": scenario.name, "seed": seed, "complete": complete}
     return "\n".join(lines + _table("facts", facts)) + "\n"
 
 
@@ -90,26 +119,46 @@ def _log(path: Path, runner: Runner, live: bool) -> "RunLog":
 
 
 @contextmanager
-def filling(folder: Path) -> Iterator[Path]:
-    """A new folder beside `folder`, whose files move into it once all of them are whole."""
+def filling(folder: Path, keep: str | None = None) -> Iterator[Path]:
+    """A new folder `folder.part-...` beside `folder`, whose files move into it once all of them are whole.
+
+    It stays where the process is killed, and where the disk is full and it has the file `keep`; the error says so.
+    """
     if folder.exists() and not folder.is_dir():
         raise BadInput(f"{folder}: is a file; what is written needs a folder")
     folder.parent.mkdir(parents=True, exist_ok=True)
-    new = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+    new = Path(tempfile.mkdtemp(prefix=f"{folder.name}{PART}", dir=folder.parent))
+    kept = False
     try:
-        yield new
-        folder.mkdir(exist_ok=True)
-        for file in sorted(new.iterdir()):
-            os.replace(file, folder / file.name)
+        with noted():  # of a folder just made, and of one that is half moved
+            yield new
+            _move(new, folder)
+    except OSError as error:
+        kept = keep is not None and (new / keep).is_file() and (new / keep).stat().st_size > 0
+        if not kept:
+            raise
+        said = f"{error.filename}: {error.strerror}"
+        raise BoatsimError(f"{said}; what was whole until then stays in {new}") from error
     finally:
-        shutil.rmtree(new, ignore_errors=True)
+        if not kept:
+            shutil.rmtree(new, ignore_errors=True)
 
 
-@contextmanager
-def _interrupts() -> Iterator[Callable[[], object]]:
-    """A switch that makes Ctrl-C do nothing until the block is left."""
-    before = signal.getsignal(signal.SIGINT)
-    try:
-        yield lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)
-    finally:
-        signal.signal(signal.SIGINT, before)
+def _move(new: Path, folder: Path) -> None:
+    """All files of one folder to another; at once where that is not there yet."""
+    if not folder.exists():
+        new.chmod(0o777 & ~_umask())  # it was private as all temporary folders are
+        new.rename(folder)
+        return
+    files = sorted(new.iterdir())
+    if taken := next((folder / f.name for f in files if (folder / f.name).is_dir()), None):
+        raise BadInput(f"{taken}: is a folder; a file is to be written there")
+    for file in files:
+        os.replace(file, folder / file.name)
+
+
+def _umask() -> int:
+    """What new files of this process are not allowed; the only way to read it sets it."""
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask

@@ -5,13 +5,10 @@ the 3D scene is drawn from the same columns. rerun is imported here and in `blue
 """
 
 import math
-import socket
-import sys
-import warnings
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from time import monotonic
 from types import TracebackType
 from typing import Self, TypedDict
 
@@ -25,10 +22,10 @@ from boatsim.simulate.norms import NormEntry
 from boatsim.view import blueprint
 from boatsim.view.blueprint import WORLD
 from boatsim.view.scene import OUTBOARD, Scene, Solid
+from boatsim.view.stream import Stream
 
-PORT = 9876  # where a viewer listens unless told otherwise
-PATIENCE = 10.0  # [s] for a viewer to take what is left at the end of a run
 BUFFER = 1000  # rows kept back before they are written, unless somebody watches: small chunks make large files
+OFTEN = 0.5  # [s] after which they are written all the same: a process that is killed loses no more than a second
 TRAIL_STEP = 0.1  # [s] between points of the path drawn
 ABOVE = 0.02  # [m] arrows and paths lie this far above the water
 COLOURS = {
@@ -65,34 +62,39 @@ class RunLog:
     """
 
     def __init__(self, path: Path | str | None, live: bool, scene: Scene) -> None:
+        """Raises OSError, as whatever writes does."""
         self.scene, self.live = scene, live
-        self.stream = rr.RecordingStream("boatsim", send_properties=False)
         self._waiting: list[Recording] = []
+        self._written = monotonic()  # when something last was
         self._trail: tuple[float, Array] | None = None  # time and place of the last point of the path
         self._known: set[str] = set()
-        self._heard = _open(self.stream, path, live)
-        if self._heard:
+        self.stream = Stream("boatsim", path, live)
+        if self.stream.heard:
+            _begin(self.stream)
             _draw_tank(self.stream, scene)
             _draw_hull(self.stream, scene, "boat")
             self._say("Norms follow when the run is over.")
+            self.stream.keep()
 
     def chunk(self, rows: Recording) -> None:
         """Log new rows, which follow those logged before."""
-        if len(rows) and self._heard:
+        if len(rows) and self.stream.heard:
             self._waiting.append(rows)
-        if self.live or sum(map(len, self._waiting)) >= BUFFER:
+        if self.live or sum(map(len, self._waiting)) >= BUFFER or monotonic() - self._written >= OFTEN:
             self._write()
 
     def finish(self, norms: Mapping[str, NormEntry]) -> None:
         """Add the table of norms: name -> value, unit, published, verdict, guard [low, high], ok."""
         self._write()
-        if self._heard:
+        if self.stream.heard:
             self._say(norms_table(norms))
 
     def close(self) -> None:
         """Write what is waiting and end the file."""
-        self._write()
-        _end(self.stream)
+        try:
+            self._write()
+        finally:
+            self.stream.close()
 
     def __enter__(self) -> Self:
         return self
@@ -107,7 +109,7 @@ class RunLog:
         if not self._waiting:
             return
         rows = _joined(self._waiting)
-        self._waiting = []
+        self._waiting, self._written = [], monotonic()
         if new := rows.signals.keys() - self._known:
             self._known |= new
             for number, name in enumerate(n for n in rows.signals if n in new):
@@ -118,6 +120,7 @@ class RunLog:
         _log_arrows(self.stream, rows, self.scene)
         self._trail = _log_path(self.stream, rows, "path", COLOURS["path"], self._trail)
         _log_camera(self.stream, rows)
+        self.stream.keep()
 
 
 def log_overlay(
@@ -134,8 +137,8 @@ def log_overlay(
     the end of one to the begin of the next. `missing` has `force_X_N` (and `_Y_N`, `_K_Nm`, `_N_Nm`) with `..._low`
     and `..._high`; `intervals` are `where.intervals` of diagnosis.json (from_s, to_s, axis).
     """
-    stream = rr.RecordingStream("boatsim_diagnosis", send_properties=False)
-    _open(stream, path, live=False)
+    stream = Stream("boatsim_diagnosis", path, live=False)
+    _begin(stream)
     _draw_tank(stream, scene)
     for number, (boat, stretches) in enumerate(boats.items()):
         colour = BOATS.get(boat, blueprint.PALETTE[number % len(blueprint.PALETTE)])
@@ -160,7 +163,11 @@ def log_overlay(
     span = min((float(t[0]) for t in times), default=0.0), max((float(t[-1]) for t in times), default=1.0)
     forces = missing.signals if missing is not None else {}
     stream.send_blueprint(blueprint.of_overlay(scene, list(boats), names, forces, span))
-    _end(stream)
+    stream.close()
+
+
+def _begin(stream: Stream) -> None:
+    stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
 
 def norms_table(norms: Mapping[str, NormEntry]) -> str:
@@ -178,49 +185,6 @@ def norms_table(norms: Mapping[str, NormEntry]) -> str:
 
 def _short(value: float | None) -> str:
     return "" if value is None else f"{value:.4g}"
-
-
-def _open(stream: rr.RecordingStream, path: Path | str | None, live: bool) -> bool:
-    """Point a stream at its file, a viewer, or both; False if there is neither."""
-    sinks: list[rr.FileSink | rr.GrpcSink] = []
-    if path is not None:
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        sinks.append(rr.FileSink(str(path)))
-    if live:
-        if not _listening():
-            with suppress(RuntimeError):  # no viewer to start: said below
-                rr.spawn(connect=False, recording=stream, executable_path=_viewer())
-        if _listening():
-            sinks.append(rr.GrpcSink(f"rerun+http://127.0.0.1:{PORT}/proxy"))
-        else:
-            warnings.warn("no rerun viewer could be started (is there a display?); the run goes on", stacklevel=3)
-    if sinks:
-        stream.set_sinks(*sinks)
-        stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-    return bool(sinks)
-
-
-def _viewer() -> str | None:
-    """The viewer beside the running Python, which need not be on the path; None: wherever rerun finds it."""
-    beside = Path(sys.executable).parent / "rerun"
-    return str(beside) if beside.is_file() else None
-
-
-def _end(stream: rr.RecordingStream) -> None:
-    try:
-        stream.flush(timeout_sec=PATIENCE)
-    except (RuntimeError, TimeoutError, ValueError) as error:  # a viewer that was closed while the run went on
-        warnings.warn(f"the viewer did not take all of the log ({error})", stacklevel=3)
-    stream.disconnect()
-
-
-def _listening() -> bool:
-    """Whether somebody listens at the viewer's port."""
-    try:
-        socket.create_connection(("127.0.0.1", PORT), 1.0).close()
-    except OSError:
-        return False
-    return True
 
 
 def _joined(parts: Sequence[Recording]) -> Recording:
@@ -248,7 +212,7 @@ def _when(t: Array) -> list[rr.TimeColumn]:
     return [rr.TimeColumn(TIMELINE, duration=np.round(t * 1e9).astype("timedelta64[ns]"))]
 
 
-def _log_signals(stream: rr.RecordingStream, rows: Recording, under: str) -> None:
+def _log_signals(stream: Stream, rows: Recording, under: str) -> None:
     when = _when(rows.t)
     for name, values in rows.signals.items():
         stream.send_columns(f"{under}/{name}", when, rr.Scalars.columns(scalars=values))
@@ -259,7 +223,7 @@ def _flat(x: Array, y: Array, z: float = 0.0) -> Array:
     return np.column_stack([x, -y, np.full(len(x), z)])
 
 
-def _draw_tank(stream: rr.RecordingStream, scene: Scene) -> None:
+def _draw_tank(stream: Stream, scene: Scene) -> None:
     length, width, x, y = scene.tank
     for solid in scene.solids:
         if solid.part == "tank":
@@ -278,7 +242,7 @@ def _draw_tank(stream: rr.RecordingStream, scene: Scene) -> None:
     stream.log(f"{WORLD}/tank/water", water, static=True)
 
 
-def _draw_hull(stream: rr.RecordingStream, scene: Scene, boat: str, tint: tuple[int, int, int] | None = None) -> None:
+def _draw_hull(stream: Stream, scene: Scene, boat: str, tint: tuple[int, int, int] | None = None) -> None:
     """The hull's shapes under the entity of a boat; outboards hang from entities of their own so that they can turn."""
     for solid in scene.solids:
         if solid.part != "tank":
@@ -295,9 +259,7 @@ def _above(scene: Scene, number: int) -> float:
     return top + (5 + number) * 0.002 * scene.length
 
 
-def _draw_outline(
-    stream: rr.RecordingStream, scene: Scene, boat: str, number: int, colour: tuple[int, int, int]
-) -> None:
+def _draw_outline(stream: Stream, scene: Scene, boat: str, number: int, colour: tuple[int, int, int]) -> None:
     """Outline of the hull from above with a line from its middle to the bow, and its name on one of its sides."""
     ring = scene.outline()
     height, bow, stern = _above(scene, number), float(ring[:, 0].max()), float(ring[:, 0].min())
@@ -330,7 +292,7 @@ def _mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
     )
 
 
-def _move(stream: rr.RecordingStream, rows: Recording, scene: Scene, boat: str) -> None:
+def _move(stream: Stream, rows: Recording, scene: Scene, boat: str) -> None:
     """Pose of the hull and angles of the outboards; a boat that only rolls stays at the origin."""
     zero = np.zeros(len(rows))
     x, y, z, phi, theta, psi = (rows.signals.get(name, zero) for name in POSE)
@@ -359,7 +321,7 @@ def _attitude(psi: Array, phi: Array, theta: Array | float = 0.0) -> Array:
     )
 
 
-def _log_arrows(stream: rr.RecordingStream, rows: Recording, scene: Scene) -> None:
+def _log_arrows(stream: Stream, rows: Recording, scene: Scene) -> None:
     zero = np.zeros(len(rows))
     for thruster in scene.thrusters:
         if (thrust := rows.signals.get(thruster.thrust)) is not None:
@@ -375,7 +337,7 @@ def _log_arrows(stream: rr.RecordingStream, rows: Recording, scene: Scene) -> No
 
 
 def _arrow(
-    stream: rr.RecordingStream,
+    stream: Stream,
     t: Array,
     name: str,
     scene: Scene,
@@ -394,7 +356,7 @@ def _arrow(
 
 
 def _log_path(
-    stream: rr.RecordingStream,
+    stream: Stream,
     rows: Recording,
     name: str,
     colour: tuple[int, int, int],
@@ -416,7 +378,7 @@ def _log_path(
     return float(t[-1]), points[-1]
 
 
-def _log_camera(stream: rr.RecordingStream, rows: Recording) -> None:
+def _log_camera(stream: Stream, rows: Recording) -> None:
     """What the camera measured, at the rows in which it measured something new."""
     if not {"camera_x_m", "camera_y_m"} <= rows.signals.keys():
         return
