@@ -1,0 +1,33 @@
+"""What `boatsim new` does: particulars in, the folder of a boat out, all of it or nothing."""
+
+from pathlib import Path
+
+from boatsim.cli.exits import say
+from boatsim.errors import BadInput
+from boatsim.newboat.particulars import Particulars
+from boatsim.newboat.write import VESSEL, files
+from boatsim.view.outputs import filling
+
+
+def new_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> int:
+    """Write vessel.toml, hull.xml and turn.toml into `folder`, the first fitted to `logs` where there are any."""
+    if folder.exists() and not force:
+        raise BadInput(f"{folder}: is there already; --force writes a new boat over it")
+    lines: list[str] = []
+    with filling(folder) as new:
+        for name, text in files(boat).items():
+            (new / name).write_text(text, encoding="utf-8")
+        if logs:
+            from boatsim.newboat.from_log import fitted
+
+            found = fitted(new / VESSEL, logs)
+            (new / VESSEL).write_text(found.text, encoding="utf-8")
+            lines += found.lines
+    say(
+        [
+            *lines,
+            f"written to {folder}: {', '.join(files(boat))}",
+            f"next: boatsim run {folder / 'turn.toml'}, boatsim show {folder}, boatsim diagnose RUN.csv --vessel {folder}",
+        ]
+    )
+    return 0
