@@ -50,9 +50,7 @@ def write(file: Path, seed: int, duration: float = 180.0) -> None:
     commands = levels[np.minimum((t / HOLD + 1e-9).astype(int), len(levels) - 1)]
     seen = path(commands, t) + rng.standard_normal((len(t), 3)) * SD
     rows = np.column_stack([t, seen, commands])
-    np.savetxt(
-        file, rows, "%.9g", ",", header="t_s,x_m,y_m,psi_rad,thrust_port_N,thrust_starboard_N", comments=""
-    )
+    np.savetxt(file, rows, "%.9g", ",", header="t_s,x_m,y_m,psi_rad,thrust_port_N,thrust_starboard_N", comments="")
 
 
 HAND_MADE = f"""about = "the 3 m boat by whoever built it: its own numbers, but for the day's current"

@@ -182,13 +182,33 @@ def list_(
         Literal["vessels", "controllers", "effects", "sensors", "measures", "scenarios"] | None,
         typer.Argument(help="Only these."),
     ] = None,
+    like: Annotated[
+        str | None, typer.Argument(metavar="LIKE", help="Only names with this in them, or a pattern.")
+    ] = None,
     content: Content = None,
 ) -> None:
     """List vessels, controllers, effects, measures and scenarios, a line each."""
     from boatsim.cli.show import listing
 
     with asking(content):
-        say(listing(kind))
+        say(listing(kind, like))
+
+
+@app.command()
+@guarded
+def show(
+    name: Annotated[
+        str,
+        typer.Argument(metavar="NAME", help="An effect, controller, vessel, measure, sensor or scenario; a folder."),
+    ],
+    content: Content = None,
+    trust: Trusted = False,
+) -> None:
+    """Say what something is: its parameters with unit, bounds, default and source, and an example to paste."""
+    from boatsim.cli.about import about
+
+    with asking(content, trust, [name]):
+        say(about(name))
 
 
 @app.command()

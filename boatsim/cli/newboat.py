@@ -27,7 +27,7 @@ def new_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> 
         [
             *lines,
             f"written to {folder}: {', '.join(files(boat))}",
-            f"next: boatsim run {folder / 'turn.toml'}, boatsim show {folder}, boatsim diagnose RUN.csv --vessel {folder}",
+            f"next: boatsim show {folder}, boatsim run {folder / 'turn.toml'}, boatsim diagnose RUN --vessel {folder}",
         ]
     )
     return 0

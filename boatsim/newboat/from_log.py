@@ -5,6 +5,7 @@ tried, each kept if the evidence gains enough: added mass, lag of the thrust, we
 the boat and are written into its file, and a current, which belongs to the day and is only told.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -36,6 +37,7 @@ OF_DAY = ("current",)  # what the water did while the log was taken
 GAIN = 3.0  # [nats] that makes one worth its parameters
 FITTED_PART = 2 / 3  # of each log
 LEAST = 0.05  # relative sd that is left to a fitted coefficient: another day is never quite the same
+LONG = re.compile(r"(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?$|(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?(?= #)", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,9 @@ def fitted(vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = ())
             best = _with_more(problem, best)
             before, after = _errors(judge, nominal, best)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
-        raise BadInput(f"{logs[0]}: {boat.name} can not follow this recording ({error}); are its units right?") from None
+        raise BadInput(
+            f"{logs[0]}: {boat.name} can not follow this recording ({error}); are its units right?"
+        ) from None
     own = _without(best, OF_DAY)
     text = _written(problem, boat, own, ", ".join(path.name for path in logs))
     lines = [*_told(best), *_judged(judge, before, after, bool(unseen))]
@@ -134,7 +138,7 @@ def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], 
 
 def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
     """The vessel file with the fitted numbers and how well they are known."""
-    document = tomlkit.parse(patch.patched(problem, boat, own, boat.file))
+    document = tomlkit.parse(LONG.sub(_shortened, patch.patched(problem, boat, own, boat.file)))
     for key in ("based_on", "found"):  # it is a vessel of its own
         del document[key]
     by_rule = boat.diagnosis.coefficient_uncertainty
@@ -146,10 +150,16 @@ def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
             sd[kind] = max(sd[kind], float(f"{spread:.2g}"))
             table[f.name].comment(f"{_before(table, f.name)}, x {x:.3g} +- {100 * spread:.2g} % by {logs}")
     told = document["diagnosis"]
-    told["coefficient_uncertainty"] = {str(k): min(sd[str(k)], float(most)) for k, most in by_rule.items()}
+    told["coefficient_uncertainty"] = tomlkit.inline_table()
+    told["coefficient_uncertainty"].update({str(k): min(sd[str(k)], float(most)) for k, most in by_rule.items()})
     told["coefficient_uncertainty"].comment(f"relative sd: the largest of those fitted, at least {LEAST:g}")
     told["reasons"]["coefficient_uncertainty"] = f"fitted to {logs}"
     return str(tomlkit.dumps(document)).replace("# found by the diagnosis", f"# fitted to {logs}")
+
+
+def _shortened(found: re.Match[str]) -> str:
+    """A fitted number to as many digits as its spread bears."""
+    return str(float(f"{float(found[0]):.5g}"))
 
 
 def _before(table: Mapping[str, Any], key: str) -> str:
@@ -157,7 +167,8 @@ def _before(table: Mapping[str, Any], key: str) -> str:
     if key not in table:
         return "nobody stated it"
     comment: str = table[key].trivia.comment
-    return comment.removeprefix("# ").partition("; recalibrated")[0]
+    before = comment.removeprefix("# ").partition("recalibrated")[0].removesuffix("; ")
+    return before or "1 by definition"
 
 
 def _told(best: Fit) -> list[str]:
@@ -174,9 +185,7 @@ def _told(best: Fit) -> list[str]:
     return [f"fitted {sum(f.relative for f in best.free)} coefficients", *lines]
 
 
-def _judged(
-    judge: Problem, before: Mapping[str, float], after: Mapping[str, float], unseen: bool
-) -> list[str]:
+def _judged(judge: Problem, before: Mapping[str, float], after: Mapping[str, float], unseen: bool) -> list[str]:
     """Before and after, on what was not fitted."""
     on = "the logs kept unseen" if unseen else "the last third of each log"
     lines = [f"free runs of {judge.horizon:g} s on {on}, which no fit has seen:"]

@@ -28,7 +28,7 @@ def hull_xml(boat: Particulars) -> str:
     return "\n".join(
         [
             f"<mujoco model={quoteattr(boat.name)}>",
-            "  <!-- Drawn by boatsim new from the boat's sizes; only looked at: forces and masses are in vessel.toml. -->",
+            "  <!-- Drawn by boatsim new from the boat's sizes; forces and masses are in vessel.toml. -->",
             "  <custom>",
             f'    <numeric name="drawn_for" data="{h.length:g} {h.beam:g} {h.draught:.4g}"/> <!-- [m] L, B, T -->',
             "  </custom>",
@@ -59,13 +59,22 @@ def _parts(boat: Particulars) -> Iterator[str]:
         for name, x in (("fore", 0.65), ("aft", 0.35)):
             at, size = (x * h.length, 0, 1.1 * high), (0.02 * h.length, 0.5 * h.spacing, 0.012 * h.length)
             yield _geom(f"beam_{name}", "box", at, size, "seen", "deck")
-        yield _geom("tray", "box", (0.5 * h.length, 0, 1.2 * high), (0.18 * h.length, 0.2 * h.beam, 0.01 * h.length), "seen", "dark")
+        yield _geom(
+            "tray",
+            "box",
+            (0.5 * h.length, 0, 1.2 * high),
+            (0.18 * h.length, 0.2 * h.beam, 0.01 * h.length),
+            "seen",
+            "dark",
+        )
     for name, mount in boat.named():
         x, y = 0.5 * h.length + mount.x, -mount.y
         leg, r = 0.5 * (high + h.draught), 0.02 * h.length
         yield _geom(f"leg_{name}", "box", (x, y, high - leg), (0.6 * r, 0.3 * r, leg), "seen", "dark")
         if mount.turns:
-            yield _geom(f"cowl_{name}", "ellipsoid", (x, y, high + 1.5 * r), (2.2 * r, 1.6 * r, 2.2 * r), "seen", "dark")
+            yield _geom(
+                f"cowl_{name}", "ellipsoid", (x, y, high + 1.5 * r), (2.2 * r, 1.6 * r, 2.2 * r), "seen", "dark"
+            )
         yield (
             f'<geom name="propeller_{name}" class="seen" type="cylinder" material="dark" '
             f'pos="{_at(x, y, -h.draught)}" euler="0 90 0" size="{r:.4g} {1.5 * r:.4g}"/>'
@@ -75,9 +84,7 @@ def _parts(boat: Particulars) -> Iterator[str]:
         yield _geom("rudder", "box", at, (0.02 * h.length, 0.003 * h.length, 0.5 * h.draught), "seen", "dark")
 
 
-def _one_hull(
-    boat: Particulars, side: str, y: float, high: float, middle: float, deep: float
-) -> Iterator[str]:
+def _one_hull(boat: Particulars, side: str, y: float, high: float, middle: float, deep: float) -> Iterator[str]:
     """A box aft that runs into an ellipsoid, the bow, and a deck on both."""
     L, b = boat.hull.length, 0.5 * boat.hull.breadth
     aft, bow = 0.55 * L, 0.45 * L
@@ -92,7 +99,9 @@ def _geom(
     name: str, kind: str, pos: tuple[float, float, float], size: tuple[float, float, float], look: str, of: str = ""
 ) -> str:
     material = f' material="{of}"' if of else ""
-    return f'<geom name={quoteattr(name)} class="{look}" type="{kind}"{material} pos="{_at(*pos)}" size="{_at(*size)}"/>'
+    return (
+        f'<geom name={quoteattr(name)} class="{look}" type="{kind}"{material} pos="{_at(*pos)}" size="{_at(*size)}"/>'
+    )
 
 
 def _at(*values: float) -> str:

@@ -74,9 +74,10 @@ def particulars(
     if not NAME.fullmatch(name):
         raise BadInput(f"the boat's name = {name!r}; allowed are letters, digits and _ . + -")
     sizes = {"length": (length, 500.0), "beam": (beam, 100.0), "mass": (mass, 1e9)}
-    stated = {"draught": (draught, 50.0), "speed": (speed, 50.0), "thrust": (thrust, 1e8)}
-    for key, (value, most) in {**sizes, **{k: (v, m) for k, (v, m) in stated.items() if v is not None}}.items():
-        if value is None or not (math.isfinite(value) and 0.0 < value <= most):
+    asked = {"draught": (draught, 50.0), "speed": (speed, 50.0), "thrust": (thrust, 1e8)}
+    stated = {key: (value, most) for key, (value, most) in asked.items() if value is not None}
+    for key, (value, most) in {**sizes, **stated}.items():
+        if not (math.isfinite(value) and 0.0 < value <= most):
             raise BadInput(f"--{key} {value:g}; allowed is more than 0 to {most:g}")
     if beam >= length:
         raise BadInput(f"--beam {beam:g}; allowed is less than the length, {length:g}")
@@ -116,7 +117,9 @@ def _blade(text: str, length: float) -> Blade:
     """A rudder from X[,AREA]."""
     x, *area = _numbers("--rudder", text, 1, 2)
     if not 0.0 < abs(x) <= length:
-        raise BadInput(f"--rudder {text}; allowed is a place within the length, {length:g} m, of the mass centre, not 0")
+        raise BadInput(
+            f"--rudder {text}; allowed is a place within the length, {length:g} m, of the mass centre, not 0"
+        )
     if area and not 0.0 < area[0] <= 500.0:
         raise BadInput(f"--rudder {text}; allowed is an area of more than 0 to 500 m^2")
     return Blade(x, area[0] if area else None)

@@ -94,7 +94,8 @@ def _channels(boat: Particulars) -> Iterator[str]:
         if mount.astern is None:
             said = f"{said}; astern as much"
         low = "0.0" if least == 0.0 else f"-{number(least)}"
-        yield f'{thrust_channel(name)} = {{ low = {low}, high = {number(most)}, about = "ahead positive" }}  # [N] {said}'
+        limits = f'low = {low}, high = {number(most)}, about = "ahead positive"'
+        yield f"{thrust_channel(name)} = {{ {limits} }}  # [N] {said}"
         if mount.turns:
             about = "positive pushes to starboard"
             yield f'{steer_channel(name)} = {{ low = -{TURNS}, high = {TURNS}, about = "{about}" }}  # [rad] 35 deg'

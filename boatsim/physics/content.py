@@ -88,12 +88,23 @@ def known(kind: str) -> list[str]:
     return sorted([*names(kind), *own_names(kind)])
 
 
+def whole(kind: str, name: str) -> str:
+    """A scenario's folder/name where its bare name says which, else the name. Raises BadInput where several do."""
+    if kind != "scenario" or not name or "/" in name or name.endswith(".toml"):
+        return name
+    found = [n for n in known(kind) if n.rpartition("/")[2] == name]
+    if len(found) > 1:
+        raise BadInput(f"several scenarios are called {name}; say which: {', '.join(found)}")
+    return found[0] if found else name
+
+
 def find(kind: str, name: str, beside: Path | None = None) -> Path:
     """Path of a vessel.toml, controller .py or scenario .toml, given by name or by a path.
 
     A relative path starts from `beside`, the folder of the file that says it; without one a user says it, and it starts
     from the working directory. Raises BadInput.
     """
+    name = whole(kind, name) if beside is None else name
     found = _by_path(kind, name, beside) or _shipped(kind, name) or _in_content(kind, name) or _here(kind, name, beside)
     if found is not None:
         return found
