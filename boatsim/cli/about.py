@@ -141,8 +141,10 @@ def _vessel(name: str) -> list[str]:
         lines.append(f"  loads: {', '.join(boat.loads)}")
     if sd := boat.diagnosis.coefficient_uncertainty:
         lines.append(f"  uncertainty: {', '.join(f'{k} {100 * x:g} %' for k, x in sd.items())}")
-    given = name if content.vessel_address(boat.file).endswith(".toml") else boat.name
-    return [*lines, "to paste:", f'  vessel = "{given}"', f"  boatsim diagnose RUN.csv --vessel {given}"]
+    own = content.vessel_address(boat.file).endswith(".toml")
+    given = name if own else boat.name
+    file = f"{name}/vessel.toml" if own and not name.endswith(".toml") else given
+    return [*lines, "to paste:", f'  vessel = "{file}"', f"  boatsim diagnose RUN.csv --vessel {given}"]
 
 
 def _channel(boat: Vessel, name: str, c: CommandChannel) -> tuple[str, str, str]:

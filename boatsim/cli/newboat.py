@@ -18,11 +18,11 @@ def new_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> 
         for name, text in files(boat).items():
             (new / name).write_text(text, encoding="utf-8")
         if logs:
-            from boatsim.newboat.from_log import fitted
+            from boatsim.newboat import from_log
 
-            found = fitted(new / VESSEL, logs)
-            (new / VESSEL).write_text(found.text, encoding="utf-8")
-            lines += found.lines
+            found = from_log.fitted(new / VESSEL, logs)
+            (new / VESSEL).write_text(from_log.text(found, logs), encoding="utf-8")
+            lines += from_log.in_words(found)
     say(
         [
             *lines,

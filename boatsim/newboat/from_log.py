@@ -32,7 +32,9 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 # its own, tried beside the coefficients
-OF_BOAT = ("added_mass_error", "lateral_centre_shift", "thrust_lag", "weak_reverse", "thrust_deadband")
+OF_BOAT = (
+    "added_mass_error", "lateral_centre_shift", "quadratic_damping", "thrust_lag", "weak_reverse", "thrust_deadband",
+)  # fmt: skip
 OF_DAY = ("current",)  # what the water did while the log was taken
 GAIN = 3.0  # [nats] that makes one worth its parameters
 FITTED_PART = 2 / 3  # of each log
@@ -42,11 +44,13 @@ LONG = re.compile(r"(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?$|(?<== )-?\d+\.\d{5,}(?:e
 
 @dataclass(frozen=True)
 class Fitted:
-    """A vessel file with fitted numbers, and how it was judged."""
+    """A boat fitted to logs, and how it was judged."""
 
-    text: str
-    lines: tuple[str, ...]  # in words
-    before: Mapping[str, float]  # family of signals -> rms of free runs on the unseen parts, from particulars alone
+    boat: Vessel
+    problem: Problem
+    best: Fit
+    judge: Problem  # the same question to what was not fitted
+    before: Mapping[str, float]  # family of signals -> rms of free runs on the unseen parts, as the file had it
     after: Mapping[str, float]
 
 
@@ -71,10 +75,18 @@ def fitted(vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = ())
         raise BadInput(
             f"{logs[0]}: {boat.name} can not follow this recording ({error}); are its units right?"
         ) from None
-    own = _without(best, OF_DAY)
-    text = _written(problem, boat, own, ", ".join(path.name for path in logs))
-    lines = [*_told(best), *_judged(judge, before, after, bool(unseen))]
-    return Fitted(text, tuple(lines), before, after)
+    return Fitted(boat, problem, best, judge, before, after)
+
+
+def in_words(found: Fitted, on: str = "the last third of each log") -> list[str]:
+    """What was fitted, and what that is worth."""
+    return [*_told(found.best), *_judged(found, on)]
+
+
+def text(found: Fitted, logs: Sequence[Path]) -> str:
+    """The vessel file with the numbers that are the boat's own."""
+    own = _without(found.best, OF_DAY)
+    return _written(found.problem, found.boat, own, ", ".join(path.name for path in logs))
 
 
 def _parted(whole: Recording) -> tuple[Recording, Recording]:
@@ -185,14 +197,11 @@ def _told(best: Fit) -> list[str]:
     return [f"fitted {sum(f.relative for f in best.free)} coefficients", *lines]
 
 
-def _judged(judge: Problem, before: Mapping[str, float], after: Mapping[str, float], unseen: bool) -> list[str]:
+def _judged(found: Fitted, on: str) -> list[str]:
     """Before and after, on what was not fitted."""
-    on = "the logs kept unseen" if unseen else "the last third of each log"
-    lines = [f"free runs of {judge.horizon:g} s on {on}, which no fit has seen:"]
-    for key in before:
+    lines = [f"free runs of {found.judge.horizon:g} s on {on}, which no fit has seen:"]
+    for key in found.before:
         scale, unit = (1.0, "m") if key.endswith("_m") else (57.29578, "deg")
-        family = key.partition("_")[0]
-        lines.append(
-            f"  {family} rms [{unit}]: from particulars {before[key] * scale:.4g}, fitted {after[key] * scale:.4g}"
-        )
+        before, after = found.before[key] * scale, found.after[key] * scale
+        lines.append(f"  {key.partition('_')[0]} rms [{unit}]: from particulars {before:.4g}, fitted {after:.4g}")
     return lines
