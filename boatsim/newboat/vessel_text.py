@@ -11,7 +11,7 @@ from boatsim.physics.estimate.base import DENSITY, Estimate
 
 OWNER = "the owner's"
 COLUMN = 32  # where comments begin
-TURNS = 0.61  # [rad] 35 deg, to which rudders and outboards usually turn
+TURNS = 0.7  # [rad] 40 deg: rudders and outboards turn no further
 HALF = 0.5  # of the full thrust: what a manoeuvre is approached with, if that is
 EASY = 2.0  # times the resistance at the easy speed at most
 DAMPING = 1.0  # relative sd of a coefficient by a rule: rules of thumb are off by a factor of two
@@ -98,10 +98,10 @@ def _channels(boat: Particulars) -> Iterator[str]:
         yield f"{thrust_channel(name)} = {{ {limits} }}  # [N] {said}"
         if mount.turns:
             about = "positive pushes to starboard"
-            yield f'{steer_channel(name)} = {{ low = -{TURNS}, high = {TURNS}, about = "{about}" }}  # [rad] 35 deg'
+            yield f'{steer_channel(name)} = {{ low = -{TURNS}, high = {TURNS}, about = "{about}" }}  # [rad] 40 deg'
     if boat.rudder is not None:
         turns = f'turns = "{"starboard" if boat.rudder.x < 0 else "port"}"'
-        yield f"rudder_rad = {{ low = -{TURNS}, high = {TURNS}, {turns} }}  # [rad] 35 deg"
+        yield f"rudder_rad = {{ low = -{TURNS}, high = {TURNS}, {turns} }}  # [rad] 40 deg"
 
 
 def _effects(boat: Particulars) -> Iterator[str]:
