@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.real import esso_osaka_vessel
+from benchmarks.real import esso_osaka_pond, esso_osaka_vessel
 from benchmarks.real.common import RECORDINGS, table
 from boatsim.newboat.from_log import Fitted, fitted
 from boatsim.newboat.particulars import Particulars, particulars
@@ -28,6 +28,7 @@ UNITS = {"position_rms_m": ("position [m]", np.sqrt(2.0)), "heading_rms_rad": ("
 THRUST_COEFFICIENT = (
     0.2  # K_T of a propeller of P/D 0.7 under way: M. M. Bernitsas et al. 1981, Wageningen B-series at J = 0.35
 )
+LONGEST = 150.0  # [s] of a run of the tanker, for the time it takes
 MOST = 17.0  # [1/s] the fastest shaft of the manoeuvres that are fitted and judged
 
 
@@ -87,11 +88,11 @@ def esso_osaka(_: Path) -> Case:
     for path in [p for p in runs("esso_osaka") if p.stem.startswith(("zigzag", "turn"))]:
         read = columns(path)
         kept = {n: read[n] for n in ("t_s", "x_m", "y_m", "psi_rad", "rudder_rad")}
-        keep = (read["t_s"] >= 10.0) & (read["t_s"] <= 160.0)
-        logs[path.stem] = {
-            n: x[keep]
-            for n, x in {**kept, "thrust_motor_N": per * read["shaft_rps"] * np.abs(read["shaft_rps"])}.items()
-        }
+        kept["thrust_motor_N"] = per * read["shaft_rps"] * np.abs(read["shaft_rps"])
+        bridged, leaps = esso_osaka_pond.defects(np.genfromtxt(path, delimiter=",", names=True))
+        begin, end = longest(read["t_s"], read["t_s"][leaps])
+        inside = (read["t_s"] >= begin) & (read["t_s"] <= min(end, begin + LONGEST))
+        logs[path.stem] = {n: x[inside & ~bridged] for n, x in kept.items()}
 
     def theirs(log: Mapping[str, Array]) -> Mapping[str, Array]:
         shaft = np.sqrt(np.abs(log["thrust_motor_N"]) / per) * np.sign(log["thrust_motor_N"])
@@ -99,6 +100,13 @@ def esso_osaka(_: Path) -> Case:
         return {**kept, "delta_rad": log["rudder_rad"], "n_rps": shaft}
 
     return Case(boat, logs, sorted(logs)[2::4], lambda where: esso_osaka_vessel.written(where), theirs)
+
+
+def longest(t: Array, leaps: Array) -> tuple[float, float]:
+    """Begin and end [s] of the longest stretch between leaps of a run, as esso_osaka_pond cuts it."""
+    begins = [float(t[0]), *(leaps + esso_osaka_pond.SOON)]
+    ends = [*(leaps - esso_osaka_pond.LATE), float(t[-1])]
+    return max(zip(begins, ends, strict=True), key=lambda span: span[1] - span[0])
 
 
 CASES: Mapping[str, Callable[[Path], Case]] = {
@@ -135,13 +143,14 @@ def _fitted(
 ) -> Fitted:
     folder.mkdir()
     for name, log in case.logs.items():
-        table_of = taken(log)
-        np.savetxt(
-            folder / f"{name}.csv", np.column_stack(list(table_of.values())), "%.9g", ",", header=",".join(table_of),
-            comments="",
-        )  # fmt: skip
+        _write(folder / f"{name}.csv", taken(log))
     fit = [folder / f"{n}.csv" for n in case.logs if n not in case.unseen]
     return fitted(file, fit, [folder / f"{n}.csv" for n in case.unseen])
+
+
+def _write(file: Path, log: Mapping[str, Array]) -> None:
+    """A recording."""
+    np.savetxt(file, np.column_stack(list(log.values())), "%.9g", ",", header=",".join(log), comments="")
 
 
 def rows(name: str) -> Iterator[list[str]]:

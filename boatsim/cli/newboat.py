@@ -21,8 +21,13 @@ def new_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> 
             from boatsim.newboat import from_log
 
             found = from_log.fitted(new / VESSEL, logs)
-            (new / VESSEL).write_text(from_log.text(found, logs), encoding="utf-8")
             lines += from_log.in_words(found)
+            if found.better:
+                (new / VESSEL).write_text(from_log.text(found, logs), encoding="utf-8")
+            else:
+                lines.append(
+                    "the fit does worse than the rules on what it has not seen: the rules are kept; see the log"
+                )
     say(
         [
             *lines,

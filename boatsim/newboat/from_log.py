@@ -53,11 +53,17 @@ class Fitted:
     before: Mapping[str, float]  # family of signals -> rms of free runs on the unseen parts, as the file had it
     after: Mapping[str, float]
 
+    @property
+    def better(self) -> bool:
+        """Whether the fit does better on what it has not seen: a log with a fault of its own teaches wrong numbers."""
+        return all(self.after[family] <= before for family, before in self.before.items())
+
 
 def fitted(vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = ()) -> Fitted:
     """The vessel of a file with its coefficients fitted to logs.
 
-    Judged on the last third of each, or on the logs `unseen`, and then the others are fitted whole. Raises BadInput.
+    Judged on the last third of each, or on the logs `unseen`, and then the others are fitted whole and what belongs to
+    their day is left out. Raises BadInput.
     """
     opened = [open_recording(path, str(vessel_file), ()) for path in (*logs, *unseen)]
     boat = opened[0][1]
@@ -70,7 +76,7 @@ def fitted(vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = ())
         with threadpool_limits(1, "blas"):
             nominal, best = baseline(problem)
             best = _with_more(problem, best)
-            before, after = _errors(judge, nominal, best)
+            before, after = _errors(judge, nominal, _without(best, OF_DAY) if unseen else best)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         raise BadInput(
             f"{logs[0]}: {boat.name} can not follow this recording ({error}); are its units right?"
