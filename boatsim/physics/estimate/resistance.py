@@ -8,7 +8,7 @@ from boatsim.physics.particulars import GRAVITY
 SERVICE = 0.3  # Froude number of an easy speed: waves begin to cost
 FORM = 0.2  # friction of a hull's shape beside that of a plate, 1 + k of the ITTC 1978 method
 WAVES = 4e-3  # residuary resistance coefficient at that speed: M. Insel, A. F. Molland 1992, slender hulls
-LINEAR = 0.5  # part of the resistance at the easy speed that goes with the first power
+LINEAR, LINEAR_SLENDER = 0.5, 0.1  # part of it that goes with the first power; friction of a long hull with the 1.85th
 
 
 def service_speed(hull: Hull) -> float:
@@ -31,7 +31,7 @@ def at_service(hull: Hull) -> Estimate:
 
 
 def coefficients(hull: Hull, thrust: float | None, top_speed: float | None) -> tuple[Estimate, Estimate]:
-    """Linear [N s/m] and quadratic [N s^2/m^2] surge damping, an equal part each at one speed.
+    """Linear [N s/m] and quadratic [N s^2/m^2] surge damping, each a part of the resistance at one speed.
 
     That is the speed reached at full `thrust` [N] where both are known, else the service speed.
     """
@@ -40,7 +40,8 @@ def coefficients(hull: Hull, thrust: float | None, top_speed: float | None) -> t
     else:
         (force, rule), speed = at_service(hull), service_speed(hull)
         rule = f"{rule} at {speed:.3g} m/s"
+    part = LINEAR_SLENDER if hull.slender else LINEAR
     return (
-        Estimate(LINEAR * force / speed, f"half of {force:.3g} N at {speed:.3g} m/s: {rule}"),
-        Estimate((1.0 - LINEAR) * force / speed**2, "the other half"),
+        Estimate(part * force / speed, f"{part:g} of {force:.3g} N at {speed:.3g} m/s: {rule}"),
+        Estimate((1.0 - part) * force / speed**2, "the rest of it"),
     )
