@@ -29,6 +29,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "measures",
     "view",
     "diagnose",
+    "newboat",
     "cli __main__",
 )
 ABOUT = {  # what the picture says of each folder
@@ -39,6 +40,7 @@ ABOUT = {  # what the picture says of each folder
     "measures": "norms of a run",
     "view": "runs in rerun",
     "diagnose": "what was left out",
+    "newboat": "from particulars",
     "cli": "commands",
 }
 DYNAMIC = ("import_module", "__import__", "spec_from_file_location", "exec_module", "run_path", "run_module")
@@ -109,7 +111,17 @@ def counts() -> Counter[tuple[str, str]]:
 WIDE, HIGH, GAP, EDGE = 132, 46, 14, 12  # [px] a box, between two, around all
 LANE, FIRST = 27, 40  # [px] from lane to lane, from the boxes to the first
 TAP, TAPS = 15, 44  # [px] between the lines that leave a box, and where in it they begin
-COLOURS = ("#3b7dc4", "#a06c14", "#9659bd", "#1c8a7a", "#c04d4d", "#648729", "#7074dc", "#768290")  # of a folder
+COLOURS = (
+    "#3b7dc4",
+    "#a06c14",
+    "#9659bd",
+    "#1c8a7a",
+    "#c04d4d",
+    "#648729",
+    "#7074dc",
+    "#b0588f",
+    "#768290",
+)  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"
     ".name{font-size:17px;font-weight:600}.about{font-size:11.5px}.count{font-size:12px;font-weight:600}"

@@ -188,13 +188,33 @@ def list_(
         Literal["vessels", "controllers", "effects", "sensors", "measures", "scenarios"] | None,
         typer.Argument(help="Only these."),
     ] = None,
+    like: Annotated[
+        str | None, typer.Argument(metavar="LIKE", help="Only names with this in them, or a pattern.")
+    ] = None,
     content: Content = None,
 ) -> None:
     """List vessels, controllers, effects, measures and scenarios, a line each."""
     from boatsim.cli.show import listing
 
     with asking(content):
-        say(listing(kind))
+        say(listing(kind, like))
+
+
+@app.command()
+@guarded
+def show(
+    name: Annotated[
+        str,
+        typer.Argument(metavar="NAME", help="An effect, controller, vessel, measure, sensor or scenario; a folder."),
+    ],
+    content: Content = None,
+    trust: Trusted = False,
+) -> None:
+    """Say what something is: its parameters with unit, bounds, default and source, and an example to paste."""
+    from boatsim.cli.about import about
+
+    with asking(content, trust, [name]):
+        say(about(name))
 
 
 @app.command()
@@ -304,6 +324,48 @@ def import_(
     from boatsim.cli.importing import import_log
 
     return import_log(log, out, map, propose, vessel, _loads(load))
+
+
+@app.command()
+@guarded
+def new(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", parser=_folder, help="Of the new boat, called so.")],
+    length: Annotated[float, typer.Option(metavar="M", help="Length of the waterline [m].")],
+    beam: Annotated[float, typer.Option(metavar="M", help="Beam overall [m].")],
+    mass: Annotated[float, typer.Option(metavar="KG", help="Mass with all on board [kg].")],
+    thruster: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="X,Y[,MAX_N[,ASTERN_N]]",
+            help="A fixed thruster, ahead and to starboard of the mass centre [m]; may be repeated.",
+        ),
+    ] = None,
+    steered: Annotated[
+        list[str] | None,
+        typer.Option(metavar="X,Y[,MAX_N[,ASTERN_N]]", help="A thruster that turns, an outboard; may be repeated."),
+    ] = None,
+    rudder: Annotated[
+        str | None, typer.Option(metavar="X[,AREA]", help="A rudder, ahead of the mass centre [m], its area [m^2].")
+    ] = None,
+    draught: Annotated[float | None, typer.Option(metavar="M", help="[m] [default: what carries the mass].")] = None,
+    hulls: Annotated[int, typer.Option(min=1, max=2, help="2 for a catamaran.")] = 1,
+    speed: Annotated[float | None, typer.Option(metavar="M/S", help="Reached at full thrust [m/s].")] = None,
+    thrust: Annotated[
+        float | None, typer.Option(metavar="N", help="Full thrust of each thruster that states none [N].")
+    ] = None,
+    from_log: Annotated[
+        list[Path] | None,
+        typer.Option("--from-log", metavar="RUN", help="Fit the coefficients to this recording; may be repeated."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Write over a folder that is there.")] = False,
+) -> int:
+    """Make a boat from its particulars: a vessel file with every number's rule, a drawing, a first scenario."""
+    from boatsim.cli.newboat import new_boat
+    from boatsim.newboat.particulars import particulars
+
+    name, driven, turned = folder.resolve().name, thruster or [], steered or []
+    boat = particulars(name, length, beam, mass, driven, turned, rudder, draught, hulls, speed, thrust)
+    return new_boat(folder, boat, from_log or [], force)
 
 
 def _loads(given: list[str] | None) -> list[str]:

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from boatsim.errors import shown
+from boatsim.errors import BadInput, shown, unknown_name
 from boatsim.files import read_toml
 from boatsim.physics import content
 from boatsim.simulate import cases
@@ -74,16 +75,29 @@ def _met(ok: bool | None) -> str:
     return "" if ok is None else "[green]yes[/]" if ok else "[bold red]no[/]"
 
 
-def listing(only: str | None) -> list[str]:
-    """Lines of `boatsim list`: a heading for each kind, then name and a line about each."""
+def listing(only: str | None, like: str | None = None) -> list[str]:
+    """Lines of `boatsim list`: a heading for each kind, then name and a line about each, if `like` a pattern.
+
+    Raises BadInput where none is.
+    """
     kinds = [only] if only else ["vessels", "controllers", "effects", "sensors", "measures", "scenarios"]
     lines: list[str] = []
     for kind in kinds:
-        names = content.known(kind.removesuffix("s"))
+        names = [n for n in content.known(kind.removesuffix("s")) if like is None or alike(n, like)]
+        if not names and like is not None:
+            continue
         width = max(map(len, names), default=0)
         lines += [*([""] if lines else []), f"{kind}:"]
         lines += [f"  {name:{width}}  {_about(kind.removesuffix('s'), name)}" for name in names]
+    if like is not None and not lines:
+        there = [n for kind in kinds for n in content.known(kind.removesuffix("s"))]
+        raise BadInput(unknown_name(only.removesuffix("s") if only else "name", like, there))
     return lines
+
+
+def alike(name: str, like: str) -> bool:
+    """Whether a name has a word in it, or is like a pattern."""
+    return fnmatchcase(name, like) if any(sign in like for sign in "*?[") else like in name
 
 
 def _about(kind: str, name: str) -> str:

@@ -88,13 +88,24 @@ def known(kind: str) -> list[str]:
     return sorted([*names(kind), *own_names(kind)])
 
 
+def whole(kind: str, name: str) -> str:
+    """A scenario's folder/name where its bare name says which, else the name. Raises BadInput where several do."""
+    if kind != "scenario" or not name or "/" in name or name.endswith(".toml"):
+        return name
+    found = [n for n in known(kind) if n.rpartition("/")[2] == name]
+    if len(found) > 1:
+        raise BadInput(f"several scenarios are called {name}; say which: {', '.join(found)}")
+    return found[0] if found else name
+
+
 def find(kind: str, name: str, beside: Path | None = None) -> Path:
     """Path of a vessel.toml, controller .py or scenario .toml, given by name or by a path.
 
     A relative path starts from `beside`, the folder of the file that says it; without one a user says it, and it starts
     from the working directory. Raises BadInput.
     """
-    found = _by_path(kind, name, beside) or _shipped(kind, name) or _in_content(kind, name)
+    name = whole(kind, name) if beside is None else name
+    found = _by_path(kind, name, beside) or _shipped(kind, name) or _in_content(kind, name) or _here(kind, name, beside)
     if found is not None:
         return found
     if name.endswith((".py", ".toml")):
@@ -112,6 +123,12 @@ def _by_path(kind: str, name: str, beside: Path | None) -> Path | None:
     if kind == "vessel" and "/" in name and (own / "vessel.toml").is_file():
         return (own / "vessel.toml").resolve()
     return None
+
+
+def _here(kind: str, name: str, beside: Path | None) -> Path | None:
+    """The vessel of a folder in the working directory, where it is the user who names it and no file does."""
+    own = Path(name) / "vessel.toml"
+    return own.resolve() if kind == "vessel" and beside is None and name and own.is_file() else None
 
 
 def _shipped(kind: str, name: str) -> Path | None:

@@ -18,7 +18,7 @@ from pathlib import Path
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Value, read_toml, tables
 from boatsim.physics import trust
-from boatsim.physics.content import find, known, root
+from boatsim.physics.content import find, known, root, whole
 
 NAME = re.compile(r"[\w.+-]+")
 OTHERS = ("vessel.toml", "patched.toml", "recording.toml")  # files of a folder that are no scenarios
@@ -75,7 +75,7 @@ def meant(given: str) -> list[str]:
         return found
     if given.endswith(".toml"):
         return [f"{given}:{case}" for case in cases(find("scenario", given))] or [given]
-    return [given]
+    return [whole("scenario", given)]
 
 
 def cases(path: Path) -> list[str]:

@@ -1,0 +1,125 @@
+"""What an owner says of a boat on the command line, checked."""
+
+import math
+import re
+from dataclasses import dataclass
+
+from boatsim.errors import BadInput
+from boatsim.physics.estimate.base import Hull
+from boatsim.physics.estimate.displacement import hull
+
+NAME = re.compile(r"[A-Za-z0-9][\w.+-]{0,59}")
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A thruster; its largest thrusts are None where nobody stated them."""
+
+    x: float  # [m] ahead of the mass centre
+    y: float  # [m] to starboard of it
+    ahead: float | None = None  # [N]
+    astern: float | None = None  # [N]
+    turns: bool = False
+
+
+@dataclass(frozen=True)
+class Blade:
+    """A rudder; `area` is None where nobody stated it."""
+
+    x: float  # [m] ahead of the mass centre
+    area: float | None = None  # [m^2]
+
+
+@dataclass(frozen=True)
+class Particulars:
+    """A boat as its owner knows it."""
+
+    name: str
+    hull: Hull
+    draught_stated: bool
+    speed: float | None  # [m/s] at full thrust
+    thrusters: tuple[Mount, ...]
+    rudder: Blade | None = None
+
+    def named(self) -> list[tuple[str, Mount]]:
+        """Thrusters with names by their side, numbered where a side has several; one alone is `motor`."""
+        sides = ["starboard" if m.y > 0 else "port" if m.y < 0 else "middle" for m in self.thrusters]
+        if len(sides) == 1:
+            return [("motor", self.thrusters[0])]
+        seen = {side: 0 for side in sides}
+        found = []
+        for side, mount in zip(sides, self.thrusters, strict=True):
+            seen[side] += 1
+            found.append((f"{side}{seen[side]}" if sides.count(side) > 1 else side, mount))
+        return found
+
+
+def particulars(
+    name: str,
+    length: float,
+    beam: float,
+    mass: float,
+    thrusters: list[str],
+    steered: list[str],
+    rudder: str | None = None,
+    draught: float | None = None,
+    hulls: int = 1,
+    speed: float | None = None,
+    thrust: float | None = None,
+) -> Particulars:
+    """The boat that the command line tells of; `thrust` [N] is that of each thruster that states none.
+
+    Raises BadInput for what can not be of a boat.
+    """
+    if not NAME.fullmatch(name):
+        raise BadInput(f"the boat's name = {name!r}; allowed are letters, digits and _ . + -")
+    sizes = {"length": (length, 500.0), "beam": (beam, 100.0), "mass": (mass, 1e9)}
+    asked = {"draught": (draught, 50.0), "speed": (speed, 50.0), "thrust": (thrust, 1e8)}
+    stated = {key: (value, most) for key, (value, most) in asked.items() if value is not None}
+    for key, (value, most) in {**sizes, **stated}.items():
+        if not (math.isfinite(value) and 0.0 < value <= most):
+            raise BadInput(f"--{key} {value:g}; allowed is more than 0 to {most:g}")
+    if beam >= length:
+        raise BadInput(f"--beam {beam:g}; allowed is less than the length, {length:g}")
+    mounts = [_mount("--thruster", text, thrust, length, False) for text in thrusters]
+    mounts += [_mount("--steered", text, thrust, length, True) for text in steered]
+    if not mounts:
+        raise BadInput("no --thruster X,Y and no --steered X,Y; a boat needs something that drives it")
+    blade = None if rudder is None else _blade(rudder, length)
+    made = hull(length, beam, mass, hulls, draught)
+    return Particulars(name, made, draught is not None, speed, tuple(mounts), blade)
+
+
+def _numbers(option: str, text: str, least: int, most: int) -> list[float]:
+    parts = [part.strip() for part in text.split(",")]
+    try:
+        values = [float(part) for part in parts]
+    except ValueError:
+        values = []
+    if not least <= len(values) <= most or not all(math.isfinite(x) for x in values):
+        form = "X,Y[,MAX_N[,ASTERN_N]]" if most == 4 else "X[,AREA]"
+        raise BadInput(f"{option} {text}; allowed is {form}, numbers in m and N, as {option} -1.2,0.6")
+    return values
+
+
+def _mount(option: str, text: str, thrust: float | None, length: float, turns: bool) -> Mount:
+    """A thruster from X,Y[,MAX_N[,ASTERN_N]]."""
+    x, y, *most = _numbers(option, text, 2, 4)
+    if max(abs(x), abs(y)) > length:
+        raise BadInput(f"{option} {text}; allowed are places within the length, {length:g} m, of the mass centre")
+    if any(abs(value) < 1e-6 or abs(value) > 1e8 for value in most[:1]) or any(abs(v) > 1e8 for v in most):
+        raise BadInput(f"{option} {text}; allowed is a largest thrust of more than 0 N")
+    ahead = abs(most[0]) if most else thrust
+    return Mount(x, y, ahead, abs(most[1]) if len(most) > 1 else None, turns)
+
+
+def _blade(text: str, length: float) -> Blade:
+    """A rudder from X[,AREA]."""
+    x, *area = _numbers("--rudder", text, 1, 2)
+    if not 0.0 < abs(x) <= length:
+        raise BadInput(
+            f"--rudder {text}; allowed is a place within the length, {length:g} m, of the mass centre, not 0"
+        )
+    if area and not 0.0 < area[0] <= 500.0:
+        raise BadInput(f"--rudder {text}; allowed is an area of more than 0 to 500 m^2")
+    return Blade(x, area[0] if area else None)

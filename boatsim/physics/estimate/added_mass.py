@@ -1,0 +1,33 @@
+"""Added mass: a regression over ships for slender hulls, strips for others."""
+
+from math import pi
+
+from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
+
+CLARKE = "D. Clarke, P. Gedling, G. Hine 1983"
+STRIPS = "strips of 0.5 pi rho T^2, J. N. Newman, Marine Hydrodynamics, 1977, section 4.13"
+
+
+def surge(hull: Hull) -> Estimate:
+    """[kg] of all hulls."""
+    value = hull.hulls * 2.7 * DENSITY * (hull.mass / hull.hulls / DENSITY) ** (5.0 / 3.0) / hull.length**2
+    return Estimate(value, "2.7 rho V^(5/3) / L^2, H. Soeding 1982 (Fossen 2021, eq. 6.41)")
+
+
+def sway(hull: Hull) -> Estimate:
+    """[kg] of all hulls."""
+    strips = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2 * hull.length
+    if not hull.slender:
+        return Estimate(strips, STRIPS)
+    b, fullness = hull.breadth, 0.16 * hull.block * hull.breadth / hull.draught
+    return Estimate(strips * (1.0 + fullness - 5.1 * (b / hull.length) ** 2), CLARKE)
+
+
+def yaw(hull: Hull) -> Estimate:
+    """[kg m^2] about the middle of all hulls; two hulls turn with their surge masses on an arm."""
+    strips = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2 * hull.length**3
+    apart = surge(hull).value * (0.5 * hull.spacing) ** 2
+    if not hull.slender:
+        return Estimate(strips / 12.0 + apart, STRIPS)
+    fullness = 0.017 * hull.block * hull.breadth / hull.draught
+    return Estimate(strips * max(1.0 / 12.0 + fullness - 0.33 * hull.breadth / hull.length, 0.01) + apart, CLARKE)

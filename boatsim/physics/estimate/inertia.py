@@ -1,0 +1,17 @@
+"""Inertia of the rigid boat by radii of gyration."""
+
+from boatsim.physics.estimate.base import Estimate, Hull
+
+YAW = 0.25  # of the length; T. I. Fossen 2021, MSS otter.m; ITTC 7.5-02-07-02.1 has 0.25 L_pp
+ROLL = 0.4  # of the beam; same sources have 0.35 to 0.40
+
+
+def yaw(hull: Hull) -> Estimate:
+    """[kg m^2] about the mass centre."""
+    value = hull.mass * (YAW * hull.length) ** 2
+    return Estimate(value, f"mass x ({YAW:g} L)^2, ITTC 7.5-02-07-02.1")
+
+
+def roll(hull: Hull) -> Estimate:
+    """[kg m^2] about the mass centre."""
+    return Estimate(hull.mass * (ROLL * hull.beam) ** 2, f"mass x ({ROLL:g} B)^2, ITTC 7.5-02-07-02.1")

@@ -1,0 +1,47 @@
+"""What holds a hull back going ahead: the speed it reached where the owner knows one, else friction and waves."""
+
+from math import log10, sqrt
+
+from boatsim.physics.estimate.base import DENSITY, VISCOSITY, Estimate, Hull
+from boatsim.physics.particulars import GRAVITY
+
+SERVICE = 0.3  # Froude number of an easy speed: waves begin to cost
+FORM = 0.2  # friction of a hull's shape beside that of a plate, 1 + k of the ITTC 1978 method
+WAVES = 4e-3  # residuary resistance coefficient at that speed: M. Insel, A. F. Molland 1992, slender hulls
+LINEAR, LINEAR_SLENDER = 0.5, 0.1  # part of it that goes with the first power; friction of a long hull with the 1.85th
+
+
+def service_speed(hull: Hull) -> float:
+    """[m/s] at which coefficients that depend on the speed are taken."""
+    return SERVICE * sqrt(GRAVITY * hull.length)
+
+
+def wetted(hull: Hull) -> float:
+    """Wetted surface of all hulls [m^2], Denny and Mumford: 1.7 L T + V / T."""
+    return hull.hulls * 1.7 * hull.length * hull.draught + hull.mass / DENSITY / hull.draught
+
+
+def at_service(hull: Hull) -> Estimate:
+    """Resistance at the service speed [N]."""
+    speed = service_speed(hull)
+    friction = 0.075 / (log10(speed * hull.length / VISCOSITY) - 2.0) ** 2
+    total = (1.0 + FORM) * friction + WAVES
+    rule = f"ITTC 1957 friction x {1.0 + FORM:g} + {WAVES:g} of waves, on 1.7 L T + V / T"
+    return Estimate(0.5 * DENSITY * wetted(hull) * total * speed * speed, rule)
+
+
+def coefficients(hull: Hull, thrust: float | None, top_speed: float | None) -> tuple[Estimate, Estimate]:
+    """Linear [N s/m] and quadratic [N s^2/m^2] surge damping, each a part of the resistance at one speed.
+
+    That is the speed reached at full `thrust` [N] where both are known, else the service speed.
+    """
+    if thrust is not None and top_speed is not None:
+        force, speed, rule = thrust, top_speed, "full thrust over the top speed stated"
+    else:
+        (force, rule), speed = at_service(hull), service_speed(hull)
+        rule = f"{rule} at {speed:.3g} m/s"
+    part = LINEAR_SLENDER if hull.slender else LINEAR
+    return (
+        Estimate(part * force / speed, f"{part:g} of {force:.3g} N at {speed:.3g} m/s: {rule}"),
+        Estimate((1.0 - part) * force / speed**2, "the rest of it"),
+    )

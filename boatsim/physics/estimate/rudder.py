@@ -1,0 +1,18 @@
+"""A rudder of which only the place is known."""
+
+from boatsim.physics import particulars
+from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
+
+ASPECT = 1.5  # span per chord, usual on ships: Mariner 1.6, Esso Osaka 1.5
+
+
+def area(hull: Hull) -> Estimate:
+    """Of the blade [m^2]."""
+    value = hull.length * hull.draught / 100.0 * (1.0 + 25.0 * (hull.breadth / hull.length) ** 2)
+    return Estimate(value, "L T / 100 x (1 + 25 (B / L)^2), Det Norske Veritas 1975")
+
+
+def slope(blade: float, speed: float) -> Estimate:
+    """Force to starboard per angle [N/rad] of a blade [m^2] in water that passes at a speed [m/s]."""
+    value = particulars.rudder_slope(blade, ASPECT, speed, DENSITY)
+    return Estimate(value, f"A. Fujii, T. Tsuda 1961, {blade:.3g} m^2 of aspect {ASPECT:g} at {speed:.3g} m/s")
