@@ -1,0 +1,147 @@
+"""Lays a log on its vessel as it is and as it may have been meant: what sails like the boat is what was meant.
+
+Nothing is tried where the vessel explains the log: where the force that it leaves unexplained is a small part of what
+its drives push with. A meaning is accepted only if it makes the log far likelier than it is as written, both with
+coefficients refitted, and leaves less unexplained.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from boatsim.diagnose.filter import Track, axes_of, nominal_levels, noise_of, track
+from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.locate import hull_forces
+from boatsim.diagnose.log.finding import Change, Finding, applied
+from boatsim.diagnose.log.meant import Meaning, meanings
+from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.search.rank import baseline
+from boatsim.errors import BadInput
+from boatsim.physics.program import Program
+from boatsim.recordings.table import Recording
+
+UNEXPLAINED = 0.3  # of what the drives push with, from which meanings are tried
+FLOOR = 0.02  # of the largest push, times the length for a moment: drives that do not turn the hull
+NATS, SHARE = 60.0, 0.05  # that a meaning must gain, at least; of the rows
+CLEAR = 25.0  # nats by which it must be ahead of what the log as written, or another meaning, would be
+TIED = 3.0  # nats within which meanings are one: a boat alike on both sides can not tell a mirror from exchanged drives
+LESS = 0.8  # of the unexplained force, at most, that may be left
+MOST_ROWS, MOST_RUNS = 900, 3  # that are laid on
+ROUNDS = 2  # faults one upon the other
+LEVEL = ("surge", "sway", "yaw")
+Lay = Callable[[Recording], Track]
+
+
+def tried(recordings: Sequence[Recording], lay: Lay, problem: Problem) -> list[Finding]:
+    """Findings on recordings that are opened and thinned; `problem` has them on the vessel as written.
+
+    `lay` lays one on the same program. Raises BadInput where the log can not be laid on it.
+    """
+    with threadpool_limits(1, "blas"):
+        nominal = fit_noise(problem, problem.nominal())
+        if unexplained(problem, nominal) < UNEXPLAINED:
+            return []
+        return _tried(_short(recordings), lay, problem)
+
+
+def unexplained(problem: Problem, nominal: Fit) -> float:
+    """Largest share that the slow force of a fit is of what the drives push with, over surge, sway and yaw."""
+    vessel = problem.program.vessel
+    axes = axes_of(vessel)
+    pushed = np.zeros(len(axes))
+    for laid in problem.tracks:
+        held = hull_forces.actuators(laid)[:: max(1, len(laid.times) // 100)]
+        rest = np.zeros((len(held), 2 * problem.program.module.NQ))
+        pushed = np.maximum(pushed, np.sqrt(np.mean(hull_forces.along(laid, rest, held, laid.values) ** 2, axis=0)))
+    push = max((pushed[i] for i, a in enumerate(axes) if a in LEVEL[:2]), default=0.0)
+    if not push > 0.0:
+        return 0.0
+    shares = []
+    for i, axis in enumerate(axes):
+        if axis in LEVEL:
+            least = FLOOR * push * vessel.length
+            scale = push if axis != "yaw" else max(float(pushed[i]), 4.0 * least)
+            shares.append(float(nominal.levels.force[i]) / scale)
+    return max(shares, default=0.0)
+
+
+def _short(recordings: Sequence[Recording]) -> list[Recording]:
+    """The first rows of the first recordings: meanings differ in all of them."""
+    return [
+        r.between(float(r.t[0]), float(r.t[min(len(r), MOST_ROWS) - 1])) for r in list(recordings)[:MOST_RUNS]
+    ]
+
+
+def _tried(recordings: list[Recording], lay: Lay, problem: Problem) -> list[Finding]:
+    found: list[Finding] = []
+    done: tuple[Change, ...] = ()
+    for _ in range(ROUNDS):
+        now = [applied(r, done) for r in recordings]
+        best = _best(now, lay, problem)
+        if best is None:
+            break
+        finding, meaning = best
+        found.append(finding)
+        if {c.ours for c in meaning.changes} & {c.ours for c in done}:
+            break
+        done = (*done, *meaning.changes)
+        again = _laid([applied(r, meaning.changes) for r in now], lay, problem)
+        if unexplained(again, fit_noise(again, again.nominal())) < UNEXPLAINED:
+            break
+    return found
+
+
+def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Finding, Meaning] | None:
+    written = _score(recordings, (), lay, problem)
+    scored = [(m, _score(recordings, m.changes, lay, problem)) for m in meanings(recordings, problem.program.vessel)]
+    scored = [(m, s) for m, s in scored if np.isfinite(s[0])]
+    if not scored or not np.isfinite(written[0]):
+        return None
+    top = max(s[0] for _, s in scored)
+    ties = [(m, s) for m, s in scored if top - s[0] < TIED]
+    rest = max((s[0] for m, s in scored if top - s[0] >= TIED), default=-np.inf)
+    rows = sum(len(r) for r in recordings)
+    gain, ahead = top - written[0], top - max(written[0], rest)
+    meaning, (_, left) = ties[0]
+    if gain < max(NATS, SHARE * rows) or ahead < CLEAR or left > LESS * written[1]:
+        return None
+    evidence = (
+        f"{meaning.words}: laid on {problem.program.vessel.name} so, the log is likelier by {gain:.0f} nats, and the "
+        f"force that stays unexplained is {100.0 * left / written[1]:.0f} % of what it is as written"
+    )
+    others = [*meaning.alternatives, *((m.words, m.changes) for m, _ in ties[1:])]
+    if len(ties) > 1:
+        evidence += f"; this boat is alike on both sides, so that it fits as well that {ties[1][0].words}"
+    sure = 1.0 - float(np.exp(-min(ahead, 50.0) / 4.0))
+    return Finding(meaning.name, evidence, sure=sure, changes=meaning.changes, alternatives=tuple(others)), meaning
+
+
+def _laid(recordings: list[Recording], lay: Lay, problem: Problem) -> Problem:
+    """The recordings on the same program, with the noise that they show."""
+    vessel = problem.program.vessel
+    other = problem.on([lay(r) for r in recordings])
+    other.ambient = replace(nominal_levels(vessel, recordings), force=problem.ambient.force)
+    return other
+
+
+def _score(recordings: list[Recording], changes: tuple[Change, ...], lay: Lay, problem: Problem) -> tuple[float, float]:
+    """Evidence of a log as it may have been meant, coefficients refitted, and what is left unexplained."""
+    try:
+        laid = _laid([applied(r, changes) for r in recordings], lay, problem)
+        _, recalibrated = baseline(laid)
+    except (BadInput, np.linalg.LinAlgError, FloatingPointError):
+        return -np.inf, np.inf
+    return recalibrated.evidence, unexplained(laid, recalibrated)
+
+
+def on(program: Program, recordings: Sequence[Recording], uncertainty: dict[str, float]) -> tuple[Lay, Problem]:
+    """How recordings are laid on a program, and the question of all of them."""
+    vessel = program.vessel
+    stated = noise_of(vessel, recordings)
+
+    def lay(recording: Recording) -> Track:
+        return track(recording, program, stated)
+
+    return lay, Problem([lay(r) for r in recordings], nominal_levels(vessel, recordings), uncertainty)
