@@ -10,7 +10,10 @@ from boatsim.recordings.table import Recording
 
 POSE = ("x_m", "y_m", "psi_rad")
 ROUNDED = 2.1  # of the last digit, by which the difference of two equal steps is off when three places are rounded
+TURNS = -0.35  # of white noise, second differences are alike by -2/3 from row to row
+LEAST = 1.5  # digits, by which noise is seen
 CHANCE = 1e-4  # of one such run among all rows, at most
+BESIDE, RARE = 30, 1e-3  # rows on either side, by whose equal steps a run must be a rare one
 FEWEST = 2  # rows in a run
 SHOWN = 5  # places that are named
 
@@ -39,21 +42,41 @@ def bridged(recording: Recording) -> NDArray[np.bool_]:
     columns = [recording[c] for c in POSE if c in recording.signals]
     if n < 30 or len(columns) < 2 or not all(np.isfinite(c).all() for c in columns):
         return none
-    exact, chance = np.ones(n - 2, dtype=np.bool_), 1.0
+    exact, chance, used = np.ones(n - 2, dtype=np.bool_), 1.0, 0
     for values in columns:
         bent, digit = np.abs(np.diff(values, 2)), _digit(values)
         equal = bent < ROUNDED * digit
+        if not _noisy(np.diff(values, 2), digit):
+            continue  # a smooth course has equal steps of its own
+        used += 1
         exact &= equal
         chance *= max(float(equal.mean()), 1.0 / n)
+    if used < 2:
+        return none
     moving = np.any([np.diff(c)[1:] != 0.0 for c in columns], axis=0)
     exact &= moving  # what stands still is repeated, not bridged
     straight = np.concatenate(([False], exact, [False]))
     begins, ends = _runs(straight)
     for begin, end in zip(begins, ends, strict=True):
         rows = int(end - begin) + 1
-        if rows < FEWEST or n * chance**rows > CHANCE:
-            straight[begin : end + 1] = False
-    return straight
+        beside = np.concatenate((straight[max(begin - BESIDE, 0) : begin], straight[end + 1 : end + 1 + BESIDE]))
+        if rows < FEWEST or n * chance**rows > CHANCE or _share(beside) ** rows > RARE:
+            none[begin : end + 1] = True
+    return straight & ~none
+
+
+def _share(rows: NDArray[np.bool_]) -> float:
+    """Of rows that are true, counted as if half a one were seen besides: how likely a further one is."""
+    return (float(rows.sum()) + 0.5) / (len(rows) + 1.0)
+
+
+def _noisy(bent: Array, digit: float) -> bool:
+    """Whether second differences (N,) are those of noise, which turn round from row to row, and not of rounding."""
+    ends = np.quantile(bent, [0.05, 0.95])
+    inside = np.clip(bent, *ends)
+    size = float(inside @ inside)
+    turns = size > 0.0 and float(inside[1:] @ inside[:-1]) < TURNS * size
+    return turns and float(np.median(np.abs(bent))) > LEAST * digit
 
 
 def _digit(values: Array) -> float:

@@ -43,7 +43,13 @@ class Finding:
     alternatives: tuple[tuple[str, tuple[Change, ...]], ...] = ()  # what explains the same: its name, its changes
     use: tuple[float, float] | None = None  # [s] the part that is sound
     remedy: str = ""  # in words, where no line of a recording.toml does it
-    run: str = ""  # file of the recording
+    words: str = ""  # what is wrong in a clause, where the name does not say it
+    run: str = ""  # file of the recording; several: that of the first
+
+    @property
+    def said(self) -> str:
+        """What is wrong, in a clause."""
+        return self.words or self.name.replace("_", " ")
 
     @property
     def of_the_whole_log(self) -> bool:
@@ -87,13 +93,8 @@ def _words(e: Expression, ours: str) -> str:
     return f"{text} {way} {f'{np.degrees(off):.4g} * deg' if ours.endswith('_rad') else f'{off:.12g}'}"
 
 
-def use_line(finding: Finding) -> str | None:
-    """The line that keeps the sound part alone."""
-    return f"use = [{finding.use[0]:.6g}, {finding.use[1]:.6g}]" if finding.use else None
-
-
-def said(finding: Finding, sources: Mapping[str, Expression]) -> list[str]:
+def to_write(finding: Finding, sources: Mapping[str, Expression]) -> list[str]:
     """What is to be written into a recording.toml, line by line; of alternatives the first."""
     written = lines(finding.changes, sources)
-    use = use_line(finding)
-    return [*([use] if use else []), *(["[columns]", *written] if written else [])]
+    use = [f"use = [{finding.use[0]:.9g}, {finding.use[1]:.9g}]"] if finding.use else []
+    return [*use, *(["[columns]", *written] if written else [])]

@@ -1,7 +1,6 @@
 """All looks at a log, in order: at the table as written, at the recording as it is opened, and laid on its vessel."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from boatsim.diagnose.log import (
@@ -17,10 +16,8 @@ from boatsim.diagnose.log import (
     saturation,
     time_unit,
 )
-from boatsim.diagnose.log.finding import PROBABLY, Finding, applied, lines, said
-from boatsim.errors import BadInput
+from boatsim.diagnose.log.finding import Finding, applied
 from boatsim.physics.vessel import Vessel
-from boatsim.recordings.expression import Expression
 from boatsim.recordings.table import Recording, as_written
 
 AS_WRITTEN = (time_unit, clock, position_unit, angle_unit, command_unit)

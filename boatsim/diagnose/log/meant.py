@@ -1,6 +1,6 @@
 """What a log may have been meant to say: other axes, another sense of the heading, exchanged or reversed drives."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import degrees, pi
 
@@ -14,6 +14,7 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 
 LITTLE_USED = 0.12  # of its range, which a command in a right unit would pass
+ASIDE, ALIKE = 0.3, 0.8  # [rad] and likeness of the way, from which a bow points aside
 TURNED = 0.2  # [rad] from which a heading is turned, and not a compass that is off
 MIRRORED_Y = (Change("y_m", "y_m", -1.0),)
 MIRRORED_HEADING = (Change("psi_rad", "psi_rad", -1.0), Change("r_radps", "r_radps", -1.0))
@@ -33,7 +34,7 @@ class Meaning:
     alternatives: tuple[tuple[str, tuple[Change, ...]], ...] = ()  # that no boat could tell from it
 
 
-def meanings(recordings: list[Recording], vessel: Vessel) -> list[Meaning]:
+def meanings(recordings: Sequence[Recording], vessel: Vessel) -> list[Meaning]:
     """What is tried on a vessel, each where the columns are there. The world has no north: what only turns it is one."""
     there = {c for r in recordings for c in r.signals}
     found = [*_axes(recordings, vessel), *_drives(recordings, vessel)]
@@ -45,7 +46,7 @@ def meanings(recordings: list[Recording], vessel: Vessel) -> list[Meaning]:
     return kept
 
 
-def _axes(recordings: list[Recording], vessel: Vessel) -> Iterator[Meaning]:
+def _axes(recordings: Sequence[Recording], vessel: Vessel) -> Iterator[Meaning]:
     if not {"surge", "sway", "yaw"} <= set(vessel.freedoms):
         return
     if any(n not in r.signals for r in recordings for n in ("x_m", "y_m", "psi_rad")):
@@ -62,23 +63,39 @@ def _axes(recordings: list[Recording], vessel: Vessel) -> Iterator[Meaning]:
         yield Meaning("heading_turned", words, (Change("psi_rad", "psi_rad", 1.0, angle),))
 
 
-def _turned(recordings: list[Recording], vessel: Vessel) -> list[float]:
+def points_aside(recordings: Sequence[Recording], vessel: Vessel) -> bool:
+    """Whether boats go all along where their bows do not point."""
+    if not {"surge", "sway", "yaw"} <= set(vessel.freedoms):
+        return False
+    if any(n not in r.signals for r in recordings for n in ("x_m", "y_m", "psi_rad")):
+        return False
+    angle, alike = _aside(recordings, vessel)
+    return abs(angle) > ASIDE and alike > ALIKE
+
+
+def _turned(recordings: Sequence[Recording], vessel: Vessel) -> list[float]:
     """Quarter turns [rad], and the angle by which bows must be turned to point where boats go, ahead."""
     quarters = [pi / 2.0, pi, -pi / 2.0]
-    total = 0.0 + 0.0j
+    angle, _ = _aside(recordings, vessel)
+    near = min(abs(np.remainder(angle - q + pi, 2.0 * pi) - pi) for q in quarters)
+    whole = float(np.radians(np.round(np.degrees(angle))))
+    return [*quarters, whole] if abs(angle) > TURNED and near > 0.5 * TURNED else quarters
+
+
+def _aside(recordings: Sequence[Recording], vessel: Vessel) -> tuple[float, float]:
+    """Mean angle [rad] from the bow to where the boat goes, to starboard, and how alike it is all along, 0 to 1."""
+    total, way = 0.0 + 0.0j, 0.0
     for r in recordings:
         there = np.isfinite(r["x_m"]) & np.isfinite(r["y_m"]) & np.isfinite(r["psi_rad"])
         t, z, psi = r.t[there], r["x_m"][there] + 1j * r["y_m"][there], r["psi_rad"][there]
         after = np.searchsorted(t, t + froude_time(vessel)).clip(max=len(t) - 1)
         middle = (np.arange(len(t)) + after) // 2
         total += complex(np.sum((z[after] - z) * np.exp(-1j * psi[middle])))
-    angle = float(np.angle(total))
-    near = min(abs(np.remainder(angle - q + pi, 2.0 * pi) - pi) for q in quarters)
-    whole = float(np.radians(np.round(np.degrees(angle))))
-    return [*quarters, whole] if abs(angle) > TURNED and near > 0.5 * TURNED else quarters
+        way += float(np.sum(np.abs(z[after] - z)))
+    return float(np.angle(total)), abs(total) / max(way, 1e-12)
 
 
-def _drives(recordings: list[Recording], vessel: Vessel) -> Iterator[Meaning]:
+def _drives(recordings: Sequence[Recording], vessel: Vessel) -> Iterator[Meaning]:
     channels = [n for n in vessel.commands if all(n in r.signals for r in recordings)]
     if exchanged := _other_side(channels, vessel):
         words = f"{' and '.join(sorted({c.ours for c in exchanged}))} are exchanged"
@@ -105,7 +122,7 @@ def _other_side(channels: list[str], vessel: Vessel) -> tuple[Change, ...]:
     return tuple(found)
 
 
-def _fraction(recordings: list[Recording], vessel: Vessel, channels: list[str]) -> float | None:
+def _fraction(recordings: Sequence[Recording], vessel: Vessel, channels: list[str]) -> float | None:
     """The limit of channels that keep within 1 where the vessel takes far more."""
     if not channels or len({vessel.commands[n].high for n in channels}) > 1:
         return None

@@ -1,7 +1,7 @@
 """Lays a log on its vessel as it is and as it may have been meant: what sails like the boat is what was meant.
 
 Nothing is tried where the vessel explains the log: where the force that it leaves unexplained is a small part of what
-its drives push with. A meaning is accepted only if it makes the log far likelier than it is as written, both with
+its drives push with, and its bow points where it goes. A meaning is accepted only if it makes the log far likelier than it is as written, both with
 coefficients refitted, and leaves less unexplained.
 """
 
@@ -11,18 +11,17 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from boatsim.diagnose.filter import Track, axes_of, nominal_levels, noise_of, track
+from boatsim.diagnose.filter import Track, axes_of
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.locate import hull_forces
 from boatsim.diagnose.log.finding import Change, Finding, applied
-from boatsim.diagnose.log.meant import Meaning, meanings
+from boatsim.diagnose.log.meant import Meaning, meanings, points_aside
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.rank import baseline
 from boatsim.errors import BadInput
-from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 
-UNEXPLAINED = 0.3  # of what the drives push with, from which meanings are tried
+UNEXPLAINED = 0.6  # of what the drives push with, from which meanings are tried
 FLOOR = 0.02  # of the largest push, times the length for a moment: drives that do not turn the hull
 NATS, SHARE = 60.0, 0.05  # that a meaning must gain, at least; of the rows
 CLEAR = 25.0  # nats by which it must be ahead of what the log as written, or another meaning, would be
@@ -41,7 +40,7 @@ def tried(recordings: Sequence[Recording], lay: Lay, problem: Problem) -> list[F
     """
     with threadpool_limits(1, "blas"):
         nominal = fit_noise(problem, problem.nominal())
-        if unexplained(problem, nominal) < UNEXPLAINED:
+        if unexplained(problem, nominal) < UNEXPLAINED and not points_aside(recordings, problem.program.vessel):
             return []
         return _tried(_short(recordings), lay, problem)
 
@@ -115,15 +114,13 @@ def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Find
     if len(ties) > 1:
         evidence += f"; this boat is alike on both sides, so that it fits as well that {ties[1][0].words}"
     sure = 1.0 - float(np.exp(-min(ahead, 50.0) / 4.0))
-    return Finding(meaning.name, evidence, sure=sure, changes=meaning.changes, alternatives=tuple(others)), meaning
+    found = Finding(meaning.name, evidence, sure=sure, changes=meaning.changes, words=meaning.words)
+    return replace(found, alternatives=tuple(others)), meaning
 
 
 def _laid(recordings: list[Recording], lay: Lay, problem: Problem) -> Problem:
-    """The recordings on the same program, with the noise that they show."""
-    vessel = problem.program.vessel
-    other = problem.on([lay(r) for r in recordings])
-    other.ambient = replace(nominal_levels(vessel, recordings), force=problem.ambient.force)
-    return other
+    """The same question to recordings with other columns."""
+    return problem.on([lay(r) for r in recordings])
 
 
 def _score(recordings: list[Recording], changes: tuple[Change, ...], lay: Lay, problem: Problem) -> tuple[float, float]:
@@ -134,14 +131,3 @@ def _score(recordings: list[Recording], changes: tuple[Change, ...], lay: Lay, p
     except (BadInput, np.linalg.LinAlgError, FloatingPointError):
         return -np.inf, np.inf
     return recalibrated.evidence, unexplained(laid, recalibrated)
-
-
-def on(program: Program, recordings: Sequence[Recording], uncertainty: dict[str, float]) -> tuple[Lay, Problem]:
-    """How recordings are laid on a program, and the question of all of them."""
-    vessel = program.vessel
-    stated = noise_of(vessel, recordings)
-
-    def lay(recording: Recording) -> Track:
-        return track(recording, program, stated)
-
-    return lay, Problem([lay(r) for r in recordings], nominal_levels(vessel, recordings), uncertainty)
