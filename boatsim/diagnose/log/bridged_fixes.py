@@ -10,8 +10,8 @@ from boatsim.recordings.table import Recording
 
 POSE = ("x_m", "y_m", "psi_rad")
 ROUNDED = 2.1  # of the last digit, by which the difference of two equal steps is off when three places are rounded
-TURNS = -0.35  # of white noise, second differences are alike by -2/3 from row to row
-LEAST = 1.5  # digits, by which noise is seen
+TURNS = -0.5  # of white noise, fourth differences are alike by -0.8 from row to row
+LEAST = 5.0  # digits, by which fourth differences are more than those of rounding, 1.6
 CHANCE = 1e-4  # of one such run among all rows, at most
 BESIDE, RARE = 30, 1e-3  # rows on either side, by whose equal steps a run must be a rare one
 FEWEST = 2  # rows in a run
@@ -46,7 +46,7 @@ def bridged(recording: Recording) -> NDArray[np.bool_]:
     for values in columns:
         bent, digit = np.abs(np.diff(values, 2)), _digit(values)
         equal = bent < ROUNDED * digit
-        if not _noisy(np.diff(values, 2), digit):
+        if not _noisy(np.diff(values, 4), digit):
             continue  # a smooth course has equal steps of its own
         used += 1
         exact &= equal
@@ -71,7 +71,7 @@ def _share(rows: NDArray[np.bool_]) -> float:
 
 
 def _noisy(bent: Array, digit: float) -> bool:
-    """Whether second differences (N,) are those of noise, which turn round from row to row, and not of rounding."""
+    """Whether fourth differences (N,) are those of noise, which turn round from row to row, and not of rounding."""
     ends = np.quantile(bent, [0.05, 0.95])
     inside = np.clip(bent, *ends)
     size = float(inside @ inside)

@@ -11,7 +11,7 @@ from boatsim.recordings.expression import UNITS
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import ROUNDING, Recording
 
-BEYOND = 1.5  # times the limit: less is a drive that does more than its file says, not another unit
+BEYOND, SURELY = 1.05, 1.5  # times the limit: from the former on it may be another unit, from the latter it is
 FILLS = 0.1  # of the range, at least, by a command in its right unit
 PULSES = (900.0, 2100.0)  # [us] of servo pulses; 1500 is neutral and 500 on either side are full
 
@@ -30,7 +30,10 @@ def look(recording: Recording, vessel: Vessel) -> list[Finding]:
             for n in names
         )
         changes = tuple(Change(n, n, factor, offset) for n in alike)
-        found.append(Finding("command_unit", f"{evidence}: that is {unit}", sure=0.95, changes=changes))
+        limits = (max(abs(vessel.commands[n].low), abs(vessel.commands[n].high)) for n in names)
+        surely = any(np.nanmax(np.abs(recording[n])) > SURELY * x for n, x in zip(names, limits, strict=True))
+        words = f"{evidence}: that {'is' if surely else 'may be'} {unit}"
+        found.append(Finding("command_unit", words, sure=0.95 if surely else 0.7, changes=changes))
     return found
 
 

@@ -8,7 +8,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-FASTER = 4.0  # times the quickest hundredth of all steps
+FASTER = 3.0  # times the quickest hundredth of all steps
 SURE = 20.0  # usual sizes of what the course before and behind a row differ by, there
 BESIDE = 5  # rows on either side whose course is laid through
 STAYS = 0.5  # of the leap, at least, that is left behind it
