@@ -143,7 +143,9 @@ FAULTS: dict[str, Fault] = {
     "outliers in bursts": Fault(_bursts, ("outliers",)),
     "latitude as metres": Fault(_geographic, ("latitude_as_metres",)),
     "commands in per cent": Fault(
-        _percent, ("command_unit",), lambda b: any(unit_of(n) != "rad" for n in b.commands)
+        _percent,
+        ("command_unit",),
+        lambda b: any(unit_of(n) != "rad" and not 67.0 < c.high < 150.0 for n, c in b.commands.items()),
     ),
     "time in ms": Fault(_with(t_s=lambda c: 1000.0 * c["t_s"]), ("time_unit",)),
     "gaps bridged": Fault(_bridged, ("bridged",)),

@@ -173,7 +173,8 @@ def check(
             thin.append(replace(thinned, name=str(path)))
     if thin:
         try:
-            problem, _, lay, _ = pose(thin, (), {**boats})
+            known: dict[Path | None, Vessel] = dict(boats.items())
+            problem, _, lay, _ = pose(thin, (), known)
             found += [replace(f, run=str(thin[0].path)) for f in tried(thin, lay, problem)]
         except BadInput as error:
             refused.append(error)

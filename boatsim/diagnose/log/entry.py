@@ -1,6 +1,7 @@
 """A finding on a log as diagnosis.json and the commands say it, with the lines to write into a recording.toml."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from boatsim.diagnose.log.finding import PROBABLY, Finding, lines, to_write
 from boatsim.diagnose.report.entries import LogEntry
@@ -11,9 +12,7 @@ from boatsim.recordings.table import as_written
 
 def sources_of(finding: Finding, path: str, vessel: Vessel) -> Mapping[str, Expression]:
     """What the columns of a finding's file are made of so far; nothing where it is no file that says so."""
-    from pathlib import Path
-
-    return as_written(Path(path), vessel.columns)[1] if finding.changes and Path(path).is_file() else {}
+    return as_written(Path(path), vessel.columns)[1] if Path(path).is_file() else {}
 
 
 def entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:

@@ -1,8 +1,11 @@
 """What a diagnosis leaves out of a log or turns round by itself: repeated and outlying fixes, positions, a rudder."""
 
+from dataclasses import replace
+
 from boatsim.diagnose import rules
 from boatsim.diagnose.log.finding import Finding
 from boatsim.diagnose.log.held_fixes import without_repeats
+from boatsim.diagnose.log.meant import MIRRORED
 from boatsim.diagnose.log.outlying_fixes import without_outliers
 from boatsim.diagnose.log.position_frame import in_one_frame
 from boatsim.diagnose.log.steering_sense import steered
@@ -36,5 +39,8 @@ def findings(recording: Recording) -> list[Finding]:
         for words, name in MENDED.items():
             if words in remark:
                 where = f"{recording.path or recording.name}: "
-                found.append(Finding(name, remark.removeprefix(where), "mended", remedy="a diagnosis allows for it"))
+                made = Finding(name, remark.removeprefix(where), "mended", remedy="a diagnosis allows for it")
+                if name == "rudder_sense":
+                    made = replace(made, alternatives=(("y and the heading are counted to port", MIRRORED),))
+                found.append(made)
     return found

@@ -6,7 +6,7 @@ from math import degrees, pi
 
 import numpy as np
 
-from boatsim.diagnose.log.finding import Change
+from boatsim.diagnose.log.finding import Change, applied
 from boatsim.diagnose.rules import froude_time
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -14,7 +14,8 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 
 LITTLE_USED = 0.12  # of its range, which a command in a right unit would pass
-ASIDE, ALIKE = 0.3, 0.8  # [rad] and likeness of the way, from which a bow points aside
+ASIDE, ALIKE = 0.3, 0.7  # [rad] and likeness of the way, from which a bow points aside
+BETTER = 0.2  # likeness by which a heading counted the other way points better
 TURNED = 0.2  # [rad] from which a heading is turned, and not a compass that is off
 MIRRORED_Y = (Change("y_m", "y_m", -1.0),)
 MIRRORED_HEADING = (Change("psi_rad", "psi_rad", -1.0), Change("r_radps", "r_radps", -1.0))
@@ -59,18 +60,24 @@ def _axes(recordings: Sequence[Recording], vessel: Vessel) -> Iterator[Meaning]:
     yield Meaning("axes_exchanged", "x is east and y north, the heading clockwise from north", EXCHANGED)
     yield Meaning("heading_from_east", "the heading is counted from y to x", FROM_EAST)
     for angle in _turned(recordings, vessel):
-        words = f"the heading is turned by {-degrees(angle):.0f} deg"
-        yield Meaning("heading_turned", words, (Change("psi_rad", "psi_rad", 1.0, angle),))
+        yield turned_by(angle)
+
+
+def turned_by(angle: float) -> Meaning:
+    """A heading that lacks an angle [rad]."""
+    words = f"the heading is turned by {-degrees(angle):.0f} deg"
+    return Meaning("heading_turned", words, (Change("psi_rad", "psi_rad", 1.0, angle),))
 
 
 def points_aside(recordings: Sequence[Recording], vessel: Vessel) -> bool:
-    """Whether boats go all along where their bows do not point."""
+    """Whether boats go all along where their bows do not point, or where these would point if counted the other way."""
     if not {"surge", "sway", "yaw"} <= set(vessel.freedoms):
         return False
     if any(n not in r.signals for r in recordings for n in ("x_m", "y_m", "psi_rad")):
         return False
     angle, alike = _aside(recordings, vessel)
-    return abs(angle) > ASIDE and alike > ALIKE
+    _, mirrored = _aside([applied(r, MIRRORED_HEADING) for r in recordings], vessel)
+    return (abs(angle) > ASIDE and alike > ALIKE) or (mirrored > ALIKE and mirrored > alike + BETTER)
 
 
 def _turned(recordings: Sequence[Recording], vessel: Vessel) -> list[float]:

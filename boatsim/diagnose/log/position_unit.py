@@ -10,7 +10,7 @@ from boatsim.recordings.expression import UNITS
 from boatsim.recordings.importing.frames import radii
 from boatsim.recordings.table import Recording
 
-NARROW = 0.05  # [deg] 5 km: a log of latitudes and longitudes keeps within it,
+NARROW = 1.0  # [deg] 111 km: a log of latitudes and longitudes keeps within it,
 AWAY = 100.0  # and is this many times as far from 0 as it is wide
 INTEGERS = 1e-7  # [deg] of the fixes of GNSS receivers that are written as whole numbers
 GRAVITY = 9.81  # [m/s^2]

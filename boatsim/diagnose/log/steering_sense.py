@@ -24,6 +24,11 @@ def steered(recording: Recording, vessel: Vessel) -> Recording:
     return recording
 
 
+def turned(recording: Recording) -> list[str]:
+    """Commands whose sign `steered` has changed, as its remarks say."""
+    return [n for n in recording.signals for r in recording.remarks if f"positive {n} turns the other way" in r]
+
+
 def turning(recording: Recording, name: str, length: float) -> float:
     """Correlation of a command with the turning after it, given the turning before: 1 steers to starboard, -1 to port.
 

@@ -15,7 +15,8 @@ from boatsim.diagnose.filter import Track, axes_of
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.locate import hull_forces
 from boatsim.diagnose.log.finding import Change, Finding, applied
-from boatsim.diagnose.log.meant import Meaning, meanings, points_aside
+from boatsim.diagnose.log.steering_sense import turned
+from boatsim.diagnose.log.meant import Meaning, meanings, points_aside, turned_by
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.rank import baseline
 from boatsim.errors import BadInput
@@ -26,8 +27,8 @@ FLOOR = 0.02  # of the largest push, times the length for a moment: drives that 
 NATS, SHARE = 60.0, 0.05  # that a meaning must gain, at least; of the rows
 CLEAR = 25.0  # nats by which it must be ahead of what the log as written, or another meaning, would be
 TIED = 3.0  # nats within which meanings are one: a boat alike on both sides can not tell a mirror from exchanged drives
-LESS = 0.8  # of the unexplained force, at most, that may be left
 MOST_ROWS, MOST_RUNS = 900, 3  # that are laid on
+STEPS = (-8.0, -4.0, 0.0, 4.0, 8.0)  # [deg] of turned headings, between which the best is looked for
 ROUNDS = 2  # faults one upon the other
 LEVEL = ("surge", "sway", "yaw")
 Lay = Callable[[Recording], Track]
@@ -42,7 +43,7 @@ def tried(recordings: Sequence[Recording], lay: Lay, problem: Problem) -> list[F
         nominal = fit_noise(problem, problem.nominal())
         if unexplained(problem, nominal) < UNEXPLAINED and not points_aside(recordings, problem.program.vessel):
             return []
-        return _tried(_short(recordings), lay, problem)
+        return _tried([_unturned(r) for r in _short(recordings)], lay, problem)
 
 
 def unexplained(problem: Problem, nominal: Fit) -> float:
@@ -71,6 +72,11 @@ def _short(recordings: Sequence[Recording]) -> list[Recording]:
     return [
         r.between(float(r.t[0]), float(r.t[min(len(r), MOST_ROWS) - 1])) for r in list(recordings)[:MOST_RUNS]
     ]
+
+
+def _unturned(recording: Recording) -> Recording:
+    """The recording with rudders as they are in its file."""
+    return applied(recording, [Change(n, n, -1.0) for n in turned(recording)])
 
 
 def _tried(recordings: list[Recording], lay: Lay, problem: Problem) -> list[Finding]:
@@ -104,18 +110,37 @@ def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Find
     rows = sum(len(r) for r in recordings)
     gain, ahead = top - written[0], top - max(written[0], rest)
     meaning, (_, left) = ties[0]
-    if gain < max(NATS, SHARE * rows) or ahead < CLEAR or left > LESS * written[1]:
+    if meaning.name == "heading_turned":
+        meaning = _nearest(meaning, recordings, lay, problem)
+    if gain < max(NATS, SHARE * rows) or ahead < CLEAR:
         return None
     evidence = (
-        f"{meaning.words}: laid on {problem.program.vessel.name} so, the log is likelier by {gain:.0f} nats, and the "
-        f"force that stays unexplained is {100.0 * left / written[1]:.0f} % of what it is as written"
+        f"{meaning.words}: laid on {problem.program.vessel.name} so, the log is likelier by {gain:.0f} nats, coefficients "
+        "refitted"
     )
+    if left < written[1]:
+        sizes = (f"{100.0 * share:.2g} %" for share in (left, written[1]))
+        evidence += ", and the force left unexplained is {} of what the drives push with instead of {}".format(*sizes)
     others = [*meaning.alternatives, *((m.words, m.changes) for m, _ in ties[1:])]
     if len(ties) > 1:
         evidence += f"; this boat is alike on both sides, so that it fits as well that {ties[1][0].words}"
     sure = 1.0 - float(np.exp(-min(ahead, 50.0) / 4.0))
     found = Finding(meaning.name, evidence, sure=sure, changes=meaning.changes, words=meaning.words)
     return replace(found, alternatives=tuple(others)), meaning
+
+
+def _nearest(meaning: Meaning, recordings: list[Recording], lay: Lay, problem: Problem) -> Meaning:
+    """The same to the degree, around what the course over ground says."""
+    angle = meaning.changes[0].offset
+    if abs(np.remainder(angle + np.pi / 4.0, np.pi / 2.0) - np.pi / 4.0) < 1e-9:
+        return meaning
+    around = [turned_by(angle + np.radians(off)) for off in STEPS]
+    scores = [_score(recordings, m.changes, lay, problem)[0] for m in around]
+    peak = np.polyfit(STEPS, scores, 2) if np.isfinite(scores).all() else np.zeros(3)
+    if not peak[0] < 0.0:
+        return around[int(np.argmax(scores))]
+    best = float(np.clip(-0.5 * peak[1] / peak[0], STEPS[0], STEPS[-1]))
+    return turned_by(float(np.radians(np.round(np.degrees(angle) + best))))
 
 
 def _laid(recordings: list[Recording], lay: Lay, problem: Problem) -> Problem:
