@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from boatsim.diagnose.analysis import NEXT, Diagnosis, open_recording
+from boatsim.diagnose.analysis import NEXT, Diagnosis, hint, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.log.entry import in_words
 from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import page as report
@@ -42,7 +43,12 @@ def diagnose(
 ) -> int:  # fmt: skip
     """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
     _show_progress()
-    found = analyse(runs, hold_out, vessel, load, library, without, horizon)
+    try:
+        found = analyse(runs, hold_out, vessel, load, library, without, horizon)
+    except BadInput as error:
+        raise BadInput(f"{error}{hint(runs, hold_out, vessel, load)}") from None
+    entries = found.findings.answer.get("log", [])
+    _say([f"{e['run']}: {line.strip()}" for e in entries if e["kind"] == "fault" for line in in_words(e)])
     _say(found.remarks)
     write(found, out)
     for line in summary(found):

@@ -17,7 +17,7 @@ from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
 from boatsim.diagnose.log import left_out, look
-from boatsim.diagnose.log.entry import entry, sources_of
+from boatsim.diagnose.log.entry import entry, joined, sources_of
 from boatsim.diagnose.log.finding import PROBABLY, Finding
 from boatsim.diagnose.log.trial import tried
 from boatsim.diagnose.next import experiment
@@ -180,6 +180,20 @@ def check(
             refused.append(error)
     by_file = {path: [f for f in found if f.run == str(path)] for path in runs}
     return {p: [entry(f, sources_of(f, f.run, boats[p])) for f in fs] for p, fs in by_file.items()}, refused
+
+
+def hint(runs: Sequence[Path], hold_out: Sequence[Path], vessel: str | None, load: Sequence[str]) -> str:
+    """What `check` would write into the recording.toml of the first file that is refused; "" where it knows nothing."""
+    for path in (*runs, *hold_out):
+        try:
+            boat = vessel_for(path, vessel, load)
+            found = look.at_the_table(path, boat)
+        except BadInput:
+            return ""
+        for made in (entry(f, sources_of(f, f.run, boat)) for f in found):
+            if made["lines"]:
+                return f"; {PROBABLY}: {made['name'].replace('_', ' ')}, write into recording.toml {joined(made['lines'])}"
+    return ""
 
 
 def diagnose_recordings(
