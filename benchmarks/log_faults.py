@@ -84,6 +84,10 @@ def _percent(columns: Columns, boat: Vessel) -> Columns:
     return columns | {n: 100.0 * columns[n] / boat.commands[n].high for n in drives}
 
 
+def _at(columns: Columns, *shares: float) -> list[int]:
+    return [round(share * len(columns["t_s"])) for share in shares]
+
+
 def _held(columns: Columns, _: Vessel) -> Columns:
     row = np.arange(len(columns["t_s"])) // round(RATE) * round(RATE)
     return columns | {n: columns[n][row] for n in ("x_m", "y_m", "psi_rad")}
@@ -91,7 +95,7 @@ def _held(columns: Columns, _: Vessel) -> Columns:
 
 def _bursts(columns: Columns, boat: Vessel) -> Columns:
     off = np.zeros(len(columns["t_s"]))
-    for begin in (100, 230, 341):
+    for begin in _at(columns, 0.2, 0.45, 0.7):
         off[begin : begin + 4] = 0.8 * boat.length
     return columns | {n: columns[n] + off for n in ("x_m", "y_m")}
 
@@ -106,14 +110,14 @@ def _bridged(columns: Columns, _: Vessel) -> Columns:
     made = dict(columns)
     for name, places in (("x_m", 4), ("y_m", 4), ("psi_rad", 5)):
         values = columns[name].copy()
-        for begin in (60, 150, 290, 400):
+        for begin in _at(columns, 0.12, 0.3, 0.6, 0.85):
             values[begin : begin + 10] = np.linspace(values[begin], values[begin + 9], 10)
         made[name] = np.round(values, places)
     return made
 
 
 def _leapt(columns: Columns, boat: Vessel) -> Columns:
-    behind = columns["t_s"] > columns["t_s"][300]
+    behind = np.arange(len(columns["t_s"])) > 0.6 * len(columns["t_s"])
     return columns | {"x_m": columns["x_m"] + 1.5 * boat.length * behind}
 
 

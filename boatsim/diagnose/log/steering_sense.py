@@ -38,7 +38,11 @@ def turning(recording: Recording, name: str, length: float) -> float:
     t, psi, span = recording.t[there], recording.signals["psi_rad"][there], RESPONSE * np.sqrt(length / GRAVITY)
     inside = (t >= t[0] + span) & (t <= t[-1] - span)
     now = psi[inside]
+    if len(now) < 2:
+        return 0.0
     before, after = now - np.interp(t[inside] - span, t, psi), np.interp(t[inside] + span, t, psi) - now
+    if not before @ before > 0.0:
+        return 0.0
     drive, gained = (
         x - before * (x @ before) / (before @ before) for x in (recording.signals[name][there][inside], after)
     )
