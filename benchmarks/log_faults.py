@@ -95,7 +95,7 @@ def _held(columns: Columns, _: Vessel) -> Columns:
 
 def _bursts(columns: Columns, boat: Vessel) -> Columns:
     off = np.zeros(len(columns["t_s"]))
-    for begin in _at(columns, 0.2, 0.45, 0.7):
+    for begin in _at(columns, 0.2, 0.6):
         off[begin : begin + 4] = 0.8 * boat.length
     return columns | {n: columns[n] + off for n in ("x_m", "y_m")}
 
@@ -177,7 +177,10 @@ def judged(boat: Vessel, columns: Columns, fault: Fault | None, ask: bool) -> tu
 
 def table(names: Sequence[str], seeds: int, ask: bool = True) -> list[str]:
     """A row a fault, a column a vessel: logs named / called physics, of how many; then good logs accused."""
-    rows = [f"{'fault':24s}" + "".join(f"{n:>22s}" for n in names), f"{'':24s}" + f"{'named / physics / of':>22s}" * len(names)]
+    rows = [
+        f"{'fault':24s}" + "".join(f"{n:>22s}" for n in names),
+        f"{'':24s}" + f"{'named / physics / of':>22s}" * len(names),
+    ]
     boats = [vessels.load(n) for n in names]
     logs = {b.name: [sailed(b, seed) for seed in range(1, seeds + 1)] for b in boats}
     good, total = [], [0, 0, 0]

@@ -192,7 +192,9 @@ def hint(runs: Sequence[Path], hold_out: Sequence[Path], vessel: str | None, loa
             return ""
         for made in (entry(f, sources_of(f, f.run, boat)) for f in found):
             if made["lines"]:
-                return f"; {PROBABLY}: {made['name'].replace('_', ' ')}, write into recording.toml {joined(made['lines'])}"
+                return (
+                    f"; {PROBABLY}: {made['name'].replace('_', ' ')}, write into recording.toml {joined(made['lines'])}"
+                )
     return ""
 
 

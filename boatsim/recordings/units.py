@@ -32,9 +32,7 @@ def in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
     return {name: index for name, index in suspects.items() if index is not None}
 
 
-def _measured(
-    columns: Mapping[str, Array], name: str
-) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
+def _measured(columns: Mapping[str, Array], name: str) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
     """The rows in which a column is measured: their numbers, times, its values, and those of what is full there."""
     rows = np.flatnonzero(np.isfinite(columns[name]))
     there = {n: v[rows] for n, v in columns.items()}

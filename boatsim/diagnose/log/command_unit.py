@@ -46,7 +46,9 @@ def _beyond(recording: Recording, vessel: Vessel) -> Iterator[tuple[str, tuple[s
             yield name, unit
 
 
-def _unit(values: "np.ndarray[tuple[int], np.dtype[np.float64]]", name: str, limit: float) -> tuple[str, float, float] | None:
+def _unit(
+    values: "np.ndarray[tuple[int], np.dtype[np.float64]]", name: str, limit: float
+) -> tuple[str, float, float] | None:
     """(unit in words, factor, offset) by which values (N,) come within a limit and fill it."""
     low, high = float(values.min()), float(values.max())
     if PULSES[0] <= low and high <= PULSES[1]:

@@ -52,9 +52,7 @@ def _axes(recordings: Sequence[Recording], vessel: Vessel) -> Iterator[Meaning]:
         return
     if any(n not in r.signals for r in recordings for n in ("x_m", "y_m", "psi_rad")):
         return
-    yield Meaning(
-        "mirrored", "y and the heading are counted to port", MIRRORED, (("x east, y north (ENU)", ENU),)
-    )
+    yield Meaning("mirrored", "y and the heading are counted to port", MIRRORED, (("x east, y north (ENU)", ENU),))
     yield Meaning("y_to_port", "y is to port, the heading clockwise", MIRRORED_Y)
     yield Meaning("heading_counterclockwise", "the heading is counted to port", MIRRORED_HEADING)
     yield Meaning("axes_exchanged", "x is east and y north, the heading clockwise from north", EXCHANGED)
@@ -83,10 +81,8 @@ def points_aside(recordings: Sequence[Recording], vessel: Vessel) -> bool:
 def _turned(recordings: Sequence[Recording], vessel: Vessel) -> list[float]:
     """Quarter turns [rad], and the angle by which bows must be turned to point where boats go, ahead."""
     quarters = [pi / 2.0, pi, -pi / 2.0]
-    angle, _ = _aside(recordings, vessel)
-    near = min(abs(np.remainder(angle - q + pi, 2.0 * pi) - pi) for q in quarters)
-    whole = float(np.radians(np.round(np.degrees(angle))))
-    return [*quarters, whole] if abs(angle) > TURNED and near > 0.5 * TURNED else quarters
+    angle, alike = _aside(recordings, vessel)
+    return [*quarters, angle] if abs(angle) > TURNED and alike > ALIKE else quarters
 
 
 def _aside(recordings: Sequence[Recording], vessel: Vessel) -> tuple[float, float]:

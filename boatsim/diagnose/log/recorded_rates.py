@@ -59,9 +59,7 @@ def _smooth(values: Array, k: int) -> Array:
     return mean
 
 
-def _compared(
-    recording: Recording, name: str, recorded: Array, rate: Array, r: Array, vessel: Vessel
-) -> list[Finding]:
+def _compared(recording: Recording, name: str, recorded: Array, rate: Array, r: Array, vessel: Vessel) -> list[Finding]:
     if len(rate) < 30 or not recorded.std() > 0.0 or not rate.std() > 0.0:
         return []
     like = float(np.corrcoef(recorded, rate)[0, 1])
@@ -74,9 +72,8 @@ def _compared(
             if 1.0 / NEAR < ratio / UNITS[unit] < NEAR and not 1.0 / 1.5 < ratio < 1.5:
                 evidence = f"{name} is {1.0 / ratio:.3g} times what follows from x_m, y_m: it is in {unit}"
                 return [Finding("velocity_unit", evidence, sure=0.95, changes=(Change(name, name, UNITS[unit]),))]
-    if not 1.0 / 1.5 < ratio < 1.5 or like < 0.3:
-        return []
-    return _late(recording, name, recorded, rate, vessel) or _elsewhere(name, recorded, rate, r, vessel)
+    late = 1.0 / 1.5 < ratio < 1.5 and like > 0.3 and _late(recording, name, recorded, rate, vessel)
+    return late or _elsewhere(name, recorded, rate, r, vessel)
 
 
 def _late(recording: Recording, name: str, recorded: Array, rate: Array, vessel: Vessel) -> list[Finding]:

@@ -15,8 +15,8 @@ from boatsim.diagnose.filter import Track, axes_of
 from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.locate import hull_forces
 from boatsim.diagnose.log.finding import Change, Finding, applied
-from boatsim.diagnose.log.steering_sense import turned
 from boatsim.diagnose.log.meant import Meaning, meanings, points_aside, turned_by
+from boatsim.diagnose.log.steering_sense import turned
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.rank import baseline
 from boatsim.errors import BadInput
@@ -27,8 +27,10 @@ FLOOR = 0.02  # of the largest push, times the length for a moment: drives that 
 NATS, SHARE = 60.0, 0.05  # that a meaning must gain, at least; of the rows
 CLEAR = 25.0  # nats by which it must be ahead of what the log as written, or another meaning, would be
 TIED = 3.0  # nats within which meanings are one: a boat alike on both sides can not tell a mirror from exchanged drives
-MOST_ROWS, MOST_RUNS = 900, 3  # that are laid on
-STEPS = (-8.0, -4.0, 0.0, 4.0, 8.0)  # [deg] of turned headings, between which the best is looked for
+MOST_ROWS, MOST_RUNS = 1200, 3  # that are laid on
+ROUND = np.radians(np.delete(np.arange(-165.0, 181.0, 15.0), [5, 11, 17, 23]))  # [rad] turns, but for quarters
+STEPS = np.arange(-16.0, 17.0, 4.0)  # [deg] beside a turned heading, between which the best is looked for
+ABOUT = 4.0  # [deg] by which a quarter turn may be missed
 ROUNDS = 2  # faults one upon the other
 LEVEL = ("surge", "sway", "yaw")
 Lay = Callable[[Recording], Track]
@@ -69,9 +71,8 @@ def unexplained(problem: Problem, nominal: Fit) -> float:
 
 def _short(recordings: Sequence[Recording]) -> list[Recording]:
     """The first rows of the first recordings: meanings differ in all of them."""
-    return [
-        r.between(float(r.t[0]), float(r.t[min(len(r), MOST_ROWS) - 1])) for r in list(recordings)[:MOST_RUNS]
-    ]
+    runs = list(recordings)[:MOST_RUNS]
+    return [r.between(float(r.t[0]), float(r.t[min(len(r), MOST_ROWS // len(runs)) - 1])) for r in runs]
 
 
 def _unturned(recording: Recording) -> Recording:
@@ -100,7 +101,10 @@ def _tried(recordings: list[Recording], lay: Lay, problem: Problem) -> list[Find
 
 def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Finding, Meaning] | None:
     written = _score(recordings, (), lay, problem)
-    scored = [(m, _score(recordings, m.changes, lay, problem)) for m in meanings(recordings, problem.program.vessel)]
+    meant = meanings(recordings, problem.program.vessel)
+    if any(m.name == "heading_turned" for m in meant):
+        meant.append(_roughly(recordings, lay, problem))
+    scored = [(m, _score(recordings, m.changes, lay, problem)) for m in meant]
     scored = [(m, s) for m, s in scored if np.isfinite(s[0])]
     if not scored or not np.isfinite(written[0]):
         return None
@@ -129,18 +133,27 @@ def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Find
     return replace(found, alternatives=tuple(others)), meaning
 
 
+def _roughly(recordings: list[Recording], lay: Lay, problem: Problem) -> Meaning:
+    """The heading turned by what fits best with noise and forces as they are for the log as written."""
+    written = _laid(recordings, lay, problem)
+    levels = fit_noise(written, written.nominal()).levels
+    nominal, on, scores = written.nominal(), written.program.switches(), []
+    for angle in ROUND:
+        laid = _laid([applied(r, turned_by(float(angle)).changes) for r in recordings], lay, problem)
+        found = laid.likelihood(nominal.free, nominal.theta, on, levels)
+        scores.append(found if np.isfinite(found) else -np.inf)
+    return turned_by(float(ROUND[int(np.argmax(scores))]))
+
+
 def _nearest(meaning: Meaning, recordings: list[Recording], lay: Lay, problem: Problem) -> Meaning:
-    """The same to the degree, around what the course over ground says."""
-    angle = meaning.changes[0].offset
-    if abs(np.remainder(angle + np.pi / 4.0, np.pi / 2.0) - np.pi / 4.0) < 1e-9:
-        return meaning
-    around = [turned_by(angle + np.radians(off)) for off in STEPS]
-    scores = [_score(recordings, m.changes, lay, problem)[0] for m in around]
-    peak = np.polyfit(STEPS, scores, 2) if np.isfinite(scores).all() else np.zeros(3)
-    if not peak[0] < 0.0:
-        return around[int(np.argmax(scores))]
-    best = float(np.clip(-0.5 * peak[1] / peak[0], STEPS[0], STEPS[-1]))
-    return turned_by(float(np.radians(np.round(np.degrees(angle) + best))))
+    """The same to the degree: the best of some angles, and the top of the parabola through it and those beside."""
+    around = np.degrees(meaning.changes[0].offset) + STEPS
+    scores = np.array([_score(recordings, turned_by(float(np.radians(a))).changes, lay, problem)[0] for a in around])
+    top = int(np.clip(np.argmax(scores), 1, len(STEPS) - 2))
+    bent, slope, _ = np.polyfit(STEPS[top - 1 : top + 2], scores[top - 1 : top + 2], 2)
+    best = around[top] if not bent < 0.0 else around[top] - STEPS[top] - 0.5 * slope / bent
+    quarter = 90.0 * np.round(best / 90.0)
+    return turned_by(float(np.radians(quarter if abs(best - quarter) < ABOUT else np.round(best))))
 
 
 def _laid(recordings: list[Recording], lay: Lay, problem: Problem) -> Problem:
