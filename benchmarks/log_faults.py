@@ -1,8 +1,8 @@
 """Whether faults of a log are named, and good logs left in peace: `python -m benchmarks.log_faults [--seeds N]`.
 
-Logs are sailed by the project's own twin under commands that step at random, seen with noise, as rows of a CSV file. Each
-fault is written into them as a logger would; `boatsim check` is asked. A fault that is not named and whose log
-is not found faulty otherwise is given to a diagnosis, which may blame the boat: "called physics".
+Logs are sailed by the project's own twin under commands that step at random, seen with noise, as rows of a CSV file.
+Each fault is written into them as a logger would; `boatsim check` is asked. A log of which nothing is found is given to
+a diagnosis, which may blame the boat: "called physics".
 """
 
 import argparse

@@ -15,9 +15,10 @@ from typer.testing import CliRunner
 
 from benchmarks.log_faults import FAULTS, Columns, sailed, write
 from boatsim.cli.commands import app
-from boatsim.diagnose.analysis import check, diagnose
+from boatsim.diagnose.analysis import check, diagnose, vessel_for
 from boatsim.diagnose.log.finding import Change, applied, lines
 from boatsim.diagnose.log.leaps import leaps
+from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import parse
@@ -244,3 +245,28 @@ def test_a_line_says_what_the_change_does(change: Change) -> None:
     made = parse(text.strip('"'))
     wanted = applied(Recording("run", t, ours), [change])[change.ours]
     assert name == change.ours and np.allclose(made.of(raw[made.signal]), wanted, atol=1e-9)
+
+
+def test_all_mistakes_of_a_file_are_said_at_once(tmp_path: Path) -> None:
+    path = files(tmp_path, good())[0]
+    (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\nuse = [5, 1]\nscale = "big"\ncolumns = 3\n')
+    with pytest.raises(BadInput) as told:
+        read(path)
+    assert all(key in str(told.value) for key in ("use = [5, 1]", "scale = 'big'", "columns = 3"))
+    (tmp_path / "recording.toml").unlink()
+    log = good()[0]
+    write(log | {"psi_rad": np.degrees(log["psi_rad"]) % 360.0, "thrust_port_N": 5.0 + log["thrust_port_N"]}, path)
+    with pytest.raises(BadInput) as told:
+        read(path, BOAT.limits())
+    assert "psi_rad" in str(told.value) and "thrust_port_N" in str(told.value) and "\n" not in str(told.value)
+
+
+def test_the_vessel_of_a_recording_toml_lies_where_that_file_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(BOAT.file.parent, tmp_path / "boats" / "mine")
+    (tmp_path / "runs").mkdir()
+    path = files(tmp_path / "runs", good())[0]
+    (tmp_path / "runs" / "recording.toml").write_text('vessel = "../boats/mine"\n')
+    monkeypatch.chdir(Path(__file__).parent)
+    assert vessel_for(path, None, []).file == (tmp_path / "boats" / "mine" / "vessel.toml").resolve()

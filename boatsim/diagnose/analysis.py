@@ -63,14 +63,15 @@ class Diagnosis:
 
 def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
     """The vessel of a recording: the name on the command line, else the one its notes give. Raises BadInput."""
-    notes = notes_for(path).notes
+    file = notes_for(path)
+    notes, beside = file.notes, file.file.parent if file.file and not vessel else None
     name = vessel or notes.vessel
     if not path.exists():
         raise BadInput(f"{path}: there is no such file")
     if not name:
         raise BadInput(f"{path}: no vessel given; name one with --vessel or in a recording.toml beside it")
     try:
-        found = vessels.load(name, load or notes.load, notes.settings)
+        found = vessels.load(name, load or notes.load, notes.settings, beside=beside)
     except BadInput as error:
         by_notes = not vessel or notes.settings or (notes.load and not load)
         raise BadInput(f"{path} by its recording.toml: {error}" if by_notes else str(error)) from None

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -141,9 +141,9 @@ def read(
     needed = [n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or is_command(n)]
     _check_columns(raw, needed)
     _check_cells(raw, needed)
-    _check_time(raw)
-    _check_units(raw)
-    _check_limits(raw, channels)
+    wrong = [*_wrong(lambda: _check_time(raw)), *_wrong(lambda: _check_units(raw))]
+    if wrong := [*wrong, *_wrong(lambda: _check_limits(raw, channels))]:
+        raise BadInput("; ".join([wrong[0], *(w.removeprefix(f"{path}: ") for w in wrong[1:])]))
     signals, ignored = _signals(raw, needed)
     remarks = (*found.remarks, *absent, *((f"{path}: columns not used: {', '.join(ignored)}",) if ignored else ()))
     recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, remarks)
@@ -289,6 +289,15 @@ def _check_overlap(raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtyp
         spans = [f"{t[rows][0]:g} to {t[rows][-1]:g} s" for rows in (posed, commanded)]
         message = f"poses ({spans[0]}) and commands ({spans[1]}) have no row in common; every row needs both"
         raise refuse(raw.path, message, raw.rows[int(np.argmax(commanded))], "t_s")
+
+
+def _wrong(check: Callable[[], None]) -> list[str]:
+    """What a check refuses, so that all is said at once."""
+    try:
+        check()
+    except BadInput as error:
+        return [str(error)]
+    return []
 
 
 def _check_time(raw: Raw) -> None:

@@ -1,4 +1,4 @@
-"""Positions that were bridged over gaps: rows on a straight line with exactly equal steps, as no instrument gives them."""
+"""Positions that were bridged over gaps: rows on a straight line with equal steps, as no instrument gives them."""
 
 import numpy as np
 from numpy.typing import NDArray

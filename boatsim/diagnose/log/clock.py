@@ -15,7 +15,7 @@ SHOWN = 5  # places that are named
 
 
 def look(recording: Recording, vessel: Vessel) -> list[Finding]:
-    """Rows whose time is not later than that of the row before, and leaps of the time that the boat knows nothing of."""
+    """Rows whose time is not later than that of the row before, and leaps of time that the boat knows nothing of."""
     steps = np.diff(recording.t)
     found = []
     for name, rows, words in (

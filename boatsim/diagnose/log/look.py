@@ -26,7 +26,7 @@ LIMITS = (saturation, excitation)
 
 
 def at_the_table(path: Path, vessel: Vessel) -> list[Finding]:
-    """Faults of units and of the clock, of a file that may be refused for them. Raises BadInput where it is no table."""
+    """Faults of units and of the clock, of a file that may be refused for them. Raises BadInput if it is no table."""
     recording, _ = as_written(path, vessel.columns)
     if (part := recording.notes.use) and ((recording.t >= part[0]) & (recording.t <= part[1])).any():
         recording = recording.used()

@@ -36,7 +36,7 @@ class Meaning:
 
 
 def meanings(recordings: Sequence[Recording], vessel: Vessel) -> list[Meaning]:
-    """What is tried on a vessel, each where the columns are there. The world has no north: what only turns it is one."""
+    """What is tried on a vessel, with the columns that are there. The world has no north: what only turns it is one."""
     there = {c for r in recordings for c in r.signals}
     found = [*_axes(recordings, vessel), *_drives(recordings, vessel)]
     kept = []

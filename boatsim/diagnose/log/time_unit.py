@@ -1,4 +1,4 @@
-"""Time stamps in milli-, micro- or nanoseconds: rows lie so far apart that no boat could be followed from one to the next."""
+"""Time stamps in milli-, micro- or nanoseconds: rows lie so far apart that no boat could be followed."""
 
 import numpy as np
 

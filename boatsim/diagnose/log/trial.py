@@ -1,8 +1,8 @@
 """Lays a log on its vessel as it is and as it may have been meant: what sails like the boat is what was meant.
 
 Nothing is tried where the vessel explains the log: where the force that it leaves unexplained is a small part of what
-its drives push with, and its bow points where it goes. A meaning is accepted only if it makes the log far likelier than it is as written, both with
-coefficients refitted, and leaves less unexplained.
+its drives push with, and its bow points where it goes. A meaning is accepted only if it makes the log far likelier than
+it is as written and than any other meaning makes it, all of them with coefficients refitted.
 """
 
 from collections.abc import Callable, Sequence
@@ -119,8 +119,8 @@ def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Find
     if gain < max(NATS, SHARE * rows) or ahead < CLEAR:
         return None
     evidence = (
-        f"{meaning.words}: laid on {problem.program.vessel.name} so, the log is likelier by {gain:.0f} nats, coefficients "
-        "refitted"
+        f"{meaning.words}: laid on {problem.program.vessel.name} so, the log is likelier by {gain:.0f} nats, "
+        "coefficients refitted"
     )
     if left < written[1]:
         sizes = (f"{100.0 * share:.2g} %" for share in (left, written[1]))
