@@ -270,3 +270,17 @@ def test_the_vessel_of_a_recording_toml_lies_where_that_file_says(
     (tmp_path / "runs" / "recording.toml").write_text('vessel = "../boats/mine"\n')
     monkeypatch.chdir(Path(__file__).parent)
     assert vessel_for(path, None, []).file == (tmp_path / "boats" / "mine" / "vessel.toml").resolve()
+
+
+def test_columns_under_other_names_are_found_again(tmp_path: Path) -> None:
+    log = good()[0]
+    other = {"psi_rad": "heading_deg", "x_m": "north", "thrust_port_N": "thrust_left"}
+    made = {other.get(n, n): np.degrees(v) if n == "psi_rad" else v for n, v in log.items()}
+    paths = files(tmp_path, [made])
+    found = found_in(paths)
+    assert [e["name"] for e in found] == ["column_names"]
+    assert set(found[0]["lines"]) == {
+        "[columns]", 'psi_rad = "heading_deg * deg"', 'x_m = "north"', 'thrust_port_N = "thrust_left"'
+    }  # fmt: skip
+    corrected(tmp_path, found[0])
+    assert not found_in(paths)

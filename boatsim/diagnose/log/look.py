@@ -7,6 +7,7 @@ from boatsim.diagnose.log import (
     angle_unit,
     bridged_fixes,
     clock,
+    column_names,
     command_unit,
     excitation,
     leaps,
@@ -20,7 +21,7 @@ from boatsim.diagnose.log.finding import Finding, applied
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, as_written
 
-AS_WRITTEN = (time_unit, clock, position_unit, angle_unit, command_unit)
+AS_WRITTEN = (column_names, time_unit, clock, position_unit, angle_unit, command_unit)
 OPENED = (bridged_fixes, leaps, recorded_rates)
 LIMITS = (saturation, excitation)
 
