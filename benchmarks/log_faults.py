@@ -7,7 +7,7 @@ a diagnosis, which may blame the boat: "called physics".
 
 import argparse
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -175,34 +175,28 @@ def judged(boat: Vessel, columns: Columns, fault: Fault | None, ask: bool) -> tu
         return False, answer["verdict"] != "nothing_missing", names
 
 
-def table(names: Sequence[str], seeds: int, ask: bool = True) -> list[str]:
-    """A row a fault, a column a vessel: logs named / called physics, of how many; then good logs accused."""
-    rows = [
-        f"{'fault':24s}" + "".join(f"{n:>22s}" for n in names),
-        f"{'':24s}" + f"{'named / physics / of':>22s}" * len(names),
-    ]
+def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
+    """A row a fault, a column a vessel: logs named / called physics / of how many; then good logs accused."""
     boats = [vessels.load(n) for n in names]
+    yield f"{'fault':24s}" + "".join(f"{n:>24s}" for n in names)
+    yield f"{'':24s}" + f"{'named / physics / of':>24s}" * len(names)
     logs = {b.name: [sailed(b, seed) for seed in range(1, seeds + 1)] for b in boats}
-    good, total = [], [0, 0, 0]
+    total = np.zeros(3, dtype=int)
     for title, fault in FAULTS.items():
         cells = []
         for boat in boats:
-            if not fault.needs(boat):
-                cells.append("-")
-                continue
-            results = [judged(boat, log, fault, ask) for log in logs[boat.name]]
+            results = [judged(boat, log, fault, ask) for log in logs[boat.name]] if fault.needs(boat) else []
             counts = [sum(r[0] for r in results), sum(r[1] for r in results), len(results)]
-            total = [a + b for a, b in zip(total, counts, strict=True)]
-            cells.append(" / ".join(map(str, counts)))
-            other = sorted({n for named, _, ns in results if not named for n in ns})
-            cells[-1] = f"{'+'.join(other)[:10]} {cells[-1]}" if other else cells[-1]
-        rows.append(f"{title:24s}" + "".join(f"{c:>22s}" for c in cells))
+            total += counts
+            instead = sorted({n for named, _, found in results if not named for n in found})
+            cells.append(f"{','.join(instead)[:12]} {counts[0]} / {counts[1]} / {counts[2]}" if results else "-")
+        yield f"{title:24s}" + "".join(f"{c:>24s}" for c in cells)
+    good = []
     for boat in boats:
-        accused = [n for log in logs[boat.name] for n in judged(boat, log, None, False)[2]]
-        good.append(f"{len(accused)} of {seeds} {','.join(sorted(set(accused)))}".strip())
-    rows.append(f"{'good logs accused':24s}" + "".join(f"{c:>22s}" for c in good))
-    rows.append(f"named {total[0]} of {total[2]} ({100.0 * total[0] / total[2]:.0f} %), called physics {total[1]}")
-    return rows
+        accused = [found for log in logs[boat.name] if (found := judged(boat, log, None, False)[2])]
+        good.append(f"{len(accused)} of {seeds} {','.join(sorted({n for ns in accused for n in ns}))}".strip())
+    yield f"{'good logs accused':24s}" + "".join(f"{c:>24s}" for c in good)
+    yield f"named {total[0]} of {total[2]} ({100.0 * total[0] / total[2]:.0f} %), called physics {total[1]}"
 
 
 def main() -> None:
@@ -213,7 +207,7 @@ def main() -> None:
     parser.add_argument("--check-only", action="store_true", help="do not diagnose what is not named")
     given = parser.parse_args()
     for line in table(given.vessels, given.seeds, not given.check_only):
-        print(line)
+        print(line, flush=True)
 
 
 if __name__ == "__main__":

@@ -28,6 +28,7 @@ NATS, SHARE = 60.0, 0.05  # that a meaning must gain, at least; of the rows
 CLEAR = 25.0  # nats by which it must be ahead of what the log as written, or another meaning, would be
 TIED = 3.0  # nats within which meanings are one: a boat alike on both sides can not tell a mirror from exchanged drives
 MOST_ROWS, MOST_RUNS = 1200, 3  # that are laid on
+REFITTED = 6  # meanings, of all that are tried roughly
 ROUND = np.radians(np.delete(np.arange(-165.0, 181.0, 15.0), [5, 11, 17, 23]))  # [rad] turns, but for quarters
 STEPS = np.arange(-16.0, 17.0, 4.0)  # [deg] beside a turned heading, between which the best is looked for
 ABOUT = 4.0  # [deg] by which a quarter turn may be missed
@@ -41,11 +42,13 @@ def tried(recordings: Sequence[Recording], lay: Lay, problem: Problem) -> list[F
 
     `lay` lays one on the same program. Raises BadInput where the log can not be laid on it.
     """
+    short = _short(recordings)
     with threadpool_limits(1, "blas"):
-        nominal = fit_noise(problem, problem.nominal())
-        if unexplained(problem, nominal) < UNEXPLAINED and not points_aside(recordings, problem.program.vessel):
+        laid = _laid(short, lay, problem)
+        explained = unexplained(laid, fit_noise(laid, laid.nominal())) < UNEXPLAINED
+        if explained and not points_aside(short, problem.program.vessel):
             return []
-        return _tried([_unturned(r) for r in _short(recordings)], lay, problem)
+        return _tried([_unturned(r) for r in short], lay, problem)
 
 
 def unexplained(problem: Problem, nominal: Fit) -> float:
@@ -101,9 +104,7 @@ def _tried(recordings: list[Recording], lay: Lay, problem: Problem) -> list[Find
 
 def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Finding, Meaning] | None:
     written = _score(recordings, (), lay, problem)
-    meant = meanings(recordings, problem.program.vessel)
-    if any(m.name == "heading_turned" for m in meant):
-        meant.append(_roughly(recordings, lay, problem))
+    meant = _likeliest(meanings(recordings, problem.program.vessel), recordings, lay, problem)
     scored = [(m, _score(recordings, m.changes, lay, problem)) for m in meant]
     scored = [(m, s) for m, s in scored if np.isfinite(s[0])]
     if not scored or not np.isfinite(written[0]):
@@ -114,10 +115,10 @@ def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Find
     rows = sum(len(r) for r in recordings)
     gain, ahead = top - written[0], top - max(written[0], rest)
     meaning, (_, left) = ties[0]
-    if meaning.name == "heading_turned":
-        meaning = _nearest(meaning, recordings, lay, problem)
     if gain < max(NATS, SHARE * rows) or ahead < CLEAR:
         return None
+    if meaning.name == "heading_turned":
+        meaning = _nearest(meaning, recordings, lay, problem)
     evidence = (
         f"{meaning.words}: laid on {problem.program.vessel.name} so, the log is likelier by {gain:.0f} nats, "
         "coefficients refitted"
@@ -133,16 +134,26 @@ def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Find
     return replace(found, alternatives=tuple(others)), meaning
 
 
-def _roughly(recordings: list[Recording], lay: Lay, problem: Problem) -> Meaning:
-    """The heading turned by what fits best with noise and forces as they are for the log as written."""
+def _likeliest(meant: list[Meaning], recordings: list[Recording], lay: Lay, problem: Problem) -> list[Meaning]:
+    """Those to which coefficients are refitted: the likeliest with noise and forces as the log as written has them.
+
+    With them the likeliest turn of the heading among many.
+    """
     written = _laid(recordings, lay, problem)
     levels = fit_noise(written, written.nominal()).levels
-    nominal, on, scores = written.nominal(), written.program.switches(), []
-    for angle in ROUND:
-        laid = _laid([applied(r, turned_by(float(angle)).changes) for r in recordings], lay, problem)
+    nominal, on = written.nominal(), written.program.switches()
+
+    def roughly(m: Meaning) -> float:
+        try:
+            laid = _laid([applied(r, m.changes) for r in recordings], lay, problem)
+        except BadInput:
+            return -np.inf
         found = laid.likelihood(nominal.free, nominal.theta, on, levels)
-        scores.append(found if np.isfinite(found) else -np.inf)
-    return turned_by(float(ROUND[int(np.argmax(scores))]))
+        return found if np.isfinite(found) else -np.inf
+
+    if any(m.name == "heading_turned" for m in meant):
+        meant = [*meant, max((turned_by(float(a)) for a in ROUND), key=roughly)]
+    return sorted(sorted(meant, key=lambda m: -roughly(m))[:REFITTED], key=meant.index)
 
 
 def _nearest(meaning: Meaning, recordings: list[Recording], lay: Lay, problem: Problem) -> Meaning:
