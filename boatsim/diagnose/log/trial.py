@@ -103,8 +103,10 @@ def _tried(recordings: list[Recording], lay: Lay, problem: Problem) -> list[Find
 
 
 def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Finding, Meaning] | None:
-    written = _score(recordings, (), lay, problem)
     meant = _likeliest(meanings(recordings, problem.program.vessel), recordings, lay, problem)
+    if not meant:
+        return None
+    written = _score(recordings, (), lay, problem)
     scored = [(m, _score(recordings, m.changes, lay, problem)) for m in meant]
     scored = [(m, s) for m, s in scored if np.isfinite(s[0])]
     if not scored or not np.isfinite(written[0]):
@@ -135,7 +137,7 @@ def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Find
 
 
 def _likeliest(meant: list[Meaning], recordings: list[Recording], lay: Lay, problem: Problem) -> list[Meaning]:
-    """Those to which coefficients are refitted: the likeliest with noise and forces as the log as written has them.
+    """Those to which coefficients are refitted: likelier than the log as written, with its own noise and forces.
 
     With them the likeliest turn of the heading among many.
     """
@@ -153,7 +155,10 @@ def _likeliest(meant: list[Meaning], recordings: list[Recording], lay: Lay, prob
 
     if any(m.name == "heading_turned" for m in meant):
         meant = [*meant, max((turned_by(float(a)) for a in ROUND), key=roughly)]
-    return sorted(sorted(meant, key=lambda m: -roughly(m))[:REFITTED], key=meant.index)
+    scores = {m.words: roughly(m) for m in meant}
+    least = roughly(Meaning("as written", "", ()))
+    better = sorted((m for m in meant if scores[m.words] > least), key=lambda m: -scores[m.words])
+    return sorted(better[:REFITTED], key=meant.index)
 
 
 def _nearest(meaning: Meaning, recordings: list[Recording], lay: Lay, problem: Problem) -> Meaning:
