@@ -305,6 +305,15 @@ def diagnose(
         return commands.diagnose(runs, held, vessel, _loads(load), out, own, left_out, horizon)
 
 
+@app.command()
+@guarded
+def check(runs: Runs, vessel: VesselName = None, load: Load = None) -> int:
+    """Say what is wrong with recordings before physics is suspected; leaves with 1 if anything is."""
+    from boatsim.cli.checking import check_logs
+
+    return check_logs(runs, vessel, _loads(load))
+
+
 @app.command("import")
 @guarded
 def import_(

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from boatsim.cli.exits import remark, say
-from boatsim.diagnose.analysis import NEXT, Diagnosis, open_recording
+from boatsim.diagnose.analysis import NEXT, Diagnosis, hint, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.levels import fit_noise
+from boatsim.diagnose.log.entry import in_words
 from boatsim.diagnose.log.first_orders import begun
 from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
@@ -44,8 +45,12 @@ def diagnose(
 ) -> int:  # fmt: skip
     """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
     _show_progress()
-    found = analyse(runs, hold_out, vessel, load, library, without, horizon)
-    for line in found.remarks:
+    try:
+        found = analyse(runs, hold_out, vessel, load, library, without, horizon)
+    except BadInput as error:
+        raise BadInput(f"{error}{hint(runs, hold_out, vessel, load)}") from None
+    faults = [e for e in found.findings.answer.get("log", []) if e["kind"] == "fault"]
+    for line in (*(f"{e['run']}: {words.strip()}" for e in faults for words in in_words(e)), *found.remarks):
         remark(line)
     try:
         write(found, out)

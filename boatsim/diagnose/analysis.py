@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,20 +17,21 @@ from boatsim.diagnose.filter import Track, axes_of, noise_beside, noise_of, nomi
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
+from boatsim.diagnose.log import left_out, look
+from boatsim.diagnose.log.entry import entry, joined, sources_of
+from boatsim.diagnose.log.finding import PROBABLY, Finding
 from boatsim.diagnose.log.first_orders import begun
-from boatsim.diagnose.log.held_fixes import without_repeats
-from boatsim.diagnose.log.outlying_fixes import without_outliers
-from boatsim.diagnose.log.position_frame import in_one_frame
-from boatsim.diagnose.log.steering_sense import steered
-from boatsim.diagnose.log.turning_readings import unwound
+from boatsim.diagnose.log.trial import tried
 from boatsim.diagnose.next import experiment
 from boatsim.diagnose.problem import Problem, check_taken_up
 from boatsim.diagnose.report import show, taken
 from boatsim.diagnose.report.answer import compose, meanings
+from boatsim.diagnose.report.entries import Answer, LogEntry
 from boatsim.diagnose.report.findings import Findings, Missing
+from boatsim.diagnose.report.words import capital, listed
 from boatsim.diagnose.search.rank import Ranking, rank
 from boatsim.diagnose.spread import widened
-from boatsim.diagnose.tried import less, library_for, with_stated_errors, without_ruled_out
+from boatsim.diagnose.tried import Library, less, library_for, with_stated_errors, without_ruled_out
 from boatsim.errors import BadInput
 from boatsim.files import Value
 from boatsim.physics import vessel as vessels
@@ -90,8 +91,7 @@ def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
 def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple[Recording, Vessel]:
     """A recording read with its vessel's names of columns and command limits. Raises BadInput."""
     found = vessel_for(path, vessel, load)
-    recording = unwound(read(path, found.limits(), found.columns).used(), found)
-    return in_one_frame(steered(recording, found)), found
+    return left_out.opened(read(path, found.limits(), found.columns), found), found
 
 
 def diagnose(
@@ -116,12 +116,94 @@ def diagnose(
     boats = [boat for _, boat in opened]
     if len({(b.file, b.freedoms) for b in boats}) > 1:
         raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}")
-    thin = [without_outliers(without_repeats(r.thinned(rules.rate(b))), b) for r, b in opened]
+    thin = [left_out.thinned(r, b) for r, b in opened]
+    seen = [f for (r, b), t in zip(opened, thin, strict=True) for f in look.at_the_recording(r, t, b)]
     named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
     fitted, unseen, note = show.split(named[: len(runs)], named[len(runs) :])
     remarks = tuple(dict.fromkeys(m for r in thin for m in r.remarks))
     vessels_of = {r.path: b for r, b in opened}
-    return diagnose_recordings(fitted, unseen, vessels_of, note, library, without, remarks, horizon)
+    return diagnose_recordings(fitted, unseen, vessels_of, note, library, without, remarks, horizon, seen)
+
+
+def pose(
+    fitted: Sequence[Recording],
+    unseen: Sequence[Recording],
+    boats: Mapping[Path | None, Vessel],
+    library: Sequence[str] = (),
+    horizon: float | None = None,
+) -> tuple[Problem, list[Track], Callable[[Recording], Track], Library]:
+    """The question that opened recordings put: them on one program, those unseen, how one is laid, what is tried."""
+    boat, facts = boats[fitted[0].path], fitted[0].notes.facts
+    columns = sorted({c for r in fitted for c in r.signals})
+    known = {path: with_stated_errors(without_ruled_out(b, facts), facts) for path, b in boats.items()}
+    there = {path: library_for(b, library, facts, columns) for path, b in known.items()}
+    programs = {path: Program(b, there[path].compiled) for path, b in known.items()}
+    stated, levels = noise_of(boat, fitted), nominal_levels(boat, fitted)
+
+    def lay(recording: Recording) -> Track:
+        return begun(track(recording, programs[recording.path], stated), levels)
+
+    laid = [lay(r) for r in fitted]
+    laid += [begun(track(r, programs[r.path], stated, noise_beside(boat, fitted, r)), levels) for r in unseen]
+    uncertainty = rules.uncertainty(boat)
+    check_taken_up(boat, uncertainty, f"{boat.file.parent.name}/{boat.file.name}: diagnosis")
+    for r in (*fitted, *unseen):
+        check_taken_up(boats[r.path], r.notes.coefficient_uncertainty, f"{r.path or r.name} by its recording.toml")
+    uncertainty |= fitted[0].notes.coefficient_uncertainty
+    problem = Problem(laid[: len(fitted)], levels, uncertainty, horizon)
+    return problem, laid[len(fitted) :], lay, there[fitted[0].path]
+
+
+def check(
+    runs: Sequence[Path], vessel: str | None = None, load: Sequence[str] = ()
+) -> tuple[dict[Path, list[LogEntry]], list[BadInput]]:
+    """What is wrong with each of some files, and what can not be told from it; and those that can not be read at all.
+
+    A file whose table is at fault is not laid on its vessel. Raises BadInput where no vessel is named, or several.
+    """
+    boats = {path: vessel_for(path, vessel, load) for path in runs}
+    if len({(b.file, b.freedoms) for b in boats.values()}) > 1:
+        raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats.values()}))}")
+    found: list[Finding] = []
+    refused, thin = list[BadInput](), list[Recording]()
+    for path, boat in boats.items():
+        table = []
+        try:
+            found += (table := look.at_the_table(path, boat))
+            opened = left_out.opened(read(path, boat.limits(), boat.columns), boat)
+        except BadInput as error:
+            if not table:
+                refused.append(error)
+            continue
+        thinned = left_out.thinned(opened, boat)
+        found += [*look.at_the_recording(opened, thinned, boat), *look.at_the_limits(opened, boat)]
+        if not table:
+            thin.append(replace(thinned, name=str(path)))
+    if thin:
+        try:
+            known: dict[Path | None, Vessel] = dict(boats.items())
+            problem, _, lay, _ = pose(thin, (), known)
+            found += [replace(f, run=str(thin[0].path)) for f in tried(thin, lay, problem)]
+        except BadInput as error:
+            refused.append(error)
+    by_file = {path: [f for f in found if f.run == str(path)] for path in runs}
+    return {p: [entry(f, sources_of(f, f.run, boats[p])) for f in fs] for p, fs in by_file.items()}, refused
+
+
+def hint(runs: Sequence[Path], hold_out: Sequence[Path], vessel: str | None, load: Sequence[str]) -> str:
+    """What `check` would write into the recording.toml of the first file that is refused; "" where it knows nothing."""
+    for path in (*runs, *hold_out):
+        try:
+            boat = vessel_for(path, vessel, load)
+            found = look.at_the_table(path, boat)
+        except BadInput:
+            return ""
+        for made in (entry(f, sources_of(f, f.run, boat)) for f in found):
+            if made["lines"]:
+                return (
+                    f"; {PROBABLY}: {made['name'].replace('_', ' ')}, write into recording.toml {joined(made['lines'])}"
+                )
+    return ""
 
 
 def diagnose_recordings(
@@ -133,33 +215,20 @@ def diagnose_recordings(
     without: Sequence[str] = (),
     remarks: tuple[str, ...] = (),
     horizon: float | None = None,
+    seen: Sequence[Finding] = (),
 ) -> Diagnosis:
     """The same for recordings that are already opened, thinned and split: `boats` is the vessel of each file.
 
-    `note` says in words what was kept unseen. Raises BadInput.
+    `note` says in words what was kept unseen, `seen` is what is wrong with the files. Raises BadInput.
     """
-    boat, facts = boats[fitted[0].path], fitted[0].notes.facts
-    columns = sorted({c for r in fitted for c in r.signals})
-    known = {path: with_stated_errors(without_ruled_out(b, facts), facts) for path, b in boats.items()}
-    there = {path: library_for(b, library, facts, columns) for path, b in known.items()}
-    programs = {path: Program(b, there[path].compiled) for path, b in known.items()}
-    stated = noise_of(boat, fitted)
-    laid = [track(r, programs[r.path], stated) for r in fitted]
-    laid += [track(r, programs[r.path], stated, noise_beside(boat, fitted, r)) for r in unseen]
-    uncertainty = rules.uncertainty(boat)
-    check_taken_up(boat, uncertainty, f"{boat.file.parent.name}/{boat.file.name}: diagnosis")
-    for r in (*fitted, *unseen):
-        check_taken_up(boats[r.path], r.notes.coefficient_uncertainty, f"{r.path or r.name} by its recording.toml")
-    uncertainty |= fitted[0].notes.coefficient_uncertainty
-    levels = nominal_levels(boat, fitted)
-    laid = [begun(t, levels) for t in laid]
-    unseen_tracks = laid[len(fitted) :]
-    problem = Problem(laid[: len(fitted)], levels, uncertainty, horizon)
-    candidates = less(there[fitted[0].path], without)
+    boat = boats[fitted[0].path]
+    problem, unseen_tracks, lay, there = pose(fitted, unseen, boats, library, horizon)
+    candidates = less(there, without)
     _compile(problem)
     begin = time.perf_counter()
     try:
         with threadpool_limits(1, "blas"):  # matrices are small: threads cost more, on a busy machine twentyfold
+            seen = [*seen, *tried(fitted, lay, problem)]
             ranking = rank(problem, candidates, unseen_tracks)
             a_fact = "time_constant_s" in fitted[0].notes.ambient
             if not a_fact and (again := timed(problem, ranking.best)) is not problem:
@@ -170,9 +239,20 @@ def diagnose_recordings(
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         where = fitted[0].path or fitted[0].name
         raise BadInput(f"{where}: {boat.name} can not follow this recording ({error}); are its units right?") from None
-    taken.add(findings.answer, problem, there[fitted[0].path], candidates)
+    taken.add(findings.answer, problem, there, candidates)
+    _add_log(findings.answer, seen, fitted[0], boats)
     findings.answer["seconds"] = round(time.perf_counter() - begin, 3)
     return Diagnosis(findings, boat, problem, ranking, remarks, plan)
+
+
+def _add_log(answer: Answer, seen: Sequence[Finding], first: Recording, boats: Mapping[Path | None, Vessel]) -> None:
+    """What is wrong with the log itself; what is certain of the whole of it comes first in the verdict."""
+    named = [f if f.run else replace(f, run=str(first.path or first.name)) for f in seen]
+    paths = {str(path): boat for path, boat in boats.items()}
+    answer["log"] = [entry(f, sources_of(f, f.run, paths.get(f.run, boats[first.path]))) for f in named]
+    if certain := [f.said for f in named if f.of_the_whole_log]:
+        rest = answer["sentence"]
+        answer["sentence"] = f"{capital(PROBABLY)}: {listed(certain)}. Taken as it is: {rest[:1].lower()}{rest[1:]}"
 
 
 def _check_apart(paths: Sequence[Path]) -> None:

@@ -1,19 +1,20 @@
 """What a `recording.toml` says about the recordings in its folder: vessel, loads, columns, noise, facts."""
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 from stat import S_IWOTH
-from typing import TypedDict
+from typing import TypedDict, TypeVar
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Value, home_folder, read_toml
 from boatsim.physics.facts import wrong
 from boatsim.physics.signals import AXES
 
+T = TypeVar("T")
 NOISE = ("position_sd_m", "heading_sd_rad", "yaw_rate_sd_radps", "roll_sd_rad", "roll_rate_sd_radps")
 AMBIENT = ("axes", "force_rms", "time_constant_s")
 TABLES = ("columns", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
@@ -120,6 +121,15 @@ def _numbers(value: Value) -> list[float]:
     return found if len(found) == len(listed) and all(abs(x) <= HUGE for x in found) else []
 
 
+def _tried(wrong: list[str], part: Callable[[], T], instead: T) -> T:
+    """A part of the notes; what is wrong with it is kept aside, so that all of a file's mistakes are said at once."""
+    try:
+        return part()
+    except BadInput as error:
+        wrong.append(str(error))
+        return instead
+
+
 class _Reader:
     """Checked look-ups in one table; each refusal is a line with file, key, value found and what is allowed."""
 
@@ -204,26 +214,38 @@ class _Reader:
         return dict(self.content)
 
     def notes(self) -> NotesFile:
-        settings = self.inner("set")
+        """All of it. Raises one BadInput that says everything that is wrong."""
         known = [key for key in self.content if key in KEYS]
         # a key that carries a unit, such as a run's own `forward_speed_mps`, is a fact about the run
         facts = {key: self.content[key] for key in self.content if key not in KEYS and unit_of(key)}
+        wrong: list[str] = []
         notes = Notes(
-            vessel=self.text("vessel"),
-            load=self.texts("load"),
-            settings={effect: settings.inner(effect).numbers() for effect in settings.content},
-            use=self.use(),
-            scale=self.number("scale", low=1e-9) if "scale" in self.content else None,
-            noise={k: v for k, v in self.inner("noise").numbers(low=0.0).items() if k in NOISE},
-            ambient=self.ambient(),
-            coefficient_uncertainty=self.inner("coefficient_uncertainty").numbers(low=0.0),
-            facts=_Reader(self.file, {**facts, **self.table("facts")}, f"{self.prefix}facts.").facts(),
+            vessel=_tried(wrong, lambda: self.text("vessel"), None),
+            load=_tried(wrong, lambda: self.texts("load"), ()),
+            settings=_tried(wrong, self.settings, {}),
+            use=_tried(wrong, self.use, None),
+            scale=_tried(wrong, lambda: self.number("scale", low=1e-9) if "scale" in self.content else None, None),
+            noise=_tried(wrong, lambda: self.inner("noise").numbers(low=0.0), {}),
+            ambient=_tried(wrong, self.ambient, Ambient()),
+            coefficient_uncertainty=_tried(wrong, lambda: self.inner("coefficient_uncertainty").numbers(low=0.0), {}),
+            facts=_tried(wrong, lambda: self.all_facts(facts), {}),
         )
+        notes = replace(notes, noise={k: v for k, v in notes.noise.items() if k in NOISE})
+        columns: dict[str, str] = _tried(wrong, self.columns, dict[str, str]())
+        if wrong:
+            raise BadInput("; ".join([wrong[0], *(w.removeprefix(f"{self.file}: ") for w in wrong[1:])]))
         strange = [self.strange(key, KEYS) for key in self.content if key not in known and key not in facts]
         for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):
             strange += [self.strange(f"{table}.{k}", allowed) for k in self.table(table) if k not in allowed]
         remarks = (f"{self.file}: not used: {', '.join(strange)}",) if strange else ()
-        return NotesFile(notes, self.columns(), remarks, self.file.parent)
+        return NotesFile(notes, columns, remarks, self.file.parent)
+
+    def settings(self) -> dict[str, dict[str, float]]:
+        settings = self.inner("set")
+        return {effect: settings.inner(effect).numbers() for effect in settings.content}
+
+    def all_facts(self, beside: Mapping[str, Value]) -> dict[str, Value]:
+        return _Reader(self.file, {**beside, **self.table("facts")}, f"{self.prefix}facts.").facts()
 
     def strange(self, key: str, allowed: tuple[str, ...]) -> str:
         near = get_close_matches(key.rpartition(".")[2], allowed, n=1, cutoff=0.5)

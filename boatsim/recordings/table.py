@@ -2,13 +2,12 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import replacing
@@ -144,19 +143,34 @@ def read(
     """
     path, channels = Path(path), channels or {}
     found = notes_for(path)
-    raw, absent = _renamed(_raw(path), columns or {}, found.columns)
+    raw, _, absent = _renamed(_raw(path), columns or {}, found.columns)
     needed = [n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or is_command(n)]
     _check_columns(raw, needed)
     _check_cells(raw, needed)
-    _check_time(raw)
-    _check_units(raw)
-    _check_limits(raw, channels)
+    wrong = [*_wrong(lambda: _check_time(raw)), *_wrong(lambda: _check_units(raw))]
+    if wrong := [*wrong, *_wrong(lambda: _check_limits(raw, channels))]:
+        raise BadInput("; ".join([wrong[0], *(w.removeprefix(f"{path}: ") for w in wrong[1:])]))
     signals, ignored = _signals(raw, needed)
     remarks = (*found.remarks, *absent, *((f"{path}: columns not used: {', '.join(ignored)}",) if ignored else ()))
     recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, remarks)
     if len(part := recording.used()) < FEWEST_ROWS:
         raise refuse(path, f"has {len(part)} rows in its part to use {found.notes.use}; at least {FEWEST_ROWS} needed")
     return recording
+
+
+def as_written(path: Path, columns: Mapping[str, str] | None = None) -> tuple[Recording, Mapping[str, Expression]]:
+    """What a file holds under our names, unchecked: times may stand still, angles be in degrees, cells be empty.
+
+    With it what each column is made of, where the vessel or the notes say so. Raises BadInput where it is no table, or
+    one without time.
+    """
+    found = notes_for(path)
+    raw, made, _ = _renamed(_raw(path), columns or {}, found.columns)
+    if "t_s" not in raw.columns or len(raw.rows) < 2:
+        _check_columns(raw, list(raw.columns))
+        raise refuse(path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed")
+    signals = {n: v for n, v in raw.columns.items() if n != "t_s"}
+    return Recording(path.stem, raw.columns["t_s"], signals, found.notes, path), made
 
 
 def write_csv(recording: Recording, path: Path | str) -> None:
@@ -198,8 +212,10 @@ def _raw(path: Path) -> Raw:
         raise refuse(path, f"can not be read ({error.strerror})") from error
 
 
-def _renamed(raw: Raw, of_vessel: Mapping[str, str], stated: Mapping[str, str]) -> tuple[Raw, tuple[str, ...]]:
-    """The table under our names, and a remark on what of the notes' own `[columns]` it has not.
+def _renamed(
+    raw: Raw, of_vessel: Mapping[str, str], stated: Mapping[str, str]
+) -> tuple[Raw, Mapping[str, Expression], tuple[str, ...]]:
+    """The table under our names, what these are made of, and a remark on what of the notes' own `[columns]` it lacks.
 
     A vessel's mapping that does not fit this file's columns is left alone; one that the notes state and that is a
     letter off a column is refused.
@@ -228,7 +244,7 @@ def _renamed(raw: Raw, of_vessel: Mapping[str, str], stated: Mapping[str, str]) 
         if e.signal in raw.text:
             text[ours] = raw.text[e.signal]
     said = (f"{raw.path}: recording.toml names columns that it has not: {', '.join(absent)}",) if absent else ()
-    return replace(raw, columns=kept, text=text), said
+    return replace(raw, columns=kept, text=text), made, said
 
 
 def is_command(name: str) -> bool:
@@ -291,6 +307,15 @@ def _check_overlap(raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtyp
         raise refuse(raw.path, message, raw.rows[int(np.argmax(commanded))], "t_s")
 
 
+def _wrong(check: Callable[[], None]) -> list[str]:
+    """What a check refuses, so that all is said at once."""
+    try:
+        check()
+    except BadInput as error:
+        return [str(error)]
+    return []
+
+
 def _check_time(raw: Raw) -> None:
     t = raw.columns["t_s"]
     stuck = np.diff(t) <= 0.0
@@ -307,32 +332,9 @@ def _check_time(raw: Raw) -> None:
 
 
 def _check_units(raw: Raw) -> None:
-    suspects: dict[str, int | None] = {}
-    if "psi_rad" in raw.columns:
-        rows, t, psi, others = _measured(raw, "psi_rad")
-        suspects["psi_rad"] = _row(rows, units.heading_in_degrees(t, psi, others))
-    if "phi_rad" in raw.columns:
-        rows, t, phi, others = _measured(raw, "phi_rad")
-        suspects["phi_rad"] = _row(rows, units.roll_in_degrees(t, phi, others.get("p_radps")))
-    for name, angle in (("r_radps", "psi_rad"), ("p_radps", "phi_rad")):
-        if name in raw.columns:
-            rows, t, rate, others = _measured(raw, name)
-            suspects[name] = _row(rows, units.rate_in_degrees(t, rate, others.get(angle)))
-    for name, index in suspects.items():
-        if index is not None:
-            message = f"{raw.columns[name][index]:g} looks like degrees; allowed are radians ({unit_of(name)})"
-            raise refuse(raw.path, message, raw.rows[index], name)
-
-
-def _measured(raw: Raw, name: str) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
-    """The rows in which a column is measured: their numbers, times, its values, and those of what is full there."""
-    rows = np.flatnonzero(np.isfinite(raw.columns[name]))
-    there = {n: v[rows] for n, v in raw.columns.items()}
-    return rows, there["t_s"], there[name], {n: v for n, v in there.items() if np.isfinite(v).all()}
-
-
-def _row(rows: NDArray[np.int64], index: int | None) -> int | None:
-    return None if index is None else int(rows[index])
+    for name, index in units.in_degrees(raw.columns).items():
+        message = f"{raw.columns[name][index]:g} looks like degrees; allowed are radians ({unit_of(name)})"
+        raise refuse(raw.path, message, raw.rows[index], name)
 
 
 def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.physics.base import Array
 
@@ -13,6 +14,33 @@ FASTEST = 4.0  # [rad/s] sustained turning no vessel here reaches; 4 deg/s is a 
 NOISIEST = 0.15  # [rad] 8.6 degrees: compasses and cameras are ten times better; 0.15 degrees is a good one
 STEEPEST = 1.0  # [rad] hulls here stay below 57 degrees of roll; any roll worth recording passes 1 degree
 ALIKE = 0.8  # correlation from which two series are taken to show the same motion
+
+
+def in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
+    """Of a table's columns (N,), `t_s` among them, those in degrees: the row of each that shows it."""
+    suspects: dict[str, int | None] = {}
+    if "psi_rad" in columns:
+        rows, t, psi, others = _measured(columns, "psi_rad")
+        suspects["psi_rad"] = _row(rows, heading_in_degrees(t, psi, others))
+    if "phi_rad" in columns:
+        rows, t, phi, others = _measured(columns, "phi_rad")
+        suspects["phi_rad"] = _row(rows, roll_in_degrees(t, phi, others.get("p_radps")))
+    for name, angle in (("r_radps", "psi_rad"), ("p_radps", "phi_rad")):
+        if name in columns:
+            rows, t, rate, others = _measured(columns, name)
+            suspects[name] = _row(rows, rate_in_degrees(t, rate, others.get(angle)))
+    return {name: index for name, index in suspects.items() if index is not None}
+
+
+def _measured(columns: Mapping[str, Array], name: str) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
+    """The rows in which a column is measured: their numbers, times, its values, and those of what is full there."""
+    rows = np.flatnonzero(np.isfinite(columns[name]))
+    there = {n: v[rows] for n, v in columns.items()}
+    return rows, there["t_s"], there[name], {n: v for n, v in there.items() if np.isfinite(v).all()}
+
+
+def _row(rows: NDArray[np.int64], index: int | None) -> int | None:
+    return None if index is None else int(rows[index])
 
 
 def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> int | None:

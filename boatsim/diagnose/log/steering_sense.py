@@ -24,6 +24,11 @@ def steered(recording: Recording, vessel: Vessel) -> Recording:
     return recording
 
 
+def turned(recording: Recording) -> list[str]:
+    """Commands whose sign `steered` has changed, as its remarks say."""
+    return [n for n in recording.signals for r in recording.remarks if f"positive {n} turns the other way" in r]
+
+
 def turning(recording: Recording, name: str, length: float) -> float:
     """Correlation of a command with the turning after it, given the turning before: 1 steers to starboard, -1 to port.
 
@@ -33,7 +38,11 @@ def turning(recording: Recording, name: str, length: float) -> float:
     t, psi, span = recording.t[there], recording.signals["psi_rad"][there], RESPONSE * np.sqrt(length / GRAVITY)
     inside = (t >= t[0] + span) & (t <= t[-1] - span)
     now = psi[inside]
+    if len(now) < 2:
+        return 0.0
     before, after = now - np.interp(t[inside] - span, t, psi), np.interp(t[inside] + span, t, psi) - now
+    if not before @ before > 0.0:
+        return 0.0
     drive, gained = (
         x - before * (x @ before) / (before @ before) for x in (recording.signals[name][there][inside], after)
     )

@@ -157,6 +157,28 @@ class RulesEntry(TypedDict):
     overridden: dict[str, str]  # rule -> the vessel's reason
 
 
+class OtherwiseEntry(TypedDict):
+    """What explains a log as well as a finding on it does."""
+
+    words: str
+    lines: list[str]
+
+
+class LogEntry(TypedDict):
+    """What was found wrong with a log."""
+
+    run: str  # file
+    name: str
+    kind: str  # "fault": put the file right; "mended": left out by itself; "limit": nothing is wrong
+    evidence: str
+    sure: float
+    spans_s: list[list[float]]  # where it shows; empty: all along
+    lines: list[str]  # to write into recording.toml
+    alternatives: list[OtherwiseEntry]
+    remedy: NotRequired[str]
+    words: NotRequired[str]  # "probably your log, not your boat"
+
+
 class Answer(TypedDict):
     """The whole of diagnosis.json."""
 
@@ -167,6 +189,7 @@ class Answer(TypedDict):
     effects: list[EffectEntry]
     unknown: UnknownEntry
     described: list[DescribedEntry]
+    log: NotRequired[list[LogEntry]]  # what is wrong with the recordings themselves
     candidates: list[CandidateEntry]
     tried: NotRequired[list[str]]
     left_out: NotRequired[list[LeftOutEntry]]

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from boatsim.diagnose.log.finding import PROBABLY
 from boatsim.diagnose.report.blocks import Section, as_text, safe
 from boatsim.diagnose.report.findings import Findings
 from boatsim.diagnose.report.sections import proof, sections_of
@@ -20,6 +21,7 @@ VERDICTS = {
 }
 
 
+LOG_FIRST = "Probably the log"  # if what is wrong with it is certain and of all of it
 LONG = 200  # characters from which a sentence is no headline
 UNTRIED = "Something missing, nothing tried"
 NOT_PHYSICS = "Measurement, not physics"  # if all that was named is of that kind
@@ -68,6 +70,8 @@ def markdown(findings: Findings, sections: Sequence[Section]) -> str:
 def _headline(f: Findings) -> str:
     """The sentence of the answer, or the names alone where that would be a paragraph."""
     said = _sentence(f)
+    if said.startswith(capital(PROBABLY)):
+        return f"{said.partition('. ')[0]}."
     names = [plain(e["name"]) for e in f.answer["effects"]]
     if len(said) <= LONG or not names:
         return said
@@ -82,6 +86,8 @@ def _sentence(f: Findings) -> str:
 def _verdict(f: Findings) -> str:
     """The verdict in a word or two."""
     effects, verdict = f.answer["effects"], f.answer["verdict"]
+    if str(f.answer["sentence"]).startswith(capital(PROBABLY)):
+        return LOG_FIRST
     if verdict == "unknown" and not tried(f.answer):
         return UNTRIED
     measured = verdict == "named" and all(e["kind"] == "measurement" for e in effects)

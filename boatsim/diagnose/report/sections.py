@@ -105,6 +105,7 @@ def _times(gain: float) -> str:
 def sections_of(f: Findings) -> list[Section]:
     """The whole report in order; sections that have nothing to say are empty."""
     return [
+        Section("log", "The log", list(_log(f))),
         Section("what", "What was found", list(_what(f))),
         Section("taken", "What was tried, and what was taken for granted", list(_taken(f))),
         Section("where", "Where it shows", list(_where(f))),
@@ -123,6 +124,20 @@ def _prose(rows: Sequence[Sequence[str]]) -> tuple[int, ...]:
     """Columns of words, after the first."""
     wordy = {i for row in rows for i, cell in enumerate(row) if i and cell and not any(c.isdigit() for c in cell)}
     return tuple(sorted(wordy))
+
+
+def _log(f: Findings) -> Iterator[Block]:
+    """What is wrong with the recordings themselves, and the lines that put it right."""
+    for e in f.answer.get("log", ()):
+        of_whom = e.get("words", "left out or allowed for")
+        yield Heading(capital(plain(e["name"])), f"{e['run']} · {of_whom} · sure to {percent(e['sure'])}")
+        yield Text(f"{capital(e['evidence'])}.")
+        written = [("write into recording.toml", " / ".join(e["lines"]))] if e["lines"] else []
+        written += [(f"or, if {o['words']}", " / ".join(["[columns]", *o["lines"]])) for o in e["alternatives"]]
+        if written:
+            yield Items(tuple(written))
+        if "remedy" in e:
+            yield Text(f"{capital(e['remedy'])}.")
 
 
 def _what(f: Findings) -> Iterator[Block]:

@@ -1,0 +1,32 @@
+"""What `boatsim check` does: recordings in, what is wrong with them out, before any physics is suspected."""
+
+import sys
+from pathlib import Path
+
+from boatsim.cli.exits import Exit, complain, words
+from boatsim.diagnose.analysis import check
+from boatsim.diagnose.log.entry import in_words
+from boatsim.diagnose.log.finding import PROBABLY
+
+CLEAN = "nothing is wrong with this log that could be found"
+
+
+def check_logs(runs: list[Path], vessel: str | None, load: list[str]) -> int:
+    """Print the findings of each file; 0 where there are none. Raises BadInput."""
+    found, refused = check(runs, vessel, load)
+    for path, entries in found.items():
+        wrong = [e for e in entries if e["kind"] != "limit"]
+        faults = any(e["kind"] == "fault" for e in entries)
+        if wrong or not refused:
+            print(f"{path}: {PROBABLY if faults else 'a diagnosis allows for it' if wrong else CLEAN}")
+        for e in wrong:
+            print("\n".join(f"  {line}" for line in in_words(e)))
+        for e in entries:
+            if e["kind"] == "limit":
+                print(f"  can not be told: {e['evidence']}: {e.get('remedy', '')}")
+    for error in refused:
+        complain(words(error))
+    sys.stdout.flush()
+    if refused:
+        return Exit.BAD_INPUT
+    return Exit.MISSED if any(e["kind"] != "limit" for entries in found.values() for e in entries) else Exit.MET

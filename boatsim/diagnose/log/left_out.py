@@ -1,0 +1,46 @@
+"""What a diagnosis leaves out of a log or turns round by itself: repeated and outlying fixes, positions, a rudder."""
+
+from dataclasses import replace
+
+from boatsim.diagnose import rules
+from boatsim.diagnose.log.finding import Finding
+from boatsim.diagnose.log.held_fixes import without_repeats
+from boatsim.diagnose.log.meant import MIRRORED
+from boatsim.diagnose.log.outlying_fixes import without_outliers
+from boatsim.diagnose.log.position_frame import in_one_frame
+from boatsim.diagnose.log.steering_sense import steered
+from boatsim.diagnose.log.turning_readings import unwound
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import Recording
+
+MENDED = {  # what a remark says -> the finding
+    "repeat each fix": "position_held",
+    "leap away and come back": "outliers",
+    "off the course behind it": "begins_astray",
+    "were turned with the heading": "positions_turned",
+    "turns the other way": "rudder_sense",
+}
+
+
+def opened(recording: Recording, vessel: Vessel) -> Recording:
+    """A recording as read, in one frame, with rudders counted as the vessel does."""
+    return in_one_frame(steered(unwound(recording.used(), vessel), vessel))
+
+
+def thinned(recording: Recording, vessel: Vessel) -> Recording:
+    """An opened recording with as many rows as are of use, without fixes that are none."""
+    return without_outliers(without_repeats(recording.thinned(rules.rate(vessel))), vessel)
+
+
+def findings(recording: Recording) -> list[Finding]:
+    """What the remarks of a recording say of what was left out."""
+    found = []
+    for remark in recording.remarks:
+        for words, name in MENDED.items():
+            if words in remark:
+                where = f"{recording.path or recording.name}: "
+                made = Finding(name, remark.removeprefix(where), "mended", remedy="a diagnosis allows for it")
+                if name == "rudder_sense":
+                    made = replace(made, alternatives=(("y and the heading are counted to port", MIRRORED),))
+                found.append(made)
+    return found

@@ -1,0 +1,54 @@
+"""All looks at a log, in order: at the table as written, at the recording as it is opened, and laid on its vessel."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from boatsim.diagnose.log import (
+    angle_unit,
+    bridged_fixes,
+    clock,
+    column_names,
+    command_unit,
+    excitation,
+    leaps,
+    left_out,
+    position_unit,
+    recorded_rates,
+    saturation,
+    time_unit,
+)
+from boatsim.diagnose.log.finding import Finding, applied
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings.table import Recording, as_written
+
+AS_WRITTEN = (column_names, time_unit, clock, position_unit, angle_unit, command_unit)
+OPENED = (bridged_fixes, leaps, recorded_rates)
+LIMITS = (saturation, excitation)
+
+
+def at_the_table(path: Path, vessel: Vessel) -> list[Finding]:
+    """Faults of units and of the clock, of a file that may be refused for them. Raises BadInput if it is no table."""
+    recording, _ = as_written(path, vessel.columns)
+    if (part := recording.notes.use) and ((recording.t >= part[0]) & (recording.t <= part[1])).any():
+        recording = recording.used()
+    found: list[Finding] = []
+    for look in AS_WRITTEN:
+        new = look.look(recording, vessel)
+        for finding in new:
+            recording = applied(recording, finding.changes)
+        found += new
+    return [replace(f, run=str(path)) for f in found]
+
+
+def at_the_recording(recording: Recording, thinned: Recording, vessel: Vessel) -> list[Finding]:
+    """Faults of an opened recording, and what a diagnosis leaves out of it (`thinned`)."""
+    found = left_out.findings(thinned)
+    for look in OPENED:
+        found += look.look(recording, vessel)
+    return [replace(f, run=str(recording.path or recording.name)) for f in found]
+
+
+def at_the_limits(recording: Recording, vessel: Vessel) -> list[Finding]:
+    """What can not be told from a recording."""
+    found = [f for look in LIMITS for f in look.look(recording, vessel)]
+    return [replace(f, run=str(recording.path or recording.name)) for f in found]
