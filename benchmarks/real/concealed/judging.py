@@ -83,6 +83,8 @@ def judged(found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: 
     own = own_of(before, truth, known)
     hits = [next((e for e in new if _says(e, cause)), None) for cause in every]
     wrong = [e for e in new if not any(_says(e, cause) for cause in every)]
+    of_boat = [e for e in wrong if of_the_boat(before, e, known)]
+    wrong = [e for e in wrong if e not in of_boat]
     if wrong:
         outcome = WRONG
     elif truth and all(hits):
@@ -92,8 +94,30 @@ def judged(found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: 
         outcome = MISSED
     else:
         outcome = MISSED if doubt else ALONE
-    said = "; ".join([*map(in_words, new), *(["a cause unknown"] if doubt else [])]) or "nothing new"
+    words = [f"{in_words(e)}{' (the unaltered ones have it)' if e in of_boat else ''}" for e in new]
+    said = "; ".join([*words, *(["a cause unknown"] if doubt else [])]) or "nothing new"
     return Verdict(outcome, f"{said} ({answer['verdict']})", gain, "; ".join(map(in_numbers, own.values())))
+
+
+def of_the_boat(before: Diagnosis, entry: EffectEntry, known: Collection[str]) -> bool:
+    """Whether a name says what is left over of the unaltered recordings too, where nothing was named for it.
+
+    Only where something unknown is left there, and the entry, fitted to them, gains and has the same sizes.
+    """
+    effect = entry_of(before.problem, entry["name"])
+    if effect is None or not before.findings.answer["unknown"]["flag"]:
+        return False
+    base = _with_known(before, (), known)
+    values = {k: p["value"] for k, p in entry["parameters"].items()}
+    whole = with_entry(before.problem, base, effect, values)
+    if not whole.evidence - base.evidence > VISIBLE:
+        return False
+    params = type(effect).params()
+    for name in (f.name for f in whole.free if f.effect == effect.name and not f.relative):
+        found, (value, sd) = entry["parameters"][key_of(name, params[name].unit)], whole.value(effect.name, name)
+        if abs(found["value"] - value) > max(SDS * float(np.hypot(found["sd"], sd)), NEAR * abs(value)):
+            return False
+    return True
 
 
 def names_of(found: Diagnosis) -> set[str]:
