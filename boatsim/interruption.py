@@ -74,7 +74,9 @@ def _handled(how: Handler) -> Iterator[None]:
 
 
 def heed() -> None:
-    """From now each of them is a KeyboardInterrupt, as Ctrl-C is."""
+    """From now each of them is a KeyboardInterrupt, as Ctrl-C is; what came before is answered."""
+    global _struck
+    _struck = False
     for s in SIGNALS:
         if signal.getsignal(s) != signal.SIG_IGN:
             signal.signal(s, _strike)

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from boatsim import interruption
 from boatsim.files import Growing, replacing
 from boatsim.interruption import noted
 from boatsim.physics.content import load_class, names
 from boatsim.physics.signals import STATE as OF_HULLS
+from boatsim.quiet import SIGNALS
 from boatsim.recordings.table import Notes, Recording, read
 from boatsim.simulate.film import Film, FilmMeasure
 from boatsim.simulate.log import PIECE, FiledLog, Log
@@ -182,6 +184,17 @@ def test_a_controller_that_hangs_ends_at_the_second_ctrl_c(endless: Path, tmp_pa
     assert 0.9 < read(tmp_path / "out" / "recording.csv").t[-1] <= 1.1
 
 
+@pytest.fixture
+def listening(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """This process hears signals, whatever started it ignores; what it heard is forgotten afterwards."""
+    monkeypatch.setattr(interruption, "_struck", False)
+    before = {s: signal.signal(s, signal.default_int_handler) for s in SIGNALS}
+    yield
+    for s, handler in before.items():
+        signal.signal(s, handler)
+
+
+@pytest.mark.usefixtures("listening")
 def test_signals_wait_while_files_are_moved_and_count_afterwards(tmp_path: Path) -> None:
     with noted() as stop, filling(tmp_path / "out") as new:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
