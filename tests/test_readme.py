@@ -110,11 +110,13 @@ class Row:
     label: str
     columns: tuple[int, ...]  # among the row's figures: recalibrated, patched, ratio
     long: bool = False
+    recordings: tuple[str, ...] = ()  # folders beside the repository that it reads, where they are called otherwise
 
 
 ROLL, HSVA, MARIN, LAKE, THESIS, SILVERBOX = (
     "kvlcc2_roll_decay", "kvlcc2_hsva_zigzag", "kvlcc2_marin_free", "blueboat_lake", "thesis_tables", "silverbox",
 )  # fmt: skip
+POND, MMG, TANKS = "esso_osaka_pond", "kvlcc2_mmg", (HSVA, MARIN)
 REAL = (
     Row(ROLL, "every second 20 s window", "split", "windows", (1, 2, 3)),
     Row(ROLL, "middle third", "split", "middle third", (1, 2, 3)),
@@ -124,6 +126,12 @@ REAL = (
     Row(MARIN, "speed", "fitted on", "speed [m/s]", (1, 2, 3), long=True),
     Row(LAKE, "each of 12 runs", "each run left out", "all", (0, 1, 2), long=True),
     Row(LAKE, "dead reckoning", "each run left out", "all", (3, 4, 5), long=True),
+    Row(POND, "turns and berthing", "fitted on random", "all, position [m]", (2, 3, 6), True, ("esso_osaka",)),
+    Row(POND, "the same by its captive", "fitted on random", "all, position [m]", (1, 3, 4), True, ("esso_osaka",)),
+    Row(MMG, "the standard MMG model", "fitted on eight runs", "heading [deg]", (1, 2, 3), True, TANKS),
+    Row(MMG, "position", "fitted on eight runs", "position [m]", (1, 2, 3), True, TANKS),
+    Row(MMG, "on MARIN's turning circle", "fitted on zz_10", "yaw rate [deg/s]", (1, 2, 3), True, TANKS),
+    Row(MMG, "speed", "fitted on zz_10", "speed [m/s]", (1, 2, 3), True, TANKS),
     Row(SILVERBOX, "one free run over", "Rms error [mV], one free run", "arrow", (1, 2, 3)),
     Row(THESIS, "published norms", "J, the rms", "all", (2, 3, 4), long=True),
 )
@@ -161,7 +169,8 @@ def test_a_row_about_real_recordings_is_what_its_benchmark_prints(
 ) -> None:
     if row.long and not LONG:
         pytest.skip("takes many minutes; BOATSIM_README_LONG=1 asks for it")
-    if row.benchmark not in (ROLL, THESIS) and not (common.RECORDINGS / row.benchmark).is_dir():
+    folders = [common.RECORDINGS / name for name in row.recordings or (row.benchmark,)]
+    if row.benchmark not in (ROLL, THESIS) and not all(f.is_dir() for f in folders):
         pytest.skip("needs recordings beside the repository")
     (cells,) = (c for c in with_names("**On real recordings**") if c[0] == row.benchmark and row.judged_on in c[1])
     monkeypatch.chdir(tmp_path)

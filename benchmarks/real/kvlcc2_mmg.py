@@ -217,9 +217,9 @@ TANKS: dict[str, tuple[str, tuple[str, ...], float, Callable[[Diagnosis, dict[st
 }  # recordings, unseen runs, horizon [s] of free runs, what is printed of them
 
 
-def main() -> None:
-    """Diagnose the model on each tank's recordings. Raises BadInput for a tank that is not known."""
-    for tank in sys.argv[1:] or TANKS:
+def main(tanks: Sequence[str] = ()) -> None:
+    """Diagnose the model on the recordings of some tanks, or both. Raises BadInput for a tank that is not known."""
+    for tank in tanks or TANKS:
         if tank not in TANKS:
             raise BadInput(unknown_name("tank", tank, TANKS))
         name, unseen, horizon, judge = TANKS[tank]
@@ -235,4 +235,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
