@@ -83,7 +83,15 @@ def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="rate takes the place of a rule; say why in reasons.rate"):
         of(boats.PLANAR + "[diagnosis]\nrate = 3.0\n", tmp_path)
     boat = of(boats.PLANAR + '[diagnosis]\nrate = 3.0\nreasons = { rate = "a slow hull" }\n', tmp_path)
-    assert rules.rate(boat) == 3.0
+    assert rules.rate(boat) == rules.rate(boat, 36_000.0) == 3.0
+
+
+def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_than_a_quarter() -> None:
+    boat = vessel.load("trial_boat")
+    usual = rules.rate(boat)
+    assert rules.rate(boat, 300.0) == usual
+    assert 1200.0 * rules.rate(boat, 1200.0) == pytest.approx(rules.PLENTY)
+    assert rules.rate(boat, 36_000.0) == pytest.approx(rules.COARSEST * usual)
 
 
 @pytest.mark.parametrize("name", content.names("vessel"))

@@ -116,7 +116,8 @@ def diagnose(
     boats = [boat for _, boat in opened]
     if len({(b.file, b.freedoms) for b in boats}) > 1:
         raise BadInput(f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}")
-    thin = [left_out.thinned(r, b) for r, b in opened]
+    lasts = left_out.lasting([r for r, _ in opened])
+    thin = [left_out.thinned(r, b, lasts) for r, b in opened]
     seen = [f for (r, b), t in zip(opened, thin, strict=True) for f in look.at_the_recording(r, t, b)]
     named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
     fitted, unseen, note = show.split(named[: len(runs)], named[len(runs) :])
@@ -175,7 +176,7 @@ def check(
             if not table:
                 refused.append(error)
             continue
-        thinned = left_out.thinned(opened, boat)
+        thinned = left_out.thinned(opened, boat, left_out.lasting([opened]))
         found += [*look.at_the_recording(opened, thinned, boat), *look.at_the_limits(opened, boat)]
         if not table:
             thin.append(replace(thinned, name=str(path)))

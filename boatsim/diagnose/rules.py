@@ -21,6 +21,7 @@ ROLL_ARM = 1.0  # [draughts] at which it heels her
 CORRELATED = 1.0  # [s] over which what the water does is alike
 FREE_RUN = 6.0  # [s] of a free run: a boat sails five lengths at a Froude number of 0.3
 ROWS = 20.0  # [Hz] of rows that are used: errors of closer ones are not independent
+PLENTY, COARSEST = 12_000, 0.25  # rows that tell enough: where there are more, fewer a second, down to this share
 FINEST = 1e-4  # of length, of a radian, of the speed that belongs to the length: no instrument is better
 ORDERS = range(2, 7)  # of the differences in which noise is looked for: the motion is smoother than that
 MEDIAN = 0.455  # of the square of a normal variable
@@ -50,9 +51,13 @@ def horizon(vessel: Vessel) -> float:
     return vessel.diagnosis.horizon or float(f"{FREE_RUN * froude_time(vessel):.3g}")
 
 
-def rate(vessel: Vessel) -> float:
-    """Rows a second [Hz] that are used of a recording."""
-    return vessel.diagnosis.rate or ROWS / froude_time(vessel)
+def rate(vessel: Vessel, lasts: float = 0.0) -> float:
+    """Rows a second [Hz] that are used of recordings that last so long together [s].
+
+    An hour tells by its many manoeuvres what a minute tells by its many rows, and the cost goes with the rows.
+    """
+    usual = ROWS / froude_time(vessel)
+    return vessel.diagnosis.rate or usual * min(1.0, max(COARSEST, PLENTY / max(usual * lasts, 1.0)))
 
 
 def uncertainty(vessel: Vessel) -> dict[str, float]:

@@ -21,8 +21,7 @@ from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.fit import converge
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.log.first_orders import begun
-from boatsim.diagnose.log.held_fixes import without_repeats
-from boatsim.diagnose.log.outlying_fixes import without_outliers
+from boatsim.diagnose.log.left_out import lasting, thinned
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import patch
 from boatsim.diagnose.search.rank import baseline
@@ -67,7 +66,8 @@ def fitted(vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = ())
     """
     opened = [open_recording(path, str(vessel_file), ()) for path in (*logs, *unseen)]
     boat = opened[0][1]
-    whole = [without_outliers(without_repeats(r.thinned(rules.rate(boat))), boat) for r, _ in opened]
+    lasts = lasting([r for r, _ in opened])
+    whole = [thinned(r, boat, lasts) for r, _ in opened]
     parts = [_parted(r) for r in whole[: len(logs)]]
     first = whole[: len(logs)] if unseen else [a for a, _ in parts]
     last = whole[len(logs) :] if unseen else [b for _, b in parts]

@@ -1,6 +1,9 @@
 """What a diagnosis leaves out of a log or turns round by itself: repeated and outlying fixes, positions, a rudder."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from boatsim.diagnose import rules
 from boatsim.diagnose.log.finding import Finding
@@ -27,9 +30,17 @@ def opened(recording: Recording, vessel: Vessel) -> Recording:
     return in_one_frame(steered(unwound(recording.used(), vessel), vessel))
 
 
-def thinned(recording: Recording, vessel: Vessel) -> Recording:
-    """An opened recording with as many rows as are of use, without fixes that are none."""
-    return without_outliers(without_repeats(recording.thinned(rules.rate(vessel))), vessel)
+def thinned(recording: Recording, vessel: Vessel, lasts: float = 0.0) -> Recording:
+    """An opened recording with as many rows as are of use, without fixes that are none.
+
+    `lasts` is how long [s] all the recordings are, of which it is one.
+    """
+    return without_outliers(without_repeats(recording.thinned(rules.rate(vessel, lasts))), vessel)
+
+
+def lasting(recordings: Sequence[Recording]) -> float:
+    """How long [s] recordings are together."""
+    return float(sum(np.ptp(r.t) for r in recordings))
 
 
 def findings(recording: Recording) -> list[Finding]:
