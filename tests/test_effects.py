@@ -82,6 +82,7 @@ RESTS = {  # effects that are not always there
     "astern_time_constant",  # going ahead
     "dragged_propeller",  # with the way
     "push",  # before its time and after
+    "rudder_race",  # of a propeller that backs
 }
 SI = {"rad", "m", "kg", "s", "N"}
 

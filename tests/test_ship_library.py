@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from boatsim.diagnose import analysis
 from boatsim.diagnose.excursion import bound
 from boatsim.errors import BadInput
-from boatsim.physics import vessel
+from boatsim.physics import particulars, vessel
 from boatsim.physics.base import Array, Course, Effect, Wrench, mean_of, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.approach_balance import ApproachBalance
@@ -26,6 +26,7 @@ from boatsim.physics.effects.planing_lag import PlaningLag
 from boatsim.physics.effects.rate_limit import SteeringRateLimit
 from boatsim.physics.effects.righting_arm import MetacentricHeightError, RightingArm
 from boatsim.physics.effects.rudder import Rudder, RudderStall
+from boatsim.physics.effects.rudder_race import RudderRace
 from boatsim.physics.effects.speed_scaled_steering import SpeedScaledSteering
 from boatsim.physics.effects.steering_drag import SteeringDrag
 from boatsim.physics.effects.sway_yaw_coupling import SpeedLossInTurn
@@ -76,6 +77,45 @@ def test_speed_scaling_vanishes_at_the_approach_speed_whatever_its_shares() -> N
     shares = SpeedScaledSteering(hull_sway=2, hull_yaw=-1, rudder_sway=0.5, rudder_yaw=3).completed(SHIP)
     at_it = shares.wrench(motion(**{**TURN, "u": 1.179}), signals(SpeedScaledSteering, angle=HELM))
     assert at_it == pytest.approx(Wrench(), abs=1e-12)
+
+
+def test_astern_the_water_meets_the_rudder_from_behind_and_the_hull_still_damps() -> None:
+    scaled = SpeedScaledSteering(hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1).completed(SHIP)
+    hull, rudder = SHIP.effect("linear_damping"), SHIP.effect("rudder")
+    assert isinstance(hull, LinearDamping) and isinstance(rudder, Rudder)
+
+    def whole(u: float, v: float, helm: float) -> Array:
+        m = motion(u=u, v=v)
+        parts = hull.wrench(m), rudder.wrench(m, signals(Rudder, angle=helm))
+        return np.array([*parts, scaled.wrench(m, signals(SpeedScaledSteering, angle=helm))])[:, [1, 5]].sum(axis=0)
+
+    assert whole(-0.8, 0.0, HELM) == pytest.approx(-whole(0.8, 0.0, HELM))
+    assert whole(-0.8, 0.2, 0.0)[0] == pytest.approx(whole(0.8, 0.2, 0.0)[0])
+
+
+def test_a_race_adds_to_a_blade_what_momentum_theory_adds_to_the_square_of_its_inflow() -> None:
+    density, diameter, area, aspect, thrust, delta = 1000.0, 0.2, 0.05, 1.5, 30.0, 0.3
+    disc = 0.25 * pi * diameter**2
+    per_thrust = 6.13 * aspect / (aspect + 2.25) * area / disc
+    race = RudderRace(normal_force_per_thrust=per_thrust, at=-1.4, side=-1.0)
+    for u in (0.0, 0.7):
+        faster = 8.0 * thrust / (pi * density * diameter**2)  # V_R^2 - u^2 [m^2/s^2] far behind
+        slope = [particulars.rudder_slope(area, aspect, sqrt(u * u + more), density) for more in (0.0, faster)]
+        normal = (slope[1] - slope[0]) * sin(delta)
+        seen = race.wrench(motion(u=u), signals(RudderRace, angle=delta, thrust=thrust))
+        assert seen == pytest.approx(
+            Wrench(X=-normal * sin(delta), Y=-normal * cos(delta), N=1.4 * normal * cos(delta)), rel=1e-12
+        )
+
+
+def test_a_propeller_that_backs_washes_no_rudder_and_a_race_takes_its_place_from_the_rudder() -> None:
+    race = RudderRace(normal_force_per_thrust=0.5).completed(SHIP)
+    rudder = SHIP.effect("rudder")
+    assert isinstance(rudder, Rudder)
+    assert not any(race.wrench(motion(u=0.5), signals(RudderRace, angle=0.4, thrust=-20.0)))
+    ahead = race.wrench(motion(u=0.5), signals(RudderRace, angle=0.4, thrust=20.0))
+    own = rudder.wrench(motion(u=0.5), signals(Rudder, angle=0.4))
+    assert ahead.Y * own.Y > 0.0 and ahead.N / ahead.Y == pytest.approx(own.N / own.Y)
 
 
 @pytest.mark.parametrize("u", [0.7, -0.7])

@@ -4,7 +4,7 @@ import json
 import math
 from collections.abc import Iterator
 
-from boatsim.newboat.particulars import Mount, Particulars
+from boatsim.newboat.particulars import Blade, Mount, Particulars
 from boatsim.physics.estimate import added_mass, displacement, inertia, resistance, sideways, thrust
 from boatsim.physics.estimate import rudder as rudders
 from boatsim.physics.estimate.base import DENSITY, Estimate
@@ -34,7 +34,7 @@ def number(value: float) -> str:
 def line(key: str, value: float, unit: str, rule: str) -> str:
     """`key = value  # [unit] rule`."""
     stated = f"{key} = {number(value)}"
-    return f"{stated:{COLUMN}}# {f'[{unit}] ' if unit else ''}{rule}"
+    return f"{stated:{COLUMN - 1}} # {f'[{unit}] ' if unit else ''}{rule}"
 
 
 def _of(key: str, found: Estimate, unit: str) -> str:
@@ -168,6 +168,17 @@ def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
     if boat.hull.slender:
         yield line("hull_sway", 1.0, "", "the hull's derivatives go with the speed")
         yield line("hull_yaw", 1.0, "", "same")
+    if washed := _washing(boat, blade):
+        found = rudders.race()
+        yield from ("", "[[effect]]", 'use = "rudder_race"')
+        yield f'on = {{ angle = "rudder_rad", thrust = "{thrust_channel(washed)}" }}'
+        yield line("normal_force_per_thrust", found.value, "", found.rule)
+
+
+def _washing(boat: Particulars, blade: Blade) -> str:
+    """Name of the only fixed thruster in the middle line ahead of the rudder; "" where there is none, or several."""
+    ahead = [name for name, m in boat.named() if m.y == 0.0 and not m.turns and m.x > blade.x]
+    return ahead[0] if len(ahead) == 1 else ""
 
 
 def approach(boat: Particulars) -> float:

@@ -67,7 +67,12 @@ def derivatives(length: float, beam: float, draught: float, trim: float, block: 
 
 def rudder_slope(area: float, aspect: float, inflow: float, density: float = SEA_WATER) -> float:
     """Force normal to a blade per angle of attack [N/rad] (A. Fujii, T. Tsuda 1961), area [m^2], inflow [m/s]."""
-    return 0.5 * density * 6.13 * aspect / (aspect + 2.25) * area * inflow * inflow
+    return 0.5 * density * lift_slope(aspect) * area * inflow * inflow
+
+
+def lift_slope(aspect: float) -> float:
+    """f_alpha of a blade by its span per chord: normal force coefficient per angle of attack (same)."""
+    return 6.13 * aspect / (aspect + 2.25)
 
 
 def hull_share(block: float) -> float:

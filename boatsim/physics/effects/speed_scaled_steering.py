@@ -10,11 +10,14 @@ from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """What linear hull (by u / U0) and rudder (by its square) gain over their values at the approach speed U0."""
+    """What linear hull (by u / U0) and rudder (by its square) gain over their values at the approach speed U0.
+
+    Astern the water meets the blade from behind and pushes it the other way; damping goes on damping.
+    """
     ratio = m.ur / q.speed
-    hull, rudder = ratio - 1.0, ratio * ratio - 1.0
-    Y = -q.hull_sway * hull * (q.sway * m.vr + q.sway_by_yaw * m.r)
-    N = -q.hull_yaw * hull * (q.yaw_by_sway * m.vr + q.yaw * m.r)
+    couples, damps, rudder = ratio - 1.0, abs(ratio) - 1.0, ratio * abs(ratio) - 1.0
+    Y = -q.hull_sway * (damps * q.sway * m.vr + couples * q.sway_by_yaw * m.r)
+    N = -q.hull_yaw * (couples * q.yaw_by_sway * m.vr + damps * q.yaw * m.r)
     return wrench(
         Y=Y + q.rudder_sway * rudder * q.steer_sway * s.angle, N=N + q.rudder_yaw * rudder * q.steer_yaw * s.angle
     )

@@ -1,9 +1,12 @@
 """A rudder of which only the place is known."""
 
+from math import pi
+
 from boatsim.physics import particulars
 from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
 
 ASPECT = 1.5  # span per chord, usual on ships: Mariner 1.6, Esso Osaka 1.5
+REACHES = 0.5  # kappa, share of the race's gain in speed that reaches the blade: KVLCC2 by Yasukawa, Yoshimura 2015
 
 
 def area(hull: Hull) -> Estimate:
@@ -16,3 +19,13 @@ def slope(blade: float, speed: float) -> Estimate:
     """Force to starboard per angle [N/rad] of a blade [m^2] in water that passes at a speed [m/s]."""
     value = particulars.rudder_slope(blade, ASPECT, speed, DENSITY)
     return Estimate(value, f"A. Fujii, T. Tsuda 1961, {blade:.3g} m^2 of aspect {ASPECT:g} at {speed:.3g} m/s")
+
+
+def race() -> Estimate:
+    """Normal force on a blade per thrust of the propeller ahead of it and sine of its angle, from rest.
+
+    A blade as high as the propeller's diameter D has D^2 / aspect of area; the race at rest has V^2 = 8 T / (pi rho D^2)
+    far behind, of which the share reaches the blade.
+    """
+    value = particulars.lift_slope(ASPECT) * REACHES**2 * 4.0 / (pi * ASPECT)
+    return Estimate(value, "f_alpha kappa^2 4 / (pi aspect), momentum theory of a blade as high as the propeller")
