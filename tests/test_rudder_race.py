@@ -30,7 +30,7 @@ effect = [
   {{ use = "quadratic_damping", surge = {SQUARE[0]}, sway = {SQUARE[1]}, yaw = {SQUARE[2]} }},
   {{ use = "thruster", on = {{ thrust = "thrust_N" }}, x = -2.0 }},
   {{ use = "rudder", on = {{ angle = "rudder_rad" }}, sway = {-SLOPE * 4.0}, yaw = {-SLOPE * 4.0 * AT} }},
-  {{ use = "speed_scaled_steering", on = {{ angle = "rudder_rad" }}, speed = 2.0, rudder_sway = 1.0, rudder_yaw = 1.0 }},
+  {{ use = "speed_scaled_steering", on = {{ angle = "rudder_rad" }}, speed = 2.0, rudder_sway = 1, rudder_yaw = 1 }},
 ]
 """
 

@@ -24,8 +24,8 @@ def slope(blade: float, speed: float) -> Estimate:
 def race() -> Estimate:
     """Normal force on a blade per thrust of the propeller ahead of it and sine of its angle, from rest.
 
-    A blade as high as the propeller's diameter D has D^2 / aspect of area; the race at rest has V^2 = 8 T / (pi rho D^2)
-    far behind, of which the share reaches the blade.
+    A blade as high as the propeller's diameter D has an area of D^2 / aspect; the race of a propeller at rest has
+    V^2 = 8 T / (pi rho D^2) far behind, and `REACHES` of that speed at the blade.
     """
     value = particulars.lift_slope(ASPECT) * REACHES**2 * 4.0 / (pi * ASPECT)
     return Estimate(value, "f_alpha kappa^2 4 / (pi aspect), momentum theory of a blade as high as the propeller")
