@@ -126,6 +126,17 @@ def test_forward_speed_damping_is_linear_damping_in_proportion_to_the_speed(u: f
     assert not any(ForwardSpeedDamping(sway=8.0, roll=2.0, yaw=3.0).wrench(motion(v=0.2, p=-0.3, r=0.4)))
 
 
+@pytest.mark.parametrize("u", [0.7, -0.7])
+def test_lift_at_a_place_is_a_force_there_by_the_drift_there_and_astern_the_hull_turned_round_feels_the_same(
+    u: float,
+) -> None:
+    lift = ForwardSpeedDamping(sway=8.0, at=-0.4)
+    seen, there = lift.wrench(motion(u=u, v=0.2, r=0.3)), -0.4 if u > 0.0 else 0.4
+    assert (lift.wrench(motion(u=u, v=0.2)).N / lift.wrench(motion(u=u, v=0.2)).Y) == pytest.approx(there)
+    assert seen.Y == pytest.approx(-8.0 * abs(u) * (0.2 + there * 0.3))
+    assert seen.N == pytest.approx(there * seen.Y)
+
+
 def test_speed_lost_in_a_turn_is_the_coriolis_force_of_the_sway_added_mass() -> None:
     m = motion(**TURN)
     assert SpeedLossInTurn(mass=2486.0).wrench(m).X == pytest.approx(AddedMass(sway=2486.0).wrench(m).X)

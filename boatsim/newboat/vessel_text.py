@@ -16,6 +16,7 @@ HALF = 0.5  # of the full thrust: what a manoeuvre is approached with, if that i
 EASY = 2.0  # times the resistance at the easy speed at most
 DAMPING = 1.0  # relative sd of a coefficient by a rule: rules of thumb are off by a factor of two
 STATED, RULED = 0.3, 0.6  # of thrust: bollard pull beside that under way; nobody stated any
+WATER = 0.4  # of added mass: strips beside regressions beside measurements
 
 
 def vessel_text(boat: Particulars) -> str:
@@ -125,8 +126,14 @@ def _effects(boat: Particulars) -> Iterator[str]:
     yield from ("", "[[effect]]", 'use = "cross_flow_drag"')
     yield _of("section_drag_coefficient", sideways.section_drag(), "")
     yield line("density", DENSITY, "kg/m^3", "fresh water")
+    if not hull.slender:  # of a slender one the derivatives hold it
+        force, at = sideways.lift(hull)
+        yield from ("", "[[effect]]", 'use = "forward_speed_damping"')
+        yield _of("sway", force, "N s^2/m^2")
+        yield _of("at", at, "m")
     for name, mount in boat.named():
         yield from _thruster(name, mount)
+    yield from ("", "[[effect]]", 'use = "thrust_loss_with_speed"', _of("loss", thrust.loss(hull, boat.speed), "s/m"))
     if boat.rudder is not None:
         yield from _rudder(boat, speed)
 
@@ -221,6 +228,7 @@ def steering(boat: Particulars) -> dict[str, float]:
 def _diagnosis(boat: Particulars) -> Iterator[str]:
     _, stated = full_thrust(boat)
     yield from ("", "[diagnosis]")
-    yield f"coefficient_uncertainty = {{ damping = {DAMPING}, thrust = {STATED if stated else RULED} }}  # relative sd"
+    sds = f"damping = {DAMPING}, thrust = {STATED if stated else RULED}, added_mass = {WATER}"
+    yield f"coefficient_uncertainty = {{ {sds} }}  # relative sd"
     pushes = "a stated thrust is one at rest" if stated else "nobody stated a thrust"
     yield f'reasons.coefficient_uncertainty = "rules of thumb for damping are off by a factor of two; {pushes}"'

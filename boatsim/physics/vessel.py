@@ -66,7 +66,9 @@ class DiagnosisTable(Table):
 
     leave_out: dict[str, str] = {}  # entry of the library that is not tried -> the reason, in words
     also: list[dict[str, object]] = []  # tables as in [[effect]], tried beside the library: on what else it may act
-    coefficient_uncertainty: dict[Literal["damping", "thrust", "restoring", "wind"], PositiveFloat] = {}  # relative sd
+    coefficient_uncertainty: dict[
+        Literal["damping", "thrust", "added_mass", "restoring", "wind"], PositiveFloat
+    ] = {}  # relative sd
     # In place of a rule of `boatsim.diagnose.rules`, each with its reason in `reasons`
     ambient: dict[Freedom, PositiveFloat] = {}  # tolerated unmodelled force per axis, rms [N, N m]
     horizon: float | None = Field(default=None, gt=0)  # [s] length of a free run

@@ -61,10 +61,34 @@ class AddedMass(Inertia, Force):
     inertia: ClassVar = inertia
     law: ClassVar = law
 
-    surge: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="-X_udot", fit=True, spread=0.5, axis="surge")
-    sway: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="-Y_vdot", fit=True, spread=5.0, axis="sway")
-    heave: float = param(0.0, low=0.0, high=1e9, unit="kg", words="-Z_wdot", fit=True, spread=5.0, axis="heave")
-    pitch: float = param(0.0, low=0.0, high=1e13, unit="kg m^2", words="-M_qdot", fit=True, spread=0.7, axis="pitch")
+    surge: float = param(
+        UNSET,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="-X_udot",
+        fit=True,
+        spread=0.5,
+        axis="surge",
+        calibrates="added_mass",
+    )
+    sway: float = param(
+        UNSET, low=0.0, high=1e9, unit="kg", words="-Y_vdot", fit=True, spread=5.0, axis="sway", calibrates="added_mass"
+    )
+    heave: float = param(
+        0.0, low=0.0, high=1e9, unit="kg", words="-Z_wdot", fit=True, spread=5.0, axis="heave", calibrates="added_mass"
+    )
+    pitch: float = param(
+        0.0,
+        low=0.0,
+        high=1e13,
+        unit="kg m^2",
+        words="-M_qdot",
+        fit=True,
+        spread=0.7,
+        axis="pitch",
+        calibrates="added_mass",
+    )
     sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead")
     sway_below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="sway added mass acts this far below")
     yaw: float = param(
@@ -76,9 +100,18 @@ class AddedMass(Inertia, Force):
         fit=True,
         spread=0.7,
         axis="yaw",
+        calibrates="added_mass",
     )
     roll: float = param(
-        UNSET, low=0.0, high=1e13, unit="kg m^2", words="-K_pdot about that point", fit=True, spread=0.02, axis="roll"
+        UNSET,
+        low=0.0,
+        high=1e13,
+        unit="kg m^2",
+        words="-K_pdot about that point",
+        fit=True,
+        spread=0.02,
+        axis="roll",
+        calibrates="added_mass",
     )
     coriolis: float = param(1.0, low=-1.0, high=3.0, unit="", words="share of the Coriolis force that is modelled")
     spheroid: float = param(0.0, low=0.0, high=1.0, unit="", words="1: surge, sway, yaw and roll by the hull's size")

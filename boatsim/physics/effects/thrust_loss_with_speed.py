@@ -25,5 +25,8 @@ class ThrustLossWithSpeed(Force):
     rides: ClassVar[str] = "thruster"
     law: ClassVar = law
 
-    loss: float = param(0.0, low=0.0, high=50.0, unit="s/m", words="share lost per speed ahead", fit=True, spread=0.5)
+    loss: float = param(
+        0.0, low=0.0, high=50.0, unit="s/m", words="share lost per speed ahead", fit=True, spread=0.5,
+        calibrates="thrust",
+    )  # fmt: skip
     curve: float = param(0.0, low=-20.0, high=20.0, unit="s^2/m^2", words="and per speed squared", fit=True, spread=0.1)

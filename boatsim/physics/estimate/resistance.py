@@ -3,6 +3,7 @@
 from math import log10, sqrt
 
 from boatsim.physics.estimate.base import DENSITY, VISCOSITY, Estimate, Hull
+from boatsim.physics.estimate.thrust import LEFT
 from boatsim.physics.particulars import GRAVITY
 
 SERVICE = 0.3  # Froude number of an easy speed: waves begin to cost
@@ -33,10 +34,10 @@ def at_service(hull: Hull) -> Estimate:
 def coefficients(hull: Hull, thrust: float | None, top_speed: float | None) -> tuple[Estimate, Estimate]:
     """Linear [N s/m] and quadratic [N s^2/m^2] surge damping, each a part of the resistance at one speed.
 
-    That is the speed reached at full `thrust` [N] where both are known, else the service speed.
+    That is the speed reached at full `thrust` [N, at rest] where both are known, else the service speed.
     """
     if thrust is not None and top_speed is not None:
-        force, speed, rule = thrust, top_speed, "full thrust over the top speed stated"
+        force, speed, rule = LEFT * thrust, top_speed, f"{LEFT:g} of full thrust at the top speed stated"
     else:
         (force, rule), speed = at_service(hull), service_speed(hull)
         rule = f"{rule} at {speed:.3g} m/s"

@@ -1,4 +1,4 @@
-"""What resists a hull in sway and yaw: velocity derivatives for slender hulls, time constants for others, drag."""
+"""What resists a hull in sway and yaw: derivatives for slender hulls, time constants and lift for others, drag."""
 
 from math import pi, sqrt
 from typing import NamedTuple
@@ -7,6 +7,7 @@ from boatsim.physics.estimate import added_mass, inertia
 from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
 
 SECOND = 2.0  # [m] length of the boat whose sway and yaw die out in 1 s, the Otter (MSS otter.m)
+LIFT_AT = -0.3  # [lengths] ahead of the middle: that of a slender body is -0.5, at its stern; a real one leaves earlier
 SECTION = 0.8  # drag coefficient of a section across the flow: Otter 0.85, S. F. Hoerner 1965
 
 
@@ -42,6 +43,15 @@ def by_time(hull: Hull) -> Derivatives:
         Estimate((inertia.yaw(hull).value + added_mass.yaw(hull).value) / time, rule),
         None,
         None,
+    )
+
+
+def lift(hull: Hull) -> tuple[Estimate, Estimate]:
+    """Side force per speed ahead and across [N s^2/m^2] of all hulls, and where it acts [m] ahead of the middle."""
+    value = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2
+    return (
+        Estimate(value, "0.5 pi rho T^2, R. T. Jones 1946: a wing of low aspect"),
+        Estimate(LIFT_AT * hull.length, f"{LIFT_AT:g} lengths; -0.5 of a slender body"),
     )
 
 
