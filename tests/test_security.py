@@ -128,7 +128,7 @@ def test_2_content_runs_and_its_names_resolve(tmp_path: Path) -> None:
     (home / "effects" / "thruster.py").write_text("1 / 0")
     with trust.trusting(home):
         assert content.load_class("effect", "thruster").__module__ == "boatsim.physics.effects.thruster"
-        assert plan(["calm/still"], None, None, False)[0].name == "calm/still"
+        assert plan(["calm/still"], None, None)[0].name == "calm/still"
     assert "no such folder" in refused(boatsim("list", "--content", tmp_path / "none"))
 
 

@@ -18,7 +18,7 @@ import rerun as rr
 from boatsim.physics.signals import POSE, Array
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
-from boatsim.simulate.norms import NormEntry
+from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED, NormEntry
 from boatsim.view import blueprint
 from boatsim.view.blueprint import WORLD
 from boatsim.view.scene import OUTBOARD, Scene, Solid
@@ -44,6 +44,7 @@ BOATS = {  # as in the report; told apart by colour-blind readers too, on dark p
     "recalibrated": (45, 140, 225),
     "patched": (0, 165, 120),
 }
+VERDICTS = {REPRODUCED: "(the same)", MISSED: "(differs)", UNSTATED: ""}
 PARTING = 1e-9  # [s] between the end of one stretch, a gap, and the begin of the next at the same time
 
 
@@ -58,17 +59,17 @@ class Flagged(TypedDict):
 class RunLog:
     """A run's log: `chunk` takes new rows while it runs, `finish` the norms; leaving the `with` block keeps all of it.
 
-    `path` is the `.rrd` to write (None: none), `live` feeds the viewer that listens on this machine, or a new one.
+    `path` is the `.rrd` to write, `viewer` the address of one that is fed (None: none).
     """
 
-    def __init__(self, path: Path | str | None, live: bool, scene: Scene) -> None:
+    def __init__(self, path: Path | str | None, scene: Scene, viewer: str | None = None) -> None:
         """Raises OSError, as whatever writes does."""
-        self.scene, self.live = scene, live
+        self.scene, self.live = scene, viewer is not None
         self._waiting: list[Recording] = []
         self._written = monotonic()  # when something last was
         self._trail: tuple[float, Array] | None = None  # time and place of the last point of the path
         self._known: set[str] = set()
-        self.stream = Stream("boatsim", path, live)
+        self.stream = Stream("boatsim", path, viewer)
         if self.stream.heard:
             _begin(self.stream)
             _draw_tank(self.stream, scene)
@@ -137,7 +138,7 @@ def log_overlay(
     the end of one to the begin of the next. `missing` has `force_X_N` (and `_Y_N`, `_K_Nm`, `_N_Nm`) with `..._low`
     and `..._high`; `intervals` are `where.intervals` of diagnosis.json (from_s, to_s, axis).
     """
-    stream = Stream("boatsim_diagnosis", path, live=False)
+    stream = Stream("boatsim_diagnosis", path)
     _begin(stream)
     _draw_tank(stream, scene)
     for number, (boat, stretches) in enumerate(boats.items()):
@@ -171,15 +172,17 @@ def _begin(stream: Stream) -> None:
 
 
 def norms_table(norms: Mapping[str, NormEntry]) -> str:
-    """Markdown table norm, value, published, verdict on it, guard, met."""
-    lines = ["| norm | value | published | verdict | guard | met |", "|:---|---:|---:|:---|:---:|:---:|"]
+    """Markdown table norm, value, guard, met, published with the verdict on it; narrow, and what counts first."""
+    if not norms:
+        return "This scenario has no norms.\n"
+    lines = ["| norm | value | guard | met | published |", "|:---|---:|:---:|:---:|:---|"]
     for name, norm in norms.items():
         ok, ends = norm.get("ok"), [_short(end) for end in norm.get("guard") or (None, None)]
         met = "" if ok is None else "yes" if ok else "**no**"
         span = " to ".join(ends) if all(ends) else f"at least {ends[0]}" if ends[0] else f"at most {ends[1]}"
         value = f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
-        said = f"{_short(norm.get('published'))} | {norm.get('verdict') or ''}"
-        lines.append(f"| {name} | {value} | {said} | {span if any(ends) else ''} | {met} |")
+        said = f"{_short(norm.get('published'))} {VERDICTS.get(norm.get('verdict') or '', '')}".strip()
+        lines.append(f"| {name} | {value} | {span if any(ends) else ''} | {met} | {said} |")
     return "\n".join(lines) + "\n"
 
 
