@@ -79,6 +79,11 @@ def test_several_runs_are_counted_and_a_single_one_says_nothing(tmp_path: Path) 
     assert boatsim("run", both[0], "--out", tmp_path / "one").stderr == ""
 
 
+def test_a_manoeuvre_says_that_it_runs(tmp_path: Path) -> None:
+    done = boatsim("manoeuvre", "zigzag", "--vessel", "mariner", "--angle", "10", "--out", tmp_path / "out")
+    assert done.exit_code == 0 and len(lines(done.stderr)) == 1 and lines(done.stderr)[0].startswith("running ")
+
+
 @pytest.mark.parametrize(
     ("elapsed", "share", "said"),
     [(10.0, 0.5, "about 10 s left"), (60.0, 0.1, "about 9 min left"), (0.2, 0.5, ""), (30.0, 0.0, ""),

@@ -9,7 +9,7 @@ from rerun.chunk import RrdReader
 from boatsim.errors import BadInput
 from boatsim.recordings.readers.rrd import last_time
 from boatsim.recordings.table import Recording, read, write_csv
-from boatsim.view import blueprint, rerun_log
+from boatsim.view import blueprint, rerun_log, water
 from boatsim.view.rerun_log import RunLog, log_overlay, norms_table
 from boatsim.view.scene import Thruster, plain_scene, scene_from
 
@@ -200,6 +200,40 @@ def test_every_closed_shape_has_its_outside_outside():
     assert volume(*barrel) == pytest.approx(2 * np.pi, rel=1e-3)
     (hull,) = SCENE.solids
     assert volume(hull.vertices, hull.triangles) == pytest.approx(0.875 * 1.2 * 0.3 * 0.13 * 1.2)
+
+
+def track_of(size: float, aside: float = 0.0) -> Recording:
+    t = np.linspace(0.0, 10.0, 101)
+    return Recording("a", t, {"x_m": 0.1 * size * t, "y_m": 0.05 * size * t + aside, "psi_rad": 0 * t})
+
+
+@pytest.mark.parametrize("size", [0.3, 5.0, 400.0])
+def test_boats_are_as_large_as_the_track_asks_for_and_all_of_it_lies_in_view_on_water(size):
+    from boatsim.physics import vessel
+
+    boat = vessel.load("trial_boat")
+    boats = {"recording": [track_of(size)], "nominal": [track_of(1e4 * size)], "patched": [track_of(size, 0.2 * size)]}
+    scene = water.around(boat, boats)
+    hull = np.concatenate([s.vertices for s in scene.solids if s.part == "hull"])
+    sea = np.concatenate([s.vertices for s in scene.solids if s.part == "tank"])
+    assert np.ptp(hull[:, 0]) == pytest.approx(scene.times * boat.length, rel=0.1) and scene.times >= 1.0
+    assert scene.length >= 0.99 * water.SEEN * size and scene.times == pytest.approx(
+        max(1.0, 0.08 * size / boat.length)
+    )
+    length, width, x, y = scene.tank
+    for run in (*boats["recording"], *boats["patched"]):
+        assert np.abs(run["x_m"] - x).max() + scene.length <= 0.501 * length + 0.5 * scene.length
+        assert np.abs(run["y_m"] - y).max() + scene.length <= 0.501 * width + 0.5 * scene.length
+    assert length < 3 * size + 5 * scene.length, "the nominal boat that runs away is not followed"
+    assert (sea[:, 0].min(), sea[:, 0].max()) <= (x - length, x + length) and sea[:, 1].max() >= -y + width
+
+
+def test_a_boat_that_goes_nowhere_is_drawn_at_its_size():
+    from boatsim.physics import vessel
+
+    t = np.linspace(0.0, 5.0, 20)
+    scene = water.around(vessel.load("kvlcc2_roll"), {"recording": [Recording("a", t, {"phi_rad": 0.1 * np.sin(t)})]})
+    assert scene.times == 1.0 and scene.tank[2:] == (0.0, 0.0)
 
 
 def test_norms_are_told_with_what_was_published_and_whether_the_bar_is_met():

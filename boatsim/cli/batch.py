@@ -111,7 +111,7 @@ def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
     """Run a standard manoeuvre and print its figures; the limits beside them are a yardstick, not a test."""
     from boatsim.view.outputs import run_into
 
-    with progress.running([(scenario.name, scenario.file.duration)]) as report:
+    with progress.running([(scenario.name, scenario.file.duration)], several=False) as report:
         content = run_into(folder, scenario, progress=lambda t: report(0, t))
     show.norms(content, folder)
     warn_of_limits(content)

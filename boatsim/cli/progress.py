@@ -99,10 +99,13 @@ def time_left(elapsed: float, share: float) -> str:
 
 
 @contextmanager
-def running(tasks: Sequence[tuple[str, float]]) -> Iterator[Callable[[int, float], None]]:
-    """Progress of runs (name, simulated time [s]): bars on a terminal, elsewhere of several a line as each begins."""
+def running(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterator[Callable[[int, float], None]]:
+    """Progress of runs (name, simulated time [s]): bars on a terminal, elsewhere a line as each begins.
+
+    Of a single one there is no line, unless it is none of `several` that might have been.
+    """
     if not sys.stderr.isatty():
-        yield _begun(tasks)
+        yield _begun(tasks) if len(tasks) > 1 or not several else lambda number, t: None
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -119,9 +122,9 @@ def _begun(tasks: Sequence[tuple[str, float]]) -> Callable[[int, float], None]:
     there: set[int] = set()
 
     def report(number: int, t: float) -> None:
-        if len(tasks) > 1 and number not in there and t > 0.0:
+        if number not in there and t > 0.0:
             there.add(number)
-            say(f"{len(there)} of {len(tasks)}: {tasks[number][0]}")
+            say(f"{len(there)} of {len(tasks)}: {tasks[number][0]}" if len(tasks) > 1 else f"running {tasks[0][0]}")
 
     return report
 
