@@ -92,12 +92,15 @@ def test_without_a_patch_no_patched_boat_is_shown_and_without_free_runs_no_pictu
     assert '<figure class="chart replay' not in (tmp_path / "report.html").read_text("utf-8")
 
 
-def test_gaps_of_the_recording_are_gaps_of_the_film(tmp_path):
+def test_gaps_of_the_recording_are_gaps_of_the_film_and_rare_fixes_are_not(tmp_path):
     f = planar()
-    gap = {n: np.where(np.arange(len(v)) % 3, np.nan, v) for n, v in f.free_runs[0].channels["recorded"].items()}
+    seen = np.isin(np.arange(37), [1, 7, 13, 32, 35])  # 6 a second: a fix a second, then none for 3.2 s
+    gap = {n: np.where(seen, v, np.nan) for n, v in f.free_runs[0].channels["recorded"].items()}
     run = replace(f.free_runs[0], channels=f.free_runs[0].channels | {"recorded": gap})
     _, boats = film_of(replace(f, free_runs=(run,)))
-    assert [v is None for v in boats["recorded"]["x"][:4]] == [False, True, True, False]
+    shown = np.array([v is not None for v in boats["recorded"]["x"]])
+    assert np.flatnonzero(shown).tolist() == [*range(1, 14), *range(32, 36)]
+    assert boats["recorded"]["x"][4] == pytest.approx((gap["y_m"][1] + gap["y_m"][7]) / 2, abs=1e-3)
     assert None not in boats["patched"]["x"]
     report.write(replace(f, free_runs=(run,)), tmp_path)
     film = re.search(r'"application/json">(.*?)</script>', (tmp_path / "report.html").read_text("utf-8"), re.DOTALL)

@@ -159,6 +159,15 @@ def test_between_two_free_runs_nothing_is_drawn(tmp_path):
     assert values[len(t) - 1] == pytest.approx(1.0) and values[len(t) + 1] == 0.0
 
 
+def test_a_boat_of_which_few_places_are_known_has_a_path_through_them(tmp_path):
+    t = np.arange(0.0, 3.01, 0.1)
+    seen = {n: np.where(np.arange(len(t)) % 10 == 0, t * k, np.nan) for n, k in (("x_m", 0.1), ("y_m", 1.0))}
+    boats = {"recording": [Recording("recording", t, seen)], "patched": [track_of(1.0)]}
+    log_overlay(tmp_path / "d.rrd", boats, None, [], SCENE)
+    rows = entities(tmp_path / "d.rrd")
+    assert rows["world/paths/recording"] == 3 and rows["world/boats/recording"] == 4
+
+
 def test_the_outline_is_that_of_the_hull_from_above():
     ring = SCENE.outline()
     np.testing.assert_array_equal(ring[0], ring[-1])

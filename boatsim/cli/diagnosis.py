@@ -158,7 +158,9 @@ def _of_model(stretch: FreeRun, model: str) -> Recording:
     """A free run of one model, with its distance from the recording."""
     signals, recorded = dict(stretch.channels[model]), stretch.channels["recorded"]
     if {"x_m", "y_m"} <= signals.keys():
-        signals["off_m"] = np.hypot(signals["x_m"] - recorded["x_m"], signals["y_m"] - recorded["y_m"])
+        off = np.hypot(signals["x_m"] - recorded["x_m"], signals["y_m"] - recorded["y_m"])
+        seen = np.isfinite(off)  # fixes may be fewer than rows
+        signals["off_m"] = np.interp(stretch.t, stretch.t[seen], off[seen]) if seen.any() else off
     return Recording(model, stretch.t, signals)
 
 

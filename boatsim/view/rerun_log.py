@@ -298,11 +298,13 @@ def _mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
 def _move(stream: Stream, rows: Recording, scene: Scene, boat: str) -> None:
     """Pose of the hull and angles of the outboards; a boat that only rolls stays at the origin."""
     zero = np.zeros(len(rows))
-    x, y, z, phi, theta, psi = (rows.signals.get(name, zero) for name in POSE)
+    pose = np.stack([rows.signals.get(name, zero) for name in POSE])
+    known = np.isfinite(pose).all(axis=0)  # where nothing was measured, the boat stays where it was
+    x, y, z, phi, theta, psi = pose[:, known]
     points = _flat(x, y)
     points[:, 2] -= z  # z is down
     place = rr.Transform3D.columns(translation=points, quaternion=_attitude(psi, phi, theta))
-    stream.send_columns(f"{WORLD}/{boat}", _when(rows.t), place)
+    stream.send_columns(f"{WORLD}/{boat}", _when(rows.t[known]), place)
     for thruster in scene.thrusters:
         if (steer := rows.signals.get(thruster.steer)) is not None:
             # the force points a to starboard when the leg is turned by a, clockwise seen from above
@@ -369,7 +371,10 @@ def _log_path(
     """One short line for each step; the view shows all up to its time. Returns the last point's time and place."""
     if not {"x_m", "y_m"} <= rows.signals.keys():
         return last
-    due = np.unique(np.floor(rows.t / TRAIL_STEP + 1e-6), return_index=True)[1]
+    known = np.flatnonzero(np.isfinite(rows["x_m"]) & np.isfinite(rows["y_m"]))
+    if not len(known):
+        return last
+    due = known[np.unique(np.floor(rows.t[known] / TRAIL_STEP + 1e-6), return_index=True)[1]]
     t, points = rows.t[due], _flat(rows["x_m"][due], rows["y_m"][due], height)
     if last is not None:
         t, points = np.append(last[0], t), np.vstack([last[1], points])

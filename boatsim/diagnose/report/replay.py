@@ -19,6 +19,7 @@ SWUNG = 4  # of a boat without a path: more of its swings make a comb
 FRAMES = 1200
 LASTS = 40.0  # [s] at most; a longer run is played faster
 FASTER = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+BRIDGED = 3.0  # [s] at most between two fixes that the film joins
 AIR = 0.06  # of the picture, on each side
 SMALLEST, LARGEST = 0.08, 0.25  # length of a boat that is drawn, by the height of the picture
 BREADTH = 0.2  # of a midship section that is drawn, by the height of the picture
@@ -136,8 +137,8 @@ def _film(
     unit, factor = in_unit(signal, runs) if signal else ("m", 1.0)
 
     def joined(model: str, name: str) -> Array:
-        parts = [r.channels[model].get(name, np.zeros(len(r.t)))[k] for r, k in zip(runs, rows, strict=True)]
-        return np.concatenate(parts)
+        parts = [bridged(r.t, r.channels[model].get(name, np.zeros(len(r.t)))) for r in runs]
+        return np.concatenate([part[k] for part, k in zip(parts, rows, strict=True)])
 
     t = np.concatenate([r.t[k] for r, k in zip(runs, rows, strict=True)])
     boats: list[Boat] = []
@@ -150,6 +151,17 @@ def _film(
     rate = next((f for f in FASTER if float(t[-1] - t[0]) <= f * LASTS), FASTER[-1])
     return {"t": np.round(t, 3).tolist(), "start": int(np.argmin(np.abs(t - start))), "rate": rate,
             "plan": signal is None, "unit": unit, "outline": outline, "boats": boats}  # fmt: skip
+
+
+def bridged(t: Array, values: Array) -> Array:
+    """What was measured less often than rows are written, straight between two measurements; gaps stay gaps."""
+    seen = np.flatnonzero(np.isfinite(values))
+    if len(seen) < 2:
+        return values
+    after = np.clip(np.searchsorted(seen, np.arange(len(values))), 1, len(seen) - 1)
+    near = t[seen[after]] - t[seen[after - 1]] <= BRIDGED
+    within = (np.arange(len(values)) >= seen[0]) & (np.arange(len(values)) <= seen[-1])
+    return np.where(np.isnan(values) & near & within, np.interp(t, t[seen], values[seen]), values)
 
 
 def _told(values: Array, decimals: int) -> list[float | None]:
