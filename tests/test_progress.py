@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from boatsim.cli import app, progress
+from boatsim.cli import app, asking, progress
 from boatsim.diagnose.analysis import diagnose
 from boatsim.progress import part
 
@@ -91,6 +91,26 @@ def test_a_manoeuvre_says_that_it_runs(tmp_path: Path) -> None:
 )  # fmt: skip
 def test_the_time_left_is_what_the_rest_takes_at_the_same_pace(elapsed: float, share: float, said: str) -> None:
     assert progress.time_left(elapsed, share) == said
+
+
+def test_the_bar_makes_way_for_a_question(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[str] = []
+
+    class Bars:
+        def stop(self) -> None:
+            seen.append("stop")
+
+        def start(self) -> None:
+            seen.append("start")
+
+    class Answer:
+        def readline(self) -> str:
+            seen.append("asked")
+            return "y\n"
+
+    monkeypatch.setattr(progress, "_now", Bars())
+    monkeypatch.setattr(asking.sys, "stdin", Answer())
+    assert asking._asked(Path("mine")) and seen == ["stop", "asked", "start"]
 
 
 def test_a_part_of_the_work_is_told_as_its_share_of_the_whole() -> None:

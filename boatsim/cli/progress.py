@@ -113,9 +113,18 @@ def running(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterato
     clock = TextColumn("{task.completed:.0f} of {task.total:.0f} s simulated")
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), clock, TimeElapsedColumn())
     bars = Progress(*columns, TimeRemainingColumn(), TextColumn("left"), console=Console(stderr=True), transient=True)
-    rows = [bars.add_task(name, total=duration) for name, duration in tasks]
+    many = len(tasks) > 1
+    every = bars.add_task(f"all {len(tasks)} runs", total=sum(duration for _, duration in tasks), visible=many)
+    rows = [bars.add_task(name, total=duration, visible=not many, start=False) for name, duration in tasks]
+
+    def report(number: int, t: float) -> None:
+        if t > 0.0 and not bars.tasks[rows[number]].started:
+            bars.start_task(rows[number])
+        bars.update(rows[number], completed=t, visible=not many or 0.0 < t < tasks[number][1])
+        bars.update(every, completed=sum(bars.tasks[row].completed for row in rows))
+
     with _shown(bars):
-        yield lambda number, t: bars.update(rows[number], completed=t)
+        yield report
 
 
 def _begun(tasks: Sequence[tuple[str, float]]) -> Callable[[int, float], None]:
