@@ -34,6 +34,15 @@ def test_a_diagnosis_says_its_stages_in_their_order_each_once_and_none_on_stdout
     assert places == sorted(places) and len(told) < 16
 
 
+def test_a_stage_that_comes_back_is_told_once_and_the_first_with_the_second(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress.reporting() as report:
+        report("reading", 0.0)
+        assert capsys.readouterr().err == ""
+        for stage in ("selecting", "judging", "selecting", "judging", "writing"):
+            report(stage, 0.5)
+    assert lines(capsys.readouterr().err) == ["reading", "selecting", "judging", "writing"]
+
+
 def test_the_share_of_the_work_only_grows_and_the_library_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
     shares: list[float] = []
     diagnose(TRIAL, report=lambda stage, share=0.0, detail="": shares.append(share))

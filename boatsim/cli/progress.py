@@ -27,7 +27,7 @@ def _lines() -> Report:
     told: list[str] = []
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
-        if told and told[-1] == stage:
+        if stage in told:  # it comes back to selecting once what was left over is judged
             return
         told.append(stage)
         for line in told if len(told) == 2 else told[-1:] if len(told) > 2 else ():
@@ -58,7 +58,8 @@ def _bar() -> Iterator[Report]:
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
         said, taken = shown(f"{stage}: {detail}" if detail else stage), bars.tasks[row].elapsed or 0.0
-        bars.update(row, description=said, completed=share, left=time_left(taken, share))
+        done = max(share, bars.tasks[row].completed)
+        bars.update(row, description=said, completed=done, left=time_left(taken, done))
 
     with _shown(bars):
         yield report
