@@ -51,12 +51,15 @@ def run_into(
         runner.folder = new
         (new / "recording.toml").write_text(notes_toml(runner.scenario, runner.notes(), runner.seed, False), "utf-8")
         with ExitStack() as open_files:
-            log = open_files.enter_context(_log(new / "run.rrd", runner, viewer))
+            logs = [open_files.enter_context(_log(new / "run.rrd", runner))]
+            if viewer:  # apart from the file, which many small pieces would make ten times as large
+                logs.append(open_files.enter_context(_log(None, runner, viewer)))
             table = open_files.enter_context(CsvFile(new / "recording.csv"))
 
             def listen(rows: Recording) -> None:
                 table.add(rows)
-                log.chunk(rows)
+                for log in logs:
+                    log.chunk(rows)
 
             runner.listen = listen
             if "yaw" in scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
@@ -64,7 +67,8 @@ def run_into(
             run = runner.run(progress, stop)
             stop.over = True  # nothing that comes now may cost the files
             found = judged.norms(run)
-            log.finish({name: norm.to_json() for name, norm in found.items()})
+            for log in logs:
+                log.finish({name: norm.to_json() for name, norm in found.items()})
         content = judged.to_json(run, found)
         text = notes_toml(scenario, run.recording.notes, run.seed, run.complete)
         (new / "recording.toml").write_text(text, "utf-8")
@@ -115,7 +119,7 @@ def _value(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-def _log(path: Path, runner: Runner, viewer: str | None) -> "RunLog":
+def _log(path: Path | None, runner: Runner, viewer: str | None = None) -> "RunLog":
     """The rerun log of a run about to start."""
     from boatsim.view.rerun_log import RunLog
     from boatsim.view.scene import scene_from
