@@ -85,8 +85,8 @@ def test_a_boat_that_only_rolls_shows_its_roll_over_time():
 
 
 def test_without_a_patch_no_patched_boat_is_shown_and_without_free_runs_no_picture(tmp_path):
-    _, boats = film_of(nothing())
-    assert list(boats) == ["recorded", "recalibrated"]
+    found, boats = film_of(nothing())
+    assert list(boats) == ["recorded", "recalibrated"] and "before" not in found.legend
     assert replay(unknown()) is None
     report.write(unknown(), tmp_path)
     assert '<figure class="chart replay' not in (tmp_path / "report.html").read_text("utf-8")

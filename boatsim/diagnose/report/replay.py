@@ -23,7 +23,7 @@ BRIDGED = 3.0  # [s] at most between two fixes that the film joins
 AIR = 0.06  # of the picture, on each side
 SMALLEST, LARGEST = 0.08, 0.25  # length of a boat that is drawn, by the height of the picture
 BREADTH = 0.2  # of a midship section that is drawn, by the height of the picture
-LEGEND = {"recorded": "recorded", "recalibrated": "recalibrated (before)", "patched": "patched (after)"}
+AGE = {"recorded": "", "recalibrated": " (before)", "patched": " (after)"}
 BOW = ((0.5, 0.0), (0.2, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.2, -0.5))  # outline, ahead and to starboard
 SECTION = ((-0.5, -0.3), (0.5, -0.3), (0.5, 0.1), (0.3, 0.3), (-0.3, 0.3), (-0.5, 0.1))  # to starboard and down
 
@@ -75,7 +75,7 @@ def replay(f: Findings) -> Replay | None:
     film = _film(shown, models, None if plan else signals[0], panels[0].y, outline, worst)
     what = "Paths" if plan else listed(SIGNALS[s] for s in signals).capitalize()
     title = f"{what} on unseen data, {runs[0].run}: recorded and free runs of the {listed(models)} vessel"
-    looks = {m: LEGEND[m] for m in ("recorded", *models)}
+    looks = {m: m + (AGE[m] if "patched" in models else "") for m in ("recorded", *models)}
     return Replay(title, _about(runs, shown, plan, scale), legend(looks), stacked(panels), film)
 
 
