@@ -22,7 +22,7 @@ from boatsim.physics.content import PACKAGES
 HOME = Path(__file__).parents[1]
 OUT = HOME / "docs" / "arrows.svg"
 LAYERS = (  # a module may import from its own folder and from those in the lines above it
-    "__init__ errors files quiet interruption",
+    "__init__ errors files quiet interruption progress",
     "physics",
     "recordings control",
     "simulate",

@@ -97,8 +97,8 @@ def test_a_folder_a_pattern_and_a_file_stand_for_their_scenarios(tmp_path: Path)
 
 def test_cases_run_into_folders_of_their_own_names(tmp_path: Path) -> None:
     file = write(tmp_path / "mine.toml", HEAD + '[[case]]\nname = "one"\n[[case]]\nname = "two"\n')
-    assert [t.folder for t in plan([str(file)], tmp_path, None, False)] == [tmp_path / "one", tmp_path / "two"]
-    assert [t.name for t in plan(["joystick_boat/yaw_[12]"], tmp_path, None, False)] == [
+    assert [t.folder for t in plan([str(file)], tmp_path, None)] == [tmp_path / "one", tmp_path / "two"]
+    assert [t.name for t in plan(["joystick_boat/yaw_[12]"], tmp_path, None)] == [
         "joystick_boat/yaw_1", "joystick_boat/yaw_2"
     ]  # fmt: skip
 
@@ -139,4 +139,4 @@ def test_a_base_that_leads_round_through_files_is_one_line(tmp_path: Path) -> No
 
 def test_a_pattern_that_nothing_is_like_is_one_line() -> None:
     with pytest.raises(BadInput, match=r"no scenario is like 'joystick_boat/swy_\*' \(they are in catamaran, "):
-        plan(["joystick_boat/swy_*"], None, None, False)
+        plan(["joystick_boat/swy_*"], None, None)

@@ -105,10 +105,10 @@ def test_norms_json_agrees_with_recording_csv(sway: tuple[Path, Any]) -> None:
 def test_scenarios_of_one_name_do_not_share_a_folder() -> None:
     """Neither in one command nor in two."""
     both = ["kynoc/half_speed", "eastward_ho/half_speed"]
-    alone = [plan([name], None, None, False)[0].folder for name in both]
-    assert alone == [task.folder for task in plan(both, None, None, False)] == [Path("out") / name for name in both]
-    assert [t.folder for t in plan(both, Path("dir"), None, False)] == [Path("dir") / name for name in both]
-    assert plan(both[:1], Path("dir"), None, False)[0].folder == Path("dir")
+    alone = [plan([name], None, None)[0].folder for name in both]
+    assert alone == [task.folder for task in plan(both, None, None)] == [Path("out") / name for name in both]
+    assert [t.folder for t in plan(both, Path("dir"), None)] == [Path("dir") / name for name in both]
+    assert plan(both[:1], Path("dir"), None)[0].folder == Path("dir")
 
 
 def test_camera_csv_is_a_recording_that_knows_its_boat(tmp_path: Path) -> None:

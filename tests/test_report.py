@@ -2,7 +2,9 @@
 
 import os
 import re
+from base64 import b64encode
 from dataclasses import replace
+from hashlib import sha256
 from html.parser import HTMLParser
 
 import numpy as np
@@ -10,8 +12,9 @@ import pytest
 
 from boatsim.diagnose.description import Curve, Written
 from boatsim.diagnose.report import page as report
+from boatsim.diagnose.report.drawing import thinned, ticks
 from boatsim.diagnose.report.entries import Answer, IntervalEntry
-from boatsim.diagnose.report.figures import closer, thinned, ticks
+from boatsim.diagnose.report.figures import closer
 from boatsim.diagnose.report.findings import Findings, FreeRun, Missing
 from boatsim.diagnose.report.sections import sections_of
 from boatsim.diagnose.report.words import (
@@ -329,7 +332,14 @@ def test_the_page_says_its_sentence_first_and_fetches_nothing(written):
         value for _, name, value in outline.attributes if name in ("src", "href", "srcset", "action", "xlink:href")
     ]
     assert links and all(link.startswith("#") for link in links)
-    assert not re.search(r"https?:|//[a-z]|url\(|@import|<script|<link", html)
+    policy = re.search(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', html)
+    assert policy and html.index(policy[0]) < html.index("<style>")
+    assert not re.search(
+        r"https?:|//[a-z]|url\(|@import|<script src|<link|\bon[a-z]+=|fetch\(|import\(", html.replace(policy[0], "")
+    )
+    scripts = re.findall(r"<script>(.*?)</script>", html, re.DOTALL)
+    allowed = {f"'sha256-{b64encode(sha256(s.encode()).digest()).decode()}'" for s in scripts}
+    assert len(scripts) == 1 and f"default-src 'none'; script-src {allowed.pop()}; " in policy[1].replace("&#39;", "'")
     assert len(html.encode()) < 1_000_000
     ids = [value for _, name, value in outline.attributes if name == "id"]
     assert len(ids) == len(set(ids)) and {link[1:] for link in links} <= set(ids)
@@ -356,8 +366,8 @@ def test_names_and_words_from_files_do_not_become_markup(tmp_path):
                 remarks=(nasty,), coefficients={nasty: (1.0, 0.1)}, extra_tables=tables), tmp_path,
     )  # fmt: skip
     html, text = ((tmp_path / n).read_text("utf-8") for n in ("report.html", "report.md"))
-    assert Outline(html).open == [] and "<script" not in html and "<script" not in text
-    assert "|*a*" not in text
+    assert Outline(html).open == [] and "<script>alert" not in html and "<script" not in text
+    assert html.count("<script") == 2 and "|*a*" not in text  # the film, which is data, and the page's own
 
 
 def test_nothing_missing_says_so_and_gives_the_upper_limits(tmp_path):

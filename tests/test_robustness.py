@@ -251,7 +251,7 @@ def obeys(out: Path, files: tuple[str, ...], command: str, *arguments: object) -
     given = [command, *(str(a) for a in arguments), "--out", str(out)]
     result = CliRunner().invoke(app, given, catch_exceptions=False)
     left = {f.name for f in out.rglob("*")} if out.exists() else set()
-    said = [line for line in result.stderr.splitlines() if not line.startswith("note: ")]
+    said = [line for line in result.stderr.splitlines() if not line.startswith(("note: ", "progress: "))]
     if result.exit_code == 2:
         assert len(said) == 1 and said[0].startswith("boatsim: "), result.stderr
         assert any(name in said[0] for name in files), said[0]

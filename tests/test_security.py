@@ -21,13 +21,14 @@ from boatsim.cli.batch import plan
 from boatsim.cli.exits import LONGEST, complain, words
 from boatsim.diagnose.analysis import vessel_for
 from boatsim.diagnose.tried import library_for
-from boatsim.errors import BadInput, shown
+from boatsim.errors import BadInput, BoatsimError, shown
 from boatsim.files import DEEPEST, LARGEST, read_toml
 from boatsim.physics import cache, content, trust, vessel
 from boatsim.physics.program import Program
 from boatsim.recordings import limits
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import read
+from boatsim.view import viewer
 
 HERE = Path(__file__)
 TRIAL = HERE.parent / "data" / "trials" / "T002" / "run_1.csv"
@@ -128,7 +129,7 @@ def test_2_content_runs_and_its_names_resolve(tmp_path: Path) -> None:
     (home / "effects" / "thruster.py").write_text("1 / 0")
     with trust.trusting(home):
         assert content.load_class("effect", "thruster").__module__ == "boatsim.physics.effects.thruster"
-        assert plan(["calm/still"], None, None, False)[0].name == "calm/still"
+        assert plan(["calm/still"], None, None)[0].name == "calm/still"
     assert "no such folder" in refused(boatsim("list", "--content", tmp_path / "none"))
 
 
@@ -354,6 +355,16 @@ def test_16_the_report_escapes_what_it_shows(tmp_path: Path) -> None:
     assert boatsim("diagnose", run, "--vessel", "trial_boat", "--out", tmp_path / "out").exit_code == 0
     page = (tmp_path / "out" / "report.html").read_text()
     assert "<img src=q" not in page and "&lt;img src=q" in page and "<script src" not in page
+
+
+def test_16_a_run_is_served_to_this_machine_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+    ended = subprocess.Popen([sys.executable, "-c", ""], start_new_session=True)
+    ended.wait()
+    monkeypatch.setattr(viewer, "_rerun", lambda *options: asked.extend(options) or ended)
+    with pytest.raises(BoatsimError, match="does not start"), viewer.shown(serve=True):
+        pass
+    assert asked[asked.index("--bind") + 1] == "127.0.0.1"
 
 
 # Limits -----------------------------------------------------------------------------------------------------------

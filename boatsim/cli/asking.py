@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from boatsim.cli.progress import set_aside
 from boatsim.errors import shown
 
 
@@ -38,5 +39,6 @@ def _there() -> bool:
 
 def _asked(folder: Path) -> bool:
     question = f"boatsim: data name Python files in {shown(str(folder))}. Run them? [y/N] "
-    print(question, end="", file=sys.stderr, flush=True)
-    return sys.stdin.readline().strip().lower() in ("y", "yes")
+    with set_aside():
+        print(question, end="", file=sys.stderr, flush=True)
+        return sys.stdin.readline().strip().lower() in ("y", "yes")

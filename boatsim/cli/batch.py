@@ -1,24 +1,27 @@
 """Runs scenarios one after another or in processes of their own, with a progress bar and one exit code for all."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing import get_context, parent_process
 from multiprocessing.sharedctypes import SynchronizedArray
 from multiprocessing.synchronize import Event
 from pathlib import Path
 from threading import Lock, Thread
 
-from boatsim.cli import show
-from boatsim.cli.exits import FAULTS, Exit, complain, words
+from boatsim.cli import progress, show
+from boatsim.cli.exits import FAULTS, Exit, complain, remark, words
 from boatsim.errors import BadInput
 from boatsim.interruption import ignored, struck
 from boatsim.physics import trust
 from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.cases import meant
 from boatsim.simulate.norms import RunEntry
+from boatsim.simulate.pace import Pace
 from boatsim.simulate.scenario import Scenario
 
 POLL = 0.1  # [s] between two looks at the processes
@@ -36,7 +39,14 @@ class Task:
     duration: float  # [s] at most
     folder: Path
     seed: int | None
-    live: bool
+
+
+@dataclass(frozen=True)
+class Watched:
+    """That somebody watches the runs."""
+
+    serve: bool  # in a browser, not in a window
+    speed: float  # times real time; 0: as fast as can be
 
 
 @dataclass(frozen=True)
@@ -58,14 +68,17 @@ class Outcome:
         return Exit.MISSED if missed else Exit.MET
 
 
-def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None, live: bool) -> int:
+def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None, watched: Watched | None = None) -> int:
     """Run scenarios, print their norms, return the exit code. All are checked before any runs; raises BadInput."""
-    tasks = plan(names, out, seed, live)
+    tasks = plan(names, out, seed)
     jobs = min(jobs, len(tasks))
-    if live and jobs > 1:
-        raise BadInput("--live shows one run at a time; leave --jobs away")
-    with show.progress([(t.name, t.duration) for t in tasks]) as report:
-        outcomes = _in_processes(tasks, jobs, report) if jobs > 1 else _in_turn(tasks, report)
+    if watched and jobs > 1:
+        raise BadInput("--live and --serve show one run at a time; leave --jobs away")
+    with ExitStack() as until_done:
+        to = until_done.enter_context(_watching(watched)) if watched else None
+        report = until_done.enter_context(progress.running([(t.name, t.duration) for t in tasks]))
+        speed = watched.speed if watched and to else 0.0
+        outcomes = _in_processes(tasks, jobs, report) if jobs > 1 else _in_turn(tasks, report, to, speed)
     for outcome in outcomes:
         if outcome.error:
             complain(outcome.error)
@@ -78,11 +91,27 @@ def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None,
     return max(outcome.code for outcome in outcomes)
 
 
+@contextmanager
+def _watching(watched: Watched) -> Iterator[str | None]:
+    """Address of a viewer for the block; where there is none it is said at once, and what there is instead."""
+    from boatsim.view.viewer import HERE, PAGE, shown
+
+    with shown(watched.serve) as viewer:
+        if viewer is None:
+            complain(
+                "no viewer can be shown (is there a display?), and the run goes on unseen; with --serve, not --live, "
+                f"a browser shows it at http://{HERE}:{PAGE}"
+            )
+        elif viewer.page:
+            remark(f"watch in a browser, on this machine: {viewer.page}")
+        yield viewer.to if viewer else None
+
+
 def run_manoeuvre(scenario: Scenario, folder: Path) -> int:
     """Run a standard manoeuvre and print its figures; the limits beside them are a yardstick, not a test."""
     from boatsim.view.outputs import run_into
 
-    with show.progress([(scenario.name, scenario.file.duration)]) as report:
+    with progress.running([(scenario.name, scenario.file.duration)], several=False) as report:
         content = run_into(folder, scenario, progress=lambda t: report(0, t))
     show.norms(content, folder)
     warn_of_limits(content)
@@ -99,13 +128,13 @@ def warn_of_limits(content: RunEntry) -> None:
         )
 
 
-def plan(names: Sequence[str], out: Path | None, seed: int | None, live: bool) -> list[Task]:
+def plan(names: Sequence[str], out: Path | None, seed: int | None) -> list[Task]:
     """What to run and where its files go, from names that may be wrong."""
     names = [one for given in names for one in meant(given)]
     loaded = [scenarios.load(name) for name in names]
     folders = _folders([s.name for s in loaded], out)
     return [
-        Task(given, s.name, s.file.duration, folder, seed, live)
+        Task(given, s.name, s.file.duration, folder, seed)
         for given, s, folder in zip(names, loaded, folders, strict=True)
     ]
 
@@ -120,25 +149,26 @@ def _folders(names: Sequence[str], out: Path | None) -> list[Path]:
     return [(out or Path("out")) / name for name in names]
 
 
-def carry_out(task: Task, progress: Callable[[float], None]) -> Outcome:
-    """Run one task, whatever comes of it."""
+def carry_out(task: Task, told: Callable[[float], None], viewer: str | None = None, speed: float = 0.0) -> Outcome:
+    """Run one task, whatever comes of it; a viewer shows it at so many times real time (0: as fast as can be)."""
     try:
         from boatsim.view.outputs import run_into
 
-        return Outcome(task, run_into(task.folder, scenarios.load(task.given), task.seed, task.live, progress))
+        pace = Pace(speed) if speed > 0.0 else None
+        return Outcome(task, run_into(task.folder, scenarios.load(task.given), task.seed, viewer, told, pace))
     except FAULTS as error:
         return Outcome(task, error=f"{task.name}: {words(error)}")
     except KeyboardInterrupt:
         return Outcome(task)
 
 
-def _in_turn(tasks: Sequence[Task], report: Report) -> list[Outcome]:
+def _in_turn(tasks: Sequence[Task], report: Report, viewer: str | None, speed: float) -> list[Outcome]:
     outcomes: list[Outcome] = []
     for number, task in enumerate(tasks):
         if struck():  # while the files of the one before were written
             outcomes.append(Outcome(task))
             break
-        outcomes.append(carry_out(task, lambda t, number=number: report(number, t)))  # type: ignore[misc]
+        outcomes.append(carry_out(task, partial(report, number), viewer, speed))
         report(number, task.duration)
         if outcomes[-1].code == Exit.INTERRUPTED:
             break
@@ -201,13 +231,13 @@ def _end_with_parent() -> None:
 def _work(number: int, task: Task) -> Outcome:
     """One task in a process of its own."""
 
-    def progress(t: float) -> None:
+    def told(t: float) -> None:
         _reached[number] = t
         if _stop.is_set():
             raise KeyboardInterrupt
 
     with _at_work:
-        return Outcome(task) if _stop.is_set() else carry_out(task, progress)
+        return Outcome(task) if _stop.is_set() else carry_out(task, told)
 
 
 _stop: Event

@@ -14,6 +14,7 @@ from typer.core import TyperGroup
 import boatsim
 from boatsim.cli.asking import asking
 from boatsim.cli.exits import FAULTS, Exit, any_terminal, complain, say, words
+from boatsim.errors import BadInput
 from boatsim.interruption import heed, struck
 from boatsim.quiet import leave_quietly
 
@@ -60,6 +61,16 @@ def _folder(given: str | Path) -> Path:
     if not str(given) or "\0" in str(given):
         raise typer.BadParameter(f"{str(given)!r}; allowed is the name of a folder")
     return Path(given)
+
+
+def _speed(given: str | float) -> float:
+    try:
+        speed = 0.0 if given == "max" else float(given)
+    except ValueError:
+        speed = -1.0
+    if not 0.0 <= speed < 1e6:
+        raise typer.BadParameter(f"{given!r}; allowed are 0 or more, times real time, and max")
+    return speed
 
 
 Load = Annotated[
@@ -140,15 +151,22 @@ def run(
     ] = None,
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
     seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,
-    live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer while it runs.")] = False,
+    live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer, in real time.")] = False,
+    serve: Annotated[bool, typer.Option("--serve", help="Show it in a browser: rerun's web viewer.")] = False,
+    speed: Annotated[
+        float | None, typer.Option(metavar="X", parser=_speed, help="Times real time, with the two; 0 or max: no wait.")
+    ] = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
     """Run scenarios: recording.csv, norms.json, camera.csv, run.rrd, and a table of norms beside their bars."""
-    from boatsim.cli.batch import run_all
+    from boatsim.cli.batch import Watched, run_all
 
+    if speed is not None and not (live or serve):
+        raise BadInput(f"--speed = {speed:g}: only a run that is shown is held back; give --live or --serve too")
+    watched = Watched(serve, 1.0 if speed is None else speed) if live or serve else None
     with asking(content, trust, scenarios):
-        return run_all(scenarios, out, jobs, seed, live)
+        return run_all(scenarios, out, jobs, seed, watched)
 
 
 @app.command()

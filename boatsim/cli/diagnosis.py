@@ -1,16 +1,14 @@
 """What `boatsim diagnose`, `replay` and `compare` do: files in, files and a few printed lines out."""
 
 import json
-import logging
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from boatsim.cli.exits import remark, say
+from boatsim.cli.progress import reporting
 from boatsim.diagnose.analysis import NEXT, Diagnosis, hint, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.filter import nominal_levels, track
@@ -21,7 +19,7 @@ from boatsim.diagnose.log.first_orders import begun
 from boatsim.diagnose.next.experiment import scenario_text
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.report import page as report
-from boatsim.diagnose.report import patch, show, taken
+from boatsim.diagnose.report import patch, show, stays, taken
 from boatsim.diagnose.report.described import what_of
 from boatsim.diagnose.report.entries import Family
 from boatsim.diagnose.tried import composed
@@ -29,13 +27,12 @@ from boatsim.errors import BadInput, BadPhysics
 from boatsim.files import replacing
 from boatsim.physics.signals import COMPONENTS, STATE, Array
 from boatsim.physics.vessel import Vessel
+from boatsim.progress import Report
 from boatsim.recordings.table import Notes, Recording, write_csv
 from boatsim.simulate import scenario as scenarios
 from boatsim.view.outputs import filling
 
-if TYPE_CHECKING:
-    from boatsim.view.scene import Scene
-
+WRITING = 0.97  # of a diagnosis is done when its files are written, by experience
 FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
 
 
@@ -44,32 +41,32 @@ def diagnose(
     without: list[str], horizon: float | None = None,
 ) -> int:  # fmt: skip
     """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
-    _show_progress()
-    try:
-        found = analyse(runs, hold_out, vessel, load, library, without, horizon)
-    except BadInput as error:
-        raise BadInput(f"{error}{hint(runs, hold_out, vessel, load)}") from None
+    with reporting() as told:
+        try:
+            found = analyse(runs, hold_out, vessel, load, library, without, horizon, report=told)
+        except BadInput as error:
+            raise BadInput(f"{error}{hint(runs, hold_out, vessel, load)}") from None
+        told("writing the report", WRITING)
+        full = _unwritten(found, out)
     faults = [e for e in found.findings.answer.get("log", []) if e["kind"] == "fault"]
     for line in (*(f"{e['run']}: {words.strip()}" for e in faults for words in in_words(e)), *found.remarks):
         remark(line)
-    try:
-        write(found, out)
-    except OSError:  # a disk that is full does not cost the answer
+    if full:  # which does not cost the answer
         say(summary(found))
-        raise
+        raise full
     plan = [NEXT] if found.plan else []
     files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *plan, "diagnosis.rrd"]
     say([*summary(found), f"written to {out}: {', '.join(files)}"])
     return 0
 
 
-def _show_progress() -> None:
-    """What is being tried and the best so far, to whoever watches: to stderr, if that is a terminal."""
-    if not sys.stderr.isatty():
-        return
-    progress = logging.getLogger("boatsim.diagnose")
-    progress.handlers = [logging.StreamHandler()]
-    progress.setLevel(logging.INFO)
+def _unwritten(found: Diagnosis, out: Path) -> OSError | None:
+    """Write its files; what a full disk says."""
+    try:
+        write(found, out)
+    except OSError as error:
+        return error
+    return None
 
 
 def write(found: Diagnosis, out: Path) -> None:
@@ -118,6 +115,7 @@ def summary(found: Diagnosis) -> list[str]:
         if rms := fit.get(key):
             cells = ", ".join(f"{m} {rms[m] * scale:.4g}" for m in show.MODELS)
             lines.append(f"  {key.split('_')[0]} rms [{unit}]: {cells}")
+    lines += stays.in_words(answer, found.findings.patched)
     if wanted := answer["next_experiment"]:
         names, nats = ", ".join(wanted["separates"]), wanted["expected_gain_nats"]
         lines.append(f"to record next: {wanted['manoeuvre']} (tells apart {names}; expected gain {nats:.3g} nats)")
@@ -126,7 +124,7 @@ def summary(found: Diagnosis) -> list[str]:
 
 def overlay(found: Diagnosis, path: Path) -> None:
     """diagnosis.rrd: recorded, nominal, recalibrated and patched boats of the first unseen run on one time line."""
-    from boatsim.view import rerun_log
+    from boatsim.view import rerun_log, water
 
     stretches = [s for s in found.findings.free_runs if s.run == found.findings.free_runs[0].run]
     boats = {m: [_of_model(s, m) for s in stretches] for m in show.MODELS} if stretches else {}
@@ -140,27 +138,12 @@ def overlay(found: Diagnosis, path: Path) -> None:
             name, sd = FORCE_NAMES[axis], chosen.sd[axis]
             signals |= {name: mean, f"{name}_low": mean - 2 * sd, f"{name}_high": mean + 2 * sd}
         missing = Recording(chosen.run, chosen.t, signals)
-    scene = _water_around(found.vessel, *boats.get("recording", ()))
+    scene = water.around(found.vessel, boats)
     intervals = [
         i for i in found.findings.answer["where"]["intervals"] if chosen is not None and i["run"] == chosen.run
     ]
     with replacing(path) as temporary:
         rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
-
-
-def _water_around(boat: Vessel, path: Recording | None = None) -> "Scene":
-    """Scene of a boat in open water that reaches one and a half boat lengths beyond where it went."""
-    from boatsim.simulate import world
-    from boatsim.view.scene import scene_from
-
-    spans = []
-    for name in ("x_m", "y_m"):
-        where = path.signals[name] if path is not None and name in path.signals else np.zeros(1)
-        spans.append((float(np.nanmin(where)), float(np.nanmax(where))))
-    length, width = (high - low + 3 * boat.length for low, high in spans)
-    centre = (sum(spans[0]) / 2, sum(spans[1]) / 2)
-    tank = world.Tank(length, width, boat.draught * 2, walls=False, centre=centre)
-    return scene_from(world.build(boat, tank), boat, tank)
 
 
 def _whole(stretches: Sequence[FreeRun]) -> Recording:
@@ -175,31 +158,39 @@ def _of_model(stretch: FreeRun, model: str) -> Recording:
     """A free run of one model, with its distance from the recording."""
     signals, recorded = dict(stretch.channels[model]), stretch.channels["recorded"]
     if {"x_m", "y_m"} <= signals.keys():
-        signals["off_m"] = np.hypot(signals["x_m"] - recorded["x_m"], signals["y_m"] - recorded["y_m"])
+        off = np.hypot(signals["x_m"] - recorded["x_m"], signals["y_m"] - recorded["y_m"])
+        seen = np.isfinite(off)  # fixes may be fewer than rows
+        signals["off_m"] = np.interp(stretch.t, stretch.t[seen], off[seen]) if seen.any() else off
     return Recording(model, stretch.t, signals)
 
 
 def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:
     """Free runs of a vessel over a recording, driven by the recorded commands alone: replay.csv and rms errors."""
-    recording, boat = open_recording(run, vessel, load)
+    with reporting() as told:
+        told("reading the recording")
+        recording, boat = open_recording(run, vessel, load)
+        problem, fitted = _as_written(recording, boat, told)
+        told("free runs", 0.8)
+        stretches = free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
+        if not stretches:
+            seconds = recording.t[-1] - recording.t[0]
+            raise BadInput(f"{run}: {seconds:g} s long; a free run of {horizon:g} s does not fit")
+        _write_replay(stretches, out / "replay.csv")
     for line in recording.remarks:
         remark(line)
-    problem, fitted = _as_written(recording, boat)
-    stretches = free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
-    if not stretches:
-        raise BadInput(f"{run}: {recording.t[-1] - recording.t[0]:g} s long; a free run of {horizon:g} s does not fit")
-    _write_replay(stretches, out / "replay.csv")
     for family, found in errors(stretches).items():
         say([f"{family}: {found['simulated']:.5g} ({len(stretches)} free runs of {horizon:g} s)"])
     say([f"written to {out}: replay.csv"])
     return 0
 
 
-def _as_written(recording: Recording, boat: Vessel) -> tuple[Problem, Fit]:
+def _as_written(recording: Recording, boat: Vessel, told: Report) -> tuple[Problem, Fit]:
     """A vessel file on a recording, nothing fitted but the noise that the smoothed starts need."""
+    told("compiling, or loading what was compiled before", 0.1)
     program, acting = composed(boat)
     levels = nominal_levels(boat, [recording])
     problem = Problem([begun(track(recording, program), levels)], levels, {})
+    told("fitting the noise", 0.3)
     return problem, fit_noise(problem, replace(problem.nominal(), suspects=acting))
 
 
@@ -216,16 +207,19 @@ def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
 
 def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None, out: Path) -> int:
     """A recording beside a simulation: of its own commands from its smoothed first state, or of a scenario."""
-    recording, boat = open_recording(run, vessel, load)
+    with reporting() as told:
+        told("reading the recording")
+        recording, boat = open_recording(run, vessel, load)
+        if scenario:
+            told(f"running {scenario}", 0.1)
+            simulated = _of_scenario(recording, scenario)
+        else:
+            problem, fitted = _as_written(recording, boat, told)
+            told("the free run", 0.8)
+            whole = float(recording.t[-1] - recording.t[0])
+            simulated = free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[0].channels["simulated"]
     for line in recording.remarks:
         remark(line)
-    if scenario:
-        simulated = _of_scenario(recording, scenario)
-    else:
-        problem, fitted = _as_written(recording, boat)
-        whole = float(recording.t[-1] - recording.t[0])
-        only = free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[0]
-        simulated = only.channels["simulated"]
     signals: dict[str, Array] = {}
     lines = [f"{'signal':10s} {'rms error':>12s} {'largest':>12s}   of a range of"]
     for name, value in simulated.items():
@@ -256,9 +250,9 @@ def _of_scenario(recording: Recording, name: str) -> dict[str, Array]:
 
 
 def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Array], path: Path) -> None:
-    from boatsim.view import rerun_log
+    from boatsim.view import rerun_log, water
 
     measured = Recording("recording", recording.t, {n: recording.signals[n] for n in simulated})
     boats = {"recording": [measured], "simulated": [Recording("simulated", recording.t, dict(simulated))]}
     with replacing(path) as temporary:
-        rerun_log.log_overlay(temporary, boats, None, [], _water_around(boat, measured))
+        rerun_log.log_overlay(temporary, boats, None, [], water.around(boat, boats))

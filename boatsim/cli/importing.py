@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from boatsim.cli.progress import reporting
 from boatsim.errors import BadInput
 from boatsim.files import replacing
 from boatsim.physics import vessel as vessels
@@ -22,7 +23,7 @@ def import_log(
 ) -> int:
     """List and propose, or convert. Raises BadInput."""
     if map is None:
-        return _show(open_log(log), propose, out, vessel, load)
+        return _show(_opened(log), propose, out, vessel, load)
     if propose:
         raise BadInput("--propose writes a map, --map reads one; give one of them")
     if out is None:
@@ -31,7 +32,13 @@ def import_log(
         raise BadInput(f"--out {out}: a recording is written as CSV; call it .csv")
     if any(out.resolve() == given.resolve() for given in (log, map)):
         raise BadInput(f"--out {out}: that is what is read; give another name")
-    return _convert(open_log(log), out, map, vessel, load)
+    return _convert(log, out, map, vessel, load)
+
+
+def _opened(path: Path) -> Log:
+    with reporting() as told:
+        told("reading the log")
+        return open_log(path)
 
 
 def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]) -> int:
@@ -50,13 +57,18 @@ def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, 
     return 0
 
 
-def _convert(log: Log, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
+def _convert(path: Path, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
     found = read_map(map)
     name = vessel or found.vessel
     boat = vessels.load(name, load) if name else None
     limits = boat.limits() if boat else {}
-    recording = convert(log, found, str(map), limits)
-    write_csv(recording, out)
+    with reporting() as told:
+        told("reading the log")
+        log = open_log(path)
+        told("putting its signals on one clock", 0.6)
+        recording = convert(log, found, str(map), limits)
+        told("writing the recording", 0.8)
+        write_csv(recording, out)
     _say(recording.remarks)
     span = f"{len(recording)} rows over {recording.t[-1]:.6g} s"
     print(f"written to {out}: {span}; {', '.join(recording.signals)}")

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from boatsim.cli.exits import say
+from boatsim.cli.progress import reporting
 from boatsim.errors import BadInput
 from boatsim.newboat.particulars import Particulars
 from boatsim.newboat.write import VESSEL, files
@@ -20,7 +21,8 @@ def new_boat(folder: Path, boat: Particulars, logs: list[Path], force: bool) -> 
         if logs:
             from boatsim.newboat import from_log
 
-            found = from_log.fitted(new / VESSEL, logs)
+            with reporting() as told:
+                found = from_log.fitted(new / VESSEL, logs, report=told)
             lines += from_log.in_words(found)
             if found.better:
                 (new / VESSEL).write_text(from_log.text(found, logs), encoding="utf-8")

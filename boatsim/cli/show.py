@@ -1,7 +1,6 @@
-"""What the command line prints: progress, the table of norms, the list of content."""
+"""What the command line prints: the table of norms, the list of content."""
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,20 +12,6 @@ from boatsim.simulate import cases
 
 if TYPE_CHECKING:
     from boatsim.simulate.norms import NormEntry, RunEntry
-
-
-@contextmanager
-def progress(tasks: Sequence[tuple[str, float]]) -> Iterator[Callable[[int, float], None]]:
-    """Progress bars of tasks (name, simulated time [s]) on stderr; nothing where that is not a terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    console = Console(stderr=True)
-    clock = TextColumn("{task.completed:.0f} of {task.total:.0f} s simulated")
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), clock, TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
-        rows = [bars.add_task(name, total=duration) for name, duration in tasks]
-        yield lambda number, t: bars.update(rows[number], completed=t)
 
 
 def norms(found: "RunEntry", folder: Path) -> None:

@@ -17,6 +17,7 @@ from boatsim.diagnose.filter import Track, axes_of, noise_beside, noise_of, nomi
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.locate import forces as locate
 from boatsim.diagnose.locate import hull_forces
+from boatsim.diagnose.locate.mean_force import mean_left
 from boatsim.diagnose.log import left_out, look
 from boatsim.diagnose.log.entry import entry, joined, sources_of
 from boatsim.diagnose.log.finding import PROBABLY, Finding
@@ -38,11 +39,14 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
+from boatsim.progress import Report, part, silent
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording, read
 
 SAME_SCALE = 0.01  # scales this close are one
 NEXT = "next.toml"  # scenario of the next experiment, in the folder of the answer
+READ, RANKING, DESCRIBING, SHOWING = 0.05, (0.1, 0.7), (0.7, 0.85), 0.9  # shares of the work, by experience
+LOOKING = "looking at the log"
 
 
 @dataclass(frozen=True)
@@ -103,6 +107,7 @@ def diagnose(
     without: Sequence[str] = (),
     horizon: float | None = None,
     facts: Mapping[str, Value] | None = None,
+    report: Report = silent,
 ) -> Diagnosis:
     """Locate, name and model what the vessel leaves out of the recordings. Raises BadInput.
 
@@ -110,7 +115,11 @@ def diagnose(
     the recordings that their notes do not state.
     """
     _check_apart([*runs, *hold_out])
-    opened = [open_recording(path, vessel, load) for path in (*runs, *hold_out)]
+    opened = []
+    for i, path in enumerate(paths := (*runs, *hold_out)):
+        report(f"reading {len(paths)} {'recording' if len(paths) == 1 else 'recordings'}", READ * i / len(paths))
+        opened.append(open_recording(path, vessel, load))
+    report(LOOKING, READ)
     stated = [replace(r.notes, facts={**(facts or {}), **r.notes.facts}) for r, _ in opened]
     opened = [(replace(r, notes=notes), b) for (r, b), notes in zip(opened, stated, strict=True)]
     boats = [boat for _, boat in opened]
@@ -123,7 +132,8 @@ def diagnose(
     fitted, unseen, note = show.split(named[: len(runs)], named[len(runs) :])
     remarks = tuple(dict.fromkeys(m for r in thin for m in r.remarks))
     vessels_of = {r.path: b for r, b in opened}
-    return diagnose_recordings(fitted, unseen, vessels_of, note, library, without, remarks, horizon, seen)
+    rest = part(report, READ, 1.0)
+    return diagnose_recordings(fitted, unseen, vessels_of, note, library, without, remarks, horizon, seen, rest)
 
 
 def pose(
@@ -217,6 +227,7 @@ def diagnose_recordings(
     remarks: tuple[str, ...] = (),
     horizon: float | None = None,
     seen: Sequence[Finding] = (),
+    report: Report = silent,
 ) -> Diagnosis:
     """The same for recordings that are already opened, thinned and split: `boats` is the vessel of each file.
 
@@ -225,17 +236,23 @@ def diagnose_recordings(
     boat = boats[fitted[0].path]
     problem, unseen_tracks, lay, there = pose(fitted, unseen, boats, library, horizon)
     candidates = less(there, without)
+    report("compiling, or loading what was compiled before")
     _compile(problem)
     begin = time.perf_counter()
     try:
         with threadpool_limits(1, "blas"):  # matrices are small: threads cost more, on a busy machine twentyfold
+            report("laying the log on the vessel, as it may have been meant", RANKING[0] / 2)
             seen = [*seen, *tried(fitted, lay, problem)]
-            ranking = rank(problem, candidates, unseen_tracks)
+            ranking = rank(problem, candidates, unseen_tracks, report=part(report, *RANKING))
             a_fact = "time_constant_s" in fitted[0].notes.ambient
+            report("choosing the correlation time of the water", RANKING[1])
             if not a_fact and (again := timed(problem, ranking.best)) is not problem:
+                report("selecting once more, with that time", RANKING[1])
                 problem, ranking = again, rank(again, candidates, unseen_tracks, ranking.best)
-            before, ranking = ranking, _described(problem, ranking, unseen_tracks)
+            before, ranking = ranking, _described(problem, ranking, unseen_tracks, part(report, *DESCRIBING))
+            report("planning what to record next", DESCRIBING[1])
             plan = experiment.next_experiment(problem, *experiment.question(replace(before, named=ranking.named)))
+            report("free runs", SHOWING)
             findings = _findings(problem, ranking, unseen_tracks, boat, note, plan)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         where = fitted[0].path or fitted[0].name
@@ -283,9 +300,9 @@ def _compile(problem: Problem) -> None:
     hull_forces.along(track, rest, hull_forces.actuators(track)[:1], track.values)
 
 
-def _described(problem: Problem, ranking: Ranking, unseen: Sequence[Track]) -> Ranking:
+def _described(problem: Problem, ranking: Ranking, unseen: Sequence[Track], report: Report) -> Ranking:
     """The same with a law written down for what nothing explains, and without entries that but stood for it."""
-    found = described(problem, ranking.best, ranking.recalibrated, unseen) if ranking.unknown else None
+    found = described(problem, ranking.best, ranking.recalibrated, unseen, report) if ranking.unknown else None
     if found is None:
         return ranking
     named = tuple(n for n in ranking.named if n.name in found.fit.suspects)
@@ -306,7 +323,7 @@ def _findings(
     longest = max(float(np.ptp(t.times)) for t in unseen)
     horizon = min(problem.horizon, float(f"{longest:.3g}") if longest < problem.horizon else np.inf)
     fits = show.fits_of(problem, ranking)
-    everything = [*problem.tracks, *unseen]
+    everything = show.in_time([*problem.tracks, *unseen])
     forces = locate.missing_force(problem, ranking.recalibrated, everything)
     left = locate.force_left(problem, ranking.best, everything)
     stretches = free_runs(problem, fits, unseen, horizon)
@@ -328,10 +345,13 @@ def _findings(
         for f, x, s in zip(recalibrated.free, recalibrated.theta, sd, strict=True)
     }
     held_out = tuple(t.name for t in unseen)
+    answer = compose(problem, ranking, forces, left, stretches, held_out, horizon, experiment.entry(plan, NEXT))
+    answer["mean_left"] = mean_left(problem, ranking.best, everything)
     return Findings(
-        compose(problem, ranking, forces, left, stretches, held_out, horizon, experiment.entry(plan, NEXT)),
+        answer,
         vessel.name, tuple(t.name for t in problem.tracks), held_out, note, missing, tuple(stretches),
         tuple(show.remarks(parts, problem.tracks, errors(stretches), ranking)), coefficients,
         (table,) if table[2] else (), meanings(problem.program.suspects, problem.program.vessel),
         ranking.description.terms if ranking.description else (), experiment.steps(plan),
+        (vessel.length, vessel.beam),
     )  # fmt: skip

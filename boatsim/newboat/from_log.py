@@ -28,6 +28,7 @@ from boatsim.diagnose.search.rank import baseline
 from boatsim.diagnose.tried import composed
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
+from boatsim.progress import Report, part, silent
 from boatsim.recordings.table import Recording
 
 # its own, tried beside the coefficients
@@ -58,12 +59,13 @@ class Fitted:
         return all(self.after[family] <= before for family, before in self.before.items())
 
 
-def fitted(vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = ()) -> Fitted:
+def fitted(vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = (), report: Report = silent) -> Fitted:
     """The vessel of a file with its coefficients fitted to logs.
 
     Judged on the last third of each, or on the logs `unseen`, and then the others are fitted whole and what belongs to
     their day is left out. Raises BadInput.
     """
+    report(f"reading {len(logs) + len(unseen)} logs")
     opened = [open_recording(path, str(vessel_file), ()) for path in (*logs, *unseen)]
     boat = opened[0][1]
     lasts = lasting([r for r, _ in opened])
@@ -71,11 +73,14 @@ def fitted(vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = ())
     parts = [_parted(r) for r in whole[: len(logs)]]
     first = whole[: len(logs)] if unseen else [a for a, _ in parts]
     last = whole[len(logs) :] if unseen else [b for _, b in parts]
+    report("compiling, or loading what was compiled before", 0.05)
     problem, judge = _problems(boat, first, last)
     try:
         with threadpool_limits(1, "blas"):
+            report("fitting the coefficients", 0.1)
             nominal, best = baseline(problem)
-            best = _with_more(problem, best)
+            best = _with_more(problem, best, part(report, 0.3, 0.9))
+            report("judging on what was not fitted", 0.9)
             before, after = _errors(judge, nominal, _without(best, OF_DAY) if unseen else best)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         raise BadInput(
@@ -111,11 +116,15 @@ def _problems(boat: Vessel, first: Sequence[Recording], last: Sequence[Recording
     return problem, problem.on([track(r, program) for r in last])
 
 
-def _with_more(problem: Problem, best: Fit) -> Fit:
+def _with_more(problem: Problem, best: Fit, report: Report) -> Fit:
     """With those of the candidates that gain, the one that gains most first."""
     there = [n for n in (*OF_BOAT, *OF_DAY) if n in problem.program.entries]
     while there:
-        tried = {n: converge(problem, _start(problem, best, n)) for n in there}
+        tried = {}
+        for i, n in enumerate(there):
+            share = (len(best.suspects) + i / len(there)) / (len(best.suspects) + 2)
+            report("trying what a boat may have besides", share, n.replace("_", " "))
+            tried[n] = converge(problem, _start(problem, best, n))
         name = max(tried, key=lambda n: tried[n].evidence)
         if not tried[name].evidence > best.evidence + GAIN:
             break

@@ -22,6 +22,7 @@ from boatsim.recordings.table import NoSignal, Notes, Recording
 from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.log import FiledLog, Log
+from boatsim.simulate.pace import Pace
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.sensing import sensed
 from boatsim.simulate.world import Tank
@@ -32,6 +33,7 @@ SEEN = ("x_m", "y_m", "psi_rad")  # the pose that a camera frame gives
 SHORTEST = 1e-6  # [s] of a part of a step
 CHUNK = 500  # [rows] handed to a listener at a time
 OFTEN = 0.5  # [s] after which it gets fewer: a process that is killed loses no more than a second
+LIVE = 0.1  # [s] the same where somebody watches
 STILL = 50  # rows of a boat that stays as it is, by which a measure is asked what it reads
 Listener = Callable[[Recording], None]
 
@@ -61,6 +63,7 @@ class Runner:
         self.scenario, self.listen = scenario, listen
         self.watch: Listener | None = None
         self.folder: Path | None = None
+        self.pace: Pace | None = None  # somebody watches: then the listeners get rows more often
         self.seed = file.seed if seed is None else seed
         tank = Tank(**file.tank.model_dump()) if file.tank else None
         vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
@@ -98,6 +101,8 @@ class Runner:
         try:
             while not (complete := self._finished()) and not stop():
                 self._advance()
+                if self.pace:
+                    self.pace.wait(self._state.t, stop)
                 if progress and self._steps % 100 == 0:
                     progress(self._state.t)
         except KeyboardInterrupt:
@@ -313,7 +318,7 @@ class Runner:
     def _show(self, over: bool = False) -> None:
         """New rows to the listeners, if there are enough or it is time; a frame once its commands are known."""
         now = monotonic()
-        if not over and self.log.count - self._shown < CHUNK and now - self._told < OFTEN:
+        if not over and self.log.count - self._shown < CHUNK and now - self._told < (LIVE if self.pace else OFTEN):
             return
         self._told = now
         if self.listen and self.log.count > self._shown:

@@ -22,6 +22,7 @@ PALETTE: tuple[Colour, ...] = (
     (140, 86, 75),
     (23, 190, 207),
 )
+HIGH, WIDE = 0.95, 1.0  # what an eye that looks down sees of the water, by its height above it
 ORANGE, GREY, SKY = (255, 127, 14), (150, 150, 150), (238, 242, 246)
 # the same colour for the same thing in every plot; port red and starboard green as on the water
 FIXED: dict[str, Colour] = {
@@ -71,7 +72,7 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
     rate = [n for n in names if n in ("r_radps", "reference_r_radps", "p_radps")]
     return _layout(
         rrb.Vertical(
-            _view(scene, ["path", "camera"]), rrb.TextDocumentView(origin="norms", name="Norms"), row_shares=[3, 1]
+            _view(scene, ["path", "camera"]), rrb.TextDocumentView(origin="norms", name="Norms"), row_shares=[5, 3]
         ),
         _plot("Surge and sway velocity", speed),
         _plot("Yaw rate" if "p_radps" not in names else "Yaw and roll rate", rate),
@@ -104,10 +105,12 @@ def of_overlay(
         if name in missing
     ]
     length, width, x, y = scene.tank
-    eye = (x - 0.2 * length, -y, 0.65 * max(length, width))
+    height = max(length / HIGH, width / WIDE)
+    eye = (x - 0.15 * height, -y, height)
     if "x_m" not in set(names):  # it only rolls: seen from astern
         eye = (-1.2 * scene.length, 0.0, 0.4 * scene.length)
-    view = _view(scene, [f"paths/{boat}" for boat in boats], eye, f"{scene.vessel}: {', '.join(boats)}")
+    size = f", drawn {scene.times:.2g} times their size" if scene.times > 1.0 else ""
+    view = _view(scene, [f"paths/{boat}" for boat in boats], eye, f"{scene.vessel}: {', '.join(boats)}{size}")
     return _layout(view, rrb.Tabs(*motion), *forces)
 
 

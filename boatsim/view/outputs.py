@@ -19,6 +19,7 @@ from boatsim.physics.content import vessel_address
 from boatsim.recordings.table import Notes, Recording, csv_header, csv_rows
 from boatsim.simulate import norms as judged
 from boatsim.simulate.norms import RunEntry
+from boatsim.simulate.pace import Pace
 from boatsim.simulate.run import Runner
 from boatsim.simulate.scenario import Scenario
 
@@ -33,25 +34,32 @@ def run_into(
     folder: Path,
     scenario: Scenario,
     seed: int | None = None,
-    live: bool = False,
+    viewer: str | None = None,
     progress: Callable[[float], None] | None = None,
+    pace: Pace | None = None,
 ) -> RunEntry:
     """Run a scenario, writing its log as it goes, and put its files into `folder`; returns what norms.json says.
+
+    `viewer` is the address of one that shows it meanwhile, and `pace` holds it back for that.
 
     An interruption ends the run, and what was logged is kept with its norms so far. Raises BadInput, BadPhysics or
     OSError, and then `folder` is as it was; of a disk that is full the line says where the whole part of the log lies.
     """
     runner = Runner(scenario, seed)
+    runner.pace = pace
     with noted() as stop, filling(folder, keep="recording.csv") as new:
         runner.folder = new
         (new / "recording.toml").write_text(notes_toml(runner.scenario, runner.notes(), runner.seed, False), "utf-8")
         with ExitStack() as open_files:
-            log = open_files.enter_context(_log(new / "run.rrd", runner, live))
+            logs = [open_files.enter_context(_log(new / "run.rrd", runner))]
+            if viewer:  # apart from the file, which many small pieces would make ten times as large
+                logs.append(open_files.enter_context(_log(None, runner, viewer)))
             table = open_files.enter_context(CsvFile(new / "recording.csv"))
 
             def listen(rows: Recording) -> None:
                 table.add(rows)
-                log.chunk(rows)
+                for log in logs:
+                    log.chunk(rows)
 
             runner.listen = listen
             if "yaw" in scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
@@ -59,7 +67,8 @@ def run_into(
             run = runner.run(progress, stop)
             stop.over = True  # nothing that comes now may cost the files
             found = judged.norms(run)
-            log.finish({name: norm.to_json() for name, norm in found.items()})
+            for log in logs:
+                log.finish({name: norm.to_json() for name, norm in found.items()})
         content = judged.to_json(run, found)
         text = notes_toml(scenario, run.recording.notes, run.seed, run.complete)
         (new / "recording.toml").write_text(text, "utf-8")
@@ -110,12 +119,12 @@ def _value(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-def _log(path: Path, runner: Runner, live: bool) -> "RunLog":
+def _log(path: Path | None, runner: Runner, viewer: str | None = None) -> "RunLog":
     """The rerun log of a run about to start."""
     from boatsim.view.rerun_log import RunLog
     from boatsim.view.scene import scene_from
 
-    return RunLog(path, live, scene_from(runner.engine.model, runner.scenario.vessel, runner.engine.tank))
+    return RunLog(path, scene_from(runner.engine.model, runner.scenario.vessel, runner.engine.tank), viewer)
 
 
 @contextmanager

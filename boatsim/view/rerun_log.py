@@ -18,7 +18,7 @@ import rerun as rr
 from boatsim.physics.signals import POSE, Array
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
-from boatsim.simulate.norms import NormEntry
+from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED, NormEntry
 from boatsim.view import blueprint
 from boatsim.view.blueprint import WORLD
 from boatsim.view.scene import OUTBOARD, Scene, Solid
@@ -44,6 +44,7 @@ BOATS = {  # as in the report; told apart by colour-blind readers too, on dark p
     "recalibrated": (45, 140, 225),
     "patched": (0, 165, 120),
 }
+VERDICTS = {REPRODUCED: "(the same)", MISSED: "(differs)", UNSTATED: ""}
 PARTING = 1e-9  # [s] between the end of one stretch, a gap, and the begin of the next at the same time
 
 
@@ -58,17 +59,17 @@ class Flagged(TypedDict):
 class RunLog:
     """A run's log: `chunk` takes new rows while it runs, `finish` the norms; leaving the `with` block keeps all of it.
 
-    `path` is the `.rrd` to write (None: none), `live` feeds the viewer that listens on this machine, or a new one.
+    `path` is the `.rrd` to write, `viewer` the address of one that is fed (None: none).
     """
 
-    def __init__(self, path: Path | str | None, live: bool, scene: Scene) -> None:
+    def __init__(self, path: Path | str | None, scene: Scene, viewer: str | None = None) -> None:
         """Raises OSError, as whatever writes does."""
-        self.scene, self.live = scene, live
+        self.scene, self.live = scene, viewer is not None
         self._waiting: list[Recording] = []
         self._written = monotonic()  # when something last was
         self._trail: tuple[float, Array] | None = None  # time and place of the last point of the path
         self._known: set[str] = set()
-        self.stream = Stream("boatsim", path, live)
+        self.stream = Stream("boatsim", path, viewer)
         if self.stream.heard:
             _begin(self.stream)
             _draw_tank(self.stream, scene)
@@ -137,7 +138,7 @@ def log_overlay(
     the end of one to the begin of the next. `missing` has `force_X_N` (and `_Y_N`, `_K_Nm`, `_N_Nm`) with `..._low`
     and `..._high`; `intervals` are `where.intervals` of diagnosis.json (from_s, to_s, axis).
     """
-    stream = Stream("boatsim_diagnosis", path, live=False)
+    stream = Stream("boatsim_diagnosis", path)
     _begin(stream)
     _draw_tank(stream, scene)
     for number, (boat, stretches) in enumerate(boats.items()):
@@ -171,15 +172,17 @@ def _begin(stream: Stream) -> None:
 
 
 def norms_table(norms: Mapping[str, NormEntry]) -> str:
-    """Markdown table norm, value, published, verdict on it, guard, met."""
-    lines = ["| norm | value | published | verdict | guard | met |", "|:---|---:|---:|:---|:---:|:---:|"]
+    """Markdown table norm, value, guard, met, published with the verdict on it; narrow, and what counts first."""
+    if not norms:
+        return "This scenario has no norms.\n"
+    lines = ["| norm | value | guard | met | published |", "|:---|---:|:---:|:---:|:---|"]
     for name, norm in norms.items():
         ok, ends = norm.get("ok"), [_short(end) for end in norm.get("guard") or (None, None)]
         met = "" if ok is None else "yes" if ok else "**no**"
         span = " to ".join(ends) if all(ends) else f"at least {ends[0]}" if ends[0] else f"at most {ends[1]}"
         value = f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
-        said = f"{_short(norm.get('published'))} | {norm.get('verdict') or ''}"
-        lines.append(f"| {name} | {value} | {said} | {span if any(ends) else ''} | {met} |")
+        said = f"{_short(norm.get('published'))} {VERDICTS.get(norm.get('verdict') or '', '')}".strip()
+        lines.append(f"| {name} | {value} | {span if any(ends) else ''} | {met} | {said} |")
     return "\n".join(lines) + "\n"
 
 
@@ -295,11 +298,13 @@ def _mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
 def _move(stream: Stream, rows: Recording, scene: Scene, boat: str) -> None:
     """Pose of the hull and angles of the outboards; a boat that only rolls stays at the origin."""
     zero = np.zeros(len(rows))
-    x, y, z, phi, theta, psi = (rows.signals.get(name, zero) for name in POSE)
+    pose = np.stack([rows.signals.get(name, zero) for name in POSE])
+    known = np.isfinite(pose).all(axis=0)  # where nothing was measured, the boat stays where it was
+    x, y, z, phi, theta, psi = pose[:, known]
     points = _flat(x, y)
     points[:, 2] -= z  # z is down
     place = rr.Transform3D.columns(translation=points, quaternion=_attitude(psi, phi, theta))
-    stream.send_columns(f"{WORLD}/{boat}", _when(rows.t), place)
+    stream.send_columns(f"{WORLD}/{boat}", _when(rows.t[known]), place)
     for thruster in scene.thrusters:
         if (steer := rows.signals.get(thruster.steer)) is not None:
             # the force points a to starboard when the leg is turned by a, clockwise seen from above
@@ -366,7 +371,10 @@ def _log_path(
     """One short line for each step; the view shows all up to its time. Returns the last point's time and place."""
     if not {"x_m", "y_m"} <= rows.signals.keys():
         return last
-    due = np.unique(np.floor(rows.t / TRAIL_STEP + 1e-6), return_index=True)[1]
+    known = np.flatnonzero(np.isfinite(rows["x_m"]) & np.isfinite(rows["y_m"]))
+    if not len(known):
+        return last
+    due = known[np.unique(np.floor(rows.t[known] / TRAIL_STEP + 1e-6), return_index=True)[1]]
     t, points = rows.t[due], _flat(rows["x_m"][due], rows["y_m"][due], height)
     if last is not None:
         t, points = np.append(last[0], t), np.vstack([last[1], points])

@@ -4,7 +4,7 @@ Axes are those of the picture: z up, x forward, y to port; SNAME (x, y, psi) app
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -57,6 +57,14 @@ class Scene:
     thrusters: tuple[Thruster, ...] = ()
     reach: float = 0.3  # [m/N] length of an arrow per newton
     open: bool = False  # no walls: the boat may go anywhere, and the eye goes with it
+    times: float = 1.0  # their size that boats are drawn
+
+    def enlarged(self, times: float) -> "Scene":
+        """The same with boats drawn so many times as large; the water and their paths stay."""
+        solids = (s if s.part == "tank" else s._replace(vertices=times * s.vertices) for s in self.solids)
+        thrusters = (t._replace(x=times * t.x, y=times * t.y) for t in self.thrusters)
+        return replace(self, length=times * self.length, solids=tuple(solids), thrusters=tuple(thrusters),
+                       times=times * self.times)  # fmt: skip
 
     def outline(self) -> Array:
         """(V, 2) m, closed, of what is drawn of the hull, seen from above (its convex hull)."""

@@ -1,6 +1,5 @@
 """Chooses the terms of a description: weighed quickly, the best tried in the filter, made finer, judged by evidence."""
 
-import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -17,8 +16,8 @@ from boatsim.diagnose.search.evidence import price
 from boatsim.diagnose.search.select import SLIGHT
 from boatsim.diagnose.search.settle import ALIKE_SHARE, WORTH
 from boatsim.physics.described import Described
+from boatsim.progress import Report, silent
 
-progress = logging.getLogger("boatsim.diagnose")
 MOST = 5  # terms
 TRIED = 4  # of those that promise most, in the filter
 TOLD = 0.1  # [nats] by which a move must gain
@@ -34,8 +33,9 @@ class Chosen:
     terms: dict[str, Described]
 
 
-def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
+def chosen(problem: Problem, best: Fit, unseen: Sequence[Track], report: Report = silent) -> Chosen:
     """Terms added one by one to a set, each time the one by which the evidence rises most, while one is worth it."""
+    report("describing what is left over")
     begun = so_far = Chosen(best, {})
     everywhere, refused = [*problem.tracks, *unseen], set[Likeness]()
     while len(so_far.terms) < MOST:
@@ -60,7 +60,8 @@ def chosen(problem: Problem, best: Fit, unseen: Sequence[Track]) -> Chosen:
         so_far = _pruned(problem, further)
         if len(so_far.terms) > 1:
             so_far = _beside(problem, so_far, everywhere)
-        progress.info("described: %d terms (%.0f nats)", len(so_far.terms), found.evidence - best.evidence)
+        gain = found.evidence - best.evidence
+        report("describing what is left over", len(so_far.terms) / MOST, f"{len(so_far.terms)} terms ({gain:.0f} nats)")
     return so_far
 
 

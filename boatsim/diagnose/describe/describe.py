@@ -13,13 +13,16 @@ from boatsim.diagnose.free_runs import free_runs
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search import carries
 from boatsim.diagnose.search.evidence import left_over
+from boatsim.progress import Report, silent
 
 BETTER = 0.98  # of the mean square errors: free runs must get that much better for one more term to carry over
 
 
-def described(problem: Problem, best: Fit, recalibrated: Fit, unseen: Sequence[Track]) -> Description | None:
+def described(
+    problem: Problem, best: Fit, recalibrated: Fit, unseen: Sequence[Track], report: Report = silent
+) -> Description | None:
     """What is left over beside a set, as terms; None where no term is worth its price."""
-    found = chosen(problem, best, unseen)
+    found = chosen(problem, best, unseen, report)
     if not found.terms:
         return None
     alone = {name: less(problem, found, name).fit for name in found.terms}

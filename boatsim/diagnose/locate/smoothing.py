@@ -36,6 +36,16 @@ def variance_of_average(covariances: Array, gains: Array, part: slice, rows: int
     return np.asarray(np.maximum(variance, 0.0)[_first(len(single), rows)]) / rows**2
 
 
+def variance_of_mean(covariances: Array, gains: Array, part: slice) -> Array:
+    """(k,) variance of the mean over all rows of a part of the smoothed state: that of their sum, row by row."""
+    own = covariances[:, :, part]
+    with_later, total = own[-1], np.diagonal(covariances[-1])[part].copy()
+    for i in range(len(own) - 2, -1, -1):
+        with_later = own[i] + gains[i] @ with_later
+        total += 2.0 * np.diagonal(with_later[part]) - np.diagonal(own[i][part])
+    return np.asarray(np.maximum(total, 0.0) / len(own) ** 2)
+
+
 def _first(n: int, rows: int) -> NDArray[np.int64]:
     """(n,) first row of the average about each row."""
     return np.clip(np.arange(n) - (rows - 1) // 2, 0, n - rows)

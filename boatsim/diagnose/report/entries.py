@@ -88,6 +88,15 @@ class StrengthEntry(TypedDict):
     unit: str
 
 
+class MeanEntry(TypedDict):
+    """A force that pushes the same way all along and stays in the patched vessel, along one axis of the hull."""
+
+    mean: float
+    sd: float
+    unit: str
+    share_of_full_thrust: NotRequired[float]  # of a force, where the vessel's drives push ahead
+
+
 class IntervalEntry(TypedDict):
     """A stretch of a run in which the force of an axis is missing."""
 
@@ -189,6 +198,7 @@ class Answer(TypedDict):
     effects: list[EffectEntry]
     unknown: UnknownEntry
     described: list[DescribedEntry]
+    mean_left: NotRequired[dict[str, MeanEntry]]  # by axis; empty where no mean force stays
     log: NotRequired[list[LogEntry]]  # what is wrong with the recordings themselves
     candidates: list[CandidateEntry]
     tried: NotRequired[list[str]]

@@ -38,6 +38,7 @@ class Findings:
     words: dict[str, str] = field(default_factory=dict)  # what a library entry says, by name; also "entry.parameter"
     described: tuple[Written, ...] = ()  # terms of described laws, with their curves
     steps: tuple[tuple[float, Mapping[str, float]], ...] = ()  # commands of the next experiment from each time [s] on
+    size: tuple[float, float] = (1.0, 0.3)  # [m] length and beam of the vessel, for its picture
 
     @property
     def patched(self) -> bool:

@@ -1,17 +1,22 @@
 """The report of a diagnosis for people: one page and the same as plain text, made from one list of sections."""
 
+from base64 import b64encode
 from collections.abc import Sequence
+from hashlib import sha256
 from pathlib import Path
 
 from boatsim.diagnose.log.finding import PROBABLY
+from boatsim.diagnose.report import stays
 from boatsim.diagnose.report.blocks import Section, as_text, safe
 from boatsim.diagnose.report.findings import Findings
+from boatsim.diagnose.report.replay import replay
 from boatsim.diagnose.report.sections import proof, sections_of
 from boatsim.diagnose.report.words import capital, listed, plain, sentence, tried
 from boatsim.files import replacing
 
 __all__ = ["sentence", "write"]
 
+TEMPLATES = Path(__file__).parent / "templates"
 VERDICTS = {
     "named": "Named",
     "ambiguous": "Named, with look-alikes",
@@ -39,14 +44,23 @@ def page(findings: Findings, sections: Sequence[Section]) -> str:
     """The page, complete in itself."""
     from jinja2 import Environment, StrictUndefined
 
-    template = (Path(__file__).parent / "templates" / "report.html.j2").read_text(encoding="utf-8")
+    template, script = ((TEMPLATES / name).read_text(encoding="utf-8") for name in ("report.html.j2", "report.js"))
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters["held"] = _held
     answer = findings.answer
     return environment.from_string(template).render(
         f=findings, verdict=_verdict(findings), answer=answer, headline=_headline(findings),
         sentence=_sentence(findings), sections=sections, proof=proof(findings), facts=_facts(findings),
+        stays=stays.in_words(answer, findings.patched), replay=replay(findings), script=script, policy=_policy(script),
     )  # fmt: skip
+
+
+def _policy(script: str) -> str:
+    """What a browser may do with the page: run this script and no other, fetch nothing."""
+    own = b64encode(sha256(script.encode()).digest()).decode()
+    return (
+        f"default-src 'none'; script-src 'sha256-{own}'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
+    )
 
 
 def _held(words: str) -> str:
@@ -59,6 +73,8 @@ def markdown(findings: Findings, sections: Sequence[Section]) -> str:
     title, whole = _headline(findings), _sentence(findings)
     lines = [f"# {safe(title)}", "", *([safe(whole), ""] if whole != title else [])]
     lines += [f"**{_verdict(findings)}.** {safe(proof(findings))}", ""]
+    for line in stays.in_words(findings.answer, findings.patched):
+        lines += [safe(line), ""]
     lines += [f"- {name}: {safe(value)}" for name, value in _facts(findings)]
     for section in sections:
         lines += ["", f"## {section.title}"]

@@ -10,7 +10,7 @@ import numpy as np
 from boatsim.diagnose.free_runs import FreeRun
 from boatsim.diagnose.locate.structure import FACTOR
 from boatsim.diagnose.next.experiment import WORTH
-from boatsim.diagnose.report import figures, taken
+from boatsim.diagnose.report import drawing, figures, taken
 from boatsim.diagnose.report.answer import SHAPE
 from boatsim.diagnose.report.blocks import Block, Figures, Heading, Items, Section, Table, Text, without_empty
 from boatsim.diagnose.report.entries import EffectEntry, Family, StructureEntry, TermEntry
@@ -69,7 +69,8 @@ GLOSSARY = (
     ("described", "A law written down for what no entry of the library explains: the shortest sum of products of "
         "speeds, commands, heading, place and time that the recordings call for, at most five terms. It says what goes "
         "with what, not why. A term has to gain more than two and the logarithm of the number of terms weighed."),
-    ("probability", "Share of belief that the evidence gives an entry among its rivals and nothing at all."),
+    ("how likely", "Of a named effect: how likely it is this one that acts, rather than one of its rivals or nothing, "
+        "given the recordings and the other effects named. In the ranking: the same as if it were the only one."),
     ("\u00b1", "One standard deviation: the true value is expected within twice this in 95 of 100 cases."),
     ("surge, sway, roll, yaw", "Forward, to starboard, starboard side down, bow to starboard."),
 )  # fmt: skip
@@ -144,7 +145,8 @@ def _what(f: Findings) -> Iterator[Block]:
     noted = False
     for e in f.answer["effects"]:
         measured = "a measurement error, not physics" if e["kind"] == "measurement" else "physics"
-        facts = f"{e['name']} · {measured} · probability {percent(e['probability'])} · gain {nats(e['gain_nats'])} nats"
+        likely = f"{percent(e['probability'])} likely among its rivals"
+        facts = f"{e['name']} · {measured} · {likely} · gain {nats(e['gain_nats'])} nats"
         yield Heading(capital(said(e["words"])), facts)
         if e["parameters"]:
             header = ["parameter", "value ± deviation", "meaning"]
@@ -197,7 +199,7 @@ def _described(f: Findings) -> Iterator[Block]:
     )
     if drawn := [w for w in f.described if w.curve is not None]:
         looks = {"patched": "the law", "band": "its band of 2 standard deviations", "recorded": "what was recorded"}
-        yield Figures(figures.legend(looks), [figures.law_figure(w) for w in drawn])
+        yield Figures(drawing.legend(looks), [figures.law_figure(w) for w in drawn])
         yield Text("Curves end where the recordings end: beyond what was seen the law is a guess.")
 
 
@@ -305,7 +307,7 @@ def _missing_figures(f: Findings) -> Iterator[Block]:
         shown = [replace(m, left={}) for m in shown]
     if not any(m.left for m in shown):
         del looks["left"]
-    yield Figures(figures.legend(looks), figures.missing_figures(shown, intervals, f.missing))
+    yield Figures(drawing.legend(looks), figures.missing_figures(shown, intervals, f.missing))
     if len(shown) < len(f.missing):
         yield Text(f"Drawn are the {len(shown)} of {len(f.missing)} runs with the longest flagged time.")
 
@@ -326,7 +328,7 @@ def _proof(f: Findings) -> Iterator[Block]:
         yield Table("The same, run by run", ["run", *header], [row[: len(header) + 1] for row in _by_run(each)])
     if runs:
         looks = {m: m for m in runs[0][0].channels}
-        yield Figures(figures.legend(looks), [p for r in runs[:UNSEEN_PICTURES] for p in figures.free_run_figures(r)])
+        yield Figures(drawing.legend(looks), [p for r in runs[:UNSEEN_PICTURES] for p in figures.free_run_figures(r)])
     if len(runs) > UNSEEN_PICTURES:
         yield Text(f"Drawn are the first {UNSEEN_PICTURES} of {len(runs)} unseen runs.")
     for title, names, cells in f.extra_tables:
@@ -369,9 +371,11 @@ def _ranking(f: Findings) -> Iterator[Block]:
     bars = tuple(max(0.0, c["gain_nats"]) / most for c in candidates)
     caption = (
         "Each entry alone, before any is named: how much better than the recalibrated vessel it explains the runs. "
-        "The gain of a named effect above is on top of the others named, all refitted, and so differs"
+        "The gain of a named effect above is on top of the others named, all refitted, and so differs. The percentage "
+        "answers: if exactly one of these entries, or nothing, were what is missing, how likely is it this one? They "
+        "add up to 100 %, so that of several true causes only the strongest gets much"
     )
-    header = ["entry", "gain alone [nats]", "probability alone", "verdict", "it would mean"]
+    header = ["entry", "gain alone [nats]", "how likely, if only one thing is missing", "verdict", "it would mean"]
     first = max([RANKED, *(i + 1 for i, row in enumerate(rows) if row[3])])
     yield without_empty(Table(caption, header, rows[:first], (3, 4), bars[:first], aside=True))
     if rest := rows[first:]:

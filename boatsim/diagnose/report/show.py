@@ -14,6 +14,7 @@ from boatsim.diagnose.search.rank import Ranking
 from boatsim.recordings.table import Recording
 
 MODELS = ("nominal", "recalibrated", "patched")
+THIRDS = ("first", "middle", "last")
 
 
 def split(
@@ -38,10 +39,20 @@ def split(
     step = float(np.median(np.diff(whole.t)))
     edges = [float(whole.t[0]), a, b, float(whole.t[-1])]
     parts = [whole.between(edges[i] + (0.5 * step if i else 0.0), edges[i + 1]) for i in range(3)]
-    thirds = ("first", "middle", "last")
-    first, middle, last = (replace(p, name=f"{whole.name} ({n} third)") for p, n in zip(parts, thirds, strict=True))
+    first, middle, last = (replace(p, name=_third(whole.name, n)) for p, n in zip(parts, THIRDS, strict=True))
     note = f"one run only, so its middle third, {a:.1f} to {b:.1f} s, was kept unseen"
     return [first, last], [middle], note
+
+
+def _third(name: str, which: str) -> str:
+    return f"{name} ({which} third)"
+
+
+def in_time(tracks: Sequence[Track]) -> list[Track]:
+    """Recordings as they were given, the parts of a single one in the order of time."""
+    whole = tracks[0].name.removesuffix(_third("", THIRDS[0]))
+    one = {t.name for t in tracks} == {_third(whole, n) for n in THIRDS}
+    return sorted(tracks, key=lambda t: float(t.times[0])) if one else list(tracks)
 
 
 def fits_of(problem: Problem, ranking: Ranking) -> dict[str, Fit]:

@@ -1,6 +1,5 @@
 """Names what is missing: every suspect fitted in the filter, scored by evidence, selected forward, pruned backward."""
 
-import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -18,8 +17,9 @@ from boatsim.diagnose.search.settle import Named, settled
 from boatsim.diagnose.search.unseen import lawful, misled, missed, refuted, stood_for, told
 from boatsim.diagnose.spread import widened
 from boatsim.physics.described import Described
+from boatsim.progress import Report, silent
 
-progress = logging.getLogger("boatsim.diagnose")
+JUDGING = 0.8  # of a ranking is done when it begins, by experience
 LEFT_OF_IT = 0.25  # of what a random force gains, from which it but stands for a law that is left over beside it
 ALONG = 0.02  # of what was explained: that much less is told of a force that goes with something
 
@@ -66,7 +66,11 @@ class Ranking:
 
 
 def rank(
-    problem: Problem, candidates: tuple[str, ...], unseen: Sequence[Track] = (), begin: Fit | None = None
+    problem: Problem,
+    candidates: tuple[str, ...],
+    unseen: Sequence[Track] = (),
+    begin: Fit | None = None,
+    report: Report = silent,
 ) -> Ranking:
     """Forward selection over the candidates, the incumbent converged before each comparison, members exchanged.
 
@@ -74,14 +78,13 @@ def rank(
     is not stood for; nor is one by which free runs over `unseen` recordings get worse, or by which these become
     unlikelier. They decide between look-alikes.
     """
-    progress.info("fitting the vessel as written to %d recordings", len(problem.tracks))
+    report("fitting the vessel as written")
     nominal, recalibrated = baseline(problem)
-    progress.info("trying %d entries of the library", len(candidates))
-    sets = Sets(problem, candidates, recalibrated)
+    sets = Sets(problem, candidates, recalibrated, report)
     best, named = settled(sets, selected(sets, begun(sets, begin) if begin else recalibrated))
     while (stood := stood_for(sets, best, unseen)) is not best:
         best, named = settled(sets, stood)
-    progress.info("judging what is left over")
+    report("judging what is left over", JUDGING)
     best, named = _judged(sets, best, named, unseen)
     left, goes = left_over(problem, best), structure(problem, best)
     while (waves := waves_of(sets, best)) and _stands_for_a_law(sets, best, waves, goes):

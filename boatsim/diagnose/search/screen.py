@@ -1,6 +1,6 @@
 """A quick look at every suspect on top of a fit: Gauss-Newton with the filter's gains and all else linearised."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -43,8 +43,13 @@ class Begin:
         return 0.5 * slope**2 / length if np.isfinite(length) and length > 0.0 else -np.inf
 
 
-def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, Fit]:
-    """Each candidate added to `base`: parameters near the best, evidence near enough to choose whom to fit in full."""
+def screen(
+    problem: Problem, base: Fit, candidates: Sequence[str], done: Callable[[float], None] | None = None
+) -> dict[str, Fit]:
+    """Each candidate added to `base`: parameters near the best, evidence near enough to choose whom to fit in full.
+
+    `done` is told the share that was looked at.
+    """
     on = problem.program.switches(base.suspects)
     problem.likelihood(base.free, base.theta, on, base.levels)  # the gains that all looks share
     white = problem.white()
@@ -57,8 +62,15 @@ def screen(problem: Problem, base: Fit, candidates: Sequence[str]) -> dict[str, 
         known, off, score, white, np.asarray(np.linalg.inv(np.eye(len(off)) + known.T @ known), dtype=np.float64)
     )
     effects = {e.name: e for e in problem.program.suspects}
-    tried = {n: _look(problem, base, effects[n], begin) for n in candidates if not type(effects[n]).random}
-    return tried | {n: _random_look(problem, base, effects[n]) for n in candidates if type(effects[n]).random}
+    looks: dict[str, Fit] = {}
+    for name in sorted(candidates, key=lambda n: type(effects[n]).random):
+        random = type(effects[name]).random
+        looks[name] = (
+            _random_look(problem, base, effects[name]) if random else _look(problem, base, effects[name], begin)
+        )
+        if done:
+            done(len(looks) / len(candidates))
+    return looks
 
 
 def checked(problem: Problem, base: Fit, look: Fit) -> Fit:

@@ -1,6 +1,5 @@
 """Forward selection: suspects added one by one, each time the one by which the evidence rises most."""
 
-import logging
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -11,8 +10,8 @@ from boatsim.diagnose.search.evidence import together, worth
 from boatsim.diagnose.search.sets import Sets
 from boatsim.diagnose.tried import called
 
-progress = logging.getLogger("boatsim.diagnose")
 MOST = 8  # effects in one answer: further ones would have next to no data of their own
+SELECTING, SLOWER = (0.5, 0.8), 0.7  # of a ranking, by experience; what is left to select after each further member
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
 CLEAR = 40.0  # prices that an effect is worth by the curvature at a fit, from where it stays without a fit without it
 SLIGHT = 0.025  # of what the others explain, below which an effect may be what their laws are off by
@@ -22,6 +21,7 @@ def selected(sets: Sets, best: Fit) -> Fit:
     """The best set from one on: suspects added one by one, earlier ones dropped that a newer one makes needless."""
     for _ in range(2 * MOST):  # additions and prunings together
         tried = sets.tried(best)
+        _tell(sets, best)
         if not tried or len(best.suspects) == MOST:
             break
         laws = {n: f for n, f in tried.items() if n not in sets.random}
@@ -34,9 +34,14 @@ def selected(sets: Sets, best: Fit) -> Fit:
         if set(further.suspects) == set(best.suspects):
             break  # the newest made way again
         best = further
-        gain = best.evidence - sets.base.evidence
-        progress.info("best so far: %s (%.0f nats)", ", ".join(map(called, best.suspects)), gain)
     return best
+
+
+def _tell(sets: Sets, best: Fit) -> None:
+    """What is the best so far."""
+    names, gain = ", ".join(map(called, best.suspects)), best.evidence - sets.base.evidence
+    done = SELECTING[1] - (SELECTING[1] - SELECTING[0]) * SLOWER ** len(best.suspects)
+    sets.report("selecting", done, f"best so far: {names} ({gain:.0f} nats)" if names else "")
 
 
 def begun(sets: Sets, other: Fit) -> Fit:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from boatsim import progress
 from boatsim.diagnose.fit import SETTLED, converge, descend, fit, reduced
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.search.evidence import UNKNOWN, front, left_over, price, told_from
@@ -13,14 +14,17 @@ from boatsim.diagnose.tried import called
 from boatsim.physics.base import Unsteady
 
 ASTRAY = 8.0  # [nats] that a look lies below the set it is on top of, from which it went wrong: numbers cost less
+SCREENING = (0.2, 0.5)  # of a ranking, by experience, is the first look at all
 MANY = 6  # suspects on top of a set that are fitted in full at most
 
 
 class Sets:
     """Fits of sets of suspects."""
 
-    def __init__(self, problem: Problem, candidates: tuple[str, ...], base: Fit) -> None:
-        self.problem, self.candidates, self.base = problem, candidates, base
+    def __init__(
+        self, problem: Problem, candidates: tuple[str, ...], base: Fit, report: progress.Report = progress.silent
+    ) -> None:
+        self.problem, self.candidates, self.base, self.report = problem, candidates, base, report
         self.fits: dict[frozenset[str], Fit] = {frozenset(): base}
         self.promised: dict[frozenset[str], float] = {}
         self.looks: dict[frozenset[str], dict[str, Fit]] = {}
@@ -92,7 +96,7 @@ class Sets:
         ideas = {called(n) for n in best.suspects}
         rest = [n for n in among or self.candidates if called(n) not in ideas and n not in known]
         if rest:
-            known |= screen(self.problem, best, rest)
+            known |= screen(self.problem, best, rest, self._screened if len(self.looks) == 1 else None)
         allowed = {n: f for n, f in known.items() if n not in self.banned}
         if not among and all(f.evidence < best.evidence + self.price for f in allowed.values()):
             allowed |= self._looked_again(best, allowed)
@@ -112,6 +116,9 @@ class Sets:
                 honest = self.fitted(best, name, look)
             allowed[name] = known[name] = honest
         return known
+
+    def _screened(self, share: float) -> None:
+        progress.part(self.report, *SCREENING)(f"screening {len(self.candidates)} entries", share)
 
     def _looked_again(self, best: Fit, allowed: Mapping[str, Fit]) -> dict[str, Fit]:
         """Where much is left over that no look promised to explain: those that went wrong, followed by the filter.
