@@ -141,14 +141,22 @@ def run(
     jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
     seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,
     live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer while it runs.")] = False,
+    controller: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME|FILE", help="Steer with this one; of several each runs, side by side."),
+    ] = None,
+    side_by_side: Annotated[
+        bool, typer.Option("--side-by-side", help="One table and one compare.rrd of all runs.")
+    ] = False,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
     """Run scenarios: recording.csv, norms.json, camera.csv, run.rrd, and a table of norms beside their bars."""
     from boatsim.cli.batch import run_all
 
-    with asking(content, trust, scenarios):
-        return run_all(scenarios, out, jobs, seed, live)
+    several = controller or []
+    with asking(content, trust, [*scenarios, *several]):
+        return run_all(scenarios, out, jobs, seed, live, several, side_by_side or len(several) > 1)
 
 
 @app.command()

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -32,9 +31,6 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Notes, Recording, write_csv
 from boatsim.simulate import scenario as scenarios
 from boatsim.view.outputs import filling
-
-if TYPE_CHECKING:
-    from boatsim.view.scene import Scene
 
 FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
 
@@ -127,6 +123,7 @@ def summary(found: Diagnosis) -> list[str]:
 def overlay(found: Diagnosis, path: Path) -> None:
     """diagnosis.rrd: recorded, nominal, recalibrated and patched boats of the first unseen run on one time line."""
     from boatsim.view import rerun_log
+    from boatsim.view.waters import water_around
 
     stretches = [s for s in found.findings.free_runs if s.run == found.findings.free_runs[0].run]
     boats = {m: [_of_model(s, m) for s in stretches] for m in show.MODELS} if stretches else {}
@@ -140,27 +137,12 @@ def overlay(found: Diagnosis, path: Path) -> None:
             name, sd = FORCE_NAMES[axis], chosen.sd[axis]
             signals |= {name: mean, f"{name}_low": mean - 2 * sd, f"{name}_high": mean + 2 * sd}
         missing = Recording(chosen.run, chosen.t, signals)
-    scene = _water_around(found.vessel, *boats.get("recording", ()))
+    scene = water_around(found.vessel, boats.get("recording", ()))
     intervals = [
         i for i in found.findings.answer["where"]["intervals"] if chosen is not None and i["run"] == chosen.run
     ]
     with replacing(path) as temporary:
         rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
-
-
-def _water_around(boat: Vessel, path: Recording | None = None) -> "Scene":
-    """Scene of a boat in open water that reaches one and a half boat lengths beyond where it went."""
-    from boatsim.simulate import world
-    from boatsim.view.scene import scene_from
-
-    spans = []
-    for name in ("x_m", "y_m"):
-        where = path.signals[name] if path is not None and name in path.signals else np.zeros(1)
-        spans.append((float(np.nanmin(where)), float(np.nanmax(where))))
-    length, width = (high - low + 3 * boat.length for low, high in spans)
-    centre = (sum(spans[0]) / 2, sum(spans[1]) / 2)
-    tank = world.Tank(length, width, boat.draught * 2, walls=False, centre=centre)
-    return scene_from(world.build(boat, tank), boat, tank)
 
 
 def _whole(stretches: Sequence[FreeRun]) -> Recording:
@@ -257,8 +239,9 @@ def _of_scenario(recording: Recording, name: str) -> dict[str, Array]:
 
 def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Array], path: Path) -> None:
     from boatsim.view import rerun_log
+    from boatsim.view.waters import water_around
 
     measured = Recording("recording", recording.t, {n: recording.signals[n] for n in simulated})
     boats = {"recording": [measured], "simulated": [Recording("simulated", recording.t, dict(simulated))]}
     with replacing(path) as temporary:
-        rerun_log.log_overlay(temporary, boats, None, [], _water_around(boat, measured))
+        rerun_log.log_overlay(temporary, boats, None, [], water_around(boat, [measured]))
