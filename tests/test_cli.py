@@ -22,7 +22,19 @@ from boatsim.cli.batch import plan
 from boatsim.physics import content
 from boatsim.recordings import table as recording
 
-FIELDS = {"value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor", "lacking"}
+FIELDS = {
+    "value",
+    "unit",
+    "published",
+    "tolerance",
+    "verdict",
+    "guard",
+    "ok",
+    "at_reported",
+    "noise_floor",
+    "lacking",
+    "kind",
+}
 FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"}
 PLAIN = """
 about = "Two seconds to starboard."

@@ -292,7 +292,7 @@ def test_check_norms_do_not_depend_on_the_step() -> None:
 def test_checks_stand_among_the_norms() -> None:
     check = [{"signal": "psi_rad", "norm": "inf", "below": 0.2}, {"signal": "psi_rad", "norm": "l1", "below": 1.0}]
     found = norms(filmed("sway", swaying(1.0), 16.0, check=check))
-    assert found["psi_rad_inf"] == Norm(pytest.approx(radians(16.0)), "rad", guard=(0.0, 0.2), ok=False)
+    assert found["psi_rad_inf"] == Norm(pytest.approx(radians(16.0)), "rad", guard=(0.0, 0.2), ok=False, kind="largest")
     assert found["psi_rad_l1"].unit == "rad s" and found["psi_rad_l1"].value == pytest.approx(radians(128.0))
     with pytest.raises(BadInput, match="'psi_red' does not exist; did you mean 'psi_rad'"):
         norms(filmed("sway", swaying(1.0), 16.0, check=[{"signal": "psi_red", "norm": "inf", "below": 0.2}]))
@@ -318,6 +318,7 @@ def test_json_has_the_fields_and_names_that_were_agreed(measure: str, pose: Call
         assert set(norm) == {
             "value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor",
                 "lacking",
+                "kind",
         }  # fmt: skip
         assert norm["guard"] is None or len(norm["guard"]) == 2
 

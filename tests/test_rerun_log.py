@@ -250,11 +250,12 @@ def test_norms_are_told_with_what_was_published_and_whether_the_bar_is_met():
         "moved": {"value": 0.51234, "unit": "m", "published": 0.4, "verdict": "not reproduced", "guard": [0.3, None],
                   "ok": True},
         "rate": {"value": -2.0, "unit": "rad/s", "published": None, "verdict": None, "guard": [-1.0, 1.0], "ok": False},
-        "free": {"value": None, "unit": None, "published": None, "guard": None, "ok": None},
+        "free": {"value": None, "unit": None, "kind": "largest", "lacking": "too short",
+                 "published": None, "guard": None, "ok": None},
     })  # fmt: skip
-    assert "| moved | 0.5123 m | at least 0.3 | yes | 0.4 (differs) |" in table
-    assert "| rate | -2 rad/s | -1 to 1 | **no** |  |" in table
-    assert "| free |  |  |  |  |" in table and "no norms" in norms_table({})
+    assert "| moved |  | 0.5123 m | at least 0.3 | yes | 0.4 (differs) |" in table
+    assert "| rate |  | -2 rad/s | -1 to 1 | **no** |  |" in table
+    assert "| free | largest | too short |  |  |  |" in table and "no norms" in norms_table({})
 
 
 def test_a_legend_says_the_unit():

@@ -13,13 +13,13 @@ from multiprocessing.synchronize import Event
 from pathlib import Path
 from threading import Lock, Thread
 
-from boatsim.cli import progress, show
+from boatsim.cli import comparing, progress, show
 from boatsim.cli.exits import FAULTS, Exit, complain, remark, words
 from boatsim.errors import BadInput
 from boatsim.interruption import ignored, struck
 from boatsim.physics import trust
-from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.cases import meant
+from boatsim.simulate.controllers import steered
 from boatsim.simulate.norms import RunEntry
 from boatsim.simulate.pace import Pace
 from boatsim.simulate.scenario import Scenario
@@ -39,6 +39,7 @@ class Task:
     duration: float  # [s] at most
     folder: Path
     seed: int | None
+    controller: str | None = None  # in place of the scenario's own, by name or path
 
 
 @dataclass(frozen=True)
@@ -68,9 +69,20 @@ class Outcome:
         return Exit.MISSED if missed else Exit.MET
 
 
-def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None, watched: Watched | None = None) -> int:
-    """Run scenarios, print their norms, return the exit code. All are checked before any runs; raises BadInput."""
-    tasks = plan(names, out, seed)
+def run_all(
+    names: Sequence[str],
+    out: Path | None,
+    jobs: int,
+    seed: int | None,
+    watched: Watched | None = None,
+    controllers: Sequence[str] = (),
+    side_by_side: bool = False,
+) -> int:
+    """Run scenarios, each with each of the controllers if there are any, print their norms, return the exit code.
+
+    `side_by_side` is one table of all of them, and one log. All are checked before any runs; raises BadInput.
+    """
+    tasks = plan(names, out, seed, controllers)
     jobs = min(jobs, len(tasks))
     if watched and jobs > 1:
         raise BadInput("--live and --serve show one run at a time; leave --jobs away")
@@ -83,8 +95,12 @@ def run_all(names: Sequence[str], out: Path | None, jobs: int, seed: int | None,
         if outcome.error:
             complain(outcome.error)
         elif outcome.content:
-            show.norms(outcome.content, outcome.task.folder)
+            if not side_by_side:
+                show.norms(outcome.content, outcome.task.folder)
             warn_of_limits(outcome.content)
+    if side_by_side:
+        done = [(o.task.given, o.task.controller, o.task.folder, o.content) for o in outcomes if o.content]
+        comparing.compare([comparing.Done(*one) for one in done])
     if any(outcome.code == Exit.INTERRUPTED for outcome in outcomes):
         kept = any(outcome.content for outcome in outcomes)
         complain("interrupted; what was logged is kept" if kept else "interrupted before anything was logged")
@@ -128,14 +144,20 @@ def warn_of_limits(content: RunEntry) -> None:
         )
 
 
-def plan(names: Sequence[str], out: Path | None, seed: int | None) -> list[Task]:
+def plan(names: Sequence[str], out: Path | None, seed: int | None, controllers: Sequence[str] = ()) -> list[Task]:
     """What to run and where its files go, from names that may be wrong."""
+    stems = [Path(c).stem for c in controllers]
+    if twice := next((c for c in stems if stems.count(c) > 1), None):
+        raise BadInput(f"--controller {twice} is given twice; both would write to the same folder")
+    several = len(controllers) > 1
     names = [one for given in names for one in meant(given)]
-    loaded = [scenarios.load(name) for name in names]
-    folders = _folders([s.name for s in loaded], out)
+    steering: Sequence[str | None] = controllers or [None]
+    loaded = [[steered(name, c) for c in steering] for name in names]
+    folders = _folders([s[0].name for s in loaded], out)
     return [
-        Task(given, s.name, s.file.duration, folder, seed)
-        for given, s, folder in zip(names, loaded, folders, strict=True)
+        Task(given, s.name, s.file.duration, folder / Path(c).stem if several and c else folder, seed, c)
+        for given, many, folder in zip(names, loaded, folders, strict=True)
+        for s, c in zip(many, steering, strict=True)
     ]
 
 
@@ -155,7 +177,8 @@ def carry_out(task: Task, told: Callable[[float], None], viewer: str | None = No
         from boatsim.view.outputs import run_into
 
         pace = Pace(speed) if speed > 0.0 else None
-        return Outcome(task, run_into(task.folder, scenarios.load(task.given), task.seed, viewer, told, pace))
+        scenario = steered(task.given, task.controller)
+        return Outcome(task, run_into(task.folder, scenario, task.seed, viewer, told, pace))
     except FAULTS as error:
         return Outcome(task, error=f"{task.name}: {words(error)}")
     except KeyboardInterrupt:

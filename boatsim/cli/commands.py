@@ -156,6 +156,13 @@ def run(
     speed: Annotated[
         float | None, typer.Option(metavar="X", parser=_speed, help="Times real time, with the two; 0 or max: no wait.")
     ] = None,
+    controller: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME|FILE", help="Steer with this one; of several each runs, side by side."),
+    ] = None,
+    side_by_side: Annotated[
+        bool, typer.Option("--side-by-side", help="One table and one compare.rrd of all runs.")
+    ] = False,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
@@ -165,8 +172,9 @@ def run(
     if speed is not None and not (live or serve):
         raise BadInput(f"--speed = {speed:g}: only a run that is shown is held back; give --live or --serve too")
     watched = Watched(serve, 1.0 if speed is None else speed) if live or serve else None
-    with asking(content, trust, scenarios):
-        return run_all(scenarios, out, jobs, seed, watched)
+    several = controller or []
+    with asking(content, trust, [*scenarios, *several]):
+        return run_all(scenarios, out, jobs, seed, watched, several, side_by_side or len(several) > 1)
 
 
 @app.command()

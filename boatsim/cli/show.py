@@ -1,9 +1,9 @@
 """What the command line prints: the table of norms, the list of content."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from boatsim.errors import BadInput, shown, unknown_name
 from boatsim.files import read_toml
@@ -15,38 +15,78 @@ if TYPE_CHECKING:
 
 
 def norms(found: "RunEntry", folder: Path) -> None:
-    """Table norm, value, published, whether it is the same, guard, met, from the content of norms.json."""
+    """Table of norms from the content of norms.json, below it what their names mean and why some were not reached."""
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED
-
-    short = {REPRODUCED: "same", MISSED: "[bold]differs[/]", UNSTATED: "unstated"}  # in a table 80 columns wide
     state = "" if found["complete"] else ", interrupted"
-    table = Table(
-        title=Text(shown(f"{found['scenario']}, {found['controller']}, seed {found['seed']}{state}")), pad_edge=False
-    )
-    table.add_column("norm", no_wrap=True)
-    for heading in ("value", "published"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    for heading in ("verdict", "guard", "met"):
-        table.add_column(heading, no_wrap=True)
-    for name, norm in ((shown(n), norm) for n, norm in found["norms"].items()):
-        published = "" if norm["published"] is None else f"{norm['published']:.4g}"
-        verdict = short.get(norm["verdict"] or "", "")
-        table.add_row(name, _value(norm), published, verdict, _guard(norm["guard"]), _met(norm["ok"]))
+    title = Text(shown(f"{found['scenario']}, {found['controller']}, seed {found['seed']}{state}"))
+    table = Table(title=title, pad_edge=False)
+    for heading, justify in _columns(found["norms"].values()).items():
+        table.add_column(heading, justify=justify, no_wrap=True)
+    for name, norm in found["norms"].items():
+        cells = {"norm": shown(name), **_cells(norm)}
+        table.add_row(*(cells[str(column.header)] for column in table.columns))
     console = Console()
     if found["norms"]:
         console.print(table)
     else:
-        console.print(table.title)
-    console.print(Text(shown(f"written to {folder}")), soft_wrap=True)
+        console.print(title)
+    for line in [*meanings(found["norms"]), *reasons(found["norms"]), f"written to {folder}"]:
+        console.print(Text(shown(line)), soft_wrap=True)
 
 
-def _value(norm: "NormEntry") -> str:
-    value = norm["value"]
-    return norm["lacking"] or "not reached" if value is None else f"{value:.4g} {norm['unit']}".rstrip()
+def _columns(norms: Iterable["NormEntry"]) -> dict[str, Literal["left", "right"]]:
+    """Headings with the side they keep to; those of bars only where one of the norms has any."""
+    found: dict[str, Literal["left", "right"]] = {"norm": "left", "value": "right"}
+    norms = list(norms)
+    if any(n["published"] is not None for n in norms):
+        found |= {"published": "right", "verdict": "left"}
+    if any(n["guard"] for n in norms):
+        found |= {"guard": "left", "met": "left"}
+    return found
+
+
+def _cells(norm: "NormEntry") -> dict[str, str]:
+    """What stands under each heading."""
+    from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED
+
+    short = {REPRODUCED: "same", MISSED: "[bold]differs[/]", UNSTATED: "unstated"}  # in a table 80 columns wide
+    return {
+        "value": value(norm),
+        "published": "" if norm["published"] is None else f"{norm['published']:.4g}",
+        "verdict": short.get(norm["verdict"] or "", ""),
+        "guard": _guard(norm["guard"]),
+        "met": _met(norm["ok"]),
+    }
+
+
+def value(norm: "NormEntry") -> str:
+    """A norm with its unit, or in two words why it has no value."""
+    found = norm["value"]
+    if found is None:
+        return (norm["lacking"] or "not reached").partition(":")[0]
+    return f"{found:.4g} {norm['unit']}".rstrip()
+
+
+def meanings(norms: Mapping[str, "NormEntry"]) -> list[str]:
+    """A line that says what the endings of these norms stand for, where the names do not say it themselves."""
+    found: dict[str, str] = {}
+    for name, norm in norms.items():
+        ending = name.rpartition("_")[2]
+        if norm["kind"] not in ("", ending):
+            found.setdefault(norm["kind"], ending)
+    return ["; ".join(f"{ending}: {kind}" for kind, ending in found.items())] if found else []
+
+
+def reasons(norms: Mapping[str, "NormEntry"]) -> list[str]:
+    """A line for each reason why norms were not reached."""
+    found: dict[str, list[str]] = {}
+    for name, norm in norms.items():
+        if norm["lacking"] and ":" in norm["lacking"]:
+            found.setdefault(norm["lacking"], []).append(name)
+    return [f"{', '.join(names)} {why}" for why, names in found.items()]
 
 
 def _guard(guard: Sequence[float | None] | None) -> str:

@@ -25,6 +25,11 @@ class Arrival(Measure):
     x_signal: str = "x_m"
     y_signal: str = "y_m"
 
+    def why(self, norm: str, log: Recording) -> str:
+        """How close it came."""
+        away = np.hypot(self.x - log[self.x_signal], self.y - log[self.y_signal])
+        return f"never within {self.radius:.4g} m of the point: closest {away.min():.4g}"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Time, integral of the surge speed and straight line until there; closest and last place of the whole run."""
         seen(log)

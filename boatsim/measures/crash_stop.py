@@ -20,6 +20,10 @@ class CrashStop(Measure):
     execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the engines went astern")
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
 
+    def why(self, norm: str, log: Recording) -> str:
+        """How fast she still was."""
+        return f"never stopped: still {log['u_mps'][log.t > self.execute].min(initial=log['u_mps'][-1]):.4g} m/s ahead"
+
     def values(self, log: Recording) -> dict[str, float]:
         """None if she never stopped."""
         stopped = np.flatnonzero((log.t > self.execute) & (log["u_mps"] <= 0.0))

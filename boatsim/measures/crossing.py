@@ -6,8 +6,9 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.physics.base import param
+from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.measure import Measure, never
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,10 @@ class Crossing(Measure):
     signal: str = "u_mps"
     level: float = param(0.0, low=-1e9, high=1e9, unit="", words="in the signal's unit")
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="time from which it is looked for and counted")
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How near it came."""
+        return never(log[self.signal][log.t >= self.since - 1e-9], self.level, unit_of(self.signal))
 
     def values(self, log: Recording) -> dict[str, float]:
         """Interpolated between rows; nothing if the signal stays on one side."""

@@ -25,6 +25,10 @@ class Levels(Measure):
         """That of the signal."""
         return unit_of(self.signal)
 
+    def why(self, norm: str, log: Recording) -> str:
+        """How many intervals there were."""
+        return f"the run ends at {log.t[-1]:.4g} s, after {int((log.t[-1] + 1e-6) / self.every)} intervals"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many whole intervals as the log has."""
         seen(log)

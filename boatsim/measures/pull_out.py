@@ -18,6 +18,11 @@ class PullOut(Measure):
     words: ClassVar[str] = "rates of turn before and after the helm is put midships, both ways"
     units: ClassVar = {**{f"rate_{part}": "deg/s" for part in PARTS}, "residual_difference": "deg/s"}
 
+    def why(self, norm: str, log: Recording) -> str:
+        """How many parts there were."""
+        helm = log["reference_helm_rad"]
+        return f"the helm changed {int(np.count_nonzero(np.diff(helm)))} times; all four parts take 4"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Of the parts there were."""
         helm = log["reference_helm_rad"]

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import degrees, pi, sqrt
 from math import log as ln
-from math import pi, sqrt
 from typing import ClassVar
 
 import numpy as np
@@ -20,6 +20,14 @@ class RollDecay(Measure):
 
     words: ClassVar[str] = "period and damping of a free roll, at its first and at its last swings"
     units: ClassVar = {"period": "s", "damping_first": "", "damping_mean": "", "damping_last": ""}
+
+    def why(self, norm: str, log: Recording) -> str:
+        """Where it began."""
+        if not log["phi_rad"][0]:
+            return "it was not heeled at the start"
+        return (
+            f"fewer than 2 peaks beyond {100.0 * SMALLEST:g} % of the release of {degrees(log['phi_rad'][0]):.3g} deg"
+        )
 
     def values(self, log: Recording) -> dict[str, float]:
         """None for a hull that does not swing or was not heeled."""

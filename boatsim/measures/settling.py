@@ -8,8 +8,9 @@ import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import param
+from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure, seen
+from boatsim.simulate.measure import Measure, never, seen
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,12 @@ class Settling(Measure):
     target: float = param(0.0, low=-100.0, high=100.0, unit="rad", words="the angle to come to")
     band: float = param(radians(0.25), low=0.0, high=10.0, unit="rad", words="settled this near the end")
     late: float = param(300.0, low=0.0, high=86400.0, unit="s", words="the end begins")
+
+    def why(self, norm: str, log: Recording) -> str:
+        """Where it ends, or that it is over too soon."""
+        if log.t[-1] - log.t[0] < self.late:
+            return f"the run ends at {log.t[-1] - log.t[0]:.4g} s, before {self.late:g} s, where its end begins"
+        return never(log[self.signal], self.target, unit_of(self.signal))
 
     def values(self, log: Recording) -> dict[str, float]:
         """rise: first crossing once off the target; settling: last time out of the band; extremes about the end."""

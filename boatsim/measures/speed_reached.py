@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.physics.base import param
 from boatsim.recordings.table import Recording
-from boatsim.simulate.measure import Measure, crossing, seen, travelled
+from boatsim.simulate.measure import Measure, crossing, never, seen, travelled
 
 
 @dataclass(frozen=True)
@@ -18,6 +18,10 @@ class SpeedReached(Measure):
     units: ClassVar = {"time": "s", "distance": "m", "straight_line": "m", "top_speed": "m/s"}
 
     speed: float = param(1.0, low=0.0, high=100.0, unit="m/s", words="surge speed asked for")
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How fast it was."""
+        return never(log["u_mps"], self.speed, "m/s")
 
     def values(self, log: Recording) -> dict[str, float]:
         """Time, integral of the surge speed and straight line until then; the largest surge speed of the run."""

@@ -23,6 +23,11 @@ class Spiral(Measure):
         "rate_midships": "deg/s",
     }
 
+    def why(self, norm: str, log: Recording) -> str:
+        """How far the helm got."""
+        last = np.degrees(log["reference_helm_rad"][-1])
+        return f"the helm did not come back to its first angle: it ends at {last:.3g} deg"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Loop height at midships, width over all angles at which the two rates have opposite signs, two rates.
 

@@ -31,6 +31,16 @@ class Staircase(Measure):
         """Times in s, errors in the signal's unit."""
         return self.units[norm] or unit_of(self.signal)
 
+    def why(self, norm: str, log: Recording) -> str:
+        """Whether there was such a step, and how much of it was made."""
+        number = int(norm.rpartition("_")[2]) if norm[-1].isdigit() else 1
+        begin = self.since + (number - 1) * self.every
+        rows = (log.t >= begin - 1e-9) & (log.t < begin + self.every - 1e-9)
+        if log.t[-1] + 1e-6 * self.every < begin + self.every:
+            return f"the run ends at {log.t[-1]:.4g} s, before step {number} is over"
+        done = (log[self.signal][rows] - self.bottom) / self.height - (number - 1)
+        return f"made at most {100.0 * done.max():.3g} % of step {number}"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many whole steps as the log has; a time that is not reached is left out."""
         seen(log, self.since)

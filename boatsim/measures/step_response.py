@@ -33,6 +33,16 @@ class StepResponse(Measure):
         """The value at the end has the signal's unit."""
         return unit_of(self.signal) if norm == "end" else self.units[norm]
 
+    def why(self, norm: str, log: Recording) -> str:
+        """How much of the step it made."""
+        y = log[self.signal][seen(log, self.since, self.until or inf, least=2)]
+        if y[0] == self.target:
+            return f"there is no step: it begins at its target, {self.target:.4g} {unit_of(self.signal)}".rstrip()
+        done = (y - y[0]) / (self.target - y[0])
+        if norm == "settle":
+            return f"ends {100.0 * abs(done[-1] - 1.0):.3g} % of the step off; settled is {100.0 * BAND:g} %"
+        return f"made at most {100.0 * done.max():.3g} % of the step"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Times from the step on, interpolated between rows; `rise` from 10 to 90 %; errors in per cent of the step."""
         rows = seen(log, self.since, self.until or inf, least=2)

@@ -6,8 +6,10 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.physics.base import Array, param
+from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
 from boatsim.simulate.film import Film, FilmMeasure, first, noise
+from boatsim.simulate.measure import never
 
 REMAIN = 3  # averages there are at least
 
@@ -24,6 +26,11 @@ class Sway(FilmMeasure):
 
     distance: float = param(1.0, low=0.0, high=1e5, unit="m", words="way to starboard at which it ends")
     averaged: float = param(10.0, low=1.0, high=1000.0, unit="", words="yaw rates in the moving average")
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How far to starboard it came."""
+        psi, dx, dy = log["psi_rad"][0], log["x_m"] - log["x_m"][0], log["y_m"] - log["y_m"][0]
+        return f"{never(np.cos(psi) * dy - np.sin(psi) * dx, self.distance, 'm')} to starboard"
 
     def of_film(self, film: Film) -> dict[str, float]:
         """Yaw rates and heading as the camera has them, the rest as it was."""

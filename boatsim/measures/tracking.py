@@ -29,6 +29,10 @@ class Tracking(Measure):
         """That of the signal, angles in degrees."""
         return unit_of(self.signal).replace("rad", "deg")
 
+    def why(self, norm: str, log: Recording) -> str:
+        """Norms against a goal need one."""
+        return "" if self.goal else "the measure names no goal"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Rms and largest error; rms of the error against the goal, and that error's mean over the last second."""
         rows = seen(log, self.since, self.until or inf)

@@ -27,6 +27,13 @@ class TurningCircle(Measure):
     )
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
 
+    def why(self, norm: str, log: Recording) -> str:
+        """How far it turned."""
+        asked = 90 if norm in ("advance", "transfer", "time_to_90") else 180
+        line = self.execute if self.course < 0.0 else self.course
+        turned = np.degrees(np.abs(log["psi_rad"] - at(log, line, "psi_rad")).max())
+        return f"never turned {asked} deg: at most {turned:.3g}"
+
     def values(self, log: Recording) -> dict[str, float]:
         """What the turn reached."""
         seen(log)

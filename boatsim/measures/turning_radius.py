@@ -18,6 +18,10 @@ class TurningRadius(Measure):
 
     while_on: str = "thrust_N"  # signal that is not zero during the turn
 
+    def why(self, norm: str, log: Recording) -> str:
+        """It is looked at while something is on."""
+        return f"{self.while_on} is zero, or the boat does not turn, throughout"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Median of speed over yaw rate, half the extent of the track in y, and how long the turn took."""
         on = (log[self.while_on] != 0.0) & (log["r_radps"] != 0.0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array, param
+from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
 from boatsim.simulate.film import Film, FilmMeasure, first, noise
 
@@ -29,6 +30,11 @@ class Yaw(FilmMeasure):
         super().check(camera)
         if self.mark not in camera.marks:
             raise BadInput(unknown_name("yaw: mark", self.mark, camera.marks))
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How far it turned."""
+        turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
+        return f"never turned 360 deg: at most {turned:.3g}"
 
     def of_film(self, film: Film) -> dict[str, float]:
         """Distances of the mark as the camera has them, the rest as it was."""

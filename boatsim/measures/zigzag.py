@@ -28,6 +28,12 @@ class Zigzag(Measure):
     heading: float = param(0.175, low=0.001, high=3.0, unit="rad", words="heading change at which it is reversed")
     length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
 
+    def why(self, norm: str, log: Recording) -> str:
+        """How often the helm was reversed, or how far she turned."""
+        count = int((np.diff(np.sign(log["reference_helm_rad"])) != 0.0).sum()) - 1
+        turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
+        return f"{max(count, 0)} reversals of the helm; the heading changed by at most {turned:.3g} deg"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Of as many reversals as there were."""
         seen(log)

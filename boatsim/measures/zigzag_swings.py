@@ -26,6 +26,13 @@ class ZigzagSwings(Measure):
     signal: str = "jet_rad"
     since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
 
+    def why(self, norm: str, log: Recording) -> str:
+        """How often the helm was reversed."""
+        if norm in ("roll", "heading", "yaw_rate"):
+            return "this craft has no such motion"
+        count = int((np.diff(np.sign(log[self.signal][seen(log, self.since)])) != 0).sum())
+        return f"{count} reversals of {self.signal}"
+
     def values(self, log: Recording) -> dict[str, float]:
         """Reversals the run gets as far as; the period is the mean of two half swings that follow the first."""
         rows = seen(log, self.since)

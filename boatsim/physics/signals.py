@@ -55,6 +55,13 @@ def signals_of(freedoms: tuple[str, ...]) -> tuple[Signal, ...]:
     return tuple(s for s in STATE if s.axis in freedoms)
 
 
+def follower(goal: str) -> str | None:
+    """Column of what is to follow a goal: of its name, or of the freedom it names: v_mps of `sway_mps`; None: none."""
+    names = {s.column: s.column for s in STATE}
+    names |= {f"{s.axis}_{s.column.partition('_')[2]}": s.column for s in STATE}
+    return names.get(goal)
+
+
 class Motion(NamedTuple):
     """What a force law may look at; a freedom that the vessel has not is zero."""
 

@@ -57,7 +57,7 @@ class MeasuredChannel(Table):
 NAME = re.compile(r"[\w.+-]{1,60}")  # of a channel: it is a column of every log
 FORCES = tuple(f"{what}_{component}" for what in ("force", "wind") for component in COMPONENTS.values())
 OURS = ("t_s", "contacts", *POSE, *RATES, *FORCES)
-PREFIXES = ("sent_", "actual_", "sensed_", "camera_", "estimate_", "reference_")  # of other columns
+PREFIXES = ("sent_", "actual_", "sensed_", "camera_", "estimate_", "reference_", "goal_")  # of other columns
 OVERRIDES = ("ambient", "horizon", "rate", "noise")  # of the rules of a diagnosis, which need a reason
 
 

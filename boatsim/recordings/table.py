@@ -22,7 +22,7 @@ __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
 
 FEWEST_ROWS = 20
 # columns of our own runs beside pose, rates and commands; a sensor the boat has not got is nan
-OWN = re.compile(r"(sent|stick|actual|sensed|camera|estimate|reference|force|wind)_|contacts$")
+OWN = re.compile(r"(sent|stick|actual|sensed|camera|estimate|reference|goal|force|wind)_|contacts$")
 # what command channels of boats are called; others are known by the vessel
 COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))")
 HUGE = 1e12  # no time, place, speed or command here is anywhere near

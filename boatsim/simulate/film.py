@@ -56,6 +56,11 @@ class FilmMeasure(Measure):
         """Norms (DRAWS,) of so many frames of a boat that moves without error under a camera whose marks are noisy."""
         raise NotImplementedError
 
+    def kind(self, norm: str) -> str:
+        """Sums of a film are over its frames, whatever their rate."""
+        sums = {"l1": "sum over frames", "l2": "root of summed squares"}
+        return sums.get(norm.rpartition("_")[2]) or super().kind(norm)
+
     def noise_floor(self, frames: int, camera: Camera) -> dict[str, float]:
         """Mean of each norm that the marks' noise alone would give."""
         return {name: float(np.abs(value).mean()) for name, value in self.of_noise(frames, camera).items()}

@@ -12,6 +12,11 @@ from boatsim.errors import BoatsimError
 from boatsim.physics.base import Array, Checked
 from boatsim.recordings.table import Recording
 
+KINDS = {
+    "inf": "largest", "max": "largest", "largest": "largest", "rms": "rms", "mean": "mean", "l1": "time integral",
+    "l2": "root of integrated squares", "integral": "time integral",
+}  # fmt: skip  # ending of a norm's name -> what it is
+
 
 class TooShort(BoatsimError):
     """A log ends before there is what a measure asks of it: that of a run that was interrupted, say."""
@@ -31,6 +36,14 @@ class Measure(Checked):
         """Unit of one of its norms; a measure of any signal goes by that signal's."""
         return type(self).units[norm]
 
+    def kind(self, norm: str) -> str:
+        """Which value of a signal a norm is: largest, rms, mean, a sum or an integral; "" for what is none of these."""
+        return KINDS.get(norm.rpartition("_")[2], "")
+
+    def why(self, norm: str, log: Recording) -> str:
+        """Why a run never got as far as a norm asks, in a few words with the figure it got to; "" if unknown."""
+        return ""
+
     def values(self, log: Recording) -> dict[str, float]:
         """Norms of a run; one that the run never got as far as is left out. Raises TooShort if none can be told."""
         raise NotImplementedError
@@ -42,6 +55,12 @@ def seen(log: Recording, since: float = -inf, until: float = inf, least: int = 1
     if (count := int(np.count_nonzero(found))) < least:
         raise TooShort(f"{log.name}: {count} rows where at least {least} are needed")
     return np.asarray(found)
+
+
+def never(x: Array, level: float, unit: str = "") -> str:
+    """Why a signal (N,) passed no level: how near it came."""
+    near, which = (x.max(), "largest") if x.max() < level else (x.min(), "smallest")
+    return f"never got to {level:.4g} {unit}".rstrip() + f": {which} {near:.4g}"
 
 
 def crossing(t: Array, above: Array) -> float | None:

@@ -10,8 +10,9 @@ import numpy as np
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
+from boatsim.simulate import following
 from boatsim.simulate.film import FilmMeasure, film
-from boatsim.simulate.measure import Measure, TooShort
+from boatsim.simulate.measure import KINDS, Measure, TooShort
 from boatsim.simulate.run import Run
 from boatsim.simulate.scenario import CheckTable, NormTable
 
@@ -32,6 +33,7 @@ class NormEntry(TypedDict):
     noise_floor: float | None
     verdict: str | None
     lacking: str | None  # why there is no value
+    kind: str  # largest, rms, mean, time integral, sum over frames; "" for what is none of these
 
 
 class RunEntry(TypedDict):
@@ -59,6 +61,7 @@ class Norm:
     at_reported: float | None = None  # of measures on camera frames: at the rate reported beside the one scored
     noise_floor: float | None = None  # what the camera's noise alone would give, error-free motion, as many frames
     lacking: str | None = None  # why there is no value
+    kind: str = ""  # which value of a signal it is: largest, rms, mean, time integral, sum over frames
 
     @property
     def verdict(self) -> str | None:
@@ -83,6 +86,7 @@ class Norm:
             "noise_floor": self.noise_floor,
             "verdict": self.verdict,
             "lacking": self.lacking,
+            "kind": self.kind,
         }
 
 
@@ -108,15 +112,32 @@ def norms(run: Run) -> dict[str, Norm]:
     return found | {f"{c.signal}_{c.norm}": _checked(run.recording, c) for c in run.scenario.file.check}
 
 
+def all_norms(run: Run) -> dict[str, Norm]:
+    """Those the scenario asks for, and how well it followed its goals, which needs no asking. Raises BadInput."""
+    asked = norms(run)
+    beside = {
+        name: replace(_judged(run, name, value, unit), kind=following.KINDS[name.rpartition("_")[2]])
+        for name, (value, unit) in following.errors(run.recording).items()
+    }
+    return asked | {name: norm for name, norm in beside.items() if name not in asked}
+
+
 def _measured(run: Run, measure: Measure) -> dict[str, Norm]:
     """Norms of a measure, on the log or on the camera's frames."""
     units = type(measure).units
     if not isinstance(measure, FilmMeasure):
         values = measure.values(run.recording)
-        return {n: _judged(run, n, values.get(n), measure.unit(n)) for n in units}
+        return {n: _of(measure, run, _judged(run, n, values.get(n), measure.unit(n)), n) for n in units}
     values, beside = film_values(run, measure, measure.scored), film_values(run, measure, measure.reported)
     floor = measure.noise_floor(round(values["frames"]), run.scenario.camera) if values else {}
-    return {n: _judged(run, n, values.get(n), unit, beside.get(n), floor.get(n)) for n, unit in units.items()}
+    found = {n: _judged(run, n, values.get(n), unit, beside.get(n), floor.get(n)) for n, unit in units.items()}
+    return {n: _of(measure, run, norm, n) for n, norm in found.items()}
+
+
+def _of(measure: Measure, run: Run, norm: Norm, name: str) -> Norm:
+    """A norm with what its measure says of it: which value it is, and why there is none."""
+    why = measure.why(name, run.recording) if norm.lacking == NOT_REACHED else ""
+    return replace(norm, kind=measure.kind(name), lacking=f"{NOT_REACHED}: {why}" if why else norm.lacking)
 
 
 def _of_nothing(run: Run, measure: Measure | None) -> dict[str, Norm]:
@@ -166,8 +187,9 @@ def _checked(log: Recording, check: CheckTable) -> Norm:
     if check.signal not in log.signals:
         raise BadInput(unknown_name("[[check]] signal", check.signal, log.signals))
     value = signal_norm(log.t, log[check.signal], check.norm)
-    unit = log.unit(check.signal) + {"l2": " s^0.5", "l1": " s"}.get(check.norm, "")
-    return Norm(value, unit.strip(), guard=(0.0, check.below), ok=value < check.below)
+    unit = log.unit(check.signal)
+    unit = {"l2": f"{unit} s^0.5".strip(), "l1": following.times_second(unit)}.get(check.norm, unit)
+    return Norm(value, unit, guard=(0.0, check.below), ok=value < check.below, kind=KINDS[check.norm])
 
 
 def _judged(

@@ -75,6 +75,7 @@ class Runner:
         self._read = {name: column for sensor in scenario.aboard for name, column in type(sensor).columns.items()}
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
         self._actuators = vessel.actuators
+        self._goals = [key for key in scenario.goal_keys if key not in vessel.commands]  # those are in `sent_` columns
         self._around = {n: m.neutral for n, m in vessel.measured.items()}
         self._winds = [e for e in vessel.effects if isinstance(e, Force) and type(e).of_air]
         self._sent: dict[str, float] = {}  # by the controller; what acts of it is the engine's
@@ -162,7 +163,8 @@ class Runner:
     def _columns(self) -> list[str]:
         """Beside motion and the commands that act: `sent_` what the controller sent before a range limited it.
 
-        `actual_` is an actuator, `sensed_` and `camera_` were measured, `force_` is all laws, `wind_` those of the air.
+        `goal_` is what it was to reach, nan where no goal says it; `actual_` is an actuator, `sensed_` and `camera_`
+        were measured, `force_` is all laws, `wind_` those of the air.
         """
         limits = [f"{name}{end}" for name in self._adaptive() for end in ("", "_low", "_high")]
         references = [n for n in self._estimates if n.startswith("reference_")]
@@ -172,6 +174,7 @@ class Runner:
             *(f"sent_{n}" for n in self._sent_channels), *(f"actual_{n}" for n in self._actuators),
             *(f"sensed_{n}" for n in (*SENSED, *self._read.values())), *self._marks, *(f"camera_{n}" for n in SEEN),
             *force, *(wind if self._winds else ()), "contacts", *(f"estimate_{n}" for n in limits), *references,
+            *(f"goal_{n}" for n in self._goals),
         ]  # fmt: skip
 
     def _components(self) -> list[str]:
@@ -239,7 +242,7 @@ class Runner:
             yield self.scenario.controller
         except Exception as error:
             called = f"controller {self.scenario.file.controller['use']} at t = {self._state.t:g} s"
-            raise BadInput(f"{called}: {_what_went_wrong(error, self.scenario.controller)}") from error
+            raise BadInput(f"{called}: {what_went_wrong(error, self.scenario.controller)}") from error
 
     def _shoot(self, before: State, after: State) -> list[Frame]:
         """Camera frames since the last step. A frame carries the mean command from it to the next one."""
@@ -277,6 +280,7 @@ class Runner:
         assert sense is not None
         with self._asked() as controller:
             estimates = controller.estimates()
+        goal = self.scenario.goal_at(s.t)
         axes = [axis in self.scenario.vessel.freedoms for axis in AXES]
         self.log.add(
             [
@@ -294,6 +298,7 @@ class Runner:
                 engine.contacts,
                 *(value for name in self._adaptive() for value in estimates[name]),
                 *(estimates[n].value for n in self._estimates if n.startswith("reference_")),
+                *(goal.get(n, nan) for n in self._goals),
             ]
         )
         self._show()
@@ -355,7 +360,7 @@ def run(
     return Runner(scenario, seed, listen).run(progress)
 
 
-def _what_went_wrong(error: Exception, controller: Controller) -> str:
+def what_went_wrong(error: Exception, controller: Controller) -> str:
     """An error on purpose in its own words; any other with its kind, and the controller's line it came from."""
     if isinstance(error, BoatsimError):
         return str(error)

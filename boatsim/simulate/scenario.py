@@ -17,6 +17,7 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.content import load_class
 from boatsim.physics.signals import STATE
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate import following
 from boatsim.simulate.camera import Camera, camera_over
 from boatsim.simulate.cases import Place, content
 from boatsim.simulate.film import FilmMeasure
@@ -157,6 +158,11 @@ class Scenario:
             parted.append((held, {k: v for k, v in goal.items() if isinstance(v, CourseTable)}))
         return parted
 
+    @property
+    def goal_keys(self) -> list[str]:
+        """All that its goals speak of, in the order of the file."""
+        return list(dict.fromkeys(key for goal in self.file.goal for key in goal if key != "from"))
+
     def goal_at(self, t: float) -> Mapping[str, float]:
         """Goals in force at time t [s]: the last [[goal]] that has begun."""
         at = bisect_right(self._begins, t + 1e-9) - 1
@@ -268,7 +274,8 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
 
 def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) -> None:
     """Only norms of what is measured are judged, and the frames they need are taken."""
-    allowed = tuple(type(measure).units) if measure else ()
+    followed = following.names(key for goal in file.goal for key in goal)
+    allowed = (*(type(measure).units if measure else ()), *followed)
     for name in file.norms:
         if name not in allowed:
             raise BadInput(unknown_name("[norms] key", name, allowed))

@@ -5,9 +5,10 @@ from collections.abc import Iterable, Mapping, Sequence
 import rerun as rr
 import rerun.blueprint as rrb
 
-from boatsim.physics.signals import COMPONENTS
+from boatsim.physics.signals import COMPONENTS, POSE, RATES, follower
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
+from boatsim.simulate.following import GOAL
 from boatsim.view.scene import Scene
 
 WORLD = "world"
@@ -68,8 +69,8 @@ def words(name: str) -> str:
 
 def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
     """Layout of a run: scene, velocities with their reference, and tabs of what else the run has."""
-    speed = [n for n in names if n in ("u_mps", "v_mps", "reference_u_mps", "reference_v_mps")]
-    rate = [n for n in names if n in ("r_radps", "reference_r_radps", "p_radps")]
+    speed = with_goals(("u_mps", "v_mps", "reference_u_mps", "reference_v_mps"), names)
+    rate = with_goals(("r_radps", "reference_r_radps", "p_radps"), names)
     return _layout(
         rrb.Vertical(
             _view(scene, ["path", "camera"]), rrb.TextDocumentView(origin="norms", name="Norms"), row_shares=[5, 3]
@@ -78,6 +79,11 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
         _plot("Yaw rate" if "p_radps" not in names else "Yaw and roll rate", rate),
         rrb.Tabs(*_tabs(names)),
     )
+
+
+def with_goals(signals: Sequence[str], names: Iterable[str]) -> list[str]:
+    """Of `names` those that are one of these signals, or a goal that one of them follows."""
+    return [n for n in names if n in signals or (n.startswith(GOAL) and follower(n.removeprefix(GOAL)) in signals)]
 
 
 def of_overlay(
@@ -112,6 +118,30 @@ def of_overlay(
     size = f", drawn {scene.times:.2g} times their size" if scene.times > 1.0 else ""
     view = _view(scene, [f"paths/{boat}" for boat in boats], eye, f"{scene.vessel}: {', '.join(boats)}{size}")
     return _layout(view, rrb.Tabs(*motion), *forces)
+
+
+def of_several(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.Blueprint:
+    """Layout of several runs, boat -> its signals: the scene above their norms, all boats in the plot of a signal."""
+    names = list(dict.fromkeys(n for signals in boats.values() for n in signals))
+
+    def plot(signal: str) -> rrb.TimeSeriesView:
+        return _plot(words(signal), [f"{boat}/{n}" for boat, own in boats.items() for n in with_goals([signal], own)])
+
+    motion = [n for n in (*RATES, *POSE) if n in names]
+    motion.sort(key=lambda n: len(with_goals([n], names)) < 2)  # those with a goal come first
+    drives = [n for n in names if n.startswith("actual_")]
+    eye = None
+    if scene.open:
+        length, width, x, y = scene.tank
+        eye = (x - 0.2 * length, -y, 0.65 * max(length, width))
+    trails = [f"paths/{boat}" for boat in boats]
+    left = rrb.Vertical(
+        _view(scene, trails, eye, ", ".join(boats)),
+        rrb.TextDocumentView(origin="norms", name="Norms"),
+        row_shares=[3, 2],
+    )
+    plots = [rrb.Tabs(*map(plot, part)) for part in (motion[::2], motion[1::2], drives) if part]
+    return _layout(left, *plots)
 
 
 def _layout(scene: rrb.View | rrb.Container, *plots: rrb.View | rrb.Container) -> rrb.Blueprint:
@@ -166,7 +196,7 @@ def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
         "Forces": [n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_N")],
         "Yaw moments": [n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_Nm")],
         "Heading": [n for n in names if n.endswith("psi_rad")],
-        "Position": [n for n in names if n in ("x_m", "y_m", "camera_x_m", "camera_y_m")],
+        "Position": with_goals(("x_m", "y_m", "camera_x_m", "camera_y_m"), names),
     }
     return [_plot(title, members) for title, members in groups.items() if members]
 
@@ -190,4 +220,12 @@ def _colour(name: str, number: int) -> Colour:
     for side, light, dark in (("port", (240, 150, 150), (200, 30, 40)), ("starboard", (140, 210, 140), (20, 130, 50))):
         if side in name.split("_"):
             return dark if name.startswith("actual_") else light
+    if name.startswith(GOAL):
+        return paler(_colour(follower(name.removeprefix(GOAL)) or "", number))
     return FIXED.get(name, PALETTE[number % len(PALETTE)])
+
+
+def paler(colour: Colour) -> Colour:
+    """The same hue, halfway to white: a goal beside what follows it."""
+    red, green, blue = ((c + 255) // 2 for c in colour)
+    return red, green, blue

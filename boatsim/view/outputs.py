@@ -66,7 +66,7 @@ def run_into(
                 runner.watch = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv")).add
             run = runner.run(progress, stop)
             stop.over = True  # nothing that comes now may cost the files
-            found = judged.norms(run)
+            found = judged.all_norms(run)
             for log in logs:
                 log.finish({name: norm.to_json() for name, norm in found.items()})
         content = judged.to_json(run, found)

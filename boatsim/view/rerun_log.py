@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 from types import TracebackType
-from typing import Self, TypedDict
+from typing import NamedTuple, Self, TypedDict
 
 import numpy as np
 import rerun as rr
@@ -18,6 +18,7 @@ import rerun as rr
 from boatsim.physics.signals import POSE, Array
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
+from boatsim.simulate.following import GOAL
 from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED, NormEntry
 from boatsim.view import blueprint
 from boatsim.view.blueprint import WORLD
@@ -167,22 +168,61 @@ def log_overlay(
     stream.close()
 
 
+class Boat(NamedTuple):
+    """One of several runs in a log of all of them."""
+
+    recording: Recording
+    scene: Scene
+    goals: str  # what its goals are called; "": they are not drawn, as those of a boat with the same ones are
+
+
+def log_side_by_side(path: Path | str, boats: Mapping[str, Boat], norms: str) -> None:
+    """compare.rrd: whole runs of several boats in one scene, each in its own colour, and their signals plot by plot.
+
+    `boats` are by the names that stand beside the hulls and in the legends, letters, digits and _ only; `norms` is
+    their table in Markdown. The first is drawn as a hull in its tank, the others as outlines: so boats that are close
+    to each other can be told.
+    """
+    stream = Stream("boatsim_compare", path)
+    _begin(stream)
+    scene = next(iter(boats.values())).scene
+    _draw_tank(stream, scene)
+    for number, (name, boat) in enumerate(boats.items()):
+        colour = blueprint.PALETTE[number % len(blueprint.PALETTE)]
+        if number == 0:
+            _draw_hull(stream, scene, f"boats/{name}", colour)
+        _draw_outline(stream, boat.scene, name, number, colour)
+        _move(stream, boat.recording, boat.scene, f"boats/{name}")
+        _log_path(stream, boat.recording, f"paths/{name}", colour, None, _above(boat.scene, number))
+        shown = {n: x for n, x in boat.recording.signals.items() if boat.goals or not n.startswith(GOAL)}
+        for signal in shown:
+            is_goal = signal.startswith(GOAL)
+            legend, hue = (boat.goals, blueprint.paler(colour)) if is_goal else (name, colour)
+            stream.log(f"{SIGNALS}/{name}/{signal}", blueprint.style(signal, number, legend, hue), static=True)
+        _log_signals(stream, replace(boat.recording, signals=shown), f"{SIGNALS}/{name}")
+    stream.log("norms", rr.TextDocument(norms, media_type="text/markdown"), static=True)
+    signals = {name: list(boat.recording.signals) for name, boat in boats.items()}
+    stream.send_blueprint(blueprint.of_several(scene, signals))
+    stream.close()
+
+
 def _begin(stream: Stream) -> None:
     stream.log(WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
 
 
 def norms_table(norms: Mapping[str, NormEntry]) -> str:
-    """Markdown table norm, value, guard, met, published with the verdict on it; narrow, and what counts first."""
+    """Markdown table norm, what it is, value, guard, met, published with the verdict on it; what counts first."""
     if not norms:
         return "This scenario has no norms.\n"
-    lines = ["| norm | value | guard | met | published |", "|:---|---:|:---:|:---:|:---|"]
+    lines = ["| norm | is | value | guard | met | published |", "|:---|:---|---:|---:|:---:|:---|"]
     for name, norm in norms.items():
         ok, ends = norm.get("ok"), [_short(end) for end in norm.get("guard") or (None, None)]
         met = "" if ok is None else "yes" if ok else "**no**"
         span = " to ".join(ends) if all(ends) else f"at least {ends[0]}" if ends[0] else f"at most {ends[1]}"
-        value = f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
+        value = norm.get("lacking") or f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
         said = f"{_short(norm.get('published'))} {VERDICTS.get(norm.get('verdict') or '', '')}".strip()
-        lines.append(f"| {name} | {value} | {span if any(ends) else ''} | {met} | {said} |")
+        guard = span if any(ends) else ""
+        lines.append(f"| {name} | {norm.get('kind', '')} | {value} | {guard} | {met} | {said} |")
     return "\n".join(lines) + "\n"
 
 

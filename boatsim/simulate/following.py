@@ -1,0 +1,64 @@
+"""How well a boat follows its goals: every goal that is a signal of the motion is judged, asked for or not."""
+
+from collections.abc import Iterable, Iterator
+from math import degrees, pi, sqrt
+
+import numpy as np
+
+from boatsim.physics.base import Array
+from boatsim.physics.signals import follower
+from boatsim.recordings.notes import unit_of
+from boatsim.recordings.table import Recording
+
+GOAL = "goal_"  # in front of a goal's key: its column in the log
+KINDS = {"rms": "rms", "largest": "largest", "integral": "time integral"}  # ending of a norm -> what it is
+
+
+def errors(log: Recording) -> dict[str, tuple[float, str]]:
+    """Norm -> value and unit, of the error e between goal and signal while the goal says something; angles in degrees.
+
+    rms is sqrt(mean e^2), largest max|e|, integral that of |e| over time, which does not depend on the log's step.
+    """
+    found: dict[str, tuple[float, str]] = {}
+    for key, signal in _followed(n.removeprefix(GOAL) for n in log.signals if n.startswith(GOAL)):
+        if signal not in log.signals:
+            continue
+        unit = unit_of(signal).replace("rad", "deg")
+        off = _off(signal, log[f"{GOAL}{key}"], log[signal])
+        lasts = np.append(np.diff(log.t), 0.0)  # [s] a row stands for
+        known = np.isfinite(off) & (lasts > 0.0)
+        e, dt = np.abs(off[known]), lasts[known]
+        if not len(e):
+            continue
+        values = sqrt(float((e**2 * dt).sum() / dt.sum())), float(e.max()), float((e * dt).sum())
+        units = unit, unit, times_second(unit)
+        found |= dict(zip(_norms(key), zip(values, units, strict=True), strict=True))
+    return found
+
+
+def names(goals: Iterable[str]) -> list[str]:
+    """The norms of these goals."""
+    return [norm for key, _ in _followed(goals) for norm in _norms(key)]
+
+
+def times_second(unit: str) -> str:
+    """Unit of the time integral of what has a unit: m of m/s, m s of m."""
+    return unit.removesuffix("/s") if unit.endswith("/s") else f"{unit} s".strip()
+
+
+def _followed(goals: Iterable[str]) -> Iterator[tuple[str, str]]:
+    for key in dict.fromkeys(goals):
+        if signal := follower(key):
+            yield key, signal
+
+
+def _norms(goal: str) -> list[str]:
+    return [f"{goal.rpartition('_')[0]}_error_{kind}" for kind in KINDS]
+
+
+def _off(signal: str, goal: Array, reached: Array) -> Array:
+    """Error (N,) in the unit that people read; of a heading the shorter way round."""
+    off = reached - goal
+    if signal == "psi_rad":
+        off = (off + pi) % (2.0 * pi) - pi
+    return off * (degrees(1.0) if "rad" in unit_of(signal) else 1.0)
