@@ -10,8 +10,9 @@ from test_report import MODELS, described, nothing, planar, rolling, unknown
 
 from boatsim.diagnose.report import page as report
 from boatsim.diagnose.report import show, stays
+from boatsim.diagnose.report.film import FRAMES, LASTS
 from boatsim.diagnose.report.findings import Findings, FreeRun, Missing
-from boatsim.diagnose.report.replay import FRAMES, LARGEST, LASTS, SHOWN, SMALLEST, replay
+from boatsim.diagnose.report.replay import LARGEST, SHOWN, SMALLEST, replay
 
 LIMIT = 2_000_000  # bytes of a page
 
@@ -82,6 +83,27 @@ def test_a_boat_that_only_rolls_shows_its_roll_over_time():
     shown = np.interp(found.film["t"], run.t, np.degrees(run.channels["patched"]["phi_rad"]))
     assert boats["patched"]["y"] == pytest.approx(shown, abs=1e-2) and boats["patched"]["x"] == found.film["t"]
     assert 'data-across="time [s]"' in found.picture and 'data-up="roll [°]"' in found.picture
+
+
+def test_a_boat_whose_heading_nobody_knows_is_a_mark_that_points_nowhere():
+    f = planar()
+    headless = tuple(
+        replace(r, channels={m: {n: v for n, v in c.items() if n != "psi_rad"} for m, c in r.channels.items()})
+        for r in f.free_runs
+    )
+    found, boats = film_of(replace(f, free_runs=headless))
+    assert len({round(float(np.hypot(*corner)), 3) for corner in found.film["outline"]}) == 1
+    assert found.film["plan"] and set(boats["recorded"]["turned"]) == {0.0}
+
+
+def test_a_boat_that_only_yaws_shows_its_heading_over_time():
+    f = planar()
+    yawing = tuple(
+        replace(r, channels={m: {"psi_rad": c["psi_rad"]} for m, c in r.channels.items()}) for r in f.free_runs
+    )
+    found, boats = film_of(replace(f, free_runs=yawing))
+    assert not found.film["plan"] and found.title.startswith("Heading on unseen data")
+    assert np.degrees(boats["patched"]["turned"]) == pytest.approx(np.array(boats["patched"]["y"]), abs=0.1)
 
 
 def test_without_a_patch_no_patched_boat_is_shown_and_without_free_runs_no_picture(tmp_path):

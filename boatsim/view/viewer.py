@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 from urllib.parse import quote
 
 from boatsim.errors import BoatsimError
@@ -20,6 +21,7 @@ from boatsim.errors import BoatsimError
 PORT, PAGE = 9876, 9090  # where a viewer listens, and the web viewer's page is, unless these are taken
 HERE = "127.0.0.1"
 PATIENCE = 15.0  # [s] for a viewer to start
+SETTLED = 0.3  # [s] after which it has all its ports, or has ended because one is taken
 
 
 @dataclass(frozen=True)
@@ -57,16 +59,44 @@ def _opened() -> bool:
 @contextmanager
 def _served() -> Iterator[Viewer]:
     """The web viewer of rerun and what feeds it, in a process of its own that ends with the block."""
-    to, page = _free(PORT), _free(PAGE)
+    started, viewer = _serving(_free(PAGE)) or _serving(_free(0)) or _gone()
+    try:
+        yield viewer
+    finally:
+        _end(started)
+
+
+def _serving(page: int) -> "tuple[subprocess.Popen[bytes], Viewer] | None":
+    """A web viewer on a port; None if it does not start there, as where another one was quicker."""
+    to = _free(0)
     started = _rerun("--serve-web", "--bind", HERE, "--port", str(to), "--web-viewer-port", str(page))
     try:
-        if not _up(started, to, page):
-            raise BoatsimError(f"rerun's web viewer does not start on the ports {to} and {page} of this machine")
-        yield Viewer(_address(to), f"http://{HERE}:{page}/?url={quote(_address(to), safe='')}")
-    finally:
-        with suppress(ProcessLookupError):
-            os.killpg(started.pid, signal.SIGTERM)  # the command is a wrapper; the viewer is its child
-        started.wait(PATIENCE)
+        if _up(started, to, page) and not _ends(started, SETTLED):
+            return started, Viewer(_address(to), f"http://{HERE}:{page}/?url={quote(_address(to), safe='')}")
+    except BaseException:
+        _end(started)
+        raise
+    _end(started)
+    return None
+
+
+def _gone() -> NoReturn:
+    raise BoatsimError("rerun's web viewer does not start on this machine")
+
+
+def _end(started: "subprocess.Popen[bytes]") -> None:
+    with suppress(ProcessLookupError):
+        os.killpg(started.pid, signal.SIGTERM)  # the command is a wrapper; the viewer is its child
+    started.wait(PATIENCE)
+
+
+def _ends(started: "subprocess.Popen[bytes]", seconds: float) -> bool:
+    """Whether it ends within so long."""
+    try:
+        started.wait(seconds)
+    except subprocess.TimeoutExpired:
+        return False
+    return True
 
 
 def _rerun(*options: str) -> "subprocess.Popen[bytes]":

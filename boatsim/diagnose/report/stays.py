@@ -21,7 +21,7 @@ def in_words(answer: Answer, patched: bool) -> list[str]:
     vessel = "the patched vessel" if patched else "the vessel with its own coefficients refitted"
     return [
         f"A mean force stays in {vessel}: {listed(_said(axis, m) for axis, m in found.items())}, on average over all "
-        "recordings. No part of the model makes it, and a controller without integral action settles that much off."
+        "recordings. No part of the model makes it; a controller without integral action is left with an offset by it."
     ]
 
 
