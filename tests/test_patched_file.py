@@ -90,6 +90,15 @@ def test_a_patched_file_states_what_a_rule_would_fill_in_otherwise(tmp_path: Pat
     np.testing.assert_allclose(Program(again).values(), fitted[: len(Program(again).values())], rtol=1e-9)
 
 
+def test_a_patched_boat_has_the_program_of_its_diagnosis_and_is_not_compiled_anew(tmp_path: Path) -> None:
+    boat = vessel.load("trial_boat")
+    problem = problem_of(boat)
+    patch.write(problem, boat, recalibrated(problem, OFF), tmp_path / "patched.toml")
+    again = vessel.load(str(tmp_path / "patched.toml"))
+    assert again.name != boat.name
+    assert composed(again)[0].composition.source_text() == composed(boat)[0].composition.source_text()
+
+
 def test_what_is_stated_wins_and_zero_is_a_value() -> None:
     boat = vessel.load("eastward_ho", ["condition_1"])
     own = LinearHull(speed=4.0).completed(boat)

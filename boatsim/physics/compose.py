@@ -159,7 +159,8 @@ class Composition:
 
     def _head(self, used: set[str]) -> Iterator[str]:
         """Imports, and the compiled functions and types that the text below calls by number."""
-        yield f'"""Effects of {_remark(self.vessel.name)}, composed by boatsim; not meant to be edited."""'
+        # without the vessel's name: one that is patched, or another with the same effects, is not compiled anew
+        yield '"""Effects of a vessel, composed by boatsim; not meant to be edited."""'
         yield ""
         yield "from math import cos, sin"
         yield ""
