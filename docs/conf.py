@@ -16,4 +16,3 @@ html_copy_source = False
 html_show_copyright = False
 pygments_style, pygments_dark_style = "friendly", "monokai"
 myst_heading_anchors = 3
-suppress_warnings = ["toc.empty_glob"]  # pages that some branches have and others have not
