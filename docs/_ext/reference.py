@@ -17,9 +17,14 @@ from boatsim.simulate import cases
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
+FITTED = """One idea of physics or of measurement each, in `boatsim/physics/effects/`.
+
+*Fitted: yes* are the parameters that a diagnosis fits when it tries the effect as what is missing. Those fitted *as
+damping, thrust, restoring* or *wind* are coefficients of the boat that are never known exactly: a diagnosis refits them
+within their stated uncertainty."""
 SHELVES = {  # folder of pages -> its heading and what stands below it
     "commands": ("Commands", "What each says to `--help`."),
-    "effects": ("Effects", "One idea of physics or of measurement each, in `boatsim/physics/effects/`."),
+    "effects": ("Effects", FITTED),
     "controllers": ("Controllers", "One a file, in `controllers/`."),
     "measures": ("Measures", "One measure of a run a file, in `boatsim/measures/`."),
     "sensors": ("Sensors", "Beside the usual ones of `[sensors]`; one a file, in `boatsim/simulate/sensors/`."),
@@ -41,7 +46,7 @@ def pages() -> dict[str, str]:
 def _entry_page(kind: str, name: str) -> str:
     """An effect, controller, measure or sensor."""
     one = entry(kind, name)
-    lines = [f"# {name}", "", f"{_plain(one.words)}.", ""]
+    lines = [f"# {name}", "", f"{_sentence(one.words)}.", ""]
     lines += [_plain(line) for line in one.doc] + ([""] if one.doc else [])
     lines += [f"- **{what}**: {_plain(text)}" for what, text in one.said] + ([""] if one.said else [])
     if one.numbers:
@@ -56,7 +61,7 @@ def _vessel_page(name: str) -> str:
     lines = lines[lines.index(f"{name}: vessel") + 1 :]
     words, *rest = lines[: lines.index("")] if "" in lines else lines
     rest = [line for line in rest if not line.startswith("  file: ")]
-    return "\n".join([f"# {name}", "", f"{_plain(words.strip()).rstrip('.')}.", "", "```text", *rest, "```", ""])
+    return "\n".join([f"# {name}", "", f"{_sentence(words.strip()).rstrip('.')}.", "", "```text", *rest, "```", ""])
 
 
 def _scenarios() -> Iterator[tuple[str, str]]:
@@ -96,6 +101,10 @@ def _index(shelf: str, found: Mapping[str, str]) -> str:
 
 def _row(cells: Iterable[str]) -> str:
     return f"| {' | '.join(cells)} |"
+
+
+def _sentence(text: str) -> str:
+    return _plain(text[:1].upper() + text[1:])
 
 
 def _plain(text: str) -> str:
