@@ -187,6 +187,12 @@ def test_all_that_has_a_name_can_be_shown() -> None:
         assert "to paste:" in result.output
 
 
+def test_an_effect_says_what_is_fitted_and_what_rules_it_out() -> None:
+    lines = CliRunner().invoke(app, ["show", "tether"]).output.splitlines()
+    assert "  ruled out by: moored = false" in lines
+    assert ["tension", "0", "N", "0", "to", "1e+06", "yes", "steady", "pull"] in [line.split() for line in lines]
+
+
 def test_an_example_of_an_effect_can_be_pasted() -> None:
     lines = CliRunner().invoke(app, ["show", "weak_reverse"]).output.splitlines()
     pasted = "\n".join(line.strip() for line in lines[lines.index("to paste:") + 1 :])

@@ -32,7 +32,8 @@ def test_every_locked_requirement_has_a_hash_and_no_address() -> None:
 
 
 def test_the_lock_has_every_direct_dependency() -> None:
-    direct = [*PROJECT["dependencies"], *PROJECT["optional-dependencies"]["test"]]
+    extras = PROJECT["optional-dependencies"]
+    direct = [*PROJECT["dependencies"], *extras["test"], *extras["docs"]]
     assert {re.split(r"[<>=\[ ]", line)[0] for line in direct} <= set(LOCKED)
 
 

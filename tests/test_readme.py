@@ -1,8 +1,9 @@
-"""The README's figures are those that its commands print today, figure by figure.
+"""The figures of the README and of the pages in docs/ are those that their commands print today, figure by figure.
 
-Commands with an output below them run as they are printed. Tables of benchmarks are compared with what the benchmark
-prints; those that need recordings beside the repository are skipped without them, those of many minutes run only with
-BOATSIM_README_LONG=1 in the environment.
+Commands with an output below them run as they are printed; the pages that are run when the site is built, from their
+first command to their last. Tables of benchmarks are compared with what the benchmark prints; those that need
+recordings beside the repository are skipped without them, those of many minutes run only with BOATSIM_README_LONG=1 in
+the environment.
 """
 
 import contextlib
@@ -24,30 +25,19 @@ from benchmarks import trials
 from benchmarks.practice import __main__ as practice
 from benchmarks.real import common
 from boatsim.cli import app
+from tests.pages import MARK, ROOT, blocks, difference, numbers, same, wrong
 
 pytestmark = pytest.mark.slow
 
-ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?")
-BLOCK = re.compile(r"```sh\n((?:(?!```).)*)\n```\n\n```\n((?:(?!```).)*)\n```", re.DOTALL)  # commands and their output
 LONG = os.environ.get("BOATSIM_README_LONG") == "1"
-
-
-def numbers(text: str) -> list[str]:
-    """Figures of a text as they are printed."""
-    return NUMBER.findall(text)
-
-
-def same(shown: str, printed: str) -> bool:
-    """Whether two figures agree to one unit of the last digit shown, and half of one of the other's."""
-    units = [10.0 ** -len(text.partition(".")[2]) for text in (shown, printed)]
-    return abs(float(shown) - float(printed)) <= 1.01 * units[0] + (0.5 * units[1] if units[1] > units[0] else 0.0)
+RESULTS = (ROOT / "docs" / "results.md").read_text(encoding="utf-8")
+PAGES = {file.name: file.read_text(encoding="utf-8") for file in (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))}
+TUTORIALS = sorted(name for name, page in PAGES.items() if MARK in page)
 
 
 def compare(row: str, shown: Sequence[str], printed: Sequence[str]) -> None:
     """Fails with the row and the figures in it that differ."""
-    assert len(shown) == len(printed), f"{row}: the README has {shown}, printed is {printed}"
+    assert len(shown) == len(printed), f"{row}: the page has {shown}, printed is {printed}"
     wrong = [f"{a} is {b}" for a, b in zip(shown, printed, strict=True) if not same(a, b)]
     assert not wrong, f"{row}: {'; '.join(wrong)}"
 
@@ -55,12 +45,15 @@ def compare(row: str, shown: Sequence[str], printed: Sequence[str]) -> None:
 # ---- commands with their output below them
 
 
-def sessions() -> list[tuple[list[list[str]], list[str]]]:
-    """Commands of the tool in a block, and the lines that the README shows below it."""
-    found = []
-    for block, shown in BLOCK.findall(README):
-        commands = [c.split("boatsim ", 1)[1] for c in block.split("&&") if "boatsim " in c]
-        found.append(([[w for x in shlex.split(c) for w in braces(x)] for c in commands], shown.splitlines()))
+def sessions() -> dict[str, tuple[list[list[str]], tuple[str, ...]]]:
+    """Commands of the tool in a block, and the lines that the page shows below it, by page and line."""
+    found = {}
+    for name, page in PAGES.items():
+        for block in blocks(page) if name not in TUTORIALS else ():
+            commands = [c.split("boatsim ", 1)[1] for c in block.commands.split("&&") if "boatsim " in c]
+            if block.shown and commands and "benchmarks." not in block.commands:
+                words = [[w for x in shlex.split(c) for w in braces(x)] for c in commands]
+                found[f"{name}:{block.line}"] = words, block.shown
     return found
 
 
@@ -70,14 +63,9 @@ def braces(word: str) -> list[str]:
     return [word.replace(inner[0], part) for part in inner[1].split(",")] if inner else [word]
 
 
-def pattern(line: str) -> str:
-    """A line without its figures and without the white space between its words."""
-    return " ".join(NUMBER.sub("#", line).split())
-
-
-@pytest.mark.parametrize("number", range(len(sessions())))
-def test_a_command_prints_what_is_shown_below_it(number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    commands, shown = sessions()[number]
+@pytest.mark.parametrize("place", sessions())
+def test_a_command_prints_what_is_shown_below_it(place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    commands, shown = sessions()[place]
     monkeypatch.chdir(tmp_path)
     (tmp_path / "tests").symlink_to(ROOT / "tests")
     printed: list[str] = []
@@ -85,16 +73,24 @@ def test_a_command_prints_what_is_shown_below_it(number: int, tmp_path: Path, mo
         done = CliRunner().invoke(app, words)
         assert done.exit_code in (0, 1), done.output  # 1: a bar is missed
         printed += done.output.splitlines()
-    at = 0
-    for line in (line for line in shown if re.search(r"\w", line)):
-        rest = [i for i in range(at, len(printed)) if pattern(printed[i]) == pattern(line)]
-        assert rest, f"not printed: {line}\nprinted:\n" + "\n".join(printed[at:])
-        compare(line, numbers(line), numbers(printed[rest[0]]))
-        at = rest[0] + 1
+    assert not difference(shown, printed)
 
 
-def test_both_commands_of_the_front_page_are_looked_at() -> None:
-    assert [[words[0] for words in commands] for commands, _ in sessions()] == [["run", "diagnose"], ["diagnose"]]
+def test_the_commands_of_the_front_page_are_looked_at() -> None:
+    front = [[words[0] for words in commands] for place, (commands, _) in sessions().items() if "README" in place]
+    assert front == [["run", "diagnose"]]
+
+
+@pytest.mark.parametrize("name", TUTORIALS)
+def test_a_tutorial_prints_what_it_shows_in_an_empty_home(name: str, tmp_path: Path) -> None:
+    assert not list(wrong(PAGES[name], tmp_path))
+
+
+def test_tutorials_go_from_a_log_to_a_diagnosis() -> None:
+    assert set(TUTORIALS) >= {"first_steps.md", "your_boat.md"}
+    commands = " ".join(block.commands for block in blocks(PAGES["your_boat.md"]))
+    for verb in ("import day_1.BIN", "import day_2.csv", "check", "--from-log", "diagnose"):
+        assert verb in commands
 
 
 # ---- tables of benchmarks
@@ -102,10 +98,10 @@ def test_both_commands_of_the_front_page_are_looked_at() -> None:
 
 @dataclass(frozen=True)
 class Row:
-    """Where a benchmark prints a row of the README: the table's title, its row, and the columns of the figures."""
+    """Where a benchmark prints a row of the page: the table's title, its row, and the columns of the figures."""
 
     benchmark: str
-    judged_on: str  # as the README's second column begins
+    judged_on: str  # as the page's second column begins
     title: str
     label: str
     columns: tuple[int, ...]  # among the row's figures: recalibrated, patched, ratio
@@ -138,8 +134,8 @@ REAL = (
 
 
 def table_below(heading: str) -> Iterator[list[str]]:
-    """Cells of the rows of the first table below a heading of the README."""
-    lines = README.split(heading, 1)[1].splitlines()
+    """Cells of the rows of the first table below a heading of the results."""
+    lines = RESULTS.split(heading, 1)[1].splitlines()
     begin = next(i for i, line in enumerate(lines) if line.startswith("| --- |"))
     for line in lines[begin + 1 :]:
         if not line.startswith("|"):
@@ -172,7 +168,7 @@ def test_a_row_about_real_recordings_is_what_its_benchmark_prints(
     folders = [common.RECORDINGS / name for name in row.recordings or (row.benchmark,)]
     if row.benchmark not in (ROLL, THESIS) and not all(f.is_dir() for f in folders):
         pytest.skip("needs recordings beside the repository")
-    (cells,) = (c for c in with_names("**On real recordings**") if c[0] == row.benchmark and row.judged_on in c[1])
+    (cells,) = (c for c in with_names("## On real recordings") if c[0] == row.benchmark and row.judged_on in c[1])
     monkeypatch.chdir(tmp_path)
     found = in_table(printed_by(row.benchmark), row.title, row.label)
     shown = [numbers(cell)[0] for cell in cells[2:5]]
@@ -189,13 +185,13 @@ def with_names(heading: str) -> Iterator[list[str]]:
 
 
 def test_every_row_about_real_recordings_is_compared() -> None:
-    rows = list(with_names("**On real recordings**"))
+    rows = list(with_names("## On real recordings"))
     assert len(rows) == len(REAL)
     for cells in rows:
         assert any(cells[0] == row.benchmark and cells[1].startswith(row.judged_on) for row in REAL), cells
 
 
-TRIALS = {  # as a row of the README begins -> rows of the benchmark that give its figures
+TRIALS = {  # as a row of the page begins -> rows of the benchmark that give its figures
     "false alarms": ["false alarms"],
     "visible single effects": ["visible single effects"],
     "of these concealed": ["of these concealed"],
@@ -217,7 +213,7 @@ TRIALS = {  # as a row of the README begins -> rows of the benchmark that give i
 @pytest.mark.skipif(not LONG or not trials.SHARED.is_dir(), reason="many minutes; needs trials beside the repository")
 def test_the_table_of_the_trials_is_what_the_benchmark_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["trials", "--unknowns", "--jobs", "1", "--out", str(tmp_path)])
-    compare_trials("**On boats with concealed effects**")
+    compare_trials("## On boats with concealed effects")
 
 
 @pytest.mark.skipif(not LONG, reason="many minutes")
@@ -228,7 +224,7 @@ def test_the_table_of_five_other_vessels_is_what_the_benchmarks_print(
     monkeypatch.setattr(sys, "argv", ["practice", "--out", made])
     practice.main()
     monkeypatch.setattr(sys, "argv", ["trials", made, "--jobs", "1", "--out", str(tmp_path / "out")])
-    compare_trials("**On five other vessels**")
+    compare_trials("## On five other vessels")
 
 
 def compare_trials(heading: str) -> None:

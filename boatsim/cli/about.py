@@ -1,26 +1,17 @@
 """What `boatsim show` prints of an effect, controller, measure, sensor, vessel or scenario."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
-from inspect import getdoc
 from math import isnan
 from pathlib import Path
-from typing import Any
 
+from boatsim.cli.entry import CLASSES, entry
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import read_toml, tables
 from boatsim.physics import content, vessel
-from boatsim.physics.base import Channel, Effect, Param
+from boatsim.physics.base import Effect
 from boatsim.physics.vessel import CommandChannel, Vessel
 from boatsim.simulate import cases
-
-CLASSES = ("effect", "controller", "measure", "sensor")
-PASTED = {  # how each stands in a file
-    "effect": "[[effect]]",
-    "controller": "[controller]",
-    "measure": "[measure]",
-    "sensor": "[[sensor]]",
-}
 
 
 def about(name: str) -> list[str]:
@@ -46,75 +37,15 @@ def about(name: str) -> list[str]:
 
 def _class(kind: str, name: str) -> list[str]:
     """An effect, controller, measure or sensor."""
-    made = content.load_class(kind, name, named=True)
-    called = Path(name).stem
-    params: dict[str, Param] = made.params() if hasattr(made, "params") else {}
-    lines = [f"{called}: {kind}", f"  {made.words}"]
-    if (doc := getdoc(made)) and doc.partition("\n")[0].rstrip(".") != made.words:
-        lines += [f"  {line}".rstrip() for line in doc.splitlines()]
-    lines += [f"  {what}: {text}" for what, text in _said(made)]
-    lines += _numbers(made, params)
-    return [*lines, "to paste:", *(f"  {line}" for line in _paste(kind, called, made, params))]
-
-
-def _said(made: type[Any]) -> Iterator[tuple[str, str]]:
-    """What its class says of itself beside numbers."""
-    if text := getattr(made, "source", ""):
-        yield "source", text
-    if issubclass(made, Effect):
-        if made.shown_by:
-            yield "shows in", made.shown_by
-        for role, said in made.roles.items():
-            yield (
-                f"on.{role}",
-                f"{said.words} [{said.unit}]{'' if said.fixed is None else f'; {said.fixed:g} if left out'}",
-            )
-        if issubclass(made, Channel) and made.acts_on:
-            yield "acts on", f"commands of {made.acts_on.replace('|', ' or ')}"
-        if made.rides:
-            yield "rides on", made.rides
-    units = getattr(made, "units", None)
-    if units:
-        yield "norms", ", ".join(f"{n} [{u}]" if u else n for n, u in units.items())
-    if goals := getattr(made, "goals", ()):
-        yield "goals", ", ".join(goals)
-
-
-def _numbers(made: type[Any], params: dict[str, Param]) -> list[str]:
-    """A line for each parameter: default, unit, bounds, words."""
-    rows = []
-    nominal = {f.name: f.default for f in fields(made)} if params else {}
-    for name, p in params.items():
-        if p.low == -1e9 and not p.unit and not p.fit:  # a number by which a program knows a word
-            continue
-        rows.append((name, f"{_default(nominal[name], p)} {p.unit}".rstrip(), f"{p.low:g} to {p.high:g}", p.words))
-    if not rows:
-        return []
-    head = ("parameter", "default", "allowed", "what")
-    wide = [max(len(row[i]) for row in (head, *rows)) for i in range(3)]
-    return [f"  {a:{wide[0]}}  {b:{wide[1]}}  {c:{wide[2]}}  {d}".rstrip() for a, b, c, d in (head, *rows)]
-
-
-def _default(value: Any, p: Param) -> str:
-    if isinstance(value, int | float) and not isnan(value):
-        return f"{value:g}"
-    return f"= {p.follows.removesuffix('?')}" if p.follows else "by rule or 0"
-
-
-def _paste(kind: str, name: str, made: type[Any], params: dict[str, Param]) -> Iterator[str]:
-    """The table as it stands in a file."""
-    yield PASTED[kind]
-    yield f'use = "{name}"'
-    if issubclass(made, Effect) and made.roles:
-        bound = ", ".join(f'{role} = "CHANNEL"' for role, said in made.roles.items() if said.fixed is None)
-        yield f"on = {{ {bound} }}"
-    nominal = {f.name: f.default for f in fields(made)} if params else {}
-    fitted = [n for n, p in params.items() if p.fit or p.calibrates] or list(params)
-    for n in fitted[:6]:
-        value = nominal[n]
-        if isinstance(value, int | float) and not isnan(value):
-            unit = params[n].unit
-            yield f"{n} = {value!r}{f'  # [{unit}]' if unit else ''}"
+    found = entry(kind, name)
+    lines = [f"{found.name}: {kind}", f"  {found.words}"]
+    lines += [f"  {line}".rstrip() for line in found.doc]
+    lines += [f"  {what}: {text}" for what, text in found.said]
+    wide = [max(map(len, column)) for column in zip(*found.numbers, strict=True)]
+    for row in found.numbers:
+        cells = (f"{cell:{width}}" for cell, width in zip(row, wide, strict=True))
+        lines.append(f"  {'  '.join(cells)}".rstrip())
+    return [*lines, "to paste:", *(f"  {line}" for line in found.paste)]
 
 
 def _vessel(name: str) -> list[str]:
