@@ -1,0 +1,46 @@
+"""Runs the rehearsal: `python -m benchmarks.owner_logs --out DIR [--seed N] [--cases K] [--jobs 1]`.
+
+Every case has a folder: the logs, the vessel that `boatsim new` made, the map, the answer, and history.txt with each
+command and what it said. The same seed gives the same logs.
+"""
+
+import argparse
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+from benchmarks.owner_logs.cases import Case, cases
+from benchmarks.owner_logs.judge import Judge, Result
+from benchmarks.owner_logs.table import goals, line
+
+
+def judged(case: Case, out: Path, log_only: bool) -> Result:
+    """One case in its folder."""
+    return Judge(case, out / f"case_{case.number:02d}", log_only).judge()
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--cases", type=int, default=12)
+    parser.add_argument("--only", type=int, nargs="*", help="numbers of cases, of those of the seed")
+    parser.add_argument("--log-only", action="store_true", help="import and check alone, no diagnosis")
+    parser.add_argument("--jobs", type=int, default=1)
+    given = parser.parse_args()
+    begin = time.time()
+    asked = [c for c in cases(given.seed, given.cases) if not given.only or c.number in given.only]
+    results = []
+    with ProcessPoolExecutor(given.jobs) as pool:
+        for result in pool.map(judged, asked, [given.out] * len(asked), [given.log_only] * len(asked)):
+            results.append(result)
+            print(line(result), flush=True)
+    print()
+    for row in goals(results):
+        print(row)
+    print(f"seed {given.seed}, {len(results)} cases, {(time.time() - begin) / 60.0:.0f} min")
+
+
+if __name__ == "__main__":
+    main()
