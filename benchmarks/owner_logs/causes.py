@@ -121,8 +121,6 @@ CAUSES: dict[str, Cause] = {
     "steering offset": Cause(steering_offset, ("steering_offset",), _steers),
     "slow helm": Cause(slow_helm, ("rate_limit", "steering_rate_limit", "servo"), _steers),
     "load off centre": Cause(load, ("extra_mass", "mass_centre_shift", "payload")),
-    "drag": Cause(
-        fouling, ("surge_drag", "quadratic_damping", "damping_error", "damping_exponent", "tether", "payload")
-    ),
+    "drag": Cause(fouling, ("surge_drag", "quadratic_damping", "cubic_damping", "damping_error", "damping_exponent")),
 }
 """Every cause; the entries of the library that name it, ties among them."""

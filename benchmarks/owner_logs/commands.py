@@ -7,7 +7,7 @@ import re
 import time
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -53,10 +53,12 @@ class Finding:
 
     name: str
     sure: float
-    lines: tuple[str, ...]
+    lines: tuple[str, ...] = ()
+    allowed: bool = False  # a diagnosis allows for it by itself
 
 
 FOUND = re.compile(r"^  (?P<name>[a-z][a-z _]*) \(sure to (?P<sure>[\d.]+) %\)")
+ALLOWED = "a diagnosis allows for it"
 WRITE = "    write into recording.toml: "
 
 
@@ -65,10 +67,11 @@ def findings(said: Said) -> list[Finding]:
     found: list[Finding] = []
     for line in said.out.splitlines():
         if match := FOUND.match(line):
-            found.append(Finding(match["name"].strip().replace(" ", "_"), float(match["sure"]) / 100.0, ()))
+            found.append(Finding(match["name"].strip().replace(" ", "_"), float(match["sure"]) / 100.0))
         elif line.startswith(WRITE) and found:
-            last = found[-1]
-            found[-1] = Finding(last.name, last.sure, tuple(line.removeprefix(WRITE).split(" / ")))
+            found[-1] = replace(found[-1], lines=tuple(line.removeprefix(WRITE).split(" / ")))
+        elif line.strip() == ALLOWED and found:
+            found[-1] = replace(found[-1], allowed=True)
     return found
 
 

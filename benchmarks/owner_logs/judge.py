@@ -140,7 +140,7 @@ class Judge:
         advice = [f for f in found if f.lines]
         if not wrong.mendable:
             return
-        r.mended = False
+        r.mended = any(f.allowed and f.name in wrong.named for f in found)
         if advice:
             self._follow(run, advice[0])
             left = [f for f in findings(self.call("check", run)) if f.lines]
