@@ -30,7 +30,8 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1)
     given = parser.parse_args()
     begin = time.time()
-    asked = [c for c in cases(given.seed, given.cases) if not given.only or c.number in given.only]
+    all_of_them = cases(given.seed, given.cases)
+    asked = [c for c in all_of_them if not given.only or c.number in given.only]
     results = []
     with ProcessPoolExecutor(given.jobs) as pool:
         for result in pool.map(judged, asked, [given.out] * len(asked), [given.log_only] * len(asked)):

@@ -43,16 +43,17 @@ class Case:
 def cases(seed: int, count: int) -> list[Case]:
     """All of them; faults and causes come in random order, none twice before all have been."""
     boats, rng = fleet(seed), np.random.default_rng([seed, 2])
-    faults, causes = list[str](), list[str]()
+    faults, causes, forms, turns = list[str](), list[str](), list[str](), list[int]()
     found = []
     for i in range(count):
-        kind, boat = KINDS[i % len(KINDS)], boats[(i + i // 3) % 3]
-        form = FORMATS[i % len(FORMATS)]
-        form = _dialect(form, boat, rng)
+        forms = forms or [str(f) for f in rng.permutation(FORMATS)]
+        turns = turns or [int(b) for b in rng.permutation(3)]
+        kind, boat = KINDS[i % len(KINDS)], boats[turns.pop()]
+        form = _dialect(forms.pop(), boat, rng)
         fault = cause = ""
         if kind in ("fault", "both"):
             faults = faults or [str(n) for n in rng.permutation(list(FAULTS))]
-            fault = _next(faults, lambda n, b=boat: FAULTS[n].fits(b) and (not FAULTS[n].formats or _stated(n, b)))
+            fault = _next(faults, lambda n, b=boat, k=kind: _may(FAULTS[n], b, k))
             form = _possible(FAULTS[fault], form, rng)
         if kind in ("cause", "both"):
             causes = causes or [str(n) for n in rng.permutation(list(CAUSES))]
@@ -62,8 +63,10 @@ def cases(seed: int, count: int) -> list[Case]:
     return found
 
 
-def _stated(fault: str, boat: Boat) -> bool:
-    return bool(boat.stated) or "plain.csv" not in FAULTS[fault].formats
+def _may(fault: Fault, boat: Boat, kind: str) -> bool:
+    """Whether a boat's log may have a fault; a table in newtons needs an owner who stated some."""
+    in_newtons = "plain.csv" in fault.formats
+    return fault.fits(boat) and not (in_newtons and not boat.stated) and not (fault.blind and kind == "both")
 
 
 def _next(names: list[str], fits: object) -> str:

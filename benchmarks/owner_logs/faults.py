@@ -19,7 +19,8 @@ MIRROR = ("mirrored", "thrusters_exchanged", "rudder_reversed", "rudder_sense") 
 class Fault:
     """One fault; a hook for what the instruments give, one for a table in our own names, and how the log was driven."""
 
-    named: tuple[str, ...]
+    named: tuple[str, ...]  # findings of `boatsim check`
+    entries: tuple[str, ...] = ()  # of the library, that say the same and are "not physics"
     seen: Callable[[Seen, Boat, Rng], Seen] | None = None
     columns: Callable[[Columns, Boat], Columns] | None = None
     formats: tuple[str, ...] = ()  # in which alone it comes; empty: any
@@ -27,6 +28,7 @@ class Fault:
     limit: float = 1.0
     ned: bool = False  # ROS messages in our axes
     mendable: bool = True  # whether a line of recording.toml can put it right
+    blind: bool = False  # with it no cause can be seen
     fits: Callable[[Boat], bool] = lambda boat: True
 
 
@@ -105,12 +107,12 @@ def _stalled(columns: Columns, boat: Boat) -> Columns:
 
 
 FAULTS: dict[str, Fault] = {
-    "thrusters exchanged": Fault(MIRROR, _exchanged, fits=_twins),
-    "helm to the other side": Fault(MIRROR, _other_helm, fits=lambda b: b.helm_most > 0.0),
-    "heading turned": Fault(("heading_turned", "heading_from_east"), _turned),
-    "position held": Fault(("position_held",), _held, mendable=False),
-    "outliers in bursts": Fault(("outliers", "position_leaps"), _bursts, mendable=False),
-    "position leaps": Fault(("position_leaps",), _leap),
+    "thrusters exchanged": Fault(MIRROR, seen=_exchanged, fits=_twins),
+    "helm to the other side": Fault(MIRROR, seen=_other_helm, fits=lambda b: b.helm_most > 0.0),
+    "heading turned": Fault(("heading_turned", "heading_from_east"), ("heading_offset",), seen=_turned),
+    "position held": Fault(("position_held",), ("late_fixes",), seen=_held, mendable=False),
+    "outliers in bursts": Fault(("outliers", "position_leaps"), seen=_bursts, mendable=False),
+    "position leaps": Fault(("position_leaps",), seen=_leap),
     "ROS in axes of NED": Fault(MIRROR, ned=True, formats=ROS),
     "y to port": Fault(("y_to_port",), columns=_columns(y_m=lambda c: -c["y_m"]), formats=PLAIN),
     "y and heading to port": Fault(
@@ -132,12 +134,12 @@ FAULTS: dict[str, Fault] = {
     "orders in per cent": Fault(("command_unit",), columns=_percent, formats=PLAIN),
     "time in ms": Fault(("time_unit",), columns=_columns(t_s=lambda c: 1000.0 * c["t_s"]), formats=PLAIN),
     "gaps bridged": Fault(("bridged",), columns=_bridged, formats=PLAIN, mendable=False),
-    "clock stalls": Fault(("clock_stalls",), columns=_stalled, formats=PLAIN, mendable=False),
+    "clock stalls": Fault(("clock_stalls",), columns=_stalled, formats=PLAIN, mendable=False, blind=True),
     "never turned": Fault(
-        ("never_turned",), without=("zigzag", "turn", "weave", "drift", "astern"), mendable=False
+        ("never_turned",), without=("zigzag", "turn", "weave", "drift", "astern"), mendable=False, blind=True
     ),
     "always flat out": Fault(
-        ("saturated", "one_speed"), limit=9.0, without=("stop", "astern", "drift"), mendable=False
+        ("saturated", "one_speed"), limit=9.0, without=("stop", "astern", "drift"), mendable=False, blind=True
     ),
 }  # fmt: skip
 """Every fault of the rehearsal, by what a person would call it."""

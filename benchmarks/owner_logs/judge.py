@@ -167,6 +167,7 @@ class Judge:
             r.physics_named = bool(set(r.effects) & set(CAUSES[self.case.cause].named))
         if self.case.wrong:
             told = r.fault_named or any(e["name"] in self.case.wrong.named for e in answer.get("log", []))
+            told = r.fault_named = bool(told or set(r.effects) & set(self.case.wrong.entries))
             r.called_physics = not told and r.verdict != "nothing_missing"
         self.foretell(out / "patched.toml")
 
