@@ -13,10 +13,12 @@ from benchmarks.owner_logs.causes import CAUSES
 from benchmarks.owner_logs.commands import boatsim, findings, write_into
 from benchmarks.owner_logs.formats import earth
 from benchmarks.owner_logs.instruments import fit, names, see
+from benchmarks.owner_logs.judge import Result
 from benchmarks.owner_logs.owner import accept, wanted
 from benchmarks.owner_logs.pilot import pilot
 from benchmarks.owner_logs.plant import Around, Plant, State, slope, step
 from benchmarks.owner_logs.sail import Linkage, sail
+from benchmarks.owner_logs.table import goals
 
 FOLDER = Path(faults.__file__).parent
 JUDGES = {"judge.py", "commands.py", "table.py", "__main__.py"}
@@ -193,3 +195,17 @@ def test_findings_are_read_from_what_check_prints() -> None:
     assert [(f.name, f.sure, f.lines) for f in found] == [
         ("heading_in_degrees", 0.99, ("[columns]", 'psi_rad = "psi_rad * deg"'))
     ]
+
+
+def test_the_goals_count_what_they_ask_for() -> None:
+    good = Result(1, "good", "launch", "csv", "", "", "", read=True, verdict="nothing_missing", possible=True)
+    good.nominal_m, good.answer_m = 2.0, 0.9
+    both = Result(2, "both", "launch", "nmea", "time in ms", "wind", "", read=True, edits=["absent rudder_rad"])
+    both.fault_named, both.physics_named, both.called_physics = True, False, False
+    rows = {row[:58].strip(): row[58:].split() for row in goals([good, both])}
+    assert rows["log read, or its need said in one line"][:2] == ["2", "(100"]
+    assert rows["map of the commands proposed whole and right"][:2] == ["1", "(50"]
+    assert rows["the log's fault named"][:2] == ["1", "(100"]
+    assert rows["the physics named"][:2] == ["0", "(0"]
+    assert rows["good logs accused"][:2] == ["0", "(0"]
+    assert rows["second log foretold with at most half the error"][:2] == ["1", "(100"]

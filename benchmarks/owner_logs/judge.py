@@ -77,13 +77,11 @@ class Judge:
         return said
 
     def judge(self) -> Result:
-        """All of it."""
+        """All of it, kept in result.json."""
         made = self.call("new", self.vessel, *self.case.boat.options)
         if made.code:
             self.result.trouble = f"new: {made.last}"
-            return self.result
-        run = self.recording(self.logs.first, 1)
-        if run:
+        elif run := self.recording(self.logs.first, 1):
             self.log(run)
             if not self.log_only:
                 self.physics(run)
