@@ -6,7 +6,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from benchmarks.owner_logs.plant import RHO, Hull, Plant, Propeller, Rudder
+from benchmarks.owner_logs.plant import RHO, Hull, Plant, Propeller, Rudder, resistance, thrust
 
 Rng = np.random.Generator
 
@@ -62,8 +62,6 @@ def hull(rng: Rng, length: float, beam: float, draught: float, mass: float, hull
 
 def top_speed(plant: Plant) -> float:
     """[m/s] at full ahead, in still water and air."""
-    from benchmarks.owner_logs.plant import resistance, thrust
-
     low, high = 0.0, 20.0
     for _ in range(50):
         u = 0.5 * (low + high)

@@ -1,7 +1,8 @@
 """The cases of a seed: a boat, a format, a fault or none, a cause or none, and the two logs."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from benchmarks.owner_logs.faults import FAULTS, Fault
 from benchmarks.owner_logs.formats import ardupilot, nmea, px4, ros, tables
 from benchmarks.owner_logs.formats.log import Written
 from benchmarks.owner_logs.instruments import Fit, Seen, fit, see
-from benchmarks.owner_logs.pilot import Owner, Stretch, pilot
+from benchmarks.owner_logs.pilot import Owner, pilot
 from benchmarks.owner_logs.sail import Linkage, sail
 
 FORMATS = ("csv", "BIN", "mcap", "ros", "ulog", "nmea", "parquet")
@@ -52,30 +53,33 @@ def cases(seed: int, count: int) -> list[Case]:
         form = _dialect(forms.pop(), boat, rng)
         fault = cause = ""
         if kind in ("fault", "both"):
-            faults = faults or [str(n) for n in rng.permutation(list(FAULTS))]
-            fault = _next(faults, lambda n, b=boat, k=kind: _may(FAULTS[n], b, k))
+            fault = _next(faults, list(FAULTS), partial(_may, boat, kind), rng)
             form = _possible(FAULTS[fault], form, rng)
         if kind in ("cause", "both"):
-            causes = causes or [str(n) for n in rng.permutation(list(CAUSES))]
-            cause = _next(causes, lambda n, b=boat: CAUSES[n].fits(b))
+            cause = _next(causes, list(CAUSES), partial(_can, boat), rng)
         lasts = tuple(float(np.round(rng.uniform(SHORTEST, LONGEST))) for _ in range(2))
         found.append(Case(i + 1, kind, boat, form, fault, cause, "", lasts, int(rng.integers(2**31))))  # type: ignore[arg-type]
     return found
 
 
-def _may(fault: Fault, boat: Boat, kind: str) -> bool:
+def _may(boat: Boat, kind: str, name: str) -> bool:
     """Whether a boat's log may have a fault; a table in newtons needs an owner who stated some."""
+    fault = FAULTS[name]
     in_newtons = "plain.csv" in fault.formats
     return fault.fits(boat) and not (in_newtons and not boat.stated) and not (fault.blind and kind == "both")
 
 
-def _next(names: list[str], fits: object) -> str:
-    """The first that fits, taken out; if none does, the last resort is what fits of all that were there."""
-    chosen = next((n for n in names if fits(n)), None)  # type: ignore[operator]
-    if chosen is None:
-        names.extend(n for n in (*FAULTS, *CAUSES) if n not in names and (n in FAULTS) == (names[0] in FAULTS))
-        return _next(names, fits)
-    names.remove(chosen)
+def _can(boat: Boat, name: str) -> bool:
+    """Whether a boat can have a cause."""
+    return CAUSES[name].fits(boat)
+
+
+def _next(bag: list[str], everything: Sequence[str], fits: Callable[[str], bool], rng: Rng) -> str:
+    """The first in the bag that fits, taken out of it; the bag is filled again when none is left that does."""
+    if not any(map(fits, bag)):
+        bag += [str(n) for n in rng.permutation(everything) if n not in bag]
+    chosen = next(n for n in bag if fits(n))
+    bag.remove(chosen)
     return chosen
 
 
@@ -141,6 +145,3 @@ def write(case: Case, boat: Boat, seen: Seen, wrong: Fault | None, folder: Path,
         local = ned or bool(case.wrong and case.wrong.ned) or case.seed % 2 == 0
         return writer(seen, boat, folder, stem, local, ned)
     return {"BIN": ardupilot.write, "ulog": px4.write, "nmea": nmea.write}[form](seen, boat, folder, stem)
-
-
-__all__ = ["Case", "Iterator", "Logs", "Stretch", "cases", "make"]

@@ -6,8 +6,7 @@ import shutil
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from benchmarks.owner_logs.boats import Boat
-from benchmarks.owner_logs.cases import Case, Logs, make
+from benchmarks.owner_logs.cases import Case, make
 from benchmarks.owner_logs.causes import CAUSES
 from benchmarks.owner_logs.commands import Finding, Said, boatsim, findings, limits, write_into
 from benchmarks.owner_logs.formats.log import Written
@@ -187,6 +186,3 @@ class Judge:
         if not match:
             self.result.trouble = f"replay: {said.last}"
         return float(match[1]) if match else float("nan")
-
-
-__all__ = ["Boat", "Judge", "Logs", "Result"]

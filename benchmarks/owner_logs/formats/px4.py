@@ -3,6 +3,8 @@
 import struct
 from pathlib import Path
 
+import numpy as np
+
 from benchmarks.owner_logs.boats import Boat
 from benchmarks.owner_logs.formats import earth
 from benchmarks.owner_logs.formats.log import Scale, Written
@@ -24,8 +26,6 @@ def _message(kind: str, body: bytes) -> bytes:
 
 def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
     """Attitude as quaternions, local position north and east, outputs as pulses."""
-    import numpy as np
-
     us = round(earth.BOOT * 1e6)
     out = [b"\x55\x4c\x6f\x67\x01\x12\x35\x01" + struct.pack("<Q", us), _message("B", bytes(40))]
     out += [_message("F", f"{name}:{fields}".encode()) for name, (fields, _) in TOPICS.items()]

@@ -13,19 +13,14 @@ from benchmarks.owner_logs.sail import Array
 Columns = dict[str, Array]
 
 
-def pushes(boat: Boat) -> tuple[float, ...]:
-    """[N] that an owner takes for full thrust: what he stated."""
-    return boat.stated
-
-
 def plain(seen: Seen, boat: Boat) -> Columns:
     """Rows at the rate of the fixes, in the names and units of a recording."""
     t = seen.fixes.t
     orders = {n: earth.held(seen.orders.t, v, t) for n, v in seen.orders.values.items()}
     thrusts = {}
-    for name, channel, full in zip(names(boat), boat.channels, pushes(boat), strict=True):
-        i = names(boat).index(name)
-        back = full * boat.plant.propellers[i].astern
+    drives = zip(names(boat), boat.channels, boat.stated, boat.plant.propellers, strict=True)
+    for name, channel, full, propeller in drives:
+        back = full * propeller.astern
         thrusts[channel] = np.round(np.where(orders[name] > 0.0, full, back) * orders[name], 2)
     helms = {c: np.round(boat.helm_sign * orders["helm"], 4) for c in boat.helms}
     return {
