@@ -451,3 +451,12 @@ def test_the_map_that_the_documents_show_is_one():
     page = (Path(__file__).parents[1] / "docs" / "logs.md").read_text()
     shown = tomllib.loads(re.search(r"```toml\n(.*?)```", page, re.DOTALL)[1])
     assert map_of(shown, "map.toml").columns.keys() == shown["columns"].keys()
+
+
+@pytest.mark.parametrize("name", ["yaw_rate_deg_s", "yaw_rate_deg_per_s", "gyro_z deg_s", "yaw_rate_degps"])
+def test_a_rate_whose_name_says_degrees_per_second_is_one(tmp_path, name):
+    rows = [f"{0.1 * k:.1f},{0.01 * k:.3f},{0.4 * k % 30.0:.2f}" for k in range(60)]
+    (tmp_path / "log.csv").write_text("\n".join([f"time_s,psi_rad,{name}", *rows]) + "\n")
+    signal = open_log(tmp_path / "log.csv").signals[name]
+    assert signal.unit in ("deg/s", "")
+    assert f'r_radps = "{name} * degps"' in proposal(open_log(tmp_path / "log.csv"))

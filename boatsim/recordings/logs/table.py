@@ -19,6 +19,7 @@ SUFFIXES = (".csv", ".tsv", ".parquet", ".pq")
 SEPARATORS = ",;\t|"
 COMMENT = ("#", "%", "//")
 BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")  # Heading [deg]
+PER_SECOND = re.compile(r"(?:^|[_ ])(rad|deg|m)[_ ](?:per[_ ])?s(?:ec)?$")
 NOTHING = ("", "nan", "null", "none", "na", "n/a", "-")
 MOST_HEAD = 1_000_000  # [bytes] in which names and units stand
 csv.field_size_limit(1_000_000)
@@ -36,12 +37,18 @@ def _log(path: Path, columns: Mapping[str, Array], units: Mapping[str, str], rem
     count = len(next(iter(columns.values()), ()))
     t = np.arange(count, dtype=float) if clock is None else seconds(clock, columns[clock])
     signals = {
-        name: Signal(t, values, "s" if name == clock else units.get(name, "") or unit_of(name))
+        name: Signal(t, values, "s" if name == clock else units.get(name, "") or _unit(name))
         for name, values in columns.items()
         if np.isfinite(values).any()
     }
     untimed = (f"{path}: no column is called a time: rows are counted; the map can say `time`",) if not clock else ()
     return Log(path, signals, remarks=(*remarks, *untimed))
+
+
+def _unit(name: str) -> str:
+    """By the end of a name: seconds are what something is told in per, as in `yaw_rate_deg_s`."""
+    per = PER_SECOND.search(name.lower())
+    return f"{per[1]}/s" if per else unit_of(name)
 
 
 def _parquet(path: Path) -> dict[str, Array]:

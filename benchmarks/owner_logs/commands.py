@@ -1,0 +1,108 @@
+"""The commands as a user gives them, in this process: exit code and what was printed."""
+
+import contextlib
+import io
+import json
+import re
+import time
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Said:
+    """What a command left behind."""
+
+    code: int
+    out: str
+    err: str
+    seconds: float
+
+    @property
+    def last(self) -> str:
+        """The last line of complaint."""
+        lines = [line for line in self.err.splitlines() if line.strip()]
+        return lines[-1] if lines else ""
+
+
+def boatsim(*arguments: str | Path) -> Said:
+    """Run a command; a crash is exit code 99."""
+    from boatsim.cli.commands import app
+
+    out, err, begin = io.StringIO(), io.StringIO(), time.time()
+    code: Any = 0
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            app([str(a) for a in arguments])
+        except SystemExit as left:
+            code = left.code
+        except BaseException as crash:  # what a user would see as a traceback
+            if isinstance(crash, KeyboardInterrupt):
+                raise
+            code = 99
+            err.write(f"traceback: {type(crash).__name__}: {crash}\n")
+    return Said(int(code or 0), out.getvalue(), err.getvalue(), time.time() - begin)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A fault that `boatsim check` told of."""
+
+    name: str
+    sure: float
+    lines: tuple[str, ...] = ()
+    allowed: bool = False  # a diagnosis allows for it by itself
+
+
+FOUND = re.compile(r"^  (?P<name>[a-z][a-z _]*) \(sure to (?P<sure>[\d.]+) %\)")
+ALLOWED = "a diagnosis allows for it"
+WRITE = "    write into recording.toml: "
+
+
+def findings(said: Said) -> list[Finding]:
+    """Of the printed text."""
+    found: list[Finding] = []
+    for line in said.out.splitlines():
+        if match := FOUND.match(line):
+            found.append(Finding(match["name"].strip().replace(" ", "_"), float(match["sure"]) / 100.0))
+        elif line.startswith(WRITE) and found:
+            found[-1] = replace(found[-1], lines=tuple(line.removeprefix(WRITE).split(" / ")))
+        elif line.strip() == ALLOWED and found:
+            found[-1] = replace(found[-1], allowed=True)
+    return found
+
+
+def limits(said: Said) -> list[str]:
+    """What check says can not be told."""
+    return [line.strip() for line in said.out.splitlines() if line.startswith("  can not be told: ")]
+
+
+def write_into(file: Path, lines: Sequence[str]) -> None:
+    """Do what check advised: add the lines to a recording.toml."""
+    table = tomllib.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    file.write_text("\n".join(_text(_together(table, tomllib.loads("\n".join(lines))))) + "\n", encoding="utf-8")
+
+
+def _together(table: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
+    merged = {k: _together(table.get(k, {}), v) if isinstance(v, dict) else v for k, v in more.items()}
+    return {**table, **merged}
+
+
+def _text(table: dict[str, Any], above: str = "") -> list[str]:
+    """TOML of a table, its own keys before the tables in it."""
+    own = [f"{_key(k)} = {json.dumps(v)}" for k, v in table.items() if not isinstance(v, dict)]
+    head = [f"[{above}]"] if above and own else []
+    inner = [
+        line
+        for k, v in table.items()
+        if isinstance(v, dict)
+        for line in _text(v, f"{above}.{_key(k)}" if above else _key(k))
+    ]
+    return [*head, *own, *inner]
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name)

@@ -1,0 +1,1 @@
+"""The seven kinds of files that loggers write."""
