@@ -165,11 +165,13 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
     """The hull's file, and length and draught [m] it was drawn for (the vessel's own where it says nothing)."""
     try:
         drawing = mujoco.MjSpec.from_file(str(path))
+        bodies = [body.name for body in drawing.bodies]
+        _ = [part.name for part in (*drawing.geoms, *drawing.sites, *drawing.meshes)]  # which need not be UTF-8
     except (ValueError, TypeError) as error:  # a TypeError for a path that is not UTF-8
         said = "its path is not UTF-8" if isinstance(error, TypeError) else " ".join(str(error).split())
         raise BadInput(f"{path}: no hull that MuJoCo can read: {said}") from None
     if drawing.body("hull") is None:
-        raise BadInput(unknown_name(f"{path}: body", "hull", (b.name for b in drawing.bodies if b.name != "world")))
+        raise BadInput(unknown_name(f"{path}: body", "hull", (name for name in bodies if name != "world")))
     drawn_for = drawing.numeric("drawn_for")
     if drawn_for is None:
         return drawing, (vessel.length, vessel.draught)

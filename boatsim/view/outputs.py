@@ -8,12 +8,16 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Self
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
 
 from boatsim.errors import BadInput, BoatsimError
-from boatsim.files import Growing
+from boatsim.files import Growing, replacing
 from boatsim.interruption import noted
 from boatsim.physics.content import vessel_address
 from boatsim.recordings.table import Notes, Recording, csv_header, csv_rows
@@ -27,6 +31,9 @@ if TYPE_CHECKING:
 
 PART = ".part-"  # of the name of a folder that is being filled
 CAMERA = "camera"  # stem of the file a diagnosis reads
+NORMS = "norms.json"
+SELDOM = 1.0  # [s] at least between two writings of the norms so far
+SHARE = 0.03  # of the time of a run that these may take
 
 
 def run_into(
@@ -48,10 +55,12 @@ def run_into(
         with ExitStack() as open_files:
             log = open_files.enter_context(_log(new / "run.rrd", runner, live))
             table = open_files.enter_context(CsvFile(new / "recording.csv"))
+            so_far = NormsSoFar(new / NORMS, runner)
 
             def listen(rows: Recording) -> None:
                 table.add(rows)
                 log.chunk(rows)
+                so_far.look()
 
             runner.listen = listen
             if "yaw" in scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
@@ -63,8 +72,33 @@ def run_into(
         content = judged.to_json(run, found)
         text = notes_toml(scenario, run.recording.notes, run.seed, run.complete)
         (new / "recording.toml").write_text(text, "utf-8")
-        (new / "norms.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        write_norms(new / NORMS, content)
     return content
+
+
+def write_norms(path: Path, content: RunEntry) -> None:
+    """norms.json, in place of one that is there."""
+    with replacing(path) as temporary:
+        temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+class NormsSoFar:
+    """norms.json of a run that goes on, for whoever finds it cut off: by a kill, by a disk that is full."""
+
+    def __init__(self, path: Path, runner: Runner) -> None:
+        self._path, self._runner, self._due = path, runner, monotonic() + SELDOM
+
+    def look(self) -> None:
+        """Write it anew, if it is time: so seldom that a long log, which takes long to judge, is not held up by it."""
+        if (begun := monotonic()) < self._due:
+            return
+        run = self._runner.so_far()
+        # a log that is cut short gives a measure reason to warn; what it can not judge at all is told at the end
+        with suppress(BadInput), np.errstate(all="ignore"), catch_warnings():
+            simplefilter("ignore")
+            write_norms(self._path, judged.to_json(run, judged.norms(run)))
+        took = monotonic() - begun
+        self._due = begun + took + max(SELDOM, took / SHARE)
 
 
 class CsvFile:

@@ -11,7 +11,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.clocks import clock_of, dates, seconds
-from boatsim.recordings.importing.log import MOST_SIGNALS, MOST_TEXT, MOST_VALUES, Log, Room, Signal, damaged
+from boatsim.recordings.importing.log import MOST_SIGNALS, MOST_TEXT, Log, Room, Signal, damaged
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.raw import no_twins, refuse
 
@@ -50,8 +50,7 @@ def _parquet(path: Path) -> dict[str, Array]:
 
     try:
         file = parquet.ParquetFile(path)
-        if file.metadata.num_rows * file.metadata.num_columns > MOST_VALUES:
-            raise refuse(path, f"holds more than {MOST_VALUES:,} values; cut the log into shorter ones")
+        Room(path).take(file.metadata.num_rows * file.metadata.num_columns, file.metadata.num_columns)
         table = file.read(columns=[f.name for f in file.schema_arrow if _is_number(pa.types, f.type)])
     except (pa.ArrowException, OSError, ValueError) as error:
         raise damaged(path, "Parquet", error) from error
@@ -125,8 +124,9 @@ def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
 
     if len(set(head.columns)) < len(head.columns) or "" in head.columns:
         return None
+    room, batches = Room(path), []
     try:
-        found = arrow.read_csv(
+        pieces = arrow.open_csv(
             path,
             arrow.ReadOptions(column_names=head.columns, skip_rows=head.row),
             arrow.ParseOptions(delimiter=head.separator),
@@ -136,9 +136,12 @@ def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
                 decimal_point="." if head.separator == "," else ",",
             ),
         )
+        for piece in pieces:
+            room.take(piece.num_rows * piece.num_columns, piece.num_columns)
+            batches.append(piece)
     except (pa.ArrowException, OSError, ValueError):
         return None
-    Room(path).take(found.num_rows * found.num_columns, found.num_columns)
+    found = pa.Table.from_batches(batches, pieces.schema)
     return {name: np.array(found[name], dtype=float) for name in head.columns}
 
 
