@@ -5,7 +5,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from boatsim.recordings.importing.clocks import clock_of, dates, seconds
 from boatsim.recordings.importing.log import MOST_SIGNALS, MOST_TEXT, Log, Room, Signal, damaged
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.raw import no_twins, refuse
+
+if TYPE_CHECKING:
+    from pyarrow import ChunkedArray
 
 SUFFIXES = (".csv", ".tsv", ".parquet", ".pq")
 SEPARATORS = ",;\t|"
@@ -118,7 +121,7 @@ def _head(path: Path) -> _Head:
 
 
 def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
-    """The columns of a table that is nothing but numbers and empty cells; None of any other."""
+    """The columns of a table whose rows are all as long as its header, cells apart by native code; None of any other."""
     import pyarrow as pa
     from pyarrow import csv as arrow
 
@@ -130,11 +133,7 @@ def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
             path,
             arrow.ReadOptions(column_names=head.columns, skip_rows=head.row),
             arrow.ParseOptions(delimiter=head.separator),
-            arrow.ConvertOptions(
-                column_types={name: pa.float64() for name in head.columns},
-                null_values=[*NOTHING, "NaN", "NAN", "NULL"],
-                decimal_point="." if head.separator == "," else ",",
-            ),
+            arrow.ConvertOptions(column_types=dict.fromkeys(head.columns, pa.string()), strings_can_be_null=False),
         )
         for piece in pieces:
             room.take(piece.num_rows * piece.num_columns, piece.num_columns)
@@ -142,7 +141,21 @@ def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
     except (pa.ArrowException, OSError, ValueError):
         return None
     found = pa.Table.from_batches(batches, pieces.schema)
-    return {name: np.array(found[name], dtype=float) for name in head.columns}
+    return {name: _of_texts(found[name], head.separator) for name in head.columns}
+
+
+def _of_texts(column: "ChunkedArray", separator: str) -> Array:
+    """(N,) floats of a column of texts, of one that is nothing but numbers and empty cells without a look at each."""
+    import pyarrow as pa
+    from pyarrow import compute
+
+    texts = column if separator == "," else compute.replace_substring(column, ",", ".")
+    nothing = compute.is_in(compute.utf8_lower(texts), pa.array(NOTHING))
+    try:
+        filled = compute.if_else(nothing, pa.scalar(None, pa.string()), texts)
+        return np.array(filled.cast(pa.float64()).to_numpy(), dtype=float)
+    except pa.ArrowException:
+        return _column(column.to_pylist(), separator)
 
 
 def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str, ...]]:
@@ -150,7 +163,8 @@ def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str,
     if path.stat().st_size > MOST_TEXT:
         raise refuse(
             path,
-            f"has words among its numbers and {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of such are read",
+            f"has rows that are not as its header, and {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of such a "
+            "table are read",
         )
     lines = enumerate(_text(path, path.read_bytes()).splitlines())
     kept = [(i + 1, line) for i, line in lines if i >= head.row and line.strip()]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.limits import LONGEST_HEADER, check_shape
+from boatsim.recordings.limits import LONGEST_HEADER, MOST_CELLS, check_shape
 from boatsim.recordings.raw import Raw, no_twins, numbers, refuse
 
 if TYPE_CHECKING:
@@ -36,7 +36,9 @@ def _check_cells(path: Path, columns: int) -> None:
         check_shape(path, columns)
         while block := file.read(BLOCK):
             cells += block.count(b",") + block.count(b"\n")
-            check_shape(path, columns, cells)
+            if cells > MOST_CELLS:
+                raise refuse(path, f"has more than {MOST_CELLS:.3g} cells; a recording has at most so many")
+        check_shape(path, columns, cells)
 
 
 def _quick(path: Path, first: bytes, content: bytes) -> Raw | None:
