@@ -121,7 +121,7 @@ def _head(path: Path) -> _Head:
 
 
 def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
-    """The columns of a table whose rows are all as long as its header, cells apart by native code; None of any other."""
+    """The columns of a table whose rows are all as long as its header, read by native code; None of any other."""
     import pyarrow as pa
     from pyarrow import csv as arrow
 
