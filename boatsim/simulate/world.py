@@ -13,6 +13,7 @@ from boatsim.errors import BadInput, BadPhysics, unknown_name
 from boatsim.physics.content import root
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate.hull_text import check_text
 
 Model: TypeAlias = mujoco.MjModel  # for those who must not import mujoco
 WALL = 0.02  # [m] half of a wall's thickness
@@ -163,6 +164,7 @@ def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> mujoco.MjsBody:
 
 def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float, float]]:
     """The hull's file, and length and draught [m] it was drawn for (the vessel's own where it says nothing)."""
+    check_text(path)
     try:
         drawing = mujoco.MjSpec.from_file(str(path))
         bodies = [body.name for body in drawing.bodies]

@@ -140,8 +140,11 @@ def _key(name: str) -> str:
 
 
 def _value(value: object) -> str:
-    """A text, number, truth value or list of them, which TOML writes as JSON does."""
-    return json.dumps(value, ensure_ascii=False)
+    """A text, number, truth value or list of them, which TOML writes as JSON does, but in UTF-8 alone."""
+    if isinstance(value, list):
+        return f"[{', '.join(_value(each) for each in value)}]"
+    text = value.encode("utf-8", "backslashreplace").decode("utf-8") if isinstance(value, str) else value
+    return json.dumps(text, ensure_ascii=False)
 
 
 def _log(path: Path, runner: Runner, live: bool) -> "RunLog":
@@ -160,6 +163,8 @@ def filling(folder: Path, keep: str | None = None) -> Iterator[Path]:
     """
     if folder.exists() and not folder.is_dir():
         raise BadInput(f"{folder}: is a file; what is written needs a folder")
+    if folder.is_symlink() and not folder.exists():
+        raise BadInput(f"{folder}: is a link that leads nowhere; what is written needs a folder")
     folder.parent.mkdir(parents=True, exist_ok=True)
     new = Path(tempfile.mkdtemp(prefix=f"{folder.name}{PART}", dir=folder.parent))
     kept = False

@@ -82,7 +82,7 @@ BOATS = ("trial_boat", "joystick_boat", "kvlcc2_mmg")
 READERS = {
     "csv": Reader("run.csv", lambda: [seeds.csv_file()], table.read),
     "parquet": Reader("run.parquet", lambda: [seeds.parquet_file()], table.read, b""),
-    "rrd": Reader("run.rrd", lambda: [seeds.rrd_file()], table.read, b"", share=0.1),
+    "rrd": Reader("run.rrd", lambda: [seeds.rrd_file()], table.read, b"", share=0.02),
     "recording.toml": Reader("noted/recording.toml", seeds.notes, _notes),
     "vessel.toml": Reader(
         "boat/vessel.toml", files(*(f"models/{n}/vessel.toml" for n in BOATS)), lambda path: vessel.load(str(path))
