@@ -202,6 +202,13 @@ def test_a_bad_file_gets_one_line_with_file_row_and_column(tmp_path, text, said)
     assert said in line_of(file(tmp_path, text))
 
 
+@pytest.mark.parametrize("times", ["0.0", "0.0 0.0 0.1 0.1 0.1 0.0", "3 2 1"])
+@pytest.mark.filterwarnings("error")
+def test_time_that_stands_still_or_runs_back_is_one_line(tmp_path, times):
+    rows = [f"{times.split()[i % len(times.split())]},{0.1 * i},{0.1 * i * i},{0.3 * i},0.5\n" for i in range(40)]
+    assert "it must increase" in line_of(file(tmp_path, HEADER + "".join(rows)))
+
+
 def test_a_blank_line_does_not_shift_the_row_that_is_named(tmp_path):
     assert "row 8, column y_m" in line_of(file(tmp_path, changed(7, "\n0.5,0,nan,0,0")))
 

@@ -1,6 +1,6 @@
 """What MuJoCo does not bear in the text of a hull is refused before it reads it.
 
-It prints by the name of a class that nobody defined, so that `%n` in one ends the process, and it warns of nan by itself.
+It prints by the name of a class that nobody defined, so that `%n` in one ends the process, and of nan it warns itself.
 """
 
 import html

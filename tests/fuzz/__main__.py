@@ -8,7 +8,6 @@ night.
 import argparse
 import faulthandler
 import json
-import os
 import subprocess
 import sys
 import traceback
@@ -41,7 +40,6 @@ def main() -> int:
     chosen = given.reader or list(READERS)
     if given.alone:
         return alone(chosen[0], given.count, given.seconds, given.seed)
-    os.nice(10)
     print(f"{'reader':16}" + "".join(f"{heading:>{width}}" for heading, width, _ in COLUMNS.values()))
     shares, sums, codes = sum(READERS[name].share for name in chosen), dict.fromkeys(COLUMNS, 0.0), []
     for name in chosen:

@@ -4,6 +4,7 @@ import resource
 import signal
 import time
 import traceback
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
@@ -99,7 +100,8 @@ def _round(reader: Reader, count: int, number: int, found: Found) -> None:
             content = change.of(content)
         begin = time.perf_counter()
         try:
-            with _limited(PATIENCE):
+            with _limited(PATIENCE), warnings.catch_warnings():
+                warnings.simplefilter("error", RuntimeWarning)  # it would be a line of nobody's
                 usable = reader.outcome(content)
             found.read, found.refused = found.read + usable, found.refused + (not usable)
         except (KeyboardInterrupt, SystemExit):
