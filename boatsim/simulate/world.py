@@ -16,6 +16,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.simulate.hull_text import check_text
 
 Model: TypeAlias = mujoco.MjModel  # for those who must not import mujoco
+SMALLEST, LARGEST = 1e-3, 1e6  # [m] of a tank
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
 DRAWN = math.hypot(0.75, 1.5)  # [m] from the middle to a corner of the tank in tank.xml
@@ -46,8 +47,8 @@ class Tank:
     def __post_init__(self) -> None:
         for name in ("length", "width", "depth"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise BadInput(f"tank.{name} = {value:g} m; allowed is more than 0 m")
+            if not SMALLEST <= value <= LARGEST:
+                raise BadInput(f"tank.{name} = {value:g} m; allowed is {SMALLEST:g} to {LARGEST:g} m")
 
 
 def build(
