@@ -92,7 +92,8 @@ def _line(model: type[BaseModel], error: ValidationError) -> str:
         )
     if first["type"] == "missing":
         return f"{place} is missing"
-    return f"{place} = {first['input']!r}; {first['msg'].removeprefix('Value error, ').lower()}"
+    said = first["msg"].removeprefix("Value error, ").lower()
+    return f"{place} = {first['input']!r}; {said}" if place else said  # of the file as a whole
 
 
 def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:

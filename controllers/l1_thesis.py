@@ -49,7 +49,7 @@ class L1Thesis(Controller):
     )  # fmt: skip
 
     period: float = param(5e-4, low=5e-4, high=0.01, unit="s", words="time between two control steps")
-    power: float = param(0.5, low=0.0, high=8.0, unit="N", words="nominal power F0: both thrusts together")
+    power: float = param(0.5, low=0.01, high=8.0, unit="N", words="nominal power F0: both thrusts together")
     modulated: bool = False  # F = F0 sin d / sin 23.6 deg instead of F0, d the angle the motors have reached
     servo_lag: float = param(0.15, low=0.0, high=60.0, unit="s", words="assumed, of the steering")
     adaptation: float = param(1e4, low=0.0, high=1e6, unit="", words="gain of the gradient laws")

@@ -126,13 +126,16 @@ def test_a_signal_ends_a_run_and_what_was_logged_is_kept_with_its_norms_so_far(
 def test_a_process_that_is_killed_leaves_all_but_the_last_second(endless: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     running = begin("run", endless, "--out", out)
-    wait_for(lambda: logged(out))
+    wait_for(lambda: logged(out) and list(tmp_path.glob("out.part-*/norms.json")))
     time.sleep(1.0)
     begun = time.time()
     running.kill()
     end(running)
     (left,) = tmp_path.glob("out.part-*")
-    assert {f.name for f in left.iterdir()} == FILES - {"norms.json"} and not out.exists()
+    assert {f.name for f in left.iterdir()} - {f.name for f in left.glob("*.part-*")} == FILES and not out.exists()
+    content = json.loads((left / "norms.json").read_text())
+    assert content["complete"] is False and content["steps"] > 0 and content["norms"]["u_mps_inf"]["value"] < 9.0
+    assert content["norms"]["peak"]["lacking"] == "too short"
     for name in ("recording.csv", "camera.csv", "run.rrd"):
         assert begun - (left / name).stat().st_mtime < 1.0
     table, log, seen = (read(left / name) for name in ("recording.csv", "run.rrd", "camera.csv"))

@@ -6,14 +6,17 @@ import math
 import random
 import re
 import shutil
+import struct
 import tomllib
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import make_logs
 import numpy as np
+import pyarrow as pa
 import pytest
 from make_logs import geodetic, sentence
+from pyarrow import parquet
 
 from boatsim.cli.importing import import_log
 from boatsim.errors import BadInput
@@ -426,6 +429,40 @@ def test_messages_are_decoded_by_their_definitions(text, data, cdr, found):
     for cut in range(len(data)):
         with pytest.raises(ValueError):
             decode(data[:cut])
+
+
+def test_messages_of_no_size_in_many_ways_within_each_other_take_no_time():
+    from boatsim.recordings.importing.ros import Decoder
+
+    levels = [f"MSG: p/L{i}\n" + f"L{i + 1} a\nL{i + 1} b\nL{i + 1} c\n" for i in range(18)]
+    text = ("\n" + "=" * 80 + "\n").join(["L0 a\n", *levels, "MSG: p/L18\n"])  # 3^18 of them
+    with pytest.raises(ValueError, match="more messages in the message than it has bytes"):
+        Decoder(text, "p/Root", cdr=False)(b"")
+    deeper = text.replace("MSG: p/L18\n", "MSG: p/L18\nL19 a\n") + "\n" + "=" * 80 + "\nMSG: p/L19\nL18 a\n"
+    with pytest.raises(ValueError, match="too deep"):
+        Decoder(deeper, "p/Root", cdr=False)
+
+
+@pytest.mark.parametrize("quick", ["0", "1"])
+def test_messages_of_no_length_do_not_hold_up_the_reader(tmp_path, monkeypatch, quick):
+    monkeypatch.setenv("PYMAVLINK_FAST_INDEX", quick)
+    format = lambda n, size, *texts: b"\xa3\x95\x80" + struct.pack("<BB4s16s64s", n, size, *texts)  # noqa: E731
+    begin = format(128, 89, b"FMT", b"BBnNZ", b"Type,Length,Name,Format,Columns")
+    (tmp_path / "log.BIN").write_bytes(begin + format(144, 0, b"AAA", b"Q", b"TimeUS") + b"\xa3\x95\x90" + bytes(8))
+    line_of(open_log, tmp_path / "log.BIN")
+
+
+@pytest.mark.parametrize("columns", [30_000, 5])
+def test_a_table_beyond_the_limits_is_refused_by_what_it_says_of_itself_or_as_soon_as_it_is_counted(
+    tmp_path, monkeypatch, columns
+):
+    table = pa.table({f"c{i}": np.zeros(100) for i in range(columns)})
+    parquet.write_table(table, tmp_path / "log.parquet")
+    text = ",".join(table.column_names) + "\n" + ("1," * (columns - 1) + "1\n") * 20_000 * (columns < 100)
+    (tmp_path / "log.csv").write_text(text + "1\n")
+    monkeypatch.setattr("boatsim.recordings.importing.log.MOST_VALUES", 499)
+    for name in ("log.parquet", "log.csv"):
+        assert re.search("columns|signals|values", line_of(open_log, tmp_path / name))
 
 
 def test_a_message_that_holds_itself_or_claims_to_be_huge_is_refused():

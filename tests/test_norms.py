@@ -360,3 +360,12 @@ def test_every_norm_has_a_unit() -> None:
         for name, norm in norms(run).items():
             expected = "" if name == "wall_contacts" else "s" if "time" in name else "deg/s" if "rate" in name else None
             assert norm.unit == (expected if expected is not None else "deg" if "heading" in name else "m")
+
+
+@pytest.mark.parametrize("kind", ["inf", "rms", "l2", "l1"])
+def test_a_norm_of_pieces_is_that_of_the_whole(kind, monkeypatch):
+    t = np.arange(1000.0)
+    x = np.where(t % 7 == 0, np.nan, np.sin(t))
+    whole = signal_norm(t, x, kind)
+    monkeypatch.setattr("boatsim.simulate.norms.PIECE", 300)
+    assert signal_norm(t, x, kind) == pytest.approx(whole, rel=1e-14)

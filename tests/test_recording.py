@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from boatsim.errors import BadInput
 from boatsim.files import replacing
 from boatsim.recordings import units
+from boatsim.recordings.readers import csv
 from boatsim.recordings.table import Notes, Recording, read, write_csv
 
 REAL = Path(__file__).parents[1].parent / "shared" / "recordings"
@@ -201,6 +202,13 @@ def test_a_bad_file_gets_one_line_with_file_row_and_column(tmp_path, text, said)
     assert said in line_of(file(tmp_path, text))
 
 
+@pytest.mark.parametrize("times", ["0.0", "0.0 0.0 0.1 0.1 0.1 0.0", "3 2 1"])
+@pytest.mark.filterwarnings("error")
+def test_time_that_stands_still_or_runs_back_is_one_line(tmp_path, times):
+    rows = [f"{times.split()[i % len(times.split())]},{0.1 * i},{0.1 * i * i},{0.3 * i},0.5\n" for i in range(40)]
+    assert "it must increase" in line_of(file(tmp_path, HEADER + "".join(rows)))
+
+
 def test_a_blank_line_does_not_shift_the_row_that_is_named(tmp_path):
     assert "row 8, column y_m" in line_of(file(tmp_path, changed(7, "\n0.5,0,nan,0,0")))
 
@@ -359,3 +367,58 @@ def test_no_recording_toml_ends_in_anything_but_notes_or_one_line(tmp_path, cont
         assert isinstance(read(path).notes, Notes)
     except BadInput as error:
         assert "\n" not in str(error)
+
+
+CELLS = st.sampled_from(
+    [
+        "1",
+        "-0",
+        " 2 ",
+        "",
+        " ",
+        "nan",
+        "NaN",
+        "inf",
+        "-Infinity",
+        "1e400",
+        "1e-400",
+        "1_0",
+        "0x1",
+        "1.",
+        ".5",
+        "+3",
+        "ü",
+    ]
+    + ["AUTO", '"4"', '"a,b"', 'a"b', '""', '"""', "nan(1)", "\t5", "1\x0b", "1\x1f", "\u20281", "9" * 30, "true", "\r"]
+    + ["0.1234567890123456789", "1e5", "1E+5", "1d5", "١", "infinity", "NULL", "\0", "1\n", '"\n"']
+) | st.floats().map(repr)
+HEADS = st.sampled_from(["a,b,c", " a ,b,c", '"a",b,c', "a,b,a", "a,b,", "a;b;c", "a,b", "\ufeffa,b,c", "a,b\x0b,c"])
+
+
+@settings(max_examples=300, deadline=None, derandomize=True, database=None)
+@given(
+    HEADS, st.lists(st.lists(CELLS, min_size=3, max_size=3), max_size=4), st.sampled_from(["\n", "\r\n", "\n\n", "\r"])
+)
+def test_native_code_reads_a_csv_as_python_does_line_by_line_or_not_at_all(
+    tmp_path_factory: pytest.TempPathFactory, head: str, rows: list[list[str]], end: str
+) -> None:
+    content = end.join([head, *(",".join(cells) for cells in rows)]).encode() + end.encode()
+    path = tmp_path_factory.getbasetemp() / "alike.csv"
+    path.write_bytes(content)
+    with path.open("rb") as file:
+        quick = csv._quick(path, file.readline(), content)
+    if quick is None:
+        return
+    slow = csv._line_by_line(path, content)
+    assert list(quick.rows) == list(slow.rows) and list(quick.columns) == list(slow.columns)
+    assert {n: (i, cell.replace("\r\n", "\n")) for n, (i, cell) in quick.text.items()} == slow.text
+    for name, values in slow.columns.items():
+        np.testing.assert_array_equal(quick.columns[name], values)
+        np.testing.assert_array_equal(np.signbit(quick.columns[name]), np.signbit(values))
+
+
+def test_a_csv_of_numbers_is_read_by_native_code(tmp_path: Path) -> None:
+    content = b"t_s,x_m,mode\n0,0.5,AUTO\n1,,AUTO\n"
+    quick = csv._quick(tmp_path / "run.csv", content[:13], content)
+    assert quick is not None and quick.text == {"mode": (2, "AUTO")}
+    np.testing.assert_array_equal(quick.columns["x_m"], [0.5, np.nan])

@@ -3,10 +3,11 @@
 import sys
 from pathlib import Path
 
-from boatsim.cli.exits import Exit, complain, words
+from boatsim.cli.exits import Exit, complain, say, words
 from boatsim.diagnose.analysis import check
 from boatsim.diagnose.log.entry import in_words
 from boatsim.diagnose.log.finding import PROBABLY
+from boatsim.errors import shown
 
 CLEAN = "nothing is wrong with this log that could be found"
 
@@ -18,12 +19,12 @@ def check_logs(runs: list[Path], vessel: str | None, load: list[str]) -> int:
         wrong = [e for e in entries if e["kind"] != "limit"]
         faults = any(e["kind"] == "fault" for e in entries)
         if wrong or not refused:
-            print(f"{path}: {PROBABLY if faults else 'a diagnosis allows for it' if wrong else CLEAN}")
+            say([f"{shown(str(path))}: {PROBABLY if faults else 'a diagnosis allows for it' if wrong else CLEAN}"])
         for e in wrong:
-            print("\n".join(f"  {line}" for line in in_words(e)))
+            say(f"  {line}" for line in in_words(e))
         for e in entries:
             if e["kind"] == "limit":
-                print(f"  can not be told: {e['evidence']}: {e.get('remedy', '')}")
+                say([f"  can not be told: {e['evidence']}: {e.get('remedy', '')}"])
     for error in refused:
         complain(words(error))
     sys.stdout.flush()

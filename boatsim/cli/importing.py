@@ -1,12 +1,11 @@
 """What `boatsim import` does: a log's signals and a map proposed for them, or with a map a recording."""
 
-import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from boatsim.cli.exits import remark, say
 from boatsim.cli.progress import reporting
-from boatsim.errors import BadInput
+from boatsim.errors import BadInput, shown
 from boatsim.files import replacing
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
@@ -46,14 +45,21 @@ def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, 
     drives = [Drive(n, low, high) for n, (low, high) in boat.limits().items()] if boat else []
     text = proposal(log, vessel, drives, boat.freedoms if boat else (), boat.columns if boat else None)
     _say(log.remarks)
-    print("\n".join(listing(log)))
+    say(listing(log))
     if propose:
         with replacing(propose) as temporary:
             temporary.write_text(text, encoding="utf-8")
         then = f"boatsim import {log.path} --map {propose} --out {out or 'run.csv'}"
-        print(f"\nwritten to {propose}: check every line, then: {then}")
+        say(["", shown(f"written to {propose}: check every line, then: {then}")])
     else:
-        print(f"\nA map for it, which --propose map.toml writes; nothing is converted without --map:\n\n{text}", end="")
+        say(
+            [
+                "",
+                "A map for it, which --propose map.toml writes; nothing is converted without --map:",
+                "",
+                text.rstrip(),
+            ]
+        )
     return 0
 
 
@@ -71,7 +77,7 @@ def _convert(path: Path, out: Path, map: Path, vessel: str | None, load: Sequenc
         write_csv(recording, out)
     _say(recording.remarks)
     span = f"{len(recording)} rows over {recording.t[-1]:.6g} s"
-    print(f"written to {out}: {span}; {', '.join(recording.signals)}")
+    say([shown(f"written to {out}: {span}; {', '.join(recording.signals)}")])
     if boat is not None:
         _note(out, boat, position_fix(found))
     try:
@@ -89,9 +95,9 @@ def _note(out: Path, boat: Vessel, fix: str | None) -> None:
         return
     with replacing(file) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    print(f"written to {file}: {os.fspath(boat.name)}")
+    say([shown(f"written to {file}: {boat.name}")])
 
 
 def _say(remarks: Sequence[str]) -> None:
     for line in remarks:
-        print(f"note: {line}", file=sys.stderr)
+        remark(line)

@@ -20,6 +20,7 @@ from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import Change, Release
 from boatsim.physics.signals import COMPONENTS, POSE, RATES
 
+SMALLEST, LARGEST = 1e-4, 1e4  # [m] of a hull
 Freedom = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]  # AXES, as a type checker reads it
 
 
@@ -110,9 +111,9 @@ class VesselFile(Table):
     found: list[str] = []  # names of those effects that a diagnosis found; set in a patched file
     hull: str = "hull.xml"
     freedoms: list[Freedom]
-    length: float = Field(gt=0)  # [m]
-    beam: float = Field(gt=0)  # [m]
-    draught: float = Field(gt=0)  # [m]
+    length: float = Field(ge=SMALLEST, le=LARGEST)  # [m]
+    beam: float = Field(ge=SMALLEST, le=LARGEST)  # [m]
+    draught: float = Field(ge=SMALLEST, le=LARGEST)  # [m]
     scale: float | None = Field(default=None, gt=0)  # full scale length / this length
     scales: dict[str, float] = {}  # vessels that are the same hull at another scale
     body: Body

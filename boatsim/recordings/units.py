@@ -13,11 +13,23 @@ NEAR = 1.5  # factor by which a ratio may miss what it is taken for: sensors lag
 FASTEST = 4.0  # [rad/s] sustained turning no vessel here reaches; 4 deg/s is a gentle turn of a small boat
 NOISIEST = 0.15  # [rad] 8.6 degrees: compasses and cameras are ten times better; 0.15 degrees is a good one
 STEEPEST = 1.0  # [rad] hulls here stay below 57 degrees of roll; any roll worth recording passes 1 degree
+FEWEST = 4  # rows that time runs through
 ALIKE = 0.8  # correlation from which two series are taken to show the same motion
 
 
 def in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
-    """Of a table's columns (N,), `t_s` among them, those in degrees: the row of each that shows it."""
+    """Of a table's columns (N,), `t_s` among them, those in degrees: the row of each that shows it.
+
+    Rows at which time stands still or runs back say nothing.
+    """
+    forward = np.flatnonzero(np.append(True, columns["t_s"][1:] > np.maximum.accumulate(columns["t_s"])[:-1]))
+    if len(forward) < FEWEST:
+        return {}
+    found = _in_degrees({name: values[forward] for name, values in columns.items()})
+    return {name: int(forward[index]) for name, index in found.items()}
+
+
+def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
     suspects: dict[str, int | None] = {}
     if "psi_rad" in columns:
         rows, t, psi, others = _measured(columns, "psi_rad")

@@ -109,6 +109,10 @@ class Runner:
         except KeyboardInterrupt:
             pass
         self._show(over=True)
+        return self.so_far(complete)
+
+    def so_far(self, complete: bool = False) -> Run:
+        """What there is by now; a listener may ask for it."""
         notes = self.notes()
         name = self.scenario.name.replace("/", "_")
         log, film = self.log.recording(name, notes), self._film.recording("camera", notes)

@@ -13,8 +13,10 @@ from boatsim.errors import BadInput, BadPhysics, unknown_name
 from boatsim.physics.content import root
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate.hull_text import check_text
 
 Model: TypeAlias = mujoco.MjModel  # for those who must not import mujoco
+SMALLEST, LARGEST = 1e-3, 1e6  # [m] of a tank
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
 DRAWN = math.hypot(0.75, 1.5)  # [m] from the middle to a corner of the tank in tank.xml
@@ -45,8 +47,8 @@ class Tank:
     def __post_init__(self) -> None:
         for name in ("length", "width", "depth"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise BadInput(f"tank.{name} = {value:g} m; allowed is more than 0 m")
+            if not SMALLEST <= value <= LARGEST:
+                raise BadInput(f"tank.{name} = {value:g} m; allowed is {SMALLEST:g} to {LARGEST:g} m")
 
 
 def build(
@@ -163,13 +165,16 @@ def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> mujoco.MjsBody:
 
 def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float, float]]:
     """The hull's file, and length and draught [m] it was drawn for (the vessel's own where it says nothing)."""
+    check_text(path)
     try:
         drawing = mujoco.MjSpec.from_file(str(path))
+        bodies = [body.name for body in drawing.bodies]
+        _ = [part.name for part in (*drawing.geoms, *drawing.sites, *drawing.meshes)]  # which need not be UTF-8
     except (ValueError, TypeError) as error:  # a TypeError for a path that is not UTF-8
         said = "its path is not UTF-8" if isinstance(error, TypeError) else " ".join(str(error).split())
         raise BadInput(f"{path}: no hull that MuJoCo can read: {said}") from None
     if drawing.body("hull") is None:
-        raise BadInput(unknown_name(f"{path}: body", "hull", (b.name for b in drawing.bodies if b.name != "world")))
+        raise BadInput(unknown_name(f"{path}: body", "hull", (name for name in bodies if name != "world")))
     drawn_for = drawing.numeric("drawn_for")
     if drawn_for is None:
         return drawing, (vessel.length, vessel.draught)

@@ -8,12 +8,16 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Self
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
 
 from boatsim.errors import BadInput, BoatsimError
-from boatsim.files import Growing
+from boatsim.files import Growing, replacing
 from boatsim.interruption import noted
 from boatsim.physics.content import vessel_address
 from boatsim.recordings.table import Notes, Recording, csv_header, csv_rows
@@ -28,6 +32,9 @@ if TYPE_CHECKING:
 
 PART = ".part-"  # of the name of a folder that is being filled
 CAMERA = "camera"  # stem of the file a diagnosis reads
+NORMS = "norms.json"
+SELDOM = 1.0  # [s] at least between two writings of the norms so far
+SHARE = 0.03  # of the time of a run that these may take
 
 
 def run_into(
@@ -55,11 +62,13 @@ def run_into(
             if viewer:  # apart from the file, which many small pieces would make ten times as large
                 logs.append(open_files.enter_context(_log(None, runner, viewer)))
             table = open_files.enter_context(CsvFile(new / "recording.csv"))
+            so_far = NormsSoFar(new / NORMS, runner)
 
             def listen(rows: Recording) -> None:
                 table.add(rows)
                 for log in logs:
                     log.chunk(rows)
+                so_far.look()
 
             runner.listen = listen
             if "yaw" in scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
@@ -72,8 +81,33 @@ def run_into(
         content = judged.to_json(run, found)
         text = notes_toml(scenario, run.recording.notes, run.seed, run.complete)
         (new / "recording.toml").write_text(text, "utf-8")
-        (new / "norms.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        write_norms(new / NORMS, content)
     return content
+
+
+def write_norms(path: Path, content: RunEntry) -> None:
+    """norms.json, in place of one that is there."""
+    with replacing(path) as temporary:
+        temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+class NormsSoFar:
+    """norms.json of a run that goes on, for whoever finds it cut off: by a kill, by a disk that is full."""
+
+    def __init__(self, path: Path, runner: Runner) -> None:
+        self._path, self._runner, self._due = path, runner, monotonic() + SELDOM
+
+    def look(self) -> None:
+        """Write it anew, if it is time: so seldom that a long log, which takes long to judge, is not held up by it."""
+        if (begun := monotonic()) < self._due:
+            return
+        run = self._runner.so_far()
+        # a log that is cut short gives a measure reason to warn; what it can not judge at all is told at the end
+        with suppress(BadInput), np.errstate(all="ignore"), catch_warnings():
+            simplefilter("ignore")
+            write_norms(self._path, judged.to_json(run, judged.all_norms(run)))
+        took = monotonic() - begun
+        self._due = begun + took + max(SELDOM, took / SHARE)
 
 
 class CsvFile:
@@ -115,8 +149,11 @@ def _key(name: str) -> str:
 
 
 def _value(value: object) -> str:
-    """A text, number, truth value or list of them, which TOML writes as JSON does."""
-    return json.dumps(value, ensure_ascii=False)
+    """A text, number, truth value or list of them, which TOML writes as JSON does, but in UTF-8 alone."""
+    if isinstance(value, list):
+        return f"[{', '.join(_value(each) for each in value)}]"
+    text = value.encode("utf-8", "backslashreplace").decode("utf-8") if isinstance(value, str) else value
+    return json.dumps(text, ensure_ascii=False)
 
 
 def _log(path: Path | None, runner: Runner, viewer: str | None = None) -> "RunLog":
@@ -135,6 +172,8 @@ def filling(folder: Path, keep: str | None = None) -> Iterator[Path]:
     """
     if folder.exists() and not folder.is_dir():
         raise BadInput(f"{folder}: is a file; what is written needs a folder")
+    if folder.is_symlink() and not folder.exists():
+        raise BadInput(f"{folder}: is a link that leads nowhere; what is written needs a folder")
     folder.parent.mkdir(parents=True, exist_ok=True)
     new = Path(tempfile.mkdtemp(prefix=f"{folder.name}{PART}", dir=folder.parent))
     kept = False

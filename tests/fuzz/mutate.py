@@ -19,7 +19,12 @@ LINES = [
         "#", "=", ",", ",,", "\n", "\r", "\r\n", "\0", "\ufeff", "\u202e", "\udcff", "ü", "'''",
     )
 ]  # fmt: skip
-BETWEEN = [bytes([c]) for c in b" ,=\n[]{}"]  # words
+SIZES = [  # what a count or a length of a binary file may say
+    number.to_bytes(size, order)
+    for size in (2, 4, 8)
+    for number in (0, 1, (1 << 8 * size - 1) - 1, 1 << 8 * size - 1, (1 << 8 * size) - 1)
+    for order in ("little", "big")
+]
 
 
 @dataclass(frozen=True)
@@ -30,12 +35,13 @@ class Edit:
     at: float
     to: float
     content: bytes
+    between: bytes = b""  # what stands between words
 
     def of(self, file: bytes) -> bytes:
         """The file, changed."""
         a, b = (int(share * len(file)) for share in sorted((self.at, self.to)))
         if self.kind == "word":  # a whole word is another
-            return _other_word(file, a, self.content)
+            return _other_word(file, a, self.content, self.between)
         if self.kind == "line":  # a line is doubled elsewhere
             lines = file.split(b"\n")
             i, k = int(self.at * len(lines)) % len(lines), int(self.to * len(lines)) % len(lines)
@@ -44,22 +50,23 @@ class Edit:
         return changed.get(self.kind, file[:a] + self.content + file[a + len(self.content) :])
 
 
-def _other_word(file: bytes, at: int, word: bytes) -> bytes:
+def _other_word(file: bytes, at: int, word: bytes, between: bytes) -> bytes:
     begin = end = at
-    while end < len(file) and file[end : end + 1] not in BETWEEN:
+    while end < len(file) and file[end] not in between:
         end += 1
-    while begin and file[begin - 1 : begin] not in BETWEEN:
+    while begin and file[begin - 1] not in between:
         begin -= 1
     return file[:begin] + word + file[end:]
 
 
-def edits(text: bool) -> st.SearchStrategy[list[Edit]]:
+def edits(between: bytes) -> st.SearchStrategy[list[Edit]]:
     """A few changes: of a text mostly of whole words and lines, so that it gets past the parser."""
-    share, raw = st.floats(0.0, 1.0, allow_nan=False), st.binary(min_size=1, max_size=8)
-    bytewise = st.builds(Edit, st.sampled_from(["put", "cut", "end", "over"]), share, share, raw)
-    if not text:
+    share = st.floats(0.0, 1.0, allow_nan=False)
+    raw = st.binary(min_size=1, max_size=8) | st.sampled_from(SIZES)
+    bytewise = st.builds(Edit, st.sampled_from(["put", "cut", "end", "over", "over"]), share, share, raw)
+    if not between:
         return st.lists(bytewise, min_size=1, max_size=3)
-    word = st.builds(Edit, st.just("word"), share, share, st.sampled_from(VALUES))
+    word = st.builds(Edit, st.just("word"), share, share, st.sampled_from(VALUES), st.just(between))
     line = st.builds(Edit, st.sampled_from(["line", "put"]), share, share, st.sampled_from(LINES))
     return st.lists(st.one_of(word, word, word, line), min_size=1, max_size=2) | st.lists(
         bytewise, min_size=1, max_size=2

@@ -85,7 +85,7 @@ def guess(name: str, signal: Signal, log: Log, channels: Sequence[str] = ()) -> 
     values = signal.values[np.isfinite(signal.values)]
     if len(values) < FEWEST:
         return None
-    words = tokens_of(name)
+    words = tokens_of(name) or [""]  # a name need not have a word
     tokens = frozenset(words)
     last = [w for w in words if w not in (*WORDS, *SUPERFLUOUS) or w == "n"] or words
     moves = 10.0 if float(np.ptp(values)) > 0.0 else 0.0

@@ -110,6 +110,8 @@ def reader_for(path: Path) -> Callable[[Path], Log]:
     suffixes = known_suffixes()
     if path.is_dir() and not (path / BAG).is_file():
         raise refuse(path, f"is a folder; a log is a file, or the folder of a ROS 2 bag with its {BAG}")
+    if not path.is_dir() and not path.is_file():
+        raise refuse(path, "is a device or a pipe; a log is a file")
     suffix = "/" if path.is_dir() else path.suffix.lower()
     if suffix not in suffixes:
         allowed = ", ".join(sorted(s for s in suffixes if s != "/"))

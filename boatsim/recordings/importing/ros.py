@@ -29,6 +29,7 @@ SECTION = re.compile(r"^=+\s*$\s*^MSG:\s*(\S+)\s*$", re.MULTILINE)
 DEEPEST = 20  # messages in messages
 MOST_ELEMENTS = 16  # of a list of numbers that are kept; covariances and pictures have more, or are called so
 MOST_PARTS = 4  # of a list of messages
+MOST_EMPTY = 1000  # messages of no size in a message
 MOST_SIZE = 1_000_000  # [bytes] of a message that is read; only pictures and clouds are larger
 AGREE = 10.0  # [s] by which a message's own stamp and the time of its logging may differ
 
@@ -105,14 +106,15 @@ class Decoder:
     def __init__(self, text: str, root: str, cdr: bool) -> None:
         """`cdr`: as ROS 2 writes it, aligned and with its byte order in front; else as ROS 1. Raises ValueError."""
         self.parts, self.root, self.cdr = definitions(text, root), _full(root), cdr
-        self._check(self.root, 0)
+        self._check()
 
-    def _check(self, name: str, depth: int) -> None:
-        if depth > DEEPEST:
+    def _check(self) -> None:
+        """Each level of messages in messages once, however many ways lead there."""
+        level = {self.root}
+        for _ in range(DEEPEST + 1):
+            level = {part.kind for name in level for part in self.parts[name] if part.kind in self.parts}
+        if level:
             raise ValueError(f"{self.root} holds itself, or messages in messages too deep to read")
-        for part in self.parts[name]:
-            if part.kind in self.parts:
-                self._check(part.kind, depth + 1)
 
     def __call__(self, data: bytes) -> dict[str, float]:
         """Numbers by their names: `pose.position.x`, `channels[3]`. Raises ValueError where the message is cut."""
@@ -132,8 +134,12 @@ class _Cursor:
 
     def __init__(self, data: bytes, order: str, aligned: bool, parts: Mapping[str, list[Part]]) -> None:
         self.data, self.order, self.aligned, self.parts, self.at = data, order, aligned, parts, 0
+        self.left = MOST_EMPTY + len(data)  # messages in it that are looked at: those of no size have no other bound
 
     def message(self, name: str, prefix: str, found: dict[str, float] | None) -> None:
+        self.left -= 1
+        if self.left < 0:
+            raise ValueError("more messages in the message than it has bytes")
         parts = self.parts[name]
         if not parts and self.aligned:
             self.at += 1  # ROS 2 gives an empty message one byte

@@ -30,6 +30,17 @@ FUNCTIONS = {  # of SERVOn_FUNCTION, from the list of parameters of Rover
 STICK, OUTPUT = "pilot's stick", "output"
 
 
+class _Formats(dict[int, Any]):
+    """Formats of messages by number; one of no length is refused, at which the library would stay for ever."""
+
+    def __setitem__(self, number: int, format: Any) -> None:
+        if format.len <= 0:
+            raise ValueError(f"messages {number} have no length")
+        super().__setitem__(number, format)
+
+    kept = property(lambda self: self._formats, lambda self, found: setattr(self, "_formats", _Formats(found)))
+
+
 def read(path: Path) -> Log:
     """Every message with a time and numbers: `ATT.Yaw`, `GPS[1].Lat`. Raises BadInput."""
     try:
@@ -39,7 +50,8 @@ def read(path: Path) -> Log:
     if path.stat().st_size == 0:
         raise refuse(path, "is empty")
     # no clock is looked for: times are those since the autopilot started
-    quick = type("Quick", (DFReader.DFReader_binary,), {"init_clock": lambda self: None})
+    ours = {"init_clock": lambda self: None, "formats": _Formats.kept}
+    quick = type("Quick", (DFReader.DFReader_binary,), ours)
     try:
         with quiet():
             index = quick(str(path))
@@ -55,12 +67,12 @@ def _log(path: Path, index: Any) -> Log:
     streams: dict[tuple[str, int], dict[str, Signal]] = {}
     skipped: list[str] = []
     for number, format in index.formats.items():
+        room.take(len(index.offsets[number]) * len(format.columns), len(streams))
         rows = _rows(data, np.asarray(index.offsets[number], dtype=np.int64), format)
         if rows is None:
             skipped.append(format.name)
         elif len(rows) and format.name not in ITS_OWN:
             for instance, part in _instances(rows, format):
-                room.take(part.size * len(format.columns), len(streams))
                 if found := _signals(part, format):
                     streams[format.name, instance] = found
     called = numbered(list(streams))

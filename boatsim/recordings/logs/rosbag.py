@@ -13,7 +13,7 @@ from boatsim.recordings.raw import refuse
 
 SUFFIXES = (".bag", ".db3", "/")
 MOST_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
-MOST_ABOUT = 10_000_000  # [bytes] of what a bag says of itself
+MOST_ABOUT = 500_000  # [bytes] of what a bag says of itself; that many take the library 10 s
 
 
 def read(path: Path) -> Log:

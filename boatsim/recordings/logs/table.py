@@ -5,15 +5,18 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.clocks import clock_of, dates, seconds
-from boatsim.recordings.importing.log import MOST_SIGNALS, MOST_TEXT, MOST_VALUES, Log, Room, Signal, damaged
+from boatsim.recordings.importing.log import MOST_SIGNALS, MOST_TEXT, Log, Room, Signal, damaged
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.raw import no_twins, refuse
+
+if TYPE_CHECKING:
+    from pyarrow import ChunkedArray
 
 SUFFIXES = (".csv", ".tsv", ".parquet", ".pq")
 SEPARATORS = ",;\t|"
@@ -57,8 +60,7 @@ def _parquet(path: Path) -> dict[str, Array]:
 
     try:
         file = parquet.ParquetFile(path)
-        if file.metadata.num_rows * file.metadata.num_columns > MOST_VALUES:
-            raise refuse(path, f"holds more than {MOST_VALUES:,} values; cut the log into shorter ones")
+        Room(path).take(file.metadata.num_rows * file.metadata.num_columns, file.metadata.num_columns)
         table = file.read(columns=[f.name for f in file.schema_arrow if _is_number(pa.types, f.type)])
     except (pa.ArrowException, OSError, ValueError) as error:
         raise damaged(path, "Parquet", error) from error
@@ -126,27 +128,41 @@ def _head(path: Path) -> _Head:
 
 
 def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
-    """The columns of a table that is nothing but numbers and empty cells; None of any other."""
+    """The columns of a table whose rows are all as long as its header, read by native code; None of any other."""
     import pyarrow as pa
     from pyarrow import csv as arrow
 
     if len(set(head.columns)) < len(head.columns) or "" in head.columns:
         return None
+    room, batches = Room(path), []
     try:
-        found = arrow.read_csv(
+        pieces = arrow.open_csv(
             path,
             arrow.ReadOptions(column_names=head.columns, skip_rows=head.row),
             arrow.ParseOptions(delimiter=head.separator),
-            arrow.ConvertOptions(
-                column_types={name: pa.float64() for name in head.columns},
-                null_values=[*NOTHING, "NaN", "NAN", "NULL"],
-                decimal_point="." if head.separator == "," else ",",
-            ),
+            arrow.ConvertOptions(column_types=dict.fromkeys(head.columns, pa.string()), strings_can_be_null=False),
         )
+        for piece in pieces:
+            room.take(piece.num_rows * piece.num_columns, piece.num_columns)
+            batches.append(piece)
     except (pa.ArrowException, OSError, ValueError):
         return None
-    Room(path).take(found.num_rows * found.num_columns, found.num_columns)
-    return {name: np.array(found[name], dtype=float) for name in head.columns}
+    found = pa.Table.from_batches(batches, pieces.schema)
+    return {name: _of_texts(found[name], head.separator) for name in head.columns}
+
+
+def _of_texts(column: "ChunkedArray", separator: str) -> Array:
+    """(N,) floats of a column of texts, of one that is nothing but numbers and empty cells without a look at each."""
+    import pyarrow as pa
+    from pyarrow import compute
+
+    texts = column if separator == "," else compute.replace_substring(column, ",", ".")
+    nothing = compute.is_in(compute.utf8_lower(texts), pa.array(NOTHING))
+    try:
+        filled = compute.if_else(nothing, pa.scalar(None, pa.string()), texts)
+        return np.array(filled.cast(pa.float64()).to_numpy(), dtype=float)
+    except pa.ArrowException:
+        return _column(column.to_pylist(), separator)
 
 
 def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str, ...]]:
@@ -154,7 +170,8 @@ def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str,
     if path.stat().st_size > MOST_TEXT:
         raise refuse(
             path,
-            f"has words among its numbers and {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of such are read",
+            f"has rows that are not as its header, and {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of such a "
+            "table are read",
         )
     lines = enumerate(_text(path, path.read_bytes()).splitlines())
     kept = [(i + 1, line) for i, line in lines if i >= head.row and line.strip()]

@@ -1,0 +1,104 @@
+"""What a long run takes and what is left of one that is killed: `python -m benchmarks.long_run [--hours 24]`.
+
+Runs of joystick_boat with a row every 20 ms, in processes of their own: peak memory of an hour and of so many, that of
+the process alone and with the pages of its log that the system keeps, which it gives back when others need them. Then
+one is killed, as by `kill -9`, after a minute, and what lies on the disk is read.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from boatsim.recordings.table import read
+from boatsim.simulate.log import PIECE
+
+HOUR, KILLED_AFTER, LOOK = 3600.0, 60.0, 0.2  # [s]
+ON_DISK = ("recording.csv", "camera.csv", "run.rrd")
+SCENARIO = """
+vessel = "joystick_boat"
+duration = {}
+step = 0.02
+[controller]
+use = "l1_joystick"
+[[goal]]
+sway_mps = 0.07
+[[check]]
+signal = "v_mps"
+norm = "rms"
+below = 1.0
+"""
+
+
+def begin(folder: Path, hours: float) -> "subprocess.Popen[bytes]":
+    """A run, going on."""
+    (folder / "long.toml").write_text(SCENARIO.format(hours * HOUR))
+    words = [sys.executable, "-m", "boatsim", "run", str(folder / "long.toml"), "--out", str(folder / "out")]
+    return subprocess.Popen(words, stdout=subprocess.DEVNULL)
+
+
+def memory(process: int) -> tuple[float, float]:
+    """Memory [MB] of a process that is running: its own, and with pages of files; zero once it is not."""
+    try:
+        lines = Path(f"/proc/{process}/status").read_text(encoding="ascii").splitlines()
+    except OSError:
+        return 0.0, 0.0
+    said = {line.partition(":")[0]: line.split()[1] for line in lines if line.startswith("Rss") or "VmHWM" in line}
+    return float(said.get("RssAnon", 0.0)) / 1024, float(said.get("VmHWM", 0.0)) / 1024
+
+
+def whole(hours: float) -> str:
+    """A row of the table: a run to its end."""
+    with TemporaryDirectory() as base:
+        folder, since, own, all_of_it = Path(base), time.monotonic(), 0.0, 0.0
+        run = begin(folder, hours)
+        while run.poll() is None:
+            now = memory(run.pid)
+            own, all_of_it = max(own, now[0]), max(all_of_it, now[1])
+            time.sleep(LOOK)
+        took = time.monotonic() - since
+        content = json.loads((folder / "out" / "norms.json").read_text(encoding="utf-8"))
+        written = sum(f.stat().st_size for f in (folder / "out").iterdir()) / 1e6
+        return f"{hours:10g}{content['steps']:12}{took:10.0f}{own:12.0f}{all_of_it:16.0f}{written:14.0f}"
+
+
+def killed(hours: float) -> list[str]:
+    """What a run that is killed leaves."""
+    with TemporaryDirectory() as base:
+        folder = Path(base)
+        run = begin(folder, hours)
+        time.sleep(KILLED_AFTER)
+        at = time.time()
+        run.kill()
+        run.wait()
+        (left,) = folder.glob("out.part-*")
+        lines = [f"killed after {KILLED_AFTER:g} s, leaves {', '.join(sorted(f.name for f in left.iterdir()))}"]
+        for name in ON_DISK:
+            found, behind = read(left / name), at - (left / name).stat().st_mtime
+            lines.append(f"  {name:14} {len(found)} rows, to {found.t[-1]:.2f} s; written {behind:.2f} s before it")
+        norms = left / "norms.json"
+        so_far = json.loads(norms.read_text(encoding="utf-8"))
+        behind = at - norms.stat().st_mtime
+        return [*lines, f"  norms.json     of the first {so_far['steps']} steps; written {behind:.2f} s before it"]
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--hours", type=float, default=24.0, help="of the long run")
+    given = parser.parse_args()
+    os.nice(10)
+    print(f"memory holds {PIECE} rows of the log; the rest lies in a file\n")
+    print(f"{'hours':>10}{'steps':>12}{'took [s]':>10}{'own [MB]':>12}{'with files [MB]':>16}{'written [MB]':>14}")
+    for hours in (1.0, given.hours):
+        print(whole(hours), flush=True)
+    print()
+    print("\n".join(killed(given.hours)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,85 @@
+"""What reading large files costs, and refusing larger ones: `python -m benchmarks.reading`.
+
+Each file is read in a process of its own. Seconds are CPU of the reading alone, without the start of Python; memory is
+the most that the process takes, libraries included.
+"""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pyarrow as pa
+from pyarrow import parquet
+
+from boatsim.errors import BadInput
+from boatsim.recordings.importing.log import open_log
+from boatsim.recordings.table import Recording, read, write_csv
+
+HOURS, RATE = 10.0, 50.0  # [h], [Hz]
+NAMES = ("x_m", "y_m", "psi_rad", "thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
+WIDE = 30_000  # columns
+PIECE, PIECES = 2_000_000, 64  # rows written together, and how many of those: 5.1 GB of five columns
+
+
+def long_run() -> Recording:
+    """Ten hours of a boat that turns to and fro."""
+    rng, t = np.random.default_rng(0), np.arange(round(HOURS * 3600 * RATE)) / RATE
+    slow = [0.3 * np.sin(0.01 * (i + 1) * t) + 0.003 * rng.standard_normal(len(t)) for i in range(len(NAMES))]
+    return Recording("long", t, dict(zip(NAMES, slow, strict=True)))
+
+
+def make(folder: Path) -> None:
+    """The files."""
+    run = long_run()
+    write_csv(run, folder / "ten_hours.csv")
+    parquet.write_table(pa.table({"t_s": run.t, **run.signals}), folder / "ten_hours.parquet")
+    head, *rows = (folder / "ten_hours.csv").read_text().splitlines()
+    (folder / "with_words.csv").write_text("\n".join([head + ",mode", *(row + ",AUTO" for row in rows)]))
+    names = ["t_s", *(f"c{i}" for i in range(WIDE - 1))]
+    (folder / "wide.csv").write_text("\n".join([",".join(names), *[",".join("1" * WIDE)] * 100]))
+    parquet.write_table(pa.table({n: np.arange(100.0) for n in names}), folder / "wide.parquet")
+    with (folder / "many_cells.csv").open("wb") as file:
+        file.write(b"t_s,x_m,y_m,psi_rad\n")
+        for _ in range(400):
+            file.write(b"1,2,3,4\n" * 250_000)
+    piece = pa.table({n: np.zeros(PIECE) for n in ("t_s", *NAMES[:4])})
+    with parquet.ParquetWriter(folder / "zeros.parquet", piece.schema, compression="zstd") as writer:
+        for _ in range(PIECES):
+            writer.write_table(piece)
+
+
+def one(path: Path, as_log: bool) -> None:
+    """Read a file in this process and print as JSON what that was."""
+    begin = time.process_time()
+    try:
+        found = f"{len(next(iter(open_log(path).signals.values())).t)} rows" if as_log else f"{len(read(path))} rows"
+    except BadInput as error:
+        found = str(error).removeprefix(f"{path}: ")
+    took = time.process_time() - begin
+    said = Path("/proc/self/status").read_text(encoding="ascii")
+    peak = int(said.partition("VmHWM:")[2].split()[0]) / 1024  # getrusage counts what its parent took too
+    print(json.dumps([took, peak, found]))
+
+
+def main() -> None:
+    """Print the table."""
+    if len(sys.argv) == 3:
+        return one(Path(sys.argv[1]), sys.argv[2] == "log")
+    print(f"{'file':20}{'size [MB]':>10}{'read as':>11}{'seconds':>9}{'memory [MB]':>13}  answer")
+    with TemporaryDirectory() as base:
+        make(Path(base))
+        for path in sorted(Path(base).iterdir()):
+            for how in ("recording", "log"):
+                words = [sys.executable, "-m", "benchmarks.reading", str(path), how]
+                done = subprocess.run(words, stdout=subprocess.PIPE, check=True)
+                seconds, peak, found = json.loads(done.stdout)
+                size = path.stat().st_size / 1e6
+                print(f"{path.name:20}{size:10.1f}{how:>11}{seconds:9.2f}{peak:13.0f}  {found}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
