@@ -278,7 +278,7 @@ def compare(
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Compare a recording with a simulation of its commands, or of a scenario."""
+    """Compare a recording with a simulation of its commands, under the effects of its scenario, or of a scenario."""
     from boatsim.cli import diagnosis as commands
 
     with asking(content, trust, [run, vessel, scenario]):

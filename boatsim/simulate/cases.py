@@ -45,6 +45,12 @@ class Place:
                 return f"{self.path.parent.name}/{own}"
         return own
 
+    @property
+    def address(self) -> str:
+        """What it is found by again: vessel/case, or the path of a file of the user's, with its case."""
+        found = f"{self.path.resolve()}:{self.case}" if self.case else str(self.path.resolve())
+        return self.name if "/" in self.name or not self.path.is_file() else found
+
 
 def content(given: str) -> tuple[dict[str, Value], Place]:
     """All that a scenario says, by its name or path, and where it stands. Raises BadInput."""
