@@ -18,15 +18,12 @@ from boatsim.physics.content import names
 from boatsim.physics.signals import STATE
 from boatsim.simulate import scenario
 from boatsim.simulate.norms import Norm, norms
+from boatsim.simulate.pins import TOLERANCE, digits, same
 from boatsim.simulate.run import run
 
 HOME = Path(__file__).parents[1]
 HEADING = "## Norms"
 NEW = "is new"
-# Arithmetic of other machines differs in the 16th digit. Start conditions off by 1e-12 move the norms of nearly every
-# scenario by less than 1e-7 of themselves, the relays of the thesis' program included; so 1e-6 is a change of the code.
-TOLERANCE = 1e-6
-NOTHING = 1e-9  # absolute, for norms that are zero
 # Loops that run away, as published controllers may, forget how they began: what such a start moves there is kept.
 NUDGE, NUDGES = 1e-12, 6  # SI units off in every freedom; so many ways of it
 REACH = 3.0  # of what the nudges moved, within which another machine's arithmetic may end
@@ -62,15 +59,15 @@ def values(found: Mapping[str, Norm], beside: Sequence[Mapping[str, Norm]] = ())
     kept = {}
     for name, n in found.items():
         kept[name] = {
-            "today": _digits(n.value),
-            "at_reported": _digits(n.at_reported),
+            "today": digits(n.value),
+            "at_reported": digits(n.at_reported),
             "published": n.published,
             "verdict": n.verdict,
             "unit": n.unit,
         }
         moves = max((abs(x - n.value) for other in beside if (x := other[name].value) and n.value), default=0.0)
         if n.value and moves > TOLERANCE * abs(n.value):
-            kept[name]["moves"] = _digits(moves)
+            kept[name]["moves"] = digits(moves)
     return kept
 
 
@@ -132,20 +129,9 @@ def _drift(name: str, norm: str, old: Mapping[str, Any] | None, new: Mapping[str
         return
     reach = REACH * max(old.get("moves", 0.0), new.get("moves", 0.0))
     for field in FIELDS:
-        if not _same(old[field], new[field], reach):
+        if not same(old[field], new[field], reach):
             change = f"{old[field]} -> {new[field]} {new['unit']}"
             yield f"{name} {norm}{FIELDS[field]}: {change} (paper: {new['published']})"
-
-
-def _same(old: float | str | None, new: float | str | None, reach: float) -> bool:
-    if not isinstance(old, float | int) or not isinstance(new, float | int):
-        return old == new
-    return abs(new - old) <= max(TOLERANCE * abs(old), NOTHING, reach)
-
-
-def _digits(value: float | None) -> float | None:
-    """Nine digits: more than the tolerance sees."""
-    return None if value is None else float(f"{value:.9g}")
 
 
 def _write(path: Path, text: str) -> None:

@@ -19,6 +19,7 @@ from boatsim.interruption import heed, struck
 from boatsim.quiet import leave_quietly
 
 P = ParamSpec("P")
+PINNED_SEEDS = 5
 UsageError: Any = typer.BadParameter.__base__  # of all mistakes on the command line typer gives a name to this one only
 
 
@@ -179,6 +180,28 @@ def run(
 
 @app.command()
 @guarded
+def test(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", parser=_folder, help="With scenarios in it.")],
+    pin: Annotated[bool, typer.Option("--pin", help="Write FOLDER/pins.toml: the norms as they are now.")] = False,
+    seeds: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Seeds whose range is a pin's tolerance [default: 5].")
+    ] = None,
+    junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Write JUnit XML, for CI.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON instead of the table.")] = False,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Run a folder's scenarios and compare their norms with their pins; leaves with 1 if anything differs."""
+    from boatsim.cli.testing import regress
+
+    if seeds and not pin:
+        raise BadInput("--seeds says over how many seeds pins are drawn; it needs --pin")
+    with asking(content, trust, [folder]):
+        return regress(folder, pin, seeds or PINNED_SEEDS, junit, json)
+
+
+@app.command()
+@guarded
 def manoeuvre(
     name: Annotated[
         str,
@@ -272,7 +295,7 @@ def compare(
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
-    """Compare a recording with a simulation of its commands, or of a scenario."""
+    """Compare a recording with a simulation of its commands, under the effects of its scenario, or of a scenario."""
     from boatsim.cli import diagnosis as commands
 
     with asking(content, trust, [run, vessel, scenario]):

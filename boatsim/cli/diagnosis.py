@@ -206,10 +206,15 @@ def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
 
 
 def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None, out: Path) -> int:
-    """A recording beside a simulation: of its own commands from its smoothed first state, or of a scenario."""
+    """A recording beside a simulation: of its own commands from its smoothed first state, or of a scenario.
+
+    Where a run of ours says which scenario it is of, the scenario's effects act too, unless a vessel is named.
+    """
     with reporting() as told:
         told("reading the recording")
         recording, boat = open_recording(run, vessel, load)
+        if vessel is None and not scenario:
+            boat = _as_it_was(recording, boat)
         if scenario:
             told(f"running {scenario}", 0.1)
             simulated = _of_scenario(recording, scenario)
@@ -232,6 +237,26 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
         _compare_rrd(boat, recording, simulated, new / "compare.rrd")
     say([*lines, f"written to {out}: compare.csv, compare.rrd"])
     return 0
+
+
+def _as_it_was(recording: Recording, boat: Vessel) -> Vessel:
+    """The boat with what its scenario added to it; as it is where no scenario can be found that is of this boat."""
+    name, seed = recording.notes.facts.get("scenario"), recording.notes.facts.get("seed")
+    if not isinstance(name, str):
+        return boat
+    try:
+        found = scenarios.load(name).vessel
+    except BadInput as error:
+        remark(f"compared with the vessel alone; its scenario {name} can not be used: {error}")
+        return boat
+    if (found.file, found.freedoms) != (boat.file, boat.freedoms):
+        remark(f"compared with the vessel alone; its scenario {name} is of another one, {found.name}")
+        return boat
+    added = [e for e in found.effects if boat.effect(e.name) is None]
+    if added:
+        remark(f"{name} adds {', '.join(e.name for e in added)}; --vessel {boat.name} compares with the vessel alone")
+    seeded = tuple(e.seeded(seed) for e in found.effects) if isinstance(seed, int) else found.effects
+    return replace(found, effects=seeded)
 
 
 def _rms(values: Array) -> float:

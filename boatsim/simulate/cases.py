@@ -21,7 +21,7 @@ from boatsim.physics import trust
 from boatsim.physics.content import find, known, root, whole
 
 NAME = re.compile(r"[\w.+-]+")
-OTHERS = ("vessel.toml", "patched.toml", "recording.toml")  # files of a folder that are no scenarios
+OTHERS = ("vessel.toml", "patched.toml", "recording.toml", "pins.toml")  # files of a folder that are no scenarios
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,12 @@ class Place:
                 return f"{self.path.parent.name}/{own}"
         return own
 
+    @property
+    def address(self) -> str:
+        """What it is found by again: vessel/case, or the path of a file of the user's, with its case."""
+        found = f"{self.path.resolve()}:{self.case}" if self.case else str(self.path.resolve())
+        return self.name if "/" in self.name or not self.path.is_file() else found
+
 
 def content(given: str) -> tuple[dict[str, Value], Place]:
     """All that a scenario says, by its name or path, and where it stands. Raises BadInput."""
@@ -63,10 +69,7 @@ def meant(given: str) -> list[str]:
     if inside:
         return inside
     if Path(given).is_dir():
-        files = [path for path in sorted(Path(given).glob("[!_]*.toml")) if path.name not in OTHERS]
-        if not files:
-            raise BadInput(f"{given}: there is no scenario (*.toml) in this folder")
-        return [one for path in files for one in meant(str(path))]
+        return [one for path in files_of(Path(given)) for one in meant(str(path))]
     if any(sign in given for sign in "*?[") and not Path(given).is_file():
         found = [n for n in shipped if fnmatchcase(n, given)]
         if not found:
@@ -76,6 +79,14 @@ def meant(given: str) -> list[str]:
     if given.endswith(".toml"):
         return [f"{given}:{case}" for case in cases(find("scenario", given))] or [given]
     return [whole("scenario", given)]
+
+
+def files_of(folder: Path) -> list[Path]:
+    """Scenario files in a folder, by name. Raises BadInput where there is none."""
+    files = [path for path in sorted(folder.glob("[!_]*.toml")) if path.name not in OTHERS]
+    if not files:
+        raise BadInput(f"{folder}: there is no scenario (*.toml) in this folder")
+    return files
 
 
 def cases(path: Path) -> list[str]:

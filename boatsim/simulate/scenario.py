@@ -144,6 +144,7 @@ class Scenario:
     camera: Camera
     measure: Measure | None = None
     aboard: tuple[Sensor, ...] = ()  # beside the usual ones
+    address: str = ""  # what it is found by again
 
     @cached_property
     def _begins(self) -> list[float]:
@@ -198,7 +199,7 @@ def from_table(raw: Mapping[str, object], place: Place) -> Scenario:
         _check_norms(file, camera, measure)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
-    return Scenario(place.name, file, vessel, controller, sensors, camera, measure, aboard)
+    return Scenario(place.name, file, vessel, controller, sensors, camera, measure, aboard, place.address)
 
 
 def _made(base: type[M], table: Mapping[str, object], folder: Path) -> M:

@@ -136,7 +136,7 @@ def notes_toml(scenario: Scenario, notes: Notes, seed: int, complete: bool) -> s
     for effect, values in notes.settings.items():
         lines += _table(f"set.{_key(effect)}", values)
     lines += _table(f"runs.{CAMERA}.noise", notes.noise)  # recording.csv has none: it is the truth
-    facts = {"scenario": scenario.name, "seed": seed, "complete": complete}
+    facts = {"scenario": scenario.address or scenario.name, "seed": seed, "complete": complete}
     return "\n".join(lines + _table("facts", facts)) + "\n"
 
 
