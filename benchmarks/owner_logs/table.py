@@ -33,7 +33,7 @@ def goals(results: Sequence[Result]) -> Iterator[str]:
             ("with a cause", [r for r in asked_of if r.cause]),
         ):
             mean = f"{sum(len(r.effects) for r in there) / len(there):.1f}" if there else "-"
-            yield f"names in an answer, boats {kind}, mean {mean}"
+            yield f"names in an answer, {kind}, mean {mean}"
 
 
 Test = Callable[[Result], bool]
