@@ -22,7 +22,7 @@ from boatsim.physics.content import PACKAGES
 HOME = Path(__file__).parents[1]
 OUT = HOME / "docs" / "arrows.svg"
 LAYERS = (  # a module may import from its own folder and from those in the lines above it
-    "__init__ errors files quiet interruption progress",
+    "errors files quiet interruption version progress",
     "physics",
     "recordings control",
     "simulate",
@@ -30,7 +30,8 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "view",
     "diagnose",
     "newboat",
-    "cli __main__",
+    "api",
+    "cli __main__ __init__",
 )
 ABOUT = {  # what the picture says of each folder
     "physics": "what a boat is",

@@ -1,15 +1,50 @@
-"""boatsim: small-boat motion and control on MuJoCo, and what a simulation of a real boat has left out."""
+"""boatsim: small-boat motion and control on MuJoCo, and what a simulation of a real boat has left out.
+
+`load_vessel`, `run`, `read`, `diagnose` and `replay` are what the command line does, for Python: see `boatsim.api`.
+"""
+
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # all is imported when somebody asks: the first thing the program imports should be quick
+    from boatsim.api import Diagnosis, Parameter, Run, diagnose, load_vessel, read, replay, run
+
+__all__ = ["Diagnosis", "Parameter", "Run", "__version__", "diagnose", "load_vessel", "read", "replay", "run"]
 
 __version__: str
 
 
-def __getattr__(name: str) -> str:
-    """The version, looked up when somebody asks: the first thing the program imports should be quick."""
-    if name != "__version__":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib.metadata import PackageNotFoundError, version
+def __getattr__(name: str) -> object:
+    """What the package offers, looked up at first use."""
+    if name == "__version__":
+        return import_module("boatsim.version").version()
+    if name == "diagnose":  # a folder of ours is called so too
+        return import_module("boatsim.diagnose")
+    if name in __all__:
+        return getattr(import_module("boatsim.api"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
-    try:
-        return version("boatsim")
-    except PackageNotFoundError:  # run from a source tree that was never installed
-        return "0+unknown"
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+class _Folder(ModuleType):
+    """The folder boatsim/diagnose, called like the function: `boatsim.diagnose(...)` is that of boatsim.api."""
+
+    def __call__(self, *given: object, **named: object) -> object:
+        return import_module("boatsim.api").diagnose(*given, **named)
+
+
+class _Package(ModuleType):
+    """This package; Python hangs a folder's module on it once one of the folder's files was imported."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if name == "diagnose" and isinstance(value, ModuleType):
+            value.__class__ = _Folder
+        super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from boatsim.cli.diagnosis import _as_written
 from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.free_runs import errors, free_runs
 from boatsim.diagnose.log.first_orders import begun
+from boatsim.diagnose.replaying import as_written
 from boatsim.diagnose.tried import composed
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
@@ -24,7 +24,7 @@ def log() -> Recording:
 
 
 def test_a_log_from_rest_is_replayed_as_it_was(log: Recording) -> None:
-    problem, fitted = _as_written(log, scenario.load("otter/turn").vessel)
+    problem, fitted = as_written(log, scenario.load("otter/turn").vessel)
     off = errors(free_runs(problem, {"simulated": fitted}, problem.tracks, 6.0))
     assert off["position_rms_m"]["simulated"] < 1e-4
     assert off["heading_rms_rad"]["simulated"] < 1e-4

@@ -11,12 +11,12 @@ from typing import Annotated, Any, Literal, NoReturn, ParamSpec
 import typer
 from typer.core import TyperGroup
 
-import boatsim
 from boatsim.cli.asking import asking
 from boatsim.cli.exits import FAULTS, Exit, any_terminal, complain, say, words
 from boatsim.errors import BadInput
 from boatsim.interruption import heed, struck
 from boatsim.quiet import leave_quietly
+from boatsim.version import version as installed
 
 P = ParamSpec("P")
 PINNED_SEEDS = 5
@@ -130,7 +130,7 @@ def _said(error: Exception) -> str:
 
 def _version(asked: bool) -> None:
     if asked:
-        print(f"boatsim {boatsim.__version__}")
+        print(f"boatsim {installed()}")
         raise typer.Exit
 
 

@@ -1,6 +1,5 @@
 """What `boatsim diagnose`, `replay` and `compare` do: files in, files and a few printed lines out."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,29 +10,22 @@ from boatsim.cli.exits import remark, say
 from boatsim.cli.progress import reporting
 from boatsim.diagnose.analysis import NEXT, Diagnosis, hint, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
-from boatsim.diagnose.filter import nominal_levels, track
 from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
-from boatsim.diagnose.levels import fit_noise
 from boatsim.diagnose.log.entry import in_words
-from boatsim.diagnose.log.first_orders import begun
-from boatsim.diagnose.next.experiment import scenario_text
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.report import page as report
-from boatsim.diagnose.report import patch, show, stays, taken
+from boatsim.diagnose.replaying import as_written, replayed
+from boatsim.diagnose.report import show, stays, taken
 from boatsim.diagnose.report.described import what_of
 from boatsim.diagnose.report.entries import Family
-from boatsim.diagnose.tried import composed
-from boatsim.errors import BadInput, BadPhysics
+from boatsim.diagnose.report.files import write
+from boatsim.errors import BadInput
 from boatsim.files import replacing
-from boatsim.physics.signals import COMPONENTS, STATE, Array
+from boatsim.physics.signals import STATE, Array
 from boatsim.physics.vessel import Vessel
-from boatsim.progress import Report
 from boatsim.recordings.table import Notes, Recording, write_csv
 from boatsim.simulate import scenario as scenarios
 from boatsim.view.outputs import filling
 
 WRITING = 0.97  # of a diagnosis is done when its files are written, by experience
-FORCE_NAMES = {axis: f"force_{component}" for axis, component in COMPONENTS.items()}
 
 
 def diagnose(
@@ -69,27 +61,6 @@ def _unwritten(found: Diagnosis, out: Path) -> OSError | None:
     return None
 
 
-def write(found: Diagnosis, out: Path) -> None:
-    """All files of a diagnosis, or none."""
-    try:
-        answer = json.dumps(found.findings.answer, indent=1, allow_nan=False) + "\n"
-    except ValueError:
-        raise BadPhysics(
-            f"{found.vessel.name}: a fitted boat diverges; are the units of the recording right?"
-        ) from None
-    with filling(out) as new:
-        report.write(found.findings, new)
-        laws = found.ranking.laws
-        patched = patch.patched(found.problem, found.vessel, found.ranking.best, out / "patched.toml", laws)
-        (new / "patched.toml").write_text(patched, encoding="utf-8")
-        if found.plan is not None:
-            (new / NEXT).write_text(scenario_text(found.plan, found.vessel), encoding="utf-8")
-        overlay(found, new / "diagnosis.rrd")
-        (new / "diagnosis.json").write_text(answer, encoding="utf-8")
-    if found.plan is None:  # that of an earlier diagnosis
-        (out / NEXT).unlink(missing_ok=True)
-
-
 def summary(found: Diagnosis) -> list[str]:
     """What is printed of a diagnosis."""
     answer = found.findings.answer
@@ -122,76 +93,19 @@ def summary(found: Diagnosis) -> list[str]:
     return lines
 
 
-def overlay(found: Diagnosis, path: Path) -> None:
-    """diagnosis.rrd: recorded, nominal, recalibrated and patched boats of the first unseen run on one time line."""
-    from boatsim.view import rerun_log, water
-
-    stretches = [s for s in found.findings.free_runs if s.run == found.findings.free_runs[0].run]
-    boats = {m: [_of_model(s, m) for s in stretches] for m in show.MODELS} if stretches else {}
-    if stretches:
-        boats = {"recording": [_whole(stretches)], **boats}
-    chosen = next((m for m in found.findings.missing if stretches and m.run == stretches[0].run), None)
-    missing = None
-    if chosen is not None:
-        signals: dict[str, Array] = {}
-        for axis, mean in chosen.force.items():
-            name, sd = FORCE_NAMES[axis], chosen.sd[axis]
-            signals |= {name: mean, f"{name}_low": mean - 2 * sd, f"{name}_high": mean + 2 * sd}
-        missing = Recording(chosen.run, chosen.t, signals)
-    scene = water.around(found.vessel, boats)
-    intervals = [
-        i for i in found.findings.answer["where"]["intervals"] if chosen is not None and i["run"] == chosen.run
-    ]
-    with replacing(path) as temporary:
-        rerun_log.log_overlay(temporary, boats, missing, intervals, scene)
-
-
-def _whole(stretches: Sequence[FreeRun]) -> Recording:
-    """The recording under consecutive free runs, which share their ends."""
-    t, rows = np.unique(np.concatenate([s.t for s in stretches]), return_index=True)
-    names = stretches[0].channels["recorded"]
-    joined = {n: np.concatenate([s.channels["recorded"][n] for s in stretches])[rows] for n in names}
-    return Recording("recording", t, joined)
-
-
-def _of_model(stretch: FreeRun, model: str) -> Recording:
-    """A free run of one model, with its distance from the recording."""
-    signals, recorded = dict(stretch.channels[model]), stretch.channels["recorded"]
-    if {"x_m", "y_m"} <= signals.keys():
-        off = np.hypot(signals["x_m"] - recorded["x_m"], signals["y_m"] - recorded["y_m"])
-        seen = np.isfinite(off)  # fixes may be fewer than rows
-        signals["off_m"] = np.interp(stretch.t, stretch.t[seen], off[seen]) if seen.any() else off
-    return Recording(model, stretch.t, signals)
-
-
 def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:
     """Free runs of a vessel over a recording, driven by the recorded commands alone: replay.csv and rms errors."""
     with reporting() as told:
         told("reading the recording")
         recording, boat = open_recording(run, vessel, load)
-        problem, fitted = _as_written(recording, boat, told)
-        told("free runs", 0.8)
-        stretches = free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
-        if not stretches:
-            seconds = recording.t[-1] - recording.t[0]
-            raise BadInput(f"{run}: {seconds:g} s long; a free run of {horizon:g} s does not fit")
-        _write_replay(stretches, out / "replay.csv")
+        stretches = replayed(recording, boat, horizon, told)
     for line in recording.remarks:
         remark(line)
+    _write_replay(stretches, out / "replay.csv")
     for family, found in errors(stretches).items():
         say([f"{family}: {found['simulated']:.5g} ({len(stretches)} free runs of {horizon:g} s)"])
     say([f"written to {out}: replay.csv"])
     return 0
-
-
-def _as_written(recording: Recording, boat: Vessel, told: Report) -> tuple[Problem, Fit]:
-    """A vessel file on a recording, nothing fitted but the noise that the smoothed starts need."""
-    told("compiling, or loading what was compiled before", 0.1)
-    program, acting = composed(boat)
-    levels = nominal_levels(boat, [recording])
-    problem = Problem([begun(track(recording, program), levels)], levels, {})
-    told("fitting the noise", 0.3)
-    return problem, fit_noise(problem, replace(problem.nominal(), suspects=acting))
 
 
 def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
@@ -219,7 +133,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
             told(f"running {scenario}", 0.1)
             simulated = _of_scenario(recording, scenario)
         else:
-            problem, fitted = _as_written(recording, boat, told)
+            problem, fitted = as_written(recording, boat, told)
             told("the free run", 0.8)
             whole = float(recording.t[-1] - recording.t[0])
             simulated = free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[0].channels["simulated"]

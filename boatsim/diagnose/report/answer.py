@@ -4,7 +4,6 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from boatsim import __version__
 from boatsim.control.base import wrap
 from boatsim.diagnose.free_runs import FreeRun, errors
 from boatsim.diagnose.locate import forces as locate
@@ -28,6 +27,7 @@ from boatsim.diagnose.search.settle import Named
 from boatsim.diagnose.tried import called
 from boatsim.physics.base import Channel, Effect
 from boatsim.physics.vessel import Vessel
+from boatsim.version import version
 
 ONE_SIDED_95 = 1.645  # [sd]
 SHAPE = 0.05  # nature's law is never quite the entry's: an sd holds this share of what was found [rad for directions]
@@ -54,7 +54,7 @@ def compose(
         "verdict": verdict,
         "sentence": "",
         "seconds": 0.0,
-        "version": __version__,
+        "version": version(),
         "effects": effects,
         "unknown": {
             "flag": ranking.unknown,

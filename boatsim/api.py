@@ -1,0 +1,219 @@
+"""boatsim for Python: load a vessel, run a scenario, read a recording, diagnose it, replay it.
+
+`import boatsim` offers these functions and imports what they need when they are called. SI units, radians and SNAME
+axes throughout, as in files. What can not be used raises `boatsim.errors.BadInput`, one line that says what is right.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from math import inf
+from pathlib import Path
+from typing import NamedTuple
+
+from boatsim.diagnose import analysis
+from boatsim.diagnose.replaying import joined, replayed
+from boatsim.diagnose.report import files
+from boatsim.diagnose.report.entries import Answer
+from boatsim.physics import vessel as vessels
+from boatsim.physics.vessel import Vessel
+from boatsim.recordings import table
+from boatsim.recordings.notes import notes_for
+from boatsim.recordings.table import Recording
+from boatsim.simulate.controllers import steered
+from boatsim.simulate.norms import Norm, NormEntry, all_norms
+from boatsim.simulate.run import run as simulate
+
+Name = str | Path  # of something shipped, of a file, or of a folder
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run left."""
+
+    scenario: str
+    seed: int
+    complete: bool  # whether it ran to its end
+    recording: Recording  # the truth at every step: t, signals by column, `recording["psi_rad"]`
+    camera: Recording | None  # what a camera above saw; None of a hull that it does not see move
+    norms: Mapping[str, Norm]  # by name: value, unit, guard, ok, lacking, ...
+    folder: Path | None = None  # of its files, where they were asked for
+
+    @property
+    def ok(self) -> bool:
+        """Whether every guard is met."""
+        return all(norm.ok is not False for norm in self.norms.values())
+
+
+class Parameter(NamedTuple):
+    """A parameter that was found, with its standard deviation."""
+
+    value: float
+    sd: float
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What a vessel leaves out of recordings; `found` is all of it, curves too."""
+
+    found: analysis.Diagnosis
+
+    @property
+    def answer(self) -> Answer:
+        """Exactly what diagnosis.json holds."""
+        return self.found.findings.answer
+
+    @property
+    def verdict(self) -> str:
+        """One of named, ambiguous, described, unknown and nothing_missing."""
+        return self.answer["verdict"]
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in words, with the figures."""
+        return self.answer["sentence"]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Entries of the library that were named, the surest first."""
+        return tuple(effect["name"] for effect in self.answer["effects"])
+
+    @property
+    def parameters(self) -> dict[str, dict[str, Parameter]]:
+        """Parameters of what was named: entry -> name -> value and standard deviation, in the parameter's unit."""
+        return {
+            effect["name"]: {k: Parameter(p["value"], p["sd"]) for k, p in effect["parameters"].items()}
+            for effect in self.answer["effects"]
+        }
+
+    @property
+    def skill(self) -> dict[str, float]:
+        """How much of the error on unseen data the patch takes away, of "position", "heading", "roll" what there is.
+
+        1 - rms of the patched boat / rms of the same boat with but its own coefficients refitted: 0 gains nothing.
+        """
+        fit = self.answer["fit"]
+        position, heading, roll = fit.get("position_rms_m"), fit.get("heading_rms_rad"), fit.get("roll_rms_rad")
+        by_name = {"position": position, "heading": heading, "roll": roll}
+        return {name: 1.0 - rms["patched"] / rms["recalibrated"] for name, rms in by_name.items() if rms}
+
+    def write(self, folder: Name) -> None:
+        """All files of `boatsim diagnose`: report.html, report.md, diagnosis.json, patched.toml, diagnosis.rrd."""
+        files.write(self.found, Path(folder))
+
+
+def load_vessel(name: Name, load: Sequence[str] = ()) -> Vessel:
+    """A vessel by name, folder or file, in load conditions. Raises BadInput.
+
+    >>> import boatsim
+    >>> boat = boatsim.load_vessel("joystick_boat", ["heavy"])
+    >>> boat.freedoms, boat.length
+    (('surge', 'sway', 'yaw'), 1.25)
+    """
+    return vessels.load(str(name), load)
+
+
+def run(scenario: Name, seed: int | None = None, controller: Name | None = None, out: Name | None = None) -> Run:
+    """Run a scenario by name or file, steered by its own controller or another; `out` is a folder for the files.
+
+    An interruption ends the run and keeps what was reached. Raises BadInput or BadPhysics.
+
+    >>> import boatsim
+    >>> done = boatsim.run("joystick_boat/sway_1", out="out/sway_1")
+    >>> rms = done.norms["yaw_rate_rms"]
+    >>> f"{rms.value:.2f} {rms.unit}", done.ok
+    ('0.18 deg/s', True)
+    >>> float(done.recording["y_m"][-1]) > 0.9  # [m] to starboard
+    True
+    """
+    told = steered(str(scenario), None if controller is None else str(controller))
+    if out is None:
+        done = simulate(told, seed)
+        filmed = done.camera if "yaw" in told.vessel.freedoms else None
+        return Run(told.name, done.seed, done.complete, done.recording, filmed, all_norms(done))
+    from boatsim.view.outputs import CAMERA, run_into  # rerun takes half a second
+
+    folder = Path(out)
+    content = run_into(folder, told, seed)
+    film = folder / f"{CAMERA}.csv"
+    return Run(
+        told.name,
+        content["seed"],
+        content["complete"],
+        table.read(folder / "recording.csv"),
+        table.read(film) if film.is_file() else None,
+        {name: _norm(entry) for name, entry in content["norms"].items()},
+        folder,
+    )
+
+
+def _norm(entry: NormEntry) -> Norm:
+    """A norm of norms.json."""
+    said = {f.name: entry[f.name] for f in fields(Norm)}  # type: ignore[literal-required]
+    if guard := entry["guard"]:
+        said["guard"] = tuple(end if end is not None else (-inf, inf)[i] for i, end in enumerate(guard))
+    return Norm(**said)
+
+
+def read(path: Name, vessel: Name | None = None, load: Sequence[str] = ()) -> Recording:
+    """A recording (.csv, .parquet, an .rrd of ours), checked, with what its recording.toml says. Raises BadInput.
+
+    >>> import boatsim
+    >>> done = boatsim.run("joystick_boat/sway_1", out="out/sway_1")
+    >>> log = boatsim.read("out/sway_1/camera.csv")
+    >>> log.notes.vessel, log.unit("psi_rad")
+    ('joystick_boat', 'rad')
+    """
+    file = Path(path)
+    if vessel is None and not notes_for(file).notes.vessel:
+        return table.read(file)
+    return analysis.open_recording(file, None if vessel is None else str(vessel), load)[0]
+
+
+def diagnose(
+    runs: Name | Sequence[Name],
+    hold_out: Name | Sequence[Name] = (),
+    vessel: Name | None = None,
+    load: Sequence[str] = (),
+    library: Sequence[str] = (),
+    without: Sequence[str] = (),
+    horizon: float | None = None,
+) -> Diagnosis:
+    """Say which physics a vessel leaves out of recordings: files that are fitted, and files to judge the result on.
+
+    Without a `vessel` it is the one of the recordings' recording.toml. `library` and `without` are entries to try too
+    and not to try, `horizon` is the length [s] of the free runs by which it is judged. Raises BadInput.
+
+    >>> import boatsim
+    >>> done = boatsim.run("joystick_boat/sway_1_as_published", out="out/published")
+    >>> found = boatsim.diagnose("out/published/camera.csv")
+    >>> found.verdict, found.names
+    ('named', ('weak_reverse',))
+    >>> value, sd = found.parameters["weak_reverse"]["astern_factor"]
+    >>> abs(value - 0.694) < 2 * sd  # which the scenario added to the vessel
+    True
+    >>> found.skill["position"] > 0.9
+    True
+    >>> found.write("out/diagnosis")
+    """
+    name = None if vessel is None else str(vessel)
+    return Diagnosis(analysis.diagnose(_paths(runs), _paths(hold_out), name, load, library, without, horizon))
+
+
+def replay(recording: Name, vessel: Name | None = None, load: Sequence[str] = (), horizon: float = 6.0) -> Recording:
+    """Free runs of a vessel, each of `horizon` [s] from a recorded state with the recorded commands alone.
+
+    The result has the pose at the times of the recording, and the number of each free run in `segment`. `vessel` may be
+    a patched.toml. Raises BadInput.
+
+    >>> import boatsim
+    >>> done = boatsim.run("joystick_boat/sway_1_as_published", out="out/published")
+    >>> as_written = boatsim.replay("out/published/camera.csv")
+    >>> sorted(as_written.signals)
+    ['psi_rad', 'segment', 'x_m', 'y_m']
+    """
+    opened, boat = analysis.open_recording(Path(recording), None if vessel is None else str(vessel), load)
+    return joined(replayed(opened, boat, horizon))
+
+
+def _paths(given: Name | Sequence[Name]) -> list[Path]:
+    return [Path(given)] if isinstance(given, str | Path) else [Path(one) for one in given]

@@ -1,0 +1,90 @@
+"""boatsim for Python: examples run as written, types are told, and all that a user imports stays light and in place."""
+
+import doctest
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import boatsim
+from boatsim import api
+from boatsim.errors import BadInput
+
+OFFERED = ("diagnose", "load_vessel", "read", "replay", "run")
+ROOT = Path(__file__).parents[1]
+USER = """
+from typing import reveal_type
+import boatsim
+import boatsim.diagnose.analysis
+
+done: boatsim.Run = boatsim.run("joystick_boat/sway_1", seed=3)
+found: boatsim.Diagnosis = boatsim.diagnose(["a.csv"], hold_out=["b.csv"])
+value, sd = found.parameters["weak_reverse"]["astern_factor"]
+reveal_type(boatsim.load_vessel("otter"))
+reveal_type(boatsim.replay("a.csv").t)
+reveal_type(value)
+reveal_type(found)
+"""
+
+
+@pytest.mark.parametrize("name", OFFERED)
+def test_the_example_of_each_function_runs_as_it_is_written(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (test,) = doctest.DocTestFinder(recurse=False).find(getattr(api, name), name, api)
+    assert test.examples
+    result = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(test)
+    assert result.failed == 0
+
+
+@pytest.mark.parametrize("first", ["", "import boatsim.diagnose.rules", "from boatsim import diagnose"])
+def test_the_functions_are_there_whatever_was_imported_before(first: str) -> None:
+    code = f"import boatsim\n{first}\nprint(*(callable(getattr(boatsim, n)) for n in {OFFERED}))"
+    said = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert said.split() == ["True"] * len(OFFERED)
+
+
+def test_a_diagnosis_is_asked_for_by_the_name_of_its_folder_too(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="nowhere.csv"):
+        boatsim.diagnose(tmp_path / "nowhere.csv", vessel="joystick_boat")
+
+
+def test_a_strict_type_checker_knows_what_comes_back(tmp_path: Path) -> None:
+    (tmp_path / "user.py").write_text(USER)
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--strict",
+        "--cache-dir",
+        str(tmp_path / "cache"),
+        str(tmp_path / "user.py"),
+    ]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    for told in ("boatsim.physics.vessel.Vessel", "ndarray", '"float"', "boatsim.api.Diagnosis"):
+        assert told in done.stdout.replace("builtins.", "")
+
+
+def test_a_run_with_files_says_the_same_as_one_without(tmp_path: Path) -> None:
+    kept, free = (boatsim.run("joystick_boat/sway_1", seed=2, out=out) for out in (tmp_path / "out", None))
+    assert kept.norms == free.norms and kept.seed == free.seed == 2 and free.folder is None
+    assert set(kept.norms) == set(json.loads((tmp_path / "out" / "norms.json").read_text())["norms"])
+    assert abs(kept.recording["y_m"] - free.recording["y_m"]).max() < 1e-8
+    assert kept.camera is not None and free.camera is not None and len(kept.camera) == len(free.camera)
+
+
+def test_another_controller_steers(tmp_path: Path) -> None:
+    own, other = (boatsim.run("joystick_boat/sway_1", controller=c) for c in (None, "pid_autopilot"))
+    assert own.norms["yaw_rate_rms"].value != other.norms["yaw_rate_rms"].value
+    with pytest.raises(BadInput, match="controller pd_heading does not fit"):
+        boatsim.run("joystick_boat/sway_1", controller="pd_heading")
+
+
+def test_what_is_not_offered_is_an_attribute_error_and_what_is_is_listed() -> None:
+    assert set(OFFERED) <= set(dir(boatsim)) and set(OFFERED) <= set(boatsim.__all__)
+    with pytest.raises(AttributeError, match="nothing_such"):
+        boatsim.nothing_such  # noqa: B018
