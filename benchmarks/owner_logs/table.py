@@ -29,7 +29,7 @@ def goals(results: Sequence[Result]) -> Iterator[str]:
         yield f"{title:58s} {share:>14s} {len(there):4d} {asked:>7s}"
     if asked_of := [r for r in results if r.verdict]:
         for kind, there in (
-            ("good", [r for r in asked_of if not r.cause]),
+            ("without a cause", [r for r in asked_of if not r.cause]),
             ("with a cause", [r for r in asked_of if r.cause]),
         ):
             mean = f"{sum(len(r.effects) for r in there) / len(there):.1f}" if there else "-"
