@@ -18,7 +18,10 @@ from boatsim.newboat.from_log import fitted, text
 from boatsim.newboat.particulars import Particulars, particulars
 from boatsim.newboat.write import files
 from boatsim.physics import vessel
+from boatsim.physics.base import motion
 from boatsim.physics.content import names
+from boatsim.physics.effects.added_mass import AddedMass
+from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
 from boatsim.physics.estimate import added_mass, inertia, sideways
 from boatsim.physics.estimate.displacement import hull
 from boatsim.simulate import scenario, world
@@ -64,9 +67,20 @@ def test_clarkes_regression_is_near_what_was_measured_on_the_mariner() -> None:
     unit = 0.5 * 1000 * 160.93**3
     # measured on a planar motion mechanism: M. S. Chislett, J. Stroem-Tejsen 1965, Y'_vdot = -748e-5, N'_r = -166e-5
     assert added_mass.sway(ship).value / unit == pytest.approx(748e-5, rel=0.4)
-    damping = sideways.by_speed(ship, 1.0)
-    assert damping.yaw.value / (0.5 * 1000 * 160.93**4) == pytest.approx(166e-5, rel=0.4)
-    assert damping.sway.value / (0.5 * 1000 * 160.93**2) == pytest.approx(1160e-5, rel=0.4)
+    damping = sideways.clarke(ship)
+    assert damping.yaw / (0.5 * 1000 * 160.93**4) == pytest.approx(166e-5, rel=0.4)
+    assert damping.sway / (0.5 * 1000 * 160.93**2) == pytest.approx(1160e-5, rel=0.4)
+
+
+def test_the_lift_of_a_slender_hull_with_its_munk_moment_is_clarkes_regression() -> None:
+    ship = hull(160.93, 23.17, 0.59 * 1000 * 160.93 * 23.17 * 8.23, 1, 8.23)
+    water = AddedMass(surge=added_mass.surge(ship).value, sway=added_mass.sway(ship).value, yaw=0.0)
+    told = sideways.lift(ship)
+    lift = ForwardSpeedDamping(sway=told.sway.value, at=told.at.value, yaw=told.yaw.value)
+    of_ship, u, v, r = sideways.clarke(ship), 5.0, 0.1, 1e-3
+    drifting = np.add(water.wrench(motion(u=u, v=v)), lift.wrench(motion(u=u, v=v)))
+    assert drifting[[1, 5]] == pytest.approx([-of_ship.sway * u * v, -of_ship.yaw_by_sway * u * v])
+    assert lift.wrench(motion(u=u, r=r)).N == pytest.approx(-of_ship.yaw * u * r)
 
 
 def test_the_rules_for_a_catamaran_give_what_the_otter_is_said_to_have() -> None:

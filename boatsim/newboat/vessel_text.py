@@ -107,30 +107,25 @@ def _channels(boat: Particulars) -> Iterator[str]:
 
 def _effects(boat: Particulars) -> Iterator[str]:
     hull, speed = boat.hull, service(boat)
-    derivatives = sideways.by_speed(hull, speed) if hull.slender else sideways.by_time(hull)
+    sway, yaw = sideways.at_rest(hull)
     yield from ("", "[[effect]]", 'use = "added_mass"')
     yield _of("surge", added_mass.surge(hull), "kg")
     yield _of("sway", added_mass.sway(hull), "kg")
     yield _of("yaw", added_mass.yaw(hull), "kg m^2")
-    if derivatives.yaw_by_sway is not None:
-        yield line("coriolis", 0.0, "", "the derivatives below hold its Coriolis force")
     linear, quadratic = resistance.coefficients(hull, stated_thrust(boat), boat.speed)
     yield from ("", "[[effect]]", 'use = "linear_damping"')
     yield _of("surge", linear, "N s/m")
-    yield _of("sway", derivatives.sway, "N s/m")
-    yield _of("yaw", derivatives.yaw, "N m s")
-    if derivatives.sway_by_yaw is not None and derivatives.yaw_by_sway is not None:
-        yield _of("sway_by_yaw", derivatives.sway_by_yaw, "N s")
-        yield _of("yaw_by_sway", derivatives.yaw_by_sway, "N s")
+    yield _of("sway", sway, "N s/m")
+    yield _of("yaw", yaw, "N m s")
     yield from ("", "[[effect]]", 'use = "surge_drag"', _of("quadratic", quadratic, "N s^2/m^2"))
     yield from ("", "[[effect]]", 'use = "cross_flow_drag"')
     yield _of("section_drag_coefficient", sideways.section_drag(), "")
     yield line("density", DENSITY, "kg/m^3", "fresh water")
-    if not hull.slender:  # of a slender one the derivatives hold it
-        force, at = sideways.lift(hull)
-        yield from ("", "[[effect]]", 'use = "forward_speed_damping"')
-        yield _of("sway", force, "N s^2/m^2")
-        yield _of("at", at, "m")
+    lift = sideways.lift(hull)
+    yield from ("", "[[effect]]", 'use = "forward_speed_damping"')
+    yield _of("sway", lift.sway, "N s^2/m^2")
+    yield _of("at", lift.at, "m")
+    yield _of("yaw", lift.yaw, "N s^2")
     for name, mount in boat.named():
         yield from _thruster(name, mount)
     yield from ("", "[[effect]]", 'use = "thrust_loss_with_speed"', _of("loss", thrust.loss(hull, boat.speed), "s/m"))
@@ -139,7 +134,7 @@ def _effects(boat: Particulars) -> Iterator[str]:
 
 
 def service(boat: Particulars) -> float:
-    """Speed [m/s] at which derivatives are taken: an easy one, or the boat's top speed where that is less."""
+    """Speed [m/s] at which a rudder is taken: an easy one, or the boat's top speed where that is less."""
     easy = resistance.service_speed(boat.hull)
     return easy if boat.speed is None else min(easy, boat.speed)
 
@@ -172,9 +167,6 @@ def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
     yield line("speed", speed, "m/s", "to which the coefficients above belong")
     yield line("rudder_sway", 1.0, "", "the blade's force goes with the square of the speed")
     yield line("rudder_yaw", 1.0, "", "same")
-    if boat.hull.slender:
-        yield line("hull_sway", 1.0, "", "the hull's derivatives go with the speed")
-        yield line("hull_yaw", 1.0, "", "same")
     if washed := _washing(boat, blade):
         found = rudders.race()
         yield from ("", "[[effect]]", 'use = "rudder_race"')
