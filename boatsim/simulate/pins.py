@@ -15,7 +15,7 @@ from boatsim.simulate.norms import Norm
 
 FILE = "pins.toml"
 # Arithmetic of other machines differs in the 16th digit. Start conditions off by 1e-12 move the norms of nearly every
-# scenario by less than 1e-7 of themselves, the relays of the thesis' program included; so 1e-6 is a change of the code.
+# scenario by less than 1e-7 of themselves, relays in a controller included; so 1e-6 is a change of the code.
 TOLERANCE = 1e-6
 NOTHING = 1e-9  # absolute, for norms that are zero
 
