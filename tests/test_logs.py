@@ -443,6 +443,15 @@ def test_messages_of_no_size_in_many_ways_within_each_other_take_no_time():
         Decoder(deeper, "p/Root", cdr=False)
 
 
+@pytest.mark.parametrize("size", [30, 12_000, 20_000, 60_000])
+def test_a_log_whose_end_is_damaged_does_not_hold_up_the_reader(tmp_path, size):
+    header = (LOGS / "px4.ulg").read_bytes()[:16]
+    (tmp_path / "log.ulg").write_bytes(
+        header + (struct.pack("<HB", 100, ord("Z")) + bytes(100)) * 300 + struct.pack("<HB", size, 0) + bytes(5)
+    )
+    line_of(open_log, tmp_path / "log.ulg")
+
+
 @pytest.mark.parametrize("quick", ["0", "1"])
 def test_messages_of_no_length_do_not_hold_up_the_reader(tmp_path, monkeypatch, quick):
     monkeypatch.setenv("PYMAVLINK_FAST_INDEX", quick)
