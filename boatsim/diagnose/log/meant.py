@@ -6,6 +6,7 @@ from math import degrees, pi
 
 import numpy as np
 
+from boatsim.diagnose.log import way
 from boatsim.diagnose.log.finding import Change, applied
 from boatsim.diagnose.rules import froude_time
 from boatsim.physics.base import Array
@@ -14,6 +15,7 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 
 LITTLE_USED = 0.12  # of its range, which a command in a right unit would pass
+FEW_PERCENT, SOME = 0.5, 20.0  # of the range, that 100 is no more than; per cent that some order is, at least
 ASIDE, ALIKE = 0.3, 0.7  # [rad] and likeness of the way, from which a bow points aside
 BETTER = 0.2  # likeness by which a heading counted the other way points better
 TURNED = 0.2  # [rad] from which a heading is turned, and not a compass that is off
@@ -75,12 +77,18 @@ def points_aside(recordings: Sequence[Recording], vessel: Vessel) -> bool:
         return False
     angle, alike = _aside(recordings, vessel)
     _, mirrored = _aside([applied(r, MIRRORED_HEADING) for r in recordings], vessel)
+    straight = way.aside(recordings, vessel)
+    if straight is not None and abs(straight) > ASIDE:
+        return True
     return (abs(angle) > ASIDE and alike > ALIKE) or (mirrored > ALIKE and mirrored > alike + BETTER)
 
 
 def _turned(recordings: Sequence[Recording], vessel: Vessel) -> list[float]:
     """Quarter turns [rad], and the angle by which bows must be turned to point where boats go, ahead."""
     quarters = [pi / 2.0, pi, -pi / 2.0]
+    straight = way.aside(recordings, vessel)
+    if straight is not None:
+        return [*quarters, straight] if abs(straight) > TURNED else quarters
     angle, alike = _aside(recordings, vessel)
     return [*quarters, angle] if abs(angle) > TURNED and alike > ALIKE else quarters
 
@@ -109,9 +117,10 @@ def _drives(recordings: Sequence[Recording], vessel: Vessel) -> Iterator[Meaning
             name = "rudder_reversed" if unit == "rad" else "thrust_reversed"
             words = f"{', '.join(alike)} count the other way"
             yield Meaning(name, words, tuple(Change(n, n, -1.0) for n in alike))
-        if factor := _fraction(recordings, vessel, alike):
-            words = f"{', '.join(alike)} are shares of full command"
-            yield Meaning("command_unit", words, tuple(Change(n, n, factor) for n in alike))
+        for words, factor in _shares(recordings, vessel, alike):
+            changes = tuple(Change(n, n, factor) for n in alike)
+            verb = "are" if len(alike) > 1 else "is"
+            yield Meaning("command_unit", f"{', '.join(alike)} {verb} {words} of full command", changes)
 
 
 def _other_side(channels: list[str], vessel: Vessel) -> tuple[Change, ...]:
@@ -125,11 +134,19 @@ def _other_side(channels: list[str], vessel: Vessel) -> tuple[Change, ...]:
     return tuple(found)
 
 
-def _fraction(recordings: Sequence[Recording], vessel: Vessel, channels: list[str]) -> float | None:
-    """The limit of channels that keep within 1 where the vessel takes far more."""
+def _shares(recordings: Sequence[Recording], vessel: Vessel, channels: list[str]) -> Iterator[tuple[str, float]]:
+    """Shares of full command that channels may be, and the factor that undoes it, where the vessel takes far more.
+
+    How far orders reach says little, as a boat may be driven gently: the vessel says whether so little drives it so.
+    """
     if not channels or len({vessel.commands[n].high for n in channels}) > 1:
-        return None
+        return
     limit = vessel.commands[channels[0]].high
-    largest: Array = np.array([np.nanmax(np.abs(r[n])) for r in recordings for n in channels])
-    within = 0.2 < float(largest.max()) <= 1.0 < LITTLE_USED * limit
-    return float(limit) if np.isfinite(limit) and within else None
+    if not np.isfinite(limit):
+        return
+    values: Array = np.concatenate([r[n][np.isfinite(r[n])] for r in recordings for n in channels])
+    largest = float(np.abs(values).max(initial=0.0))
+    if 0.2 < largest <= 1.0 < LITTLE_USED * limit:
+        yield "shares", float(limit)
+    if SOME <= largest <= 100.0 < FEW_PERCENT * limit:
+        yield "per cent", float(limit) / 100.0

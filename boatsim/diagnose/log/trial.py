@@ -18,8 +18,10 @@ from boatsim.diagnose.log.finding import Change, Finding, applied
 from boatsim.diagnose.log.meant import Meaning, meanings, points_aside, turned_by
 from boatsim.diagnose.log.steering_sense import turned
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.rules import rate
 from boatsim.diagnose.search.rank import baseline
 from boatsim.errors import BadInput
+from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 UNEXPLAINED = 0.6  # of what the drives push with, from which meanings are tried
@@ -28,9 +30,11 @@ NATS, SHARE = 60.0, 0.05  # that a meaning must gain, at least; of the rows
 CLEAR = 25.0  # nats by which it must be ahead of what the log as written, or another meaning, would be
 TIED = 3.0  # nats within which meanings are one: a boat alike on both sides can not tell a mirror from exchanged drives
 MOST_ROWS, MOST_RUNS = 1200, 3  # that are laid on
+CROWDED = 1.5  # times the usual rows a second, from which each instrument has its own
 REFITTED = 6  # meanings, of all that are tried roughly
 ROUND = np.radians(np.delete(np.arange(-165.0, 181.0, 15.0), [5, 11, 17, 23]))  # [rad] turns, but for quarters
 STEPS = np.arange(-16.0, 17.0, 4.0)  # [deg] beside a turned heading, between which the best is looked for
+NEAR = np.radians(35.0)  # by which turns of the heading are no rivals
 ABOUT = 4.0  # [deg] by which a quarter turn may be missed
 ROUNDS = 2  # faults one upon the other
 LEVEL = ("surge", "sway", "yaw")
@@ -42,11 +46,11 @@ def tried(recordings: Sequence[Recording], lay: Lay, problem: Problem) -> list[F
 
     `lay` lays one on the same program. Raises BadInput where the log can not be laid on it.
     """
-    short = _short(recordings)
+    short = _short(recordings, problem.program.vessel)
     with threadpool_limits(1, "blas"):
         laid = _laid(short, lay, problem)
         explained = unexplained(laid, fit_noise(laid, laid.nominal())) < UNEXPLAINED
-        if explained and not points_aside(short, problem.program.vessel):
+        if explained and not points_aside(recordings, problem.program.vessel):
             return []
         return _tried([_unturned(r) for r in short], lay, problem)
 
@@ -72,9 +76,16 @@ def unexplained(problem: Problem, nominal: Fit) -> float:
     return max(shares, default=0.0)
 
 
-def _short(recordings: Sequence[Recording]) -> list[Recording]:
-    """The first rows of the first recordings: meanings differ in all of them."""
+def _short(recordings: Sequence[Recording], vessel: Vessel) -> list[Recording]:
+    """The first rows of the first recordings: meanings differ in all of them.
+
+    Instruments that each have rows of their own would fill them within seconds: they are thinned to a common count.
+    """
     runs = list(recordings)[:MOST_RUNS]
+    usual = rate(vessel)
+    for k, r in enumerate(runs):
+        if (crowd := len(r) / float(r.t[-1] - r.t[0]) / usual) > CROWDED:
+            runs[k] = r.thinned(usual / crowd)
     return [r.between(float(r.t[0]), float(r.t[min(len(r), MOST_ROWS // len(runs)) - 1])) for r in runs]
 
 
@@ -112,6 +123,7 @@ def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Find
     if not scored or not np.isfinite(written[0]):
         return None
     top = max(s[0] for _, s in scored)
+    scored = _apart(scored)
     ties = [(m, s) for m, s in scored if top - s[0] < TIED]
     rest = max((s[0] for m, s in scored if top - s[0] >= TIED), default=-np.inf)
     rows = sum(len(r) for r in recordings)
@@ -134,6 +146,16 @@ def _best(recordings: list[Recording], lay: Lay, problem: Problem) -> tuple[Find
     sure = 1.0 - float(np.exp(-min(ahead, 50.0) / 4.0))
     found = Finding(meaning.name, evidence, sure=sure, changes=meaning.changes, words=meaning.words)
     return replace(found, alternatives=tuple(others)), meaning
+
+
+def _apart(scored: list[tuple[Meaning, tuple[float, float]]]) -> list[tuple[Meaning, tuple[float, float]]]:
+    """Without turns of the heading near a likelier one: a few degrees beside what was meant is no rival to it."""
+    kept: list[tuple[Meaning, tuple[float, float]]] = []
+    for m, s in sorted(scored, key=lambda x: -x[1][0]):
+        turns = [n.changes[0].offset for n, _ in kept if n.name == m.name == "heading_turned"]
+        if all(abs(np.angle(np.exp(1j * (m.changes[0].offset - a)))) > NEAR for a in turns):
+            kept.append((m, s))
+    return sorted(kept, key=scored.index)
 
 
 def _likeliest(meant: list[Meaning], recordings: list[Recording], lay: Lay, problem: Problem) -> list[Meaning]:
