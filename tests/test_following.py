@@ -39,25 +39,24 @@ def log(step: float = 0.1, **signals: float) -> Recording:
 
 def test_a_constant_error_has_its_size_as_rms_and_largest_and_its_size_by_time_as_integral() -> None:
     found = following.errors(log(v_mps=0.5, goal_sway_mps=0.7))
-    assert found["sway_error_rms"] == (pytest.approx(0.2), "m/s")
-    assert found["sway_error_largest"] == (pytest.approx(0.2), "m/s")
-    assert found["sway_error_integral"] == (pytest.approx(2.0), "m")
+    assert found == pytest.approx({"sway_error_rms": 0.2, "sway_error_largest": 0.2, "sway_error_integral": 2.0})
+    assert list(following.units(["sway_mps"]).values()) == ["m/s", "m/s", "m"]
 
 
 def test_the_step_of_the_log_changes_no_norm() -> None:
-    def wave(step: float) -> dict[str, tuple[float, str]]:
+    def wave(step: float) -> dict[str, float]:
         told = log(step, psi_rad=0.0, goal_psi_rad=0.0)
         return following.errors(Recording("wave", told.t, {**told.signals, "psi_rad": np.sin(2 * pi * told.t / 10.0)}))
 
     fine, coarse = wave(0.01), wave(0.05)
     for name in fine:
-        assert fine[name][0] == pytest.approx(coarse[name][0], rel=1e-3)
-    assert fine["psi_error_rms"] == (pytest.approx(np.degrees(sqrt(0.5)), rel=1e-6), "deg")
-    assert fine["psi_error_integral"][1] == "deg s"
+        assert fine[name] == pytest.approx(coarse[name], rel=1e-3)
+    assert fine["psi_error_rms"] == pytest.approx(np.degrees(sqrt(0.5)), rel=1e-6)
+    assert following.units(["psi_rad"])["psi_error_integral"] == "deg s"
 
 
 def test_a_heading_is_off_by_the_shorter_way_round() -> None:
-    assert following.errors(log(psi_rad=2 * pi - 0.1, goal_psi_rad=0.1))["psi_error_largest"][0] == pytest.approx(
+    assert following.errors(log(psi_rad=2 * pi - 0.1, goal_psi_rad=0.1))["psi_error_largest"] == pytest.approx(
         np.degrees(0.2)
     )
 
@@ -66,12 +65,12 @@ def test_while_no_goal_is_in_force_nothing_is_judged() -> None:
     told = log(u_mps=1.0, goal_u_mps=1.0)
     goal, u = told["goal_u_mps"].copy(), told["u_mps"].copy()
     goal[50:], u[50:] = np.nan, 99.0
-    assert following.errors(Recording("half", told.t, {"u_mps": u, "goal_u_mps": goal}))["u_error_largest"][0] == 0.0
+    assert following.errors(Recording("half", told.t, {"u_mps": u, "goal_u_mps": goal}))["u_error_largest"] == 0.0
 
 
 @pytest.mark.parametrize("key", ["throttle", "jet_rad", "elevator_rad"])
 def test_a_goal_that_is_no_signal_of_the_motion_is_not_judged(key: str) -> None:
-    assert following.names([key]) == [] and following.errors(log(**{f"goal_{key}": 1.0})) == {}
+    assert following.units([key]) == {} and following.errors(log(**{f"goal_{key}": 1.0})) == {}
 
 
 def test_a_run_logs_its_goals_judges_them_and_says_why_a_norm_is_not_reached(tmp_path: Path) -> None:
@@ -85,7 +84,7 @@ def test_a_run_logs_its_goals_judges_them_and_says_why_a_norm_is_not_reached(tmp
         done.recording["goal_sway_mps"][~first]
     ).all()
     norms = all_norms(done)
-    assert list(norms) == ["time", *following.names(["sway_mps", "yaw_radps"])]
+    assert list(norms) == ["time", *following.units(["sway_mps", "yaw_radps"])]
     assert norms["sway_error_largest"].value == pytest.approx(np.abs(0.07 - done.recording["v_mps"][first]).max())
     largest = done.recording["psi_rad"].max()
     assert norms["time"].value is None
@@ -110,3 +109,10 @@ def test_why_tells_the_nearest_that_was_reached() -> None:
 def test_what_a_norm_is_follows_from_the_end_of_its_name() -> None:
     assert [Measure().kind(n) for n in ("x_inf", "rms", "psi_max", "time")] == ["largest", "rms", "largest", ""]
     assert (Measure().kind("x_l1"), FilmMeasure().kind("position_l1")) == ("time integral", "sum over frames")
+
+
+def test_a_guard_on_a_goal_that_never_comes_is_missed(tmp_path: Path) -> None:
+    text = TEXT.replace("from = 1.0", "from = 9.0") + "[norms.yaw_error_rms]\nguard = [0.0, 9.0]\n"
+    (tmp_path / "two.toml").write_text(text)
+    norm = all_norms(run(scenario.load(str(tmp_path / "two.toml"))))["yaw_error_rms"]
+    assert (norm.value, norm.ok, norm.unit) == (None, False, "deg/s")

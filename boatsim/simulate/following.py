@@ -14,16 +14,15 @@ GOAL = "goal_"  # in front of a goal's key: its column in the log
 KINDS = {"rms": "rms", "largest": "largest", "integral": "time integral"}  # ending of a norm -> what it is
 
 
-def errors(log: Recording) -> dict[str, tuple[float, str]]:
-    """Norm -> value and unit, of the error e between goal and signal while the goal says something; angles in degrees.
+def errors(log: Recording) -> dict[str, float]:
+    """Norms of the error e between goal and signal while the goal says something, in the units of `units`.
 
     rms is sqrt(mean e^2), largest max|e|, integral that of |e| over time, which does not depend on the log's step.
     """
-    found: dict[str, tuple[float, str]] = {}
+    found: dict[str, float] = {}
     for key, signal in _followed(n.removeprefix(GOAL) for n in log.signals if n.startswith(GOAL)):
         if signal not in log.signals:
             continue
-        unit = unit_of(signal).replace("rad", "deg")
         off = _off(signal, log[f"{GOAL}{key}"], log[signal])
         lasts = np.append(np.diff(log.t), 0.0)  # [s] a row stands for
         known = np.isfinite(off) & (lasts > 0.0)
@@ -31,14 +30,17 @@ def errors(log: Recording) -> dict[str, tuple[float, str]]:
         if not len(e):
             continue
         values = sqrt(float((e**2 * dt).sum() / dt.sum())), float(e.max()), float((e * dt).sum())
-        units = unit, unit, times_second(unit)
-        found |= dict(zip(_norms(key), zip(values, units, strict=True), strict=True))
+        found |= dict(zip(_norms(key), values, strict=True))
     return found
 
 
-def names(goals: Iterable[str]) -> list[str]:
-    """The norms of these goals."""
-    return [norm for key, _ in _followed(goals) for norm in _norms(key)]
+def units(goals: Iterable[str]) -> dict[str, str]:
+    """The norms of these goals, with their units: angles in degrees."""
+    found: dict[str, str] = {}
+    for key, signal in _followed(goals):
+        unit = unit_of(signal).replace("rad", "deg")
+        found |= dict(zip(_norms(key), (unit, unit, times_second(unit)), strict=True))
+    return found
 
 
 def times_second(unit: str) -> str:

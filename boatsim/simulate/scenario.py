@@ -275,7 +275,7 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
 
 def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) -> None:
     """Only norms of what is measured are judged, and the frames they need are taken."""
-    followed = following.names(key for goal in file.goal for key in goal)
+    followed = following.units(key for goal in file.goal for key in goal)
     allowed = (*(type(measure).units if measure else ()), *followed)
     for name in file.norms:
         if name not in allowed:
