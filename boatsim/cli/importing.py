@@ -36,7 +36,7 @@ def import_log(
 
 def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]) -> int:
     boat = vessels.load(vessel, load) if vessel else None
-    drives = [Drive(n, low, high) for n, (low, high) in boat.limits().items()] if boat else []
+    drives = [Drive(n, low, high, _turns(boat, n)) for n, (low, high) in boat.limits().items()] if boat else []
     text = proposal(log, vessel, drives, boat.freedoms if boat else (), boat.columns if boat else None)
     _say(log.remarks)
     print("\n".join(listing(log)))
@@ -48,6 +48,12 @@ def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, 
     else:
         print(f"\nA map for it, which --propose map.toml writes; nothing is converted without --map:\n\n{text}", end="")
     return 0
+
+
+def _turns(boat: Vessel, channel: str) -> int:
+    """Which way what is positive turns a boat: 1 to starboard, -1 to port, 0 where its file does not say."""
+    said = {"starboard": 1.0, "port": -1.0, "": boat.manoeuvring.steer.get(channel, 0.0)}[boat.commands[channel].turns]
+    return (said > 0.0) - (said < 0.0)
 
 
 def _convert(log: Log, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:
