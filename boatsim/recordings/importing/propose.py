@@ -227,7 +227,7 @@ def _chosen(
 
 def _by_order(missing: Sequence[Drive], left: Sequence[Guess], turning: Turning) -> dict[str, tuple[Guess, str]]:
     """Channels and signals one after the other; of two sides that which turns the boat as it should is put right."""
-    why = "; CHECK: by its order alone"
+    why = "; CHECK: by its order alone" if len(left) > 1 else "; CHECK: the only one that is left"
     if len(missing) == len(left) == 2 and {side_of(frozenset(tokens_of(d.name))) for d in missing} == {*SIDED}:
         port = [side_of(frozenset(tokens_of(d.name))) for d in missing].index(SIDED[0])
         sense = turning.by((left[port], 1.0), (left[1 - port], -1.0))
