@@ -101,3 +101,21 @@ def test_engines_with_numbers_get_the_side_that_the_boat_turns_by(first: str) ->
     assert columns["thrust_port_N"]["signal"] == f"RPM[{number}].shaft"
     assert columns["thrust_starboard_N"]["signal"] == f"RPM[{3 - number}].shaft"
     assert text.count("CHECK: its side is told by how the boat turns") == 2
+
+
+def test_the_sign_of_a_thrust_is_never_turned_for_what_it_does_alone() -> None:
+    port, starboard = steps(3, 0.1, 0.9), steps(4, 0.1, 0.9)
+    outputs = {"thrust_left": pulses(port), "thrust_right": pulses(starboard)}
+    log = log_of(-0.4 * follows(port, 0.8), 2.0 * follows(port + starboard, 3.0), outputs)
+    text, columns = proposed(log, [Drive(d.name, d.low, d.high, turns) for d, turns in zip(TWIN, (1, -1), strict=True)])
+    assert all(columns[d.name]["least"] < columns[d.name]["most"] for d in TWIN) and "sign turned" not in text
+
+
+def test_one_helm_steers_both_motors_where_there_is_but_one() -> None:
+    outputs = {"servo.output[0]": pulses(HELM)}
+    outputs |= {f"servo.output[{k}]": pulses(THROTTLE + 0.1 * steps(4 + k, -1.0, 1.0)) for k in (1, 2)}
+    drives = [*TWIN, *(Drive(f"steer_{side}_rad", -0.5, 0.5, turns=-1) for side in ("port", "starboard"))]
+    log = log_of(0.3 * follows(HELM, 0.8), 3.0 * follows(THROTTLE, 3.0), outputs)
+    text, columns = proposed(log, drives)
+    assert {columns[f"steer_{side}_rad"]["signal"] for side in ("port", "starboard")} == {"servo.output[0]"}
+    assert {columns[d.name]["signal"] for d in TWIN} == {"servo.output[1]", "servo.output[2]"}

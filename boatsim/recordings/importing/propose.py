@@ -197,7 +197,7 @@ def _commands(
             lines.append(f'# {drive.name} = "..."  # {drive.low:g} to {drive.high:g}; no signal is called like it')
             continue
         g, why = chosen[drive.name]
-        sense = drive.turns * turning.by((g, 1.0)) if drive.turns and g.name != drive.name else 0.0
+        sense = drive.turns * turning.by((g, 1.0)) if _steers(drive) and g.name != drive.name else 0.0
         taken.append(g)
         lines.append(_drive_line(drive.name, g, drive, sense) + why)
     return [*lines, *(f"# not used: {_safe(g.name)}" for g in moving if g not in taken)], taken
@@ -209,20 +209,39 @@ def _chosen(
     """A signal for each channel, as far as there is one, and what must be checked of it: by name, by deed, by order."""
     found = {n: (g, "") for n, g in _matched(drives, moving).items()}
     left = [g for g in moving if g not in [h for h, _ in found.values()]]
-    helms = [d for d in drives if d.name not in found and frozenset(tokens_of(d.name)) & HELM]
-    if len(helms) == 1:
-        fit = [g for g in left if _fits(helms[0], g)]
-        measured = [g for g in best.get("actual", []) if not _still(g)]
-        if fit and (steers := turning.helm(fit)):
-            why = f"; CHECK: taken for it as the boat turns by it (correlation {steers[1]:+.2f})"
-            found[helms[0].name] = (steers[0], why)
-            left.remove(steers[0])
-        elif matched := _matched(helms, measured):
-            why = "; CHECK: what was measured is taken for what was ordered"
-            found |= {n: (g, why) for n, g in matched.items()}
+    helms = [d for d in drives if d.name not in found and _steers(d)]
+    named = [g for n, (g, _) in found.items() if frozenset(tokens_of(n)) & HELM and not side_of(g.tokens)]
+    if helms:
+        found |= _helms(helms, named, left, [g for g in best.get("actual", []) if not _still(g)], turning)
+    left = [g for g in left if g not in [h for h, _ in found.values()]]
     missing = [d for d in drives if d.name not in found]
     found |= _by_order(missing, _as_many(left, len(missing)), turning)
     return found
+
+
+def _helms(
+    helms: Sequence[Drive],
+    named: Sequence[Guess],
+    left: Sequence[Guess],
+    measured: Sequence[Guess],
+    turning: Turning,
+) -> dict[str, tuple[Guess, str]]:
+    """Signals of channels that steer: the one helm that has a name, what the boat turns by, or what was measured."""
+    if named:
+        return {d.name: (named[0], "; CHECK: one helm is taken for all") for d in helms}
+    if steers := turning.helm([g for g in left if _fits(helms[0], g)]):
+        why = f"; CHECK: taken for it as the boat turns by it (correlation {steers[1]:+.2f})"
+        return {d.name: (steers[0], why) for d in helms}
+    why = "; CHECK: what was measured is taken for what was ordered"
+    rudders = [g for g in measured if g.tokens & HELM and _fits(helms[0], g)]
+    if len(rudders) == 1:
+        return {d.name: (rudders[0], why) for d in helms}
+    return {n: (g, why) for n, g in _matched(helms, rudders).items()}
+
+
+def _steers(drive: Drive) -> bool:
+    """Whether a channel is an angle or called one; two thrusts turn a boat too, each of them in no way alone."""
+    return unit_of(drive.name) == "rad" or not unit_of(drive.name) and bool(frozenset(tokens_of(drive.name)) & HELM)
 
 
 def _by_order(missing: Sequence[Drive], left: Sequence[Guess], turning: Turning) -> dict[str, tuple[Guess, str]]:
