@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from urllib.request import urlopen
 
@@ -106,7 +107,7 @@ def served(tmp_path: Path, *options: str) -> tuple["subprocess.Popen[str]", str]
     command = [sys.executable, "-m", "boatsim", "run", "joystick_boat/sway_1", "--serve", *options]
     running = subprocess.Popen(
         [*command, "--out", str(tmp_path / "out")], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        start_new_session=True,
+        start_new_session=True, preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),  # whatever started us
     )  # fmt: skip
     assert running.stderr is not None
     page = re.search(r"http://127\.0\.0\.1:\d+/\?url=\S+", running.stderr.readline())

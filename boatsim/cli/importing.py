@@ -42,7 +42,7 @@ def _opened(path: Path) -> Log:
 
 def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]) -> int:
     boat = vessels.load(vessel, load) if vessel else None
-    drives = [Drive(n, low, high) for n, (low, high) in boat.limits().items()] if boat else []
+    drives = [Drive(n, low, high, _turns(boat, n)) for n, (low, high) in boat.limits().items()] if boat else []
     text = proposal(log, vessel, drives, boat.freedoms if boat else (), boat.columns if boat else None)
     _say(log.remarks)
     say(listing(log))
@@ -61,6 +61,12 @@ def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, 
             ]
         )
     return 0
+
+
+def _turns(boat: Vessel, channel: str) -> int:
+    """Which way what is positive turns a boat: 1 to starboard, -1 to port, 0 where its file does not say."""
+    said = {"starboard": 1.0, "port": -1.0, "": boat.manoeuvring.steer.get(channel, 0.0)}[boat.commands[channel].turns]
+    return (said > 0.0) - (said < 0.0)
 
 
 def _convert(path: Path, out: Path, map: Path, vessel: str | None, load: Sequence[str]) -> int:

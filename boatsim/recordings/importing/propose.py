@@ -9,6 +9,8 @@ import numpy as np
 from boatsim.recordings.expression import parse
 from boatsim.recordings.importing.guess import HELM, PULSE, Guess, guesses, side_of, tokens_of
 from boatsim.recordings.importing.log import Log, Signal, rate_of
+from boatsim.recordings.importing.turning import SURE as TURNS_BY_IT
+from boatsim.recordings.importing.turning import Turning
 from boatsim.recordings.notes import unit_of
 
 USUAL_PULSE = (1100.0, 1500.0, 1900.0)  # [us] low, neutral, high of most motor controllers of small boats
@@ -22,6 +24,7 @@ FROM_ENU = {
 QUARTER = " + 90 * deg"  # heading from north = a quarter turn less the yaw from east
 SURE = ("x_m", "y_m", "psi_rad", "r_radps", "u_mps", "v_mps")
 KINDS = {"angle": ("rad", "deg"), "turning": ("rad/s", "deg/s", "1/s", "1/min", "rpm"), "force": ("N", "kN")}
+SIDED = ("port", "starboard")
 LEANS = {"phi_rad": "roll", "p_radps": "roll", "theta_rad": "pitch", "q_radps": "pitch"}
 
 
@@ -32,6 +35,7 @@ class Drive:
     name: str
     low: float
     high: float
+    turns: int = 0  # 1: what is positive turns the boat to starboard, -1: to port, 0: nobody says
 
 
 def listing(log: Log) -> list[str]:
@@ -96,7 +100,8 @@ def proposal(
     body, used = _poses(log, best, freedoms, known)
     body += [f"{_key(n)} = {_text(e)}  # as the vessel's file says" for n, e in known.items()]
     open_drives = [d for d in drives if d.name not in known]
-    commands, driven = _commands(best.get("command", []), open_drives) if open_drives or not drives else ([], [])
+    turning = Turning(best, log.frame == "ENU")
+    commands, driven = _commands(best, open_drives, turning) if open_drives or not drives else ([], [])
     commands = ["# all are above"] if drives and not open_drives else commands
     if (quickest := max((rate_of(g.signal.t) for g in (*used, *driven)), default=0.0)) > 1.01 * QUICKEST:
         lines.append(f"rate = {QUICKEST:g}  # [Hz] of rows; the quickest signal has {quickest:.3g}")
@@ -176,26 +181,80 @@ def _text(value: str) -> str:
     return '"' + "".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in plain) + '"'
 
 
-def _commands(found: Sequence[Guess], drives: Sequence[Drive]) -> tuple[list[str], list[Guess]]:
+def _commands(
+    best: Mapping[str, Sequence[Guess]], drives: Sequence[Drive], turning: Turning
+) -> tuple[list[str], list[Guess]]:
     """Lines of the vessel's channels, or of all outputs that moved where there is no vessel."""
-    moving = [g for g in found if not _still(g) or g.name in [d.name for d in drives]]
+    moving = [g for g in best.get("command", []) if not _still(g) or g.name in [d.name for d in drives]]
     moving.sort(key=lambda g: _order(g.name))
     if not drives:
         names = _names([_called(g) for g in moving])
         return [_drive_line(n, g, None) for n, g in zip(names, moving, strict=True)], list(moving)
     lines, taken = [], list[Guess]()
-    matched = _matched(drives, moving)
-    missing = [d for d in drives if d.name not in matched]
-    left = _as_many([g for g in moving if g not in matched.values()], len(missing))
-    by_order = {d.name: g for d, g in zip(missing, left, strict=False) if _fits(d, g)}
+    chosen = _chosen(best, drives, moving, turning)
     for drive in drives:
-        g = matched.get(drive.name) or by_order.get(drive.name)
-        if g is None:
+        if drive.name not in chosen:
             lines.append(f'# {drive.name} = "..."  # {drive.low:g} to {drive.high:g}; no signal is called like it')
-        else:
-            taken.append(g)
-            lines.append(_drive_line(drive.name, g, drive) + ("; by its order alone" if drive.name in by_order else ""))
+            continue
+        g, why = chosen[drive.name]
+        sense = drive.turns * turning.by((g, 1.0)) if _steers(drive) and g.name != drive.name else 0.0
+        taken.append(g)
+        lines.append(_drive_line(drive.name, g, drive, sense) + why)
     return [*lines, *(f"# not used: {_safe(g.name)}" for g in moving if g not in taken)], taken
+
+
+def _chosen(
+    best: Mapping[str, Sequence[Guess]], drives: Sequence[Drive], moving: Sequence[Guess], turning: Turning
+) -> dict[str, tuple[Guess, str]]:
+    """A signal for each channel, as far as there is one, and what must be checked of it: by name, by deed, by order."""
+    found = {n: (g, "") for n, g in _matched(drives, moving).items()}
+    left = [g for g in moving if g not in [h for h, _ in found.values()]]
+    helms = [d for d in drives if d.name not in found and _steers(d)]
+    named = [g for n, (g, _) in found.items() if frozenset(tokens_of(n)) & HELM and not side_of(g.tokens)]
+    if helms:
+        found |= _helms(helms, named, left, [g for g in best.get("actual", []) if not _still(g)], turning)
+    left = [g for g in left if g not in [h for h, _ in found.values()]]
+    missing = [d for d in drives if d.name not in found]
+    found |= _by_order(missing, _as_many(left, len(missing)), turning)
+    return found
+
+
+def _helms(
+    helms: Sequence[Drive],
+    named: Sequence[Guess],
+    left: Sequence[Guess],
+    measured: Sequence[Guess],
+    turning: Turning,
+) -> dict[str, tuple[Guess, str]]:
+    """Signals of channels that steer: the one helm that has a name, what the boat turns by, or what was measured."""
+    if named:
+        return {d.name: (named[0], "; CHECK: one helm is taken for all") for d in helms}
+    if steers := turning.helm([g for g in left if _fits(helms[0], g)]):
+        why = f"; CHECK: taken for it as the boat turns by it (correlation {steers[1]:+.2f})"
+        return {d.name: (steers[0], why) for d in helms}
+    why = "; CHECK: what was measured is taken for what was ordered"
+    rudders = [g for g in measured if g.tokens & HELM and _fits(helms[0], g)]
+    if len(rudders) == 1:
+        return {d.name: (rudders[0], why) for d in helms}
+    return {n: (g, why) for n, g in _matched(helms, rudders).items()}
+
+
+def _steers(drive: Drive) -> bool:
+    """Whether a channel is an angle or called one; two thrusts turn a boat too, each of them in no way alone."""
+    return unit_of(drive.name) == "rad" or not unit_of(drive.name) and bool(frozenset(tokens_of(drive.name)) & HELM)
+
+
+def _by_order(missing: Sequence[Drive], left: Sequence[Guess], turning: Turning) -> dict[str, tuple[Guess, str]]:
+    """Channels and signals one after the other; of two sides that which turns the boat as it should is put right."""
+    why = "; CHECK: by its order alone" if len(left) > 1 else "; CHECK: the only one that is left"
+    if len(missing) == len(left) == 2 and {side_of(frozenset(tokens_of(d.name))) for d in missing} == {*SIDED}:
+        port = [side_of(frozenset(tokens_of(d.name))) for d in missing].index(SIDED[0])
+        sense = turning.by((left[port], 1.0), (left[1 - port], -1.0))
+        if abs(sense) > TURNS_BY_IT:
+            left = list(left) if sense > 0.0 else [left[1], left[0]]
+            why = f"; CHECK: its side is told by how the boat turns (correlation {abs(sense):.2f})"
+    pairs = zip(missing, left, strict=False)
+    return {d.name: (g, why) for d, g in pairs if _fits(d, g) or _turns_a_screw(d, g)}
 
 
 def _as_many(moving: Sequence[Guess], count: int) -> list[Guess]:
@@ -243,22 +302,35 @@ def _fits(drive: Drive, g: Guess) -> bool:
     return "" in kinds or kinds[0] == kinds[1]
 
 
+def _turns_a_screw(drive: Drive, g: Guess) -> bool:
+    """Whether a force may be told by revolutions alone."""
+    return unit_of(drive.name) in KINDS["force"] and _unit(g) in KINDS["turning"]
+
+
 def _unit(g: Guess) -> str:
     return g.signal.unit or {"deg": "deg", "rpm": "rpm", "degps": "deg/s"}.get(g.word, unit_of(g.name))
 
 
-def _drive_line(name: str, g: Guess, drive: Drive | None) -> str:
+def _drive_line(name: str, g: Guess, drive: Drive | None, sense: float = 0.0) -> str:
+    """A line of the map; `sense`: from 1, the boat turns as the channel says, to -1, it turns the other way."""
     values = g.signal.values[np.isfinite(g.signal.values)]
     low, high = (drive.low, drive.high) if drive else (-1.0, 1.0)
     note = f"  # {rate_of(g.signal.t):.3g} Hz" + (f"; {_safe(g.signal.about)}" if g.signal.about else "")
+    turned = sense < -TURNS_BY_IT
+    if turned:
+        note += f"; CHECK: sign turned, as the boat turns the other way (correlation {sense:+.2f})"
     scale = _scale(g, values, drive)
     if scale is None:
-        return f"{_key(name)} = {_text(g.name if g.name == name else _converted(g, name))}{note}"
+        made = g.name if g.name == name else _converted(g, name)
+        return f"{_key(name)} = {_text(f'-{made}' if turned else made)}{note}"
     ends, why = scale
     if drive is None and g.column == "command" and low >= 0.0:
         low = 0.0
+    low, high = (high, low) if turned else (low, high)
     given = ", ".join(f"{k} = {v:g}" for k, v in zip(("low", "neutral", "high"), ends, strict=True))
     note += f"; {why}" if why else ""
+    if drive and unit_of(drive.name) == "rad":
+        note += f"; CHECK: full helm is taken for {np.degrees(max(abs(low), abs(high))):.0f} deg"
     return f"{_key(name)} = {{ signal = {_text(g.name)}, {given}, least = {low:g}, most = {high:g} }}{note}"
 
 
@@ -274,6 +346,9 @@ def _scale(
     if PULSE[0] <= values.min() and values.max() <= PULSE[1]:
         return USUAL_PULSE, f"usual pulses of 1100 to 1900 us are taken for granted, {share}"
     largest = float(np.max(np.abs(values)))
+    if drive and _turns_a_screw(drive, g):
+        why = "CHECK: full thrust is taken for the most revolutions here; it goes with their square, not straight"
+        return (-largest, 0.0, largest), why
     if drive is None or unit_of(drive.name) and g.word and g.word != "percent":
         return None
     span = max(abs(drive.low), abs(drive.high))

@@ -1,0 +1,105 @@
+"""What an output does to the boat, by the log: a helm goes with the turning that follows it, a throttle with the speed.
+
+The sign of the former tells which way the boat turns by it.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from boatsim.physics.base import Array
+from boatsim.recordings.importing.guess import Guess
+
+SURE = 0.3  # correlation with the turning from which a signal steers
+AHEAD = 0.2  # by which that of the one that steers, less its correlation with the speed, is ahead of every other's
+LAGS = (0.0, 0.3, 0.6, 1.0, 1.5, 2.5, 4.0)  # [s] by which boats follow their helms
+STRETCH = 1.0  # [s] over which a speed is taken
+LONGEST = 400.0  # [s] of rows that are compared
+RATE = 10.0  # [Hz] of them
+
+
+class Turning:
+    """The turning that a log tells of, to starboard, and the speed over ground."""
+
+    def __init__(self, best: Mapping[str, Sequence[Guess]], enu: bool) -> None:
+        """`best` has the guesses of each column; `enu`: rates and yaws are counted to port, as ROS has it."""
+        self.t, self.r = np.empty(0), np.empty(0)
+        self.at, self.speed = _speed(best)
+        for column in ("r_radps", "psi_rad"):
+            if found := best.get(column):
+                g = found[0]
+                there = np.isfinite(g.signal.values) & np.isfinite(g.signal.t)
+                t, order = np.unique(g.signal.t[there], return_index=True)
+                values = g.signal.values[there][order]
+                if column == "psi_rad" and len(t) > 2:
+                    values = np.gradient(np.unwrap(values, period=360.0 if g.word == "deg" else 2.0 * np.pi), t)
+                compass = column == "psi_rad" and "yaw" not in g.tokens
+                self.t, self.r = t, -values if enu and not compass else values
+                return
+
+    def by(self, *signals: tuple[Guess, float]) -> float:
+        """Correlation of a sum of signals, each times a factor, with the turning after it, of the clearest lag.
+
+        1: all turning to starboard follows it. 0 where nothing can be told.
+        """
+        return _followed(signals, self.t, self.r)
+
+    def helm(self, signals: Sequence[Guess]) -> tuple[Guess, float] | None:
+        """The signal that steers, with its correlation; None where it is not clear."""
+        turns = [(g, self.by((g, 1.0))) for g in signals]
+        scores = [abs(c) - abs(_followed(((g, 1.0),), self.at, self.speed)) for g, c in turns]
+        order = np.argsort(scores)[::-1]
+        if not len(order) or abs(turns[order[0]][1]) < SURE:
+            return None
+        rivals = len(order) > 1 and scores[order[0]] < scores[order[1]] + AHEAD
+        return None if rivals else turns[order[0]]
+
+
+def _speed(best: Mapping[str, Sequence[Guess]]) -> tuple[Array, Array]:
+    """Times [s] and speeds over ground there, in any unit."""
+    pair = [best[n][0] for n in ("x_m", "y_m") if best.get(n)]
+    earth = [best[n][0] for n in ("latitude", "longitude") if best.get(n)]
+    pair = pair if len(pair) == 2 else earth
+    if len(pair) < 2 or len(pair[0].signal.t) != len(pair[1].signal.t):
+        return np.empty(0), np.empty(0)
+    (north, east), t = (g.signal.values for g in pair), pair[0].signal.t
+    there = np.isfinite(north) & np.isfinite(east) & np.isfinite(t)
+    t, rows = np.unique(t[there], return_index=True)
+    if len(t) < 3:
+        return np.empty(0), np.empty(0)
+    degrees = 1e-7 if "1e-7" in pair[0].word else 1.0
+    wide = float(np.cos(np.radians(degrees * np.median(north[there])))) if pair is earth else 1.0
+    z = north[there][rows] + 1j * wide * east[there][rows]
+    after = np.searchsorted(t, t + STRETCH).clip(max=len(t) - 1)
+    return t, np.asarray(np.abs(z[after] - z) / np.maximum(t[after] - t, 1e-9))
+
+
+def _followed(signals: Sequence[tuple[Guess, float]], t: Array, values: Array) -> float:
+    """Correlation of a sum of signals with what follows it, of the clearest lag; 0 where nothing can be told."""
+    if len(t) < 2 or any(len(g.signal.t) < 2 for g, _ in signals):
+        return 0.0
+    begin = max(float(t[0]), *(float(np.nanmin(g.signal.t)) for g, _ in signals)) + LAGS[-1]
+    rows = np.arange(begin, min(float(t[-1]), begin + LONGEST), 1.0 / RATE)
+    if len(rows) < 10:
+        return 0.0
+    followed = np.interp(rows, t, values)
+
+    def given(lag: float) -> Array:
+        return np.asarray(np.sum([f * _held(g, rows - lag) for g, f in signals], axis=0))
+
+    return max((_alike(given(lag), followed) for lag in LAGS), key=abs)
+
+
+def _held(g: Guess, rows: Array) -> Array:
+    """(N,) values in force."""
+    there = np.isfinite(g.signal.values) & np.isfinite(g.signal.t)
+    t, order = np.unique(g.signal.t[there], return_index=True)
+    values = g.signal.values[there][order]
+    return np.asarray(values[np.searchsorted(t, rows, side="right").clip(min=1) - 1])
+
+
+def _alike(a: Array, b: Array) -> float:
+    """Correlation; 0 of what never changes."""
+    a, b = a - np.mean(a), b - np.mean(b)
+    size = float(np.linalg.norm(a) * np.linalg.norm(b))
+    return float(a @ b) / size if size > 0.0 else 0.0
