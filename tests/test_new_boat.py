@@ -1,6 +1,5 @@
 """A boat from its particulars: rules by published numbers, files that open, and coefficients found again from a log."""
 
-import contextlib
 import re
 import shlex
 import tomllib
@@ -29,7 +28,6 @@ from boatsim.simulate.run import run
 from tests import pushed_three_metre
 
 ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "your_boat.md").read_text(encoding="utf-8")
 BOATS = {
     "twin": "--length 3 --beam 1.6 --mass 90 --thruster -1.2,-0.6 --thruster -1.2,0.6",
     "outboard": "--length 5 --beam 2 --mass 600 --draught 0.3 --steered -2.4,0,900,300 --speed 6",
@@ -235,28 +233,3 @@ def test_the_bare_name_of_a_scenario_is_enough_where_one_only_has_it() -> None:
     shared = next(name for name, times in bare.items() if times > 1)
     with pytest.raises(BadInput, match=f"several scenarios are called {shared}; say which: "):
         scenario.load(shared)
-
-
-# ---- the page
-
-
-def test_the_commands_of_the_page_work_one_after_the_other(tmp_path: Path) -> None:
-    blocks = re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL)
-    commands = [c for c in "".join(blocks).replace("\\\n", " ").splitlines() if c.startswith("boatsim ")]
-    quick = [c for c in commands if "diagnose" not in c and "--from-log" not in c and "replay" not in c]
-    assert len(quick) > 3
-    with contextlib.chdir(tmp_path):
-        for command in quick:
-            result = CliRunner().invoke(app, shlex.split(command)[1:])
-            assert result.exit_code == 0, f"{command}: {result.output}"
-
-
-@pytest.mark.slow
-def test_the_long_commands_of_the_page_work_too(tmp_path: Path) -> None:
-    blocks = re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL)
-    with contextlib.chdir(tmp_path):
-        pushed_three_metre.write(Path("run.csv"), 1, 60.0)
-        pushed_three_metre.write(Path("run_2.csv"), 2, 60.0)
-        for command in [c for c in "".join(blocks).replace("\\\n", " ").splitlines() if c.startswith("boatsim ")]:
-            result = CliRunner().invoke(app, shlex.split(command)[1:])
-            assert result.exit_code == 0, f"{command}: {result.output}"
