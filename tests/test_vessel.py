@@ -105,7 +105,7 @@ def test_an_uncertainty_that_nothing_takes_up_is_one_line(tmp_path: Path) -> Non
     check_taken_up(boat, {"damping": 0.1, "thrust": 0.1}, "here")
     for kind, hint in (("restoring", ""), ("thurst", "; did you mean 'thrust'")):
         line = f"here: coefficient_uncertainty.{kind} = 0.1, but test_boat has no coefficient of {kind}{hint}; "
-        with pytest.raises(BadInput, match=f"^{line}allowed are damping, thrust$"):
+        with pytest.raises(BadInput, match=f"^{line}allowed are added_mass, damping, thrust$"):
             check_taken_up(boat, {"damping": 0.1, kind: 0.1}, "here")
 
 
