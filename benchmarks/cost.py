@@ -92,6 +92,8 @@ def main() -> None:
             for minutes in (1,) if given.quick else (1, 2, 5, 10):
                 run = simulated(60.0 * minutes, rate, minutes)
                 show(f"{minutes} min at {rate:g} Hz", cost(run, folder))
+        for minutes in () if given.quick else (20, 60):  # of which fewer rows a second are used
+            show(f"{minutes} min at 50 Hz", cost(simulated(60.0 * minutes, 50.0, minutes), folder))
         for state in () if given.quick else ("empty", "filled"):
             run = simulated(*TRIAL, 0)
             show(f"{TRIAL[0]:g} s, {state} cache", cost(run, folder, folder / "cache"))
