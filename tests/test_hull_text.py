@@ -31,6 +31,24 @@ def test_what_would_end_the_process_is_refused(tmp_path: Path, text: str, said: 
         check_text(tmp_path / "hull.xml")
 
 
+@pytest.mark.parametrize(
+    "hiding",
+    ["<![CDATA[ > <!-- ]]>", '<![CDATA[ " ]]>', '<!DOCTYPE a [ <!ENTITY b "> <!--"> ]>', "<!DOCTYPE a>"],
+)
+def test_what_could_hide_a_tag_is_refused(tmp_path: Path, hiding: str) -> None:
+    (tmp_path / "hull.xml").write_text(hiding + BEGIN.format('class="%n"', ""))
+    with pytest.raises(BadInput, match="allowed are tags and comments"):
+        check_text(tmp_path / "hull.xml")
+
+
+def test_an_instruction_hides_no_tag(tmp_path: Path) -> None:
+    (tmp_path / "hull.xml").write_text('<?xml version="1.0" encoding="utf-8"?>' + BEGIN.format("", ""))
+    check_text(tmp_path / "hull.xml")
+    (tmp_path / "hull.xml").write_text("<?odd ' ?>" + BEGIN.format('class="%n"', ""))
+    with pytest.raises(BadInput, match="has a %"):
+        check_text(tmp_path / "hull.xml")
+
+
 @pytest.mark.parametrize("comment", ["<!-- 5 % of trim -->", '<!-- class="%n" -->', "<!-- nan -->"])
 def test_a_comment_may_say_anything(tmp_path: Path, comment: str) -> None:
     (tmp_path / "hull.xml").write_text(comment + BEGIN.format('name="nanny"', comment))

@@ -72,13 +72,13 @@ def begin(*arguments: object, before: Callable[[], None] = heeding) -> "subproce
 
 
 def end(running: "subprocess.Popen[str]", within: float = 60.0) -> tuple[int, str]:
-    """Exit code and stderr; whatever it started must have ended too, for its pipes would still be open."""
+    """Exit code and stderr but for stages; whatever it started must have ended too, else its pipes were open."""
     try:
         said = running.communicate(timeout=within)[1]
     except subprocess.TimeoutExpired:
         os.killpg(running.pid, signal.SIGKILL)
         raise
-    return running.returncode, said
+    return running.returncode, "".join(x for x in said.splitlines(True) if not x.startswith("progress: "))
 
 
 def wait_for(there: Callable[[], object], within: float = 60.0) -> None:

@@ -367,6 +367,27 @@ def test_16_a_run_is_served_to_this_machine_alone(monkeypatch: pytest.MonkeyPatc
     assert asked[asked.index("--bind") + 1] == "127.0.0.1"
 
 
+def test_16_a_window_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+    ended = subprocess.Popen([sys.executable, "-c", ""], start_new_session=True)
+    ended.wait()
+    monkeypatch.setattr(viewer, "_rerun", lambda *options: asked.extend(options) or ended)
+    monkeypatch.setattr(viewer, "_listening", lambda port: False)
+    monkeypatch.setenv("DISPLAY", ":99")
+    with viewer.shown(serve=False) as shown:
+        assert shown is None
+    assert asked[asked.index("--bind") + 1] == "127.0.0.1"
+
+
+def test_3_a_check_and_an_import_run_what_is_trusted(tmp_path: Path) -> None:
+    file, _ = with_slime(tmp_path)
+    boat = f"{tmp_path / 'test_boat'}/"
+    run = tmp_path / "run.csv"
+    run.write_bytes(TRIAL.read_bytes())
+    refused(boatsim("check", run, "--vessel", boat))
+    assert "is not run" not in boatsim("check", run, "--vessel", boat, "--trust").stderr
+
+
 # Limits -----------------------------------------------------------------------------------------------------------
 
 

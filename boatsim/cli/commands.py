@@ -356,11 +356,14 @@ def diagnose(
 
 @app.command()
 @guarded
-def check(runs: Runs, vessel: VesselName = None, load: Load = None) -> int:
+def check(
+    runs: Runs, vessel: VesselName = None, load: Load = None, content: Content = None, trust: Trusted = False
+) -> int:
     """Say what is wrong with recordings before physics is suspected; leaves with 1 if anything is."""
     from boatsim.cli.checking import check_logs
 
-    return check_logs(runs, vessel, _loads(load))
+    with asking(content, trust, [*runs, vessel]):
+        return check_logs(runs, vessel, _loads(load))
 
 
 @app.command("import")
@@ -377,11 +380,14 @@ def import_(
     ] = None,
     vessel: VesselName = None,
     load: Load = None,
+    content: Content = None,
+    trust: Trusted = False,
 ) -> int:
     """Turn a log into a recording by a map; without one, list its signals and propose a map."""
     from boatsim.cli.importing import import_log
 
-    return import_log(log, out, map, propose, vessel, _loads(load))
+    with asking(content, trust, [vessel]):
+        return import_log(log, out, map, propose, vessel, _loads(load))
 
 
 @app.command()

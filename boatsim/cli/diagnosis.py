@@ -1,5 +1,6 @@
 """What `boatsim diagnose`, `replay` and `compare` do: files in, files and a few printed lines out."""
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -122,12 +123,12 @@ def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
 def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None, out: Path) -> int:
     """A recording beside a simulation: of its own commands from its smoothed first state, or of a scenario.
 
-    Where a run of ours says which scenario it is of, the scenario's effects act too, unless a vessel is named.
+    Where a run of ours says which scenario it is of, the scenario's effects act too, unless a vessel or load is named.
     """
     with reporting() as told:
         told("reading the recording")
         recording, boat = open_recording(run, vessel, load)
-        if vessel is None and not scenario:
+        if vessel is None and not load and not scenario:
             boat = _as_it_was(recording, boat)
         if scenario:
             told(f"running {scenario}", 0.1)
@@ -168,7 +169,8 @@ def _as_it_was(recording: Recording, boat: Vessel) -> Vessel:
         return boat
     added = [e for e in found.effects if boat.effect(e.name) is None]
     if added:
-        remark(f"{name} adds {', '.join(e.name for e in added)}; --vessel {boat.name} compares with the vessel alone")
+        near = min(name, os.path.relpath(name), key=len) if Path(name).is_file() else name
+        remark(f"{near} adds {', '.join(e.name for e in added)}; --vessel {boat.name} compares with the vessel alone")
     seeded = tuple(e.seeded(seed) for e in found.effects) if isinstance(seed, int) else found.effects
     return replace(found, effects=seeded)
 

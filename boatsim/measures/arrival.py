@@ -28,7 +28,8 @@ class Arrival(Measure):
     def why(self, norm: str, log: Recording) -> str:
         """How close it came."""
         away = np.hypot(self.x - log[self.x_signal], self.y - log[self.y_signal])
-        return f"never within {self.radius:.4g} m of the point: closest {away.min():.4g}"
+        closest = f"closest {np.nanmin(away):.4g}" if np.isfinite(away).any() else "its place was not recorded"
+        return f"never within {self.radius:.4g} m of the point: {closest}"
 
     def values(self, log: Recording) -> dict[str, float]:
         """Time, integral of the surge speed and straight line until there; closest and last place of the whole run."""

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from boatsim.measures.step_response import first
 from boatsim.physics.base import param
 from boatsim.recordings.notes import unit_of
@@ -39,6 +41,9 @@ class Staircase(Measure):
         if log.t[-1] + 1e-6 * self.every < begin + self.every:
             return f"the run ends at {log.t[-1]:.4g} s, before step {number} is over"
         done = (log[self.signal][rows] - self.bottom) / self.height - (number - 1)
+        if not np.isfinite(done).any():
+            return f"nothing was recorded of step {number}"
+        done = done[np.isfinite(done)]
         return f"made at most {100.0 * done.max():.3g} % of step {number}"
 
     def values(self, log: Recording) -> dict[str, float]:

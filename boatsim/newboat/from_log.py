@@ -173,7 +173,8 @@ def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
     for f, x, variance in zip(own.free, own.theta, np.diag(own.covariance), strict=True):
         for effect in (e for e in boat.effects if f.relative and e.name in boat.known_as(f.effect)):
             table = document["effect"][boat.effects.index(effect)]
-            spread, kind = float(np.sqrt(variance)) / float(x), type(effect).params()[f.name].calibrates
+            # against the rule's number where less is left: what is next to nothing is not unsure
+            spread, kind = float(np.sqrt(variance)) / max(float(x), 1.0), type(effect).params()[f.name].calibrates
             sd[kind] = max(sd[kind], float(f"{spread:.2g}"))
             table[f.name].comment(f"{_before(table, f.name)}, x {x:.3g} +- {100 * spread:.2g} % by {logs}")
     told = document["diagnosis"]

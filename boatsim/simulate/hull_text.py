@@ -10,8 +10,10 @@ from pathlib import Path
 
 from boatsim.errors import BadInput
 
-# comments, and tags with their attributes; every `<` begins one of them, closed or not, so that none is looked at twice
-PARTS = re.compile(r"""<!--.*?(?:-->|\Z)|<(?:"[^"]*(?:"|\Z)|'[^']*(?:'|\Z)|[^"'>])*+(?:>|\Z)""", re.DOTALL)
+# comments, instructions, tags with their attributes; every `<` begins one, closed or not: none is looked at twice
+PARTS = re.compile(
+    r"""<!--.*?(?:-->|\Z)|<\?.*?(?:\?>|\Z)|<(?:"[^"]*(?:"|\Z)|'[^']*(?:'|\Z)|[^"'>])*+(?:>|\Z)""", re.DOTALL
+)
 INCLUDED = re.compile(r"""<include\b.*?\bfile\s*=\s*(?:"([^"]*)"|'([^']*)')""", re.DOTALL)
 NAN = re.compile(r"""["'\s]nan["'\s]""", re.IGNORECASE)
 LARGEST = 1 << 24  # bytes; meshes lie in files of their own
@@ -42,5 +44,8 @@ def _tags(file: Path) -> Iterator[str]:
     if file.stat().st_size > LARGEST:
         raise BadInput(f"{file}: more than {LARGEST} bytes; meshes of a hull lie in files of their own")
     for part in PARTS.finditer(file.read_bytes().decode("utf-8", "replace")):
-        if not part[0].startswith("<!--"):
-            yield html.unescape(part[0])
+        if part[0].startswith("<!--"):
+            continue
+        if part[0].startswith("<!"):  # in these a quote, a `>` or a comment is none
+            raise BadInput(f"{file}: has {part[0][:40]!r}; allowed are tags and comments")
+        yield html.unescape(part[0])

@@ -59,6 +59,9 @@ def seen(log: Recording, since: float = -inf, until: float = inf, least: int = 1
 
 def never(x: Array, level: float, unit: str = "") -> str:
     """Why a signal (N,) passed no level: how near it came."""
+    x = x[np.isfinite(x)]
+    if not len(x):
+        return "nothing was recorded of it then"
     near, which = (x.max(), "largest") if x.max() < level else (x.min(), "smallest")
     return f"never got to {level:.4g} {unit}".rstrip() + f": {which} {near:.4g}"
 

@@ -1,6 +1,7 @@
 """Judges a run: the norms of its measure and the checks of its signals, beside the values they are held against."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import isfinite, sqrt
 from typing import TypedDict
@@ -138,7 +139,10 @@ def _measured(run: Run, measure: Measure) -> dict[str, Norm]:
 
 def _of(measure: Measure, run: Run, norm: Norm, name: str) -> Norm:
     """A norm with what its measure says of it: which value it is, and why there is none."""
-    why = measure.why(name, run.recording) if norm.lacking == NOT_REACHED else ""
+    why = ""
+    if norm.lacking == NOT_REACHED:
+        with suppress(ArithmeticError, LookupError, ValueError):  # an explanation that fails must not cost the run
+            why = measure.why(name, run.recording)
     return replace(norm, kind=measure.kind(name), lacking=f"{NOT_REACHED}: {why}" if why else norm.lacking)
 
 

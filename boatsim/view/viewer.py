@@ -52,8 +52,15 @@ def display() -> bool:
 
 def _opened() -> bool:
     """A viewer with a window, which stays when the run is over; whether it came up."""
-    started = _rerun("--port", str(PORT), "--expect-data-soon")
-    return _up(started, PORT)
+    started = _rerun("--bind", HERE, "--port", str(PORT), "--expect-data-soon")
+    try:
+        if _up(started, PORT):
+            return True
+    except BaseException:
+        _end(started)
+        raise
+    _end(started)
+    return False
 
 
 @contextmanager
@@ -85,9 +92,12 @@ def _gone() -> NoReturn:
 
 
 def _end(started: "subprocess.Popen[bytes]") -> None:
-    with suppress(ProcessLookupError):
-        os.killpg(started.pid, signal.SIGTERM)  # the command is a wrapper; the viewer is its child
-    started.wait(PATIENCE)
+    """The command is a wrapper; the viewer is its child. One that does not listen is killed."""
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        with suppress(ProcessLookupError):
+            os.killpg(started.pid, number)
+        if _ends(started, PATIENCE):
+            return
 
 
 def _ends(started: "subprocess.Popen[bytes]", seconds: float) -> bool:

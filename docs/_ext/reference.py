@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 FITTED = """One idea of physics or of measurement each, in `boatsim/physics/effects/`.
 
 *Fitted: yes* are the parameters that a diagnosis fits when it tries the effect as what is missing. Those fitted *as
-damping, thrust, restoring* or *wind* are coefficients of the boat that are never known exactly: a diagnosis refits them
-within their stated uncertainty."""
+damping, thrust, added mass, restoring* or *wind* are coefficients of the boat that are never known exactly: a diagnosis
+refits them within their stated uncertainty."""
 SHELVES = {  # folder of pages -> its heading and what stands below it
     "commands": ("Commands", "What each says to `--help`."),
     "effects": ("Effects", FITTED),
