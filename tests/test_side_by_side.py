@@ -131,3 +131,18 @@ def test_two_scenarios_side_by_side_differ_in_their_names(tmp_path: Path, monkey
     assert result.exit_code == 0 and (Path("out") / "compare.rrd").is_file()
     assert re.search(r"norm\s*┃\s*is\s*┃\s*slow\s*┃\s*quick", result.stdout)
     assert boatsim("run", "slow.toml", *PAIR[:2], *PAIR[:2]).exit_code == 2
+
+
+def test_a_norm_that_has_another_unit_in_another_scenario_has_a_row_for_each(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, signal in (("drift", "v_mps"), ("turn", "r_radps")):
+        Path(f"{name}.toml").write_text(f'measure = {{ use = "tracking", signal = "{signal}" }}\n' + SCENARIO)
+    result = boatsim("run", "drift.toml", "turn.toml", "--side-by-side")
+    assert result.exit_code == 0, result.output
+    rows = [[c.strip() for c in line.strip("│").split("│")] for line in result.stdout.splitlines() if "│" in line]
+    cells = {name: values for name, _, *values in rows}
+    drift, turn = (f"{norms(Path('out') / name)['norms']['rms']['value']:.4g}" for name in ("drift", "turn"))
+    assert cells["rms [m/s]"] == [drift, ""] and cells["rms [deg/s]"] == ["", turn]
+    assert all(cells["sway_error_rms [m/s]"])

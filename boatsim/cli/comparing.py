@@ -54,15 +54,16 @@ def _heads(runs: Sequence[Done]) -> list[tuple[str, ...]]:
 
 
 def _rows(runs: Sequence[Done]) -> list[list[str]]:
-    """Norm with its unit, what it is, and a cell for each run, the best marked where lower is better."""
-    names = dict.fromkeys(name for run in runs for name in run.content["norms"])
+    """Norm with its unit, what it is, and a cell for each run that has it, the best marked where lower is better."""
+    asked = dict.fromkeys((name, e["unit"]) for run in runs for name, e in run.content["norms"].items())
+    scenarios = [run.content["scenario"] for run in runs]
     rows = []
-    for name in names:
-        entries = [run.content["norms"].get(name) for run in runs]
-        first = next(e for e in entries if e)
-        best = _best([run.content["scenario"] for run in runs], entries)
+    for name, unit in asked:
+        entries = [e if (e := run.content["norms"].get(name)) and e["unit"] == unit else None for run in runs]
+        best = _best(scenarios, entries)
         cells = [_cell(entry, number in best) for number, entry in enumerate(entries)]
-        rows.append([f"{name} [{first['unit']}]" if first["unit"] else name, first["kind"], *cells])
+        kind = next(e["kind"] for e in entries if e)
+        rows.append([f"{name} [{unit}]" if unit else name, kind, *cells])
     return rows
 
 
