@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -134,11 +135,20 @@ def _write(path: Path, heads: Sequence[tuple[str, ...]], runs: Sequence[Done]) -
     """compare.rrd, read back from the folders of the runs."""
     from boatsim.view.rerun_log import log_side_by_side
 
-    names = [re.sub(r"\W", "_", "_".join(head)) for head in heads]
+    names = _apart([re.sub(r"\W", "_", "_".join(head)) for head in heads])
     markdown = ["| norm | is | " + " | ".join(names) + " |", "|:---|:---|" + "---:|" * len(names)]
     markdown += ["| " + " | ".join(cell.strip() for cell in row) + " |" for row in _rows(runs)]
     with replacing(path) as temporary:
         log_side_by_side(temporary, dict(zip(names, _boats(runs), strict=True)), "\n".join(markdown) + "\n")
+
+
+def _apart(names: Sequence[str]) -> list[str]:
+    """Names with a number behind one that is there before it."""
+    found: list[str] = []
+    for name in names:
+        numbered = chain([name], (f"{name}_{number}" for number in count(2)))
+        found.append(next(n for n in numbered if n not in found))
+    return found
 
 
 def _boats(runs: Sequence[Done]) -> "list[Boat]":
