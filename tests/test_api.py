@@ -52,6 +52,20 @@ def test_a_diagnosis_is_asked_for_by_the_name_of_its_folder_too(tmp_path: Path) 
         boatsim.diagnose(tmp_path / "nowhere.csv", vessel="joystick_boat")
 
 
+def test_one_name_is_as_good_as_a_sequence_of_it(tmp_path: Path) -> None:
+    assert boatsim.load_vessel("joystick_boat", "heavy") == boatsim.load_vessel("joystick_boat", ("heavy",))
+    log = tmp_path / "out" / "camera.csv"
+    boatsim.run("joystick_boat/sway_1", out=log.parent)
+    with pytest.raises(BadInput, match="load 'heav' does not exist"):
+        boatsim.read(log, vessel="joystick_boat", load="heav")
+    with pytest.raises(BadInput, match="load 'heav' does not exist"):
+        boatsim.replay(log, load="heav")
+    for option in ("load", "library", "without"):
+        for given in ("nothing_such", Path("nothing_such")):
+            with pytest.raises(BadInput, match="'nothing_such'"):
+                boatsim.diagnose(log, **{option: given})
+
+
 def test_a_strict_type_checker_knows_what_comes_back(tmp_path: Path) -> None:
     (tmp_path / "user.py").write_text(USER)
     command = [
