@@ -98,6 +98,11 @@ def test_a_run_logs_its_goals_judges_them_and_says_why_a_norm_is_not_reached(tmp
     norms = all_norms(done)
     assert list(norms) == ["time", *following.units(["sway_mps", "yaw_radps"])]
     assert norms["sway_error_largest"].value == pytest.approx(np.abs(0.07 - done.recording["v_mps"][first]).max())
+    assert [norms[f"sway_error_{e}"].kind for e in ("rms", "largest", "integral")] == [
+        "rms",
+        "largest",
+        "time integral",
+    ]
     largest = done.recording["psi_rad"].max()
     assert norms["time"].value is None
     assert norms["time"].lacking == f"not reached: never got to 1 rad: largest {largest:.4g}"

@@ -11,7 +11,7 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 
 GOAL = "goal_"  # in front of a goal's key: its column in the log
-KINDS = {"rms": "rms", "largest": "largest", "integral": "time integral"}  # ending of a norm -> what it is
+ENDINGS = ("rms", "largest", "integral")  # of a norm's name
 
 
 def errors(log: Recording) -> dict[str, float]:
@@ -54,7 +54,7 @@ def _followed(goals: Iterable[str]) -> Iterator[tuple[str, str, list[str]]]:
     stems = [key.rpartition("_")[0] for key in signals]
     for (key, signal), stem in zip(signals.items(), stems, strict=True):
         name = key if stems.count(stem) > 1 else stem
-        yield key, signal, [f"{name}_error_{kind}" for kind in KINDS]
+        yield key, signal, [f"{name}_error_{ending}" for ending in ENDINGS]
 
 
 def _off(signal: str, goal: Array, reached: Array) -> Array:
