@@ -24,6 +24,7 @@ from boatsim.simulate.norms import Norm, NormEntry, all_norms
 from boatsim.simulate.run import run as simulate
 
 Name = str | Path  # of something shipped, of a file, or of a folder
+Names = Name | Sequence[Name]  # one or several
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ class Diagnosis:
         files.write(self.found, Path(folder))
 
 
-def load_vessel(name: Name, load: Sequence[str] = ()) -> Vessel:
+def load_vessel(name: Name, load: Names = ()) -> Vessel:
     """A vessel by name, folder or file, in load conditions. Raises BadInput.
 
     >>> import boatsim
@@ -109,7 +110,7 @@ def load_vessel(name: Name, load: Sequence[str] = ()) -> Vessel:
     >>> boat.freedoms, boat.length
     (('surge', 'sway', 'yaw'), 1.25)
     """
-    return vessels.load(str(name), load)
+    return vessels.load(str(name), _names(load))
 
 
 def run(scenario: Name, seed: int | None = None, controller: Name | None = None, out: Name | None = None) -> Run:
@@ -154,7 +155,7 @@ def _norm(entry: NormEntry) -> Norm:
     return Norm(**said)
 
 
-def read(path: Name, vessel: Name | None = None, load: Sequence[str] = ()) -> Recording:
+def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
     """A recording (.csv, .parquet, an .rrd of ours), checked, with what its recording.toml says. Raises BadInput.
 
     >>> import boatsim
@@ -166,16 +167,16 @@ def read(path: Name, vessel: Name | None = None, load: Sequence[str] = ()) -> Re
     file = Path(path)
     if vessel is None and not notes_for(file).notes.vessel:
         return table.read(file)
-    return analysis.open_recording(file, None if vessel is None else str(vessel), load)[0]
+    return analysis.open_recording(file, None if vessel is None else str(vessel), _names(load))[0]
 
 
 def diagnose(
-    runs: Name | Sequence[Name],
-    hold_out: Name | Sequence[Name] = (),
+    runs: Names,
+    hold_out: Names = (),
     vessel: Name | None = None,
-    load: Sequence[str] = (),
-    library: Sequence[str] = (),
-    without: Sequence[str] = (),
+    load: Names = (),
+    library: Names = (),
+    without: Names = (),
     horizon: float | None = None,
 ) -> Diagnosis:
     """Say which physics a vessel leaves out of recordings: files that are fitted, and files to judge the result on.
@@ -196,10 +197,11 @@ def diagnose(
     >>> found.write("out/diagnosis")
     """
     name = None if vessel is None else str(vessel)
-    return Diagnosis(analysis.diagnose(_paths(runs), _paths(hold_out), name, load, library, without, horizon))
+    tried = _names(library), _names(without)
+    return Diagnosis(analysis.diagnose(_paths(runs), _paths(hold_out), name, _names(load), *tried, horizon))
 
 
-def replay(recording: Name, vessel: Name | None = None, load: Sequence[str] = (), horizon: float = 6.0) -> Recording:
+def replay(recording: Name, vessel: Name | None = None, load: Names = (), horizon: float = 6.0) -> Recording:
     """Free runs of a vessel, each of `horizon` [s] from a recorded state with the recorded commands alone.
 
     The result has the pose at the times of the recording, and the number of each free run in `segment`. `vessel` may be
@@ -211,9 +213,13 @@ def replay(recording: Name, vessel: Name | None = None, load: Sequence[str] = ()
     >>> sorted(as_written.signals)
     ['psi_rad', 'segment', 'x_m', 'y_m']
     """
-    opened, boat = analysis.open_recording(Path(recording), None if vessel is None else str(vessel), load)
+    opened, boat = analysis.open_recording(Path(recording), None if vessel is None else str(vessel), _names(load))
     return joined(replayed(opened, boat, horizon))
 
 
-def _paths(given: Name | Sequence[Name]) -> list[Path]:
-    return [Path(given)] if isinstance(given, str | Path) else [Path(one) for one in given]
+def _paths(given: Names) -> list[Path]:
+    return [Path(one) for one in _names(given)]
+
+
+def _names(given: Names) -> list[str]:
+    return [str(given)] if isinstance(given, str | Path) else [str(one) for one in given]

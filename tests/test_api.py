@@ -6,10 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import boatsim
 from boatsim import api
+from boatsim.cli import diagnosis
 from boatsim.errors import BadInput
 
 OFFERED = ("diagnose", "load_vessel", "read", "replay", "run")
@@ -50,6 +52,36 @@ def test_the_functions_are_there_whatever_was_imported_before(first: str) -> Non
 def test_a_diagnosis_is_asked_for_by_the_name_of_its_folder_too(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="nowhere.csv"):
         boatsim.diagnose(tmp_path / "nowhere.csv", vessel="joystick_boat")
+
+
+def test_one_name_is_as_good_as_a_sequence_of_it(tmp_path: Path) -> None:
+    assert boatsim.load_vessel("joystick_boat", "heavy") == boatsim.load_vessel("joystick_boat", ("heavy",))
+    log = tmp_path / "out" / "camera.csv"
+    boatsim.run("joystick_boat/sway_1", out=log.parent)
+    with pytest.raises(BadInput, match="load 'heav' does not exist"):
+        boatsim.read(log, vessel="joystick_boat", load="heav")
+    with pytest.raises(BadInput, match="load 'heav' does not exist"):
+        boatsim.replay(log, load="heav")
+    for option in ("load", "library", "without"):
+        for given in ("nothing_such", Path("nothing_such")):
+            with pytest.raises(BadInput, match="'nothing_such'"):
+                boatsim.diagnose(log, **{option: given})
+
+
+def test_replay_is_the_file_of_the_command_with_each_time_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    boatsim.run("joystick_boat/sway_1", out=tmp_path)
+    assert diagnosis.replay(tmp_path / "camera.csv", None, [], 6.0, tmp_path) == 0, capsys.readouterr().err
+    header, *lines = (tmp_path / "replay.csv").read_text().splitlines()
+    written = np.array([[float(cell) for cell in line.split(",")] for line in lines])
+    assert header == "t_s,segment,x_m,y_m,psi_rad"
+    shared = np.append(False, np.diff(written[:, 0]) == 0.0)
+    assert shared.sum() == written[-1, 1] > 0  # each run but the first begins where one ends
+    told = boatsim.replay(tmp_path / "camera.csv")
+    assert np.allclose(
+        np.column_stack([told.t, *(told[n] for n in header.split(",")[1:])]), written[~shared], atol=1e-8
+    )
 
 
 def test_a_strict_type_checker_knows_what_comes_back(tmp_path: Path) -> None:

@@ -43,6 +43,18 @@ def test_a_constant_error_has_its_size_as_rms_and_largest_and_its_size_by_time_a
     assert list(following.units(["sway_mps"]).values()) == ["m/s", "m/s", "m"]
 
 
+@pytest.mark.parametrize(("angle", "rate"), [("yaw_rad", "yaw_radps"), ("roll_rad", "roll_radps")])
+def test_an_angle_and_its_rate_that_are_both_followed_have_norms_of_their_own(angle: str, rate: str) -> None:
+    column = {"yaw_rad": "psi_rad", "yaw_radps": "r_radps", "roll_rad": "phi_rad", "roll_radps": "p_radps"}
+    reached = {column[angle]: 0.5, column[rate]: 0.1}
+    found = following.errors(log(**reached, **{f"goal_{angle}": 0.6, f"goal_{rate}": 0.3}))
+    assert found[f"{angle}_error_largest"] == pytest.approx(np.degrees(0.1))
+    assert found[f"{rate}_error_largest"] == pytest.approx(np.degrees(0.2))
+    units = following.units([angle, rate])
+    assert list(units) == list(found) and (units[f"{angle}_error_rms"], units[f"{rate}_error_rms"]) == ("deg", "deg/s")
+    assert list(following.units([rate, "surge_mps"]))[0] == rate.replace("radps", "error_rms")
+
+
 def test_the_step_of_the_log_changes_no_norm() -> None:
     def wave(step: float) -> dict[str, float]:
         told = log(step, psi_rad=0.0, goal_psi_rad=0.0)
@@ -86,6 +98,11 @@ def test_a_run_logs_its_goals_judges_them_and_says_why_a_norm_is_not_reached(tmp
     norms = all_norms(done)
     assert list(norms) == ["time", *following.units(["sway_mps", "yaw_radps"])]
     assert norms["sway_error_largest"].value == pytest.approx(np.abs(0.07 - done.recording["v_mps"][first]).max())
+    assert [norms[f"sway_error_{e}"].kind for e in ("rms", "largest", "integral")] == [
+        "rms",
+        "largest",
+        "time integral",
+    ]
     largest = done.recording["psi_rad"].max()
     assert norms["time"].value is None
     assert norms["time"].lacking == f"not reached: never got to 1 rad: largest {largest:.4g}"

@@ -131,3 +131,32 @@ def test_two_scenarios_side_by_side_differ_in_their_names(tmp_path: Path, monkey
     assert result.exit_code == 0 and (Path("out") / "compare.rrd").is_file()
     assert re.search(r"norm\s*┃\s*is\s*┃\s*slow\s*┃\s*quick", result.stdout)
     assert boatsim("run", "slow.toml", *PAIR[:2], *PAIR[:2]).exit_code == 2
+
+
+def test_a_norm_that_has_another_unit_in_another_scenario_has_a_row_for_each(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, signal in (("drift", "v_mps"), ("turn", "r_radps")):
+        Path(f"{name}.toml").write_text(f'measure = {{ use = "tracking", signal = "{signal}" }}\n' + SCENARIO)
+    result = boatsim("run", "drift.toml", "turn.toml", "--side-by-side")
+    assert result.exit_code == 0, result.output
+    rows = [[c.strip() for c in line.strip("│").split("│")] for line in result.stdout.splitlines() if "│" in line]
+    cells = {name: values for name, _, *values in rows}
+    drift, turn = (f"{norms(Path('out') / name)['norms']['rms']['value']:.4g}" for name in ("drift", "turn"))
+    assert cells["rms [m/s]"] == [drift, ""] and cells["rms [deg/s]"] == ["", turn]
+    assert all(cells["sway_error_rms [m/s]"])
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_no_boat_is_lost_from_the_log_where_names_differ_by_a_mark_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    own = ("a-b.toml", "a_b.toml", "a b.toml")
+    for name in own:
+        Path(name).write_text(SCENARIO)
+    result = boatsim("run", *own, "--side-by-side")
+    assert result.exit_code == 0, result.output
+    logged = {chunk.entity_path for chunk in RrdReader(Path("out") / "compare.rrd").stream().to_chunks()}
+    assert {n for n in logged if n.endswith("/v_mps")} == {f"/signals/{n}/v_mps" for n in ("a_b", "a_b_2", "a_b_3")}

@@ -27,8 +27,6 @@ from boatsim.simulate.scenario import Scenario
 POLL = 0.1  # [s] between two looks at the processes
 PATIENCE = 60.0  # [s] for a run to be written whose watcher is gone
 
-Report = Callable[[int, float], None]  # number of a task, simulated time it has reached [s]
-
 
 @dataclass(frozen=True)
 class Task:
@@ -185,7 +183,7 @@ def carry_out(task: Task, told: Callable[[float], None], viewer: str | None = No
         return Outcome(task)
 
 
-def _in_turn(tasks: Sequence[Task], report: Report, viewer: str | None, speed: float) -> list[Outcome]:
+def _in_turn(tasks: Sequence[Task], report: progress.Reached, viewer: str | None, speed: float) -> list[Outcome]:
     outcomes: list[Outcome] = []
     for number, task in enumerate(tasks):
         if struck():  # while the files of the one before were written
@@ -201,7 +199,7 @@ def _in_turn(tasks: Sequence[Task], report: Report, viewer: str | None, speed: f
 # Several processes: a signal is heeded by this one only, which asks the others to stop; they end with it -------------
 
 
-def _in_processes(tasks: Sequence[Task], jobs: int, report: Report) -> list[Outcome]:
+def _in_processes(tasks: Sequence[Task], jobs: int, report: progress.Reached) -> list[Outcome]:
     context = get_context("spawn")  # a fork would copy MuJoCo's and rerun's threads half alive
     with ignored():  # processes inherit it, the one that looks after shared memory too
         stop, reached = context.Event(), context.Array("d", len(tasks))
@@ -217,7 +215,10 @@ def _in_processes(tasks: Sequence[Task], jobs: int, report: Report) -> list[Outc
 
 
 def _watch(
-    futures: Sequence[Future[Outcome]], tasks: Sequence[Task], reached: "SynchronizedArray[float]", report: Report
+    futures: Sequence[Future[Outcome]],
+    tasks: Sequence[Task],
+    reached: "SynchronizedArray[float]",
+    report: progress.Reached,
 ) -> None:
     """Report until all are done."""
     waiting = True

@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,15 +55,16 @@ def _heads(runs: Sequence[Done]) -> list[tuple[str, ...]]:
 
 
 def _rows(runs: Sequence[Done]) -> list[list[str]]:
-    """Norm with its unit, what it is, and a cell for each run, the best marked where lower is better."""
-    names = dict.fromkeys(name for run in runs for name in run.content["norms"])
+    """Norm with its unit, what it is, and a cell for each run that has it, the best marked where lower is better."""
+    asked = dict.fromkeys((name, e["unit"]) for run in runs for name, e in run.content["norms"].items())
+    scenarios = [run.content["scenario"] for run in runs]
     rows = []
-    for name in names:
-        entries = [run.content["norms"].get(name) for run in runs]
-        first = next(e for e in entries if e)
-        best = _best([run.content["scenario"] for run in runs], entries)
+    for name, unit in asked:
+        entries = [e if (e := run.content["norms"].get(name)) and e["unit"] == unit else None for run in runs]
+        best = _best(scenarios, entries)
         cells = [_cell(entry, number in best) for number, entry in enumerate(entries)]
-        rows.append([f"{name} [{first['unit']}]" if first["unit"] else name, first["kind"], *cells])
+        kind = next(e["kind"] for e in entries if e)
+        rows.append([f"{name} [{unit}]" if unit else name, kind, *cells])
     return rows
 
 
@@ -133,11 +135,20 @@ def _write(path: Path, heads: Sequence[tuple[str, ...]], runs: Sequence[Done]) -
     """compare.rrd, read back from the folders of the runs."""
     from boatsim.view.rerun_log import log_side_by_side
 
-    names = [re.sub(r"\W", "_", "_".join(head)) for head in heads]
+    names = _apart([re.sub(r"\W", "_", "_".join(head)) for head in heads])
     markdown = ["| norm | is | " + " | ".join(names) + " |", "|:---|:---|" + "---:|" * len(names)]
     markdown += ["| " + " | ".join(cell.strip() for cell in row) + " |" for row in _rows(runs)]
     with replacing(path) as temporary:
         log_side_by_side(temporary, dict(zip(names, _boats(runs), strict=True)), "\n".join(markdown) + "\n")
+
+
+def _apart(names: Sequence[str]) -> list[str]:
+    """Names with a number behind one that is there before it."""
+    found: list[str] = []
+    for name in names:
+        numbered = chain([name], (f"{name}_{number}" for number in count(2)))
+        found.append(next(n for n in numbered if n not in found))
+    return found
 
 
 def _boats(runs: Sequence[Done]) -> "list[Boat]":

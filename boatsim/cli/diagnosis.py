@@ -13,7 +13,7 @@ from boatsim.diagnose.analysis import NEXT, Diagnosis, hint, open_recording
 from boatsim.diagnose.analysis import diagnose as analyse
 from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnose.log.entry import in_words
-from boatsim.diagnose.replaying import as_written, replayed
+from boatsim.diagnose.replaying import as_written, columns, replayed
 from boatsim.diagnose.report import show, stays, taken
 from boatsim.diagnose.report.described import what_of
 from boatsim.diagnose.report.entries import Family
@@ -110,14 +110,11 @@ def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: 
 
 
 def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
-    """Columns t_s, segment, pose; times as in the recording."""
-    names = list(stretches[0].channels["simulated"])
+    """Each free run whole, also where two share a time; times as in the recording."""
+    found = columns(stretches)
+    digits = ["%.10g", *["%.9g"] * (len(found) - 1)]
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        file.write(",".join(["t_s", "segment", *names]) + "\n")
-        for i, s in enumerate(stretches):
-            for k, t in enumerate(s.t):
-                cells = ",".join(f"{s.channels['simulated'][n][k]:.9g}" for n in names)
-                file.write(f"{t:.10g},{i},{cells}\n")
+        np.savetxt(file, np.column_stack(list(found.values())), digits, ",", header=",".join(found), comments="")
 
 
 def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None, out: Path) -> int:

@@ -11,6 +11,8 @@ from boatsim.progress import Report
 if TYPE_CHECKING:
     from rich.progress import Progress
 
+Reached = Callable[[int, float], None]  # told of runs: which of them, and the simulated time it has reached [s]
+
 
 @contextmanager
 def reporting() -> Iterator[Report]:
@@ -100,7 +102,7 @@ def time_left(elapsed: float, share: float) -> str:
 
 
 @contextmanager
-def running(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterator[Callable[[int, float], None]]:
+def running(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterator[Reached]:
     """Progress of runs (name, simulated time [s]): bars on a terminal, elsewhere a line as each begins.
 
     Of a single one there is no line, unless it is none of `several` that might have been.
@@ -128,7 +130,7 @@ def running(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterato
         yield report
 
 
-def _begun(tasks: Sequence[tuple[str, float]]) -> Callable[[int, float], None]:
+def _begun(tasks: Sequence[tuple[str, float]]) -> Reached:
     there: set[int] = set()
 
     def report(number: int, t: float) -> None:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from boatsim.diagnose.log.first_orders import begun
 from boatsim.diagnose.problem import Fit, Problem
 from boatsim.diagnose.tried import composed
 from boatsim.errors import BadInput
+from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, silent
 from boatsim.recordings.table import Recording
@@ -29,17 +29,23 @@ def replayed(recording: Recording, boat: Vessel, horizon: float, told: Report = 
     return stretches
 
 
+def columns(stretches: Sequence[FreeRun]) -> dict[str, Array]:
+    """Free runs one below the other, each whole: t_s, the number of each in `segment`, pose.
+
+    Where one ends as the next begins, that time is there twice: where the one has come to, where the other starts.
+    """
+    poses = [s.channels["simulated"] for s in stretches]
+    found = {"t_s": np.concatenate([s.t for s in stretches])}
+    found["segment"] = np.repeat(np.arange(float(len(stretches))), [len(s.t) for s in stretches])
+    return found | {name: np.concatenate([pose[name] for pose in poses]) for name in poses[0]}
+
+
 def joined(stretches: Sequence[FreeRun]) -> Recording:
-    """Free runs as one recording, with the number of each in `segment`; of a shared time the end of the earlier."""
-    shared = [False, *(s.t[0] <= before.t[-1] for before, s in pairwise(stretches))]
-    rows = [slice(1 if begins_there else 0, None) for begins_there in shared]
-    signals = {
-        n: np.concatenate([s.channels["simulated"][n][part] for s, part in zip(stretches, rows, strict=True)])
-        for n in stretches[0].channels["simulated"]
-    }
-    times = [s.t[part] for s, part in zip(stretches, rows, strict=True)]
-    signals["segment"] = np.concatenate([np.full(len(t), float(number)) for number, t in enumerate(times)])
-    return Recording("replay", np.concatenate(times), signals)
+    """The same as one recording, which has each time once: of a shared one the end of the earlier run."""
+    every = columns(stretches)
+    first = np.append(True, np.diff(every["t_s"]) > 0.0)
+    signals = {name: values[first] for name, values in every.items()}
+    return Recording("replay", signals.pop("t_s"), signals)
 
 
 def as_written(recording: Recording, boat: Vessel, told: Report = silent) -> tuple[Problem, Fit]:

@@ -11,7 +11,7 @@ from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 
 GOAL = "goal_"  # in front of a goal's key: its column in the log
-KINDS = {"rms": "rms", "largest": "largest", "integral": "time integral"}  # ending of a norm -> what it is
+ENDINGS = ("rms", "largest", "integral")  # of a norm's name
 
 
 def errors(log: Recording) -> dict[str, float]:
@@ -20,7 +20,7 @@ def errors(log: Recording) -> dict[str, float]:
     rms is sqrt(mean e^2), largest max|e|, integral that of |e| over time, which does not depend on the log's step.
     """
     found: dict[str, float] = {}
-    for key, signal in _followed(n.removeprefix(GOAL) for n in log.signals if n.startswith(GOAL)):
+    for key, signal, norms in _followed(n.removeprefix(GOAL) for n in log.signals if n.startswith(GOAL)):
         if signal not in log.signals:
             continue
         off = _off(signal, log[f"{GOAL}{key}"], log[signal])
@@ -30,16 +30,16 @@ def errors(log: Recording) -> dict[str, float]:
         if not len(e):
             continue
         values = sqrt(float((e**2 * dt).sum() / dt.sum())), float(e.max()), float((e * dt).sum())
-        found |= dict(zip(_norms(key), values, strict=True))
+        found |= dict(zip(norms, values, strict=True))
     return found
 
 
 def units(goals: Iterable[str]) -> dict[str, str]:
     """The norms of these goals, with their units: angles in degrees."""
     found: dict[str, str] = {}
-    for key, signal in _followed(goals):
+    for _, signal, norms in _followed(goals):
         unit = unit_of(signal).replace("rad", "deg")
-        found |= dict(zip(_norms(key), (unit, unit, times_second(unit)), strict=True))
+        found |= dict(zip(norms, (unit, unit, times_second(unit)), strict=True))
     return found
 
 
@@ -48,14 +48,13 @@ def times_second(unit: str) -> str:
     return unit.removesuffix("/s") if unit.endswith("/s") else f"{unit} s".strip()
 
 
-def _followed(goals: Iterable[str]) -> Iterator[tuple[str, str]]:
-    for key in dict.fromkeys(goals):
-        if signal := follower(key):
-            yield key, signal
-
-
-def _norms(goal: str) -> list[str]:
-    return [f"{goal.rpartition('_')[0]}_error_{kind}" for kind in KINDS]
+def _followed(goals: Iterable[str]) -> Iterator[tuple[str, str, list[str]]]:
+    """Each goal that is a signal of the motion, that signal, its norms: a whole key tells yaw_rad from yaw_radps."""
+    signals = {key: signal for key in goals if (signal := follower(key))}
+    stems = [key.rpartition("_")[0] for key in signals]
+    for (key, signal), stem in zip(signals.items(), stems, strict=True):
+        name = key if stems.count(stem) > 1 else stem
+        yield key, signal, [f"{name}_error_{ending}" for ending in ENDINGS]
 
 
 def _off(signal: str, goal: Array, reached: Array) -> Array:

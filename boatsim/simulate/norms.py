@@ -118,7 +118,7 @@ def all_norms(run: Run) -> dict[str, Norm]:
     """Those the scenario asks for, and how well it followed its goals, which needs no asking. Raises BadInput."""
     asked, followed, barred = norms(run), following.errors(run.recording), run.scenario.file.norms
     beside = {
-        name: replace(_judged(run, name, followed.get(name), unit), kind=following.KINDS[name.rpartition("_")[2]])
+        name: replace(_judged(run, name, followed.get(name), unit), kind=KINDS[name.rpartition("_")[2]])
         for name, unit in following.units(run.scenario.goal_keys).items()
         if name in followed or name in barred  # a bar on what never was there is missed
     }
