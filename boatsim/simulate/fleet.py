@@ -4,7 +4,7 @@ As `boatsim run` without MuJoCo: nothing touches a wall, and no camera films. Th
 `boatsim run` with its seed.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -114,19 +114,12 @@ class Fleet:
         return Voyages(t, named, states, boat.inputs, commands)
 
     def _sail(self, periods: int) -> None:
-        """So many control periods, in parts in which the goal stands still."""
+        """So many control periods, some at a time."""
         while periods > 0:
-            goal, part = self._goal(min(periods, AHEAD))
-            self._controlled.sail(goal, part)
+            part = min(periods, AHEAD)
+            times = [(self._periods + k) * self._period for k in range(part)]
+            self._controlled.sail([self.scenario.goal_at(t) for t in times])
             self._periods, periods = self._periods + part, periods - part
-
-    def _goal(self, most: int) -> tuple[Mapping[str, float], int]:
-        """The goal in force, and for how many periods it surely is."""
-        now = self.scenario.goal_at(self._periods * self._period)
-        for k in range(1, most):
-            if self.scenario.goal_at((self._periods + k) * self._period) != now:
-                return now, k
-        return now, most
 
     def _way(self) -> PassedOn | ByFunction | ByLaw:
         """How the boats are steered. Raises BadInput."""
