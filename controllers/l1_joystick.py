@@ -88,6 +88,10 @@ class L1Joystick(Outboards, Controller):
             "reference_r_radps": Estimate(self._yaw.model, nan, nan),
         }
 
+    def largest_goals(self) -> Mapping[str, float]:
+        """With the rated turn [rad/s]."""
+        return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
+
     def loop_channels(self) -> tuple[LoopChannel, ...]:
         """The feedback loops, for margins; the input gain spans the boats of the Monte Carlo study."""
         delayed = partial(

@@ -118,6 +118,10 @@ class Outboards(Checked):
             return 0.0
         return clip(self.sway_thrust * sway / self.rated_sway, -self.largest_difference, self.largest_difference)
 
+    def largest_goals(self) -> Mapping[str, float]:
+        """The sway command [m/s] that takes the largest thrust difference."""
+        return {"sway_mps": self.rated_sway * self.largest_difference / self.sway_thrust}
+
     def lever(self, angle: float) -> float:
         """Moment over thrust difference [m] with both motors turned inward by `angle` [rad]."""
         return self.half_spacing * cos(angle) - self.arm * sin(angle)

@@ -23,7 +23,7 @@ from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.log import FiledLog, Log
 from boatsim.simulate.pace import Pace
-from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.scenario import OFF, Scenario
 from boatsim.simulate.sensing import sensed
 from boatsim.simulate.world import Tank
 
@@ -64,6 +64,9 @@ class Runner:
         self.watch: Listener | None = None
         self.folder: Path | None = None
         self.pace: Pace | None = None  # somebody watches: then the listeners get rows more often
+        self.often = LIVE  # [s] how often, then
+        self.goal_at: Callable[[float], Mapping[str, float]] = scenario.goal_at  # or what somebody's hands ask for
+        self.enough: Callable[[], bool] = bool  # whether they have had enough: the run is over, and whole
         self.seed = file.seed if seed is None else seed
         tank = Tank(**file.tank.model_dump()) if file.tank else None
         vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
@@ -101,9 +104,9 @@ class Runner:
         self._check_measured()
         try:
             while not (complete := self._finished()) and not stop():
+                if self.pace:  # before the step: what is sensed and asked for at its end is that of its time
+                    self.pace.wait(self._state.t + self.engine.step, stop)
                 self._advance()
-                if self.pace:
-                    self.pace.wait(self._state.t, stop)
                 if progress and self._steps % 100 == 0:
                     progress(self._state.t)
         except KeyboardInterrupt:
@@ -228,8 +231,14 @@ class Runner:
             (state.phi, state.p),
         )  # fmt: skip
         sense = self._sense = sensed(usual, self.scenario.aboard, self.engine, self._noise)
+        goal = self.goal_at(state.t)
         with self._asked() as controller:
-            self._send(controller.step(sense, self.scenario.goal_at(state.t)), self.engine.command)
+            if goal.get(OFF):
+                controller.reset()
+                self._send({}, self.engine.command)
+                self._early = inf
+                return
+            self._send(controller.step(sense, goal), self.engine.command)
             self._early = state.t + controller.early(sense)
 
     def _send(self, commands: dict[str, float], to: Callable[[dict[str, float]], None]) -> None:
@@ -284,7 +293,7 @@ class Runner:
         assert sense is not None
         with self._asked() as controller:
             estimates = controller.estimates()
-        goal = self.scenario.goal_at(s.t)
+        goal = self.goal_at(s.t)
         axes = [axis in self.scenario.vessel.freedoms for axis in AXES]
         self.log.add(
             [
@@ -326,8 +335,8 @@ class Runner:
 
     def _show(self, over: bool = False) -> None:
         """New rows to the listeners, if there are enough or it is time; a frame once its commands are known."""
-        now = monotonic()
-        if not over and self.log.count - self._shown < CHUNK and now - self._told < (LIVE if self.pace else OFTEN):
+        now, often = monotonic(), self.often if self.pace else OFTEN
+        if not over and self.log.count - self._shown < CHUNK and now - self._told < often:
             return
         self._told = now
         if self.listen and self.log.count > self._shown:
@@ -339,7 +348,7 @@ class Runner:
 
     def _finished(self) -> bool:
         file, s = self.scenario.file, self._state
-        if s.t >= file.duration - 1e-9 or self.scenario.controller.done:
+        if s.t >= file.duration - 1e-9 or self.scenario.controller.done or self.enough():
             return True
         if file.until.starboard is None and file.until.turned is None:
             return False
