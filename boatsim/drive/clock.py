@@ -17,7 +17,7 @@ class Clock(Pace):
         self.late = self.periods = 0  # how many began late, and how many there were
         self.worst = 0.0  # [s] behind its time
         self.began: float | None = None  # when the simulated time 0 was [s since 1970]
-        self._due = 0.0
+        self._due = period  # the first control comes before the clock begins
 
     def wait(self, t: float, stop: Callable[[], bool] = bool) -> None:
         """Return when `t` [s] is due; where control is due too, see how late it is."""

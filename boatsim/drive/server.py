@@ -160,7 +160,8 @@ class Server:
             elif said == {"hidden": True}:
                 self.hands.let_go("page hidden")
             else:
-                sticks, moved = Sticks(*map(float, said["sticks"])), float(said["moved"])
+                surge, sway, yaw = map(float, said["sticks"])
+                sticks, moved = Sticks(surge, sway, yaw), float(said["moved"])
                 if not all(isfinite(x) and abs(x) <= 1.0 for x in sticks) or not isfinite(moved):
                     return False
                 self.hands.move(sticks, moved)
