@@ -90,6 +90,7 @@ def chromium(*more: str) -> Iterator[Any]:
                     page.say("Page.enable")
                     page.say("Page.addScriptToEvaluateOnNewDocument", source=before)
                     page.say("Page.navigate", url=url)
+                    page.until(f"location.href === {json.dumps(url)} && document.readyState === 'complete'")
                     return page
 
                 yield opened
