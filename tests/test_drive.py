@@ -3,21 +3,18 @@
 import asyncio
 import json
 import re
-import socket
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from html.parser import HTMLParser
 from pathlib import Path
-from urllib.error import HTTPError
-from urllib.request import Request, urlopen
 
+import chrome
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
@@ -33,10 +30,8 @@ from boatsim.recordings.table import Recording, read
 from boatsim.simulate import following, scenario
 from boatsim.simulate.manoeuvre import handled
 from boatsim.simulate.run import Runner
-from tests import chrome
 
-sockets = pytest.importorskip("websockets.sync.client")
-from boatsim.drive.server import STRANGE, TAKEN, Server  # noqa: E402
+pytest.importorskip("websockets")
 
 ways = st.floats(-1.0, 1.0)
 JOYSTICK = ["joystick_boat", "--controller", "l1_joystick"]
@@ -108,6 +103,7 @@ def of_hands() -> list[str]:
 
 
 @pytest.mark.parametrize("name", of_hands())
+@settings(max_examples=20)
 @given(sticks=st.builds(Sticks, ways, ways, ways))
 def test_hands_on_the_channels_stay_within_their_ranges_and_leave_them_neutral_in_the_middle(
     name: str, sticks: Sticks
@@ -255,115 +251,6 @@ def test_errors_of_a_log_in_pieces_are_those_of_the_whole(cuts: list[int]) -> No
     for begin, end in zip([0, *cuts], [*cuts, 100], strict=True):
         tally.add(rows(begin, end))
     assert tally.norms() == pytest.approx(following.errors(rows(0, 100)))
-
-
-# The server -----------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def server() -> Iterator[Server]:
-    with Server(Hands()) as made:
-        yield made
-
-
-def answer(url: str, **headers: str) -> int:
-    try:
-        with urlopen(Request(url, headers=headers), timeout=5) as found:
-            return int(found.status)
-    except HTTPError as error:
-        return error.code
-
-
-def dialled(server: Server, **more: object):
-    """A socket as the page opens it."""
-    own = f"http://127.0.0.1:{server.port}"
-    more = {"origin": own, **more}
-    return sockets.connect(server.address.replace("http", "ws") + "socket", **more)
-
-
-def test_a_wrong_token_gets_neither_page_nor_socket(server: Server) -> None:
-    own = f"http://127.0.0.1:{server.port}"
-    assert answer(server.address) == 200
-    for wrong in ("/", "/x/", f"/{server.address.split('/')[3][:-1]}/", "/socket"):
-        assert answer(own + wrong) == 403
-        with pytest.raises(Exception, match="403"):
-            sockets.connect(own.replace("http", "ws") + wrong + "socket", origin=own)
-
-
-def test_another_name_of_the_host_is_refused(server: Server) -> None:
-    for host in ("evil.example", f"evil.example:{server.port}", f"127.0.0.1.evil.example:{server.port}"):
-        assert answer(server.address, Host=host) == 421
-
-
-def test_a_socket_of_another_page_is_refused(server: Server) -> None:
-    for origin in ("http://evil.example", f"http://localhost:{server.port}", None, "null"):
-        with pytest.raises(Exception, match="403"):
-            dialled(server, origin=origin)
-
-
-def test_only_this_machine_can_reach_it(server: Server) -> None:
-    listening = Path("/proc/net/tcp").read_text().splitlines()[1:]
-    own = [line.split()[1] for line in listening if line.split()[1].endswith(f":{server.port:04X}")]
-    assert own and all(address.startswith("0100007F:") for address in own if address)
-    there = {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)}
-    for other in (ip for ip in there if not ip.startswith("127.")):
-        with socket.socket() as tried:
-            tried.settimeout(2.0)
-            assert tried.connect_ex((other, server.port)) != 0
-
-
-def test_one_drives_and_a_second_page_is_told_so(server: Server) -> None:
-    with dialled(server) as first:
-        first.send(json.dumps({"sticks": [0, 0, 0], "moved": 1.0}))
-        with dialled(server) as second, pytest.raises(Exception, match=str(TAKEN)):
-            second.recv(5)
-        first.send(json.dumps({"sticks": [0.5, 0, 0], "moved": 2.0}))
-        until(lambda: server.hands.sticks() not in (None, Sticks()))
-    until(lambda: server.hands.away == "page closed")
-    with dialled(server) as third:
-        third.send(json.dumps({"sticks": [0, 0, 0], "moved": 3.0}))
-        until(lambda: not server.hands.away)
-
-
-@pytest.mark.parametrize(
-    "message",
-    ["", "[", "{}", '{"sticks": [2, 0, 0], "moved": 0}', '{"sticks": [NaN, 0, 0], "moved": 0}', "[" * 900,
-     '{"sticks": [0, 0], "moved": 0}', '{"sticks": "abc", "moved": 0}', b"\xff\xfe", "x" * 5000],
-)  # fmt: skip
-def test_what_is_no_message_of_the_page_ends_the_socket_and_moves_nothing(server: Server, message: str) -> None:
-    with dialled(server) as page:
-        page.send(message)
-        with pytest.raises(Exception, match=f"{STRANGE}|1009|1007"):
-            page.recv(5)
-    until(lambda: server._driver is None)
-    assert server.hands.sticks() is None
-
-
-class Resources(HTMLParser):
-    """Every address that a page names, and every script or style that stands in a tag."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.found: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.found += [f"{name}={value}" for name, value in attrs if name in ("src", "href", "style", "action")]
-        self.found += [name for name, _ in attrs if name.startswith("on")]
-
-
-def test_the_page_fetches_nothing_and_may_run_its_own_script_alone(server: Server) -> None:
-    with urlopen(server.address, timeout=5) as found:
-        page, headers = found.read().decode(), found.headers
-    policy = headers["Content-Security-Policy"]
-    assert (
-        "default-src 'none'" in policy
-        and "unsafe" not in policy
-        and f"connect-src ws://127.0.0.1:{server.port};" in policy
-    )
-    assert headers["Cache-Control"] == "no-store" and headers["Referrer-Policy"] == "no-referrer"
-    reader = Resources()
-    reader.feed(page)
-    assert reader.found == ["href=data:,"]
 
 
 def until(true, seconds: float = 10.0) -> None:
