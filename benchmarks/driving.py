@@ -3,7 +3,7 @@
 A real Chromium without a window drives `joystick_boat` under `l1_joystick`; a gamepad is simulated in its page. A stick
 is pushed at random times; the page's clock and the log's are this machine's. Log: the first row whose goal is another
 one. Commands: the first row in which something else is sent, which waits for the controller's period. Picture: the page
-has the state that shows the goal.
+has the state that shows the goal. `--picture FILE.png` draws the page instead, with a fan on.
 """
 
 import argparse
@@ -12,7 +12,8 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -22,6 +23,7 @@ from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording, read
 from tests.chrome import Page, chromium
 
+SHOWN = Path(__file__).parents[1] / "examples" / "swing.toml"
 GOAL, SENT = "goal_surge_mps", "sent_pwm_port"
 PUSH = """new Promise(done => {
   const before = frame.goals[0][0], at = push(0, %g, 0, 0);
@@ -53,17 +55,34 @@ def line(name: str, seconds: Array) -> str:
     return f"{name:20}{np.median(ms):8.0f}{np.percentile(ms, 95):8.0f}{ms.max():8.0f}"
 
 
-def measured(folder: Path, seconds: float) -> None:
-    """One run, and what it shows."""
-    command = [sys.executable, "-m", "boatsim", "drive", "joystick_boat", "--controller", "l1_joystick", "--no-open"]
+@contextmanager
+def driven(folder: Path, seconds: float, *more: str) -> Iterator[Page]:
+    """The page of a run under way; at the end of the block it is awaited."""
+    command = [sys.executable, "-m", "boatsim", "drive", "joystick_boat", "--no-open", *more]
     command += ["--seconds", f"{seconds:g}", "--out", str(folder)]
     running = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
     assert running.stderr
     found = re.search(r"http://\S+", running.stderr.readline())
     assert found
     with chromium() as opened:
-        moved = pushes(opened(found[0]), seconds)
+        yield opened(found[0])
         running.communicate(timeout=60)
+
+
+def picture(folder: Path, path: Path) -> None:
+    """The page as it is after some seconds of turning."""
+    with driven(folder, 21.0, "--scenario", str(SHOWN)) as page:
+        page.until("frame && frame.t > 1 && !frame.away")
+        for until, push in ((8, "0.0, -0.6, 0.6, 0"), (14, "0.0, -0.5, -0.9, 0"), (19, "0.8, -0.1, 0.4, 0")):
+            page.run(f"push({push})")
+            page.until(f"frame.t > {until}")
+        page.picture(path, 1120, 770)
+
+
+def measured(folder: Path, seconds: float) -> None:
+    """One run, and what it shows."""
+    with driven(folder, seconds, "--controller", "l1_joystick") as page:
+        moved = pushes(page, seconds)
     log = read(folder / "recording.csv")
     facts = log.notes.facts
     begin = float(str(facts["began_unix_s"]))
@@ -80,8 +99,13 @@ def main(given: Sequence[str] | None = None) -> None:
     """As the command says."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--picture", type=Path)
+    asked = parser.parse_args(given)
     with TemporaryDirectory() as folder:
-        measured(Path(folder) / "out", parser.parse_args(given).seconds)
+        if asked.picture:
+            picture(Path(folder) / "out", asked.picture)
+        else:
+            measured(Path(folder) / "out", asked.seconds)
 
 
 if __name__ == "__main__":
