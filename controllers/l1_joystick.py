@@ -1,5 +1,6 @@
 """The corrected L1 joystick controller: one program for surge, sway and yaw commands at once."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import isnan, nan
@@ -94,6 +95,10 @@ class L1Joystick(Outboards, CompiledController):
             "reference_u_mps": Estimate(float(surge["model"]), nan, nan),
             "reference_r_radps": Estimate(float(yaw["model"]), nan, nan),
         }
+
+    def largest_goals(self) -> Mapping[str, float]:
+        """With the rated turn [rad/s]."""
+        return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
         """The feedback loops, for margins; the input gain spans the boats of the Monte Carlo study."""

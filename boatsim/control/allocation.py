@@ -261,6 +261,10 @@ class Outboards(Checked):
         """Thrust difference D [N] for a sway command [m/s]; sway is open loop, so D is all there is to choose."""
         return sway_difference(self.nominal, sway)
 
+    def largest_goals(self) -> Mapping[str, float]:
+        """The sway command [m/s] that takes the largest thrust difference."""
+        return {"sway_mps": self.rated_sway * self.largest_difference / self.sway_thrust}
+
     def lever(self, angle: float) -> float:
         """Moment over thrust difference [m] with both motors turned inward by `angle` [rad]."""
         return lever(self.nominal, angle)

@@ -1,6 +1,6 @@
 """Stretches of a run in one compiled call: a compiled law and a boat in open water, left alone until a row is due."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,13 +53,13 @@ class Leap:
         found = int(((until - t) / self.engine.step - 1.0 + 1e-6) / self.steps)
         return found if found >= WORTH_IT else 0
 
-    def leap(self, t: float, periods: int) -> Leapt:
+    def leap(self, t: float, periods: int, goal_at: Callable[[float], Mapping[str, float]]) -> Leapt:
         """So many periods, each with the law at its end; the commands in force now were the law's last."""
         law, aboard, engine = self._law, self._aboard, self.engine
         law.orders[0] = [engine.sent[c] for c in law.places]
         aboard.saturated[:] = aboard.total[:] = 0.0
         times = [t + i * self.period for i in range(1, periods + 1)] if self.scenario.file.goal else []
-        law.sail([self.scenario.goal_at(at) for at in times] or [{}] * periods, begins=False)
+        law.sail([goal_at(at) for at in times] or [{}] * periods, begins=False)
         for c, order in zip(law.places, law.orders[0].tolist(), strict=True):
             engine.sent[c] = order
         names, seconds = list(self.scenario.vessel.commands), periods * self.period

@@ -25,7 +25,7 @@ from boatsim.simulate.leap import Leap
 from boatsim.simulate.log import FiledLog, Log
 from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.pace import Pace
-from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.scenario import OFF, Scenario
 from boatsim.simulate.sensing import sensed
 from boatsim.simulate.world import Tank
 
@@ -66,6 +66,9 @@ class Runner:
         self.watch: Listener | None = None
         self.folder: Path | None = None
         self.pace: Pace | None = None  # somebody watches: then the listeners get rows more often
+        self.often = LIVE  # [s] how often, then
+        self.goal_at: Callable[[float], Mapping[str, float]] = scenario.goal_at  # or what somebody's hands ask for
+        self.enough: Callable[[], bool] = bool  # whether they have had enough: the run is over, and whole
         self.seed = file.seed if seed is None else seed
         vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
         self.engine = stepper(scenario, vessel)
@@ -103,11 +106,11 @@ class Runner:
         self._check_measured()
         try:
             while not (complete := self._finished()) and not stop():
-                if self._leaping:
+                if self.pace:  # before the step: what is sensed and asked for at its end is that of its time
+                    self.pace.wait(self._state.t + self.engine.step, stop)
+                elif self._leaping:
                     self._leap(self._leaping)
                 self._advance()
-                if self.pace:
-                    self.pace.wait(self._state.t, stop)
                 if progress and self._steps >= told + 100:
                     progress(self._state.t)
                     told = self._steps
@@ -222,7 +225,7 @@ class Runner:
         if not periods or abs(self._due - t - leap.period) > 1e-9:
             return
         with self._asked():
-            done = leap.leap(t, periods)
+            done = leap.leap(t, periods, self.goal_at)
         self._steps += done.steps
         self._saturated.update(done.saturated)
         self._average.append(([done.mean[n] for n in self._sent_channels], done.seconds))
@@ -250,8 +253,14 @@ class Runner:
             (state.phi, state.p),
         )  # fmt: skip
         sense = self._sense = sensed(usual, self.scenario.aboard, self.engine, self._noise)
+        goal = self.goal_at(state.t)
         with self._asked() as controller:
-            self._send(controller.step(sense, self.scenario.goal_at(state.t)), self.engine.command)
+            if goal.get(OFF):
+                controller.reset()
+                self._send({}, self.engine.command)
+                self._early = inf
+                return
+            self._send(controller.step(sense, goal), self.engine.command)
             self._early = state.t + controller.early(sense)
 
     def _send(self, commands: dict[str, float], to: Callable[[dict[str, float]], None]) -> None:
@@ -308,7 +317,7 @@ class Runner:
         assert sense is not None
         with self._asked() as controller:
             estimates = controller.estimates()
-        goal = self.scenario.goal_at(s.t)
+        goal = self.goal_at(s.t)
         self.log.add(
             [
                 s.t,
@@ -349,8 +358,8 @@ class Runner:
 
     def _show(self, over: bool = False) -> None:
         """New rows to the listeners, if there are enough or it is time; a frame once its commands are known."""
-        now = monotonic()
-        if not over and self.log.count - self._shown < CHUNK and now - self._told < (LIVE if self.pace else OFTEN):
+        now, often = monotonic(), self.often if self.pace else OFTEN
+        if not over and self.log.count - self._shown < CHUNK and now - self._told < often:
             return
         self._told = now
         if self.listen and self.log.count > self._shown:
@@ -362,7 +371,7 @@ class Runner:
 
     def _finished(self) -> bool:
         file, s = self.scenario.file, self._state
-        if s.t >= file.duration - 1e-9 or self.scenario.controller.done:
+        if s.t >= file.duration - 1e-9 or self.scenario.controller.done or self.enough():
             return True
         if file.until.starboard is None and file.until.turned is None:
             return False

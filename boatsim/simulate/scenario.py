@@ -26,6 +26,8 @@ from boatsim.simulate.sensing import Sensor, Sensors
 
 T = TypeVar("T")
 M = TypeVar("M", Controller, Measure, Sensor)
+OFF = "off"  # key of a goal while which nothing is steered: commands are neutral, the controller begins anew after it
+BESIDE = ("from", OFF)  # keys of a goal that name no goal
 End = Annotated[float, Field(allow_inf_nan=True)]  # of a band; it may be open
 
 
@@ -163,7 +165,7 @@ class Scenario:
     @property
     def goal_keys(self) -> list[str]:
         """All that its goals speak of, in the order of the file."""
-        return list(dict.fromkeys(key for goal in self.file.goal for key in goal if key != "from"))
+        return list(dict.fromkeys(key for goal in self.file.goal for key in goal if key not in BESIDE))
 
     def goal_at(self, t: float) -> Mapping[str, float]:
         """Goals in force at time t [s]: the last [[goal]] that has begun."""
@@ -252,8 +254,8 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
     allowed = type(controller).goals or tuple(vessel.commands)
     for goal in file.goal:
         for key in goal:
-            if key != "from" and key not in allowed:
-                raise BadInput(unknown_name("[[goal]] key", key, ["from", *allowed]))
+            if key not in BESIDE and key not in allowed:
+                raise BadInput(unknown_name("[[goal]] key", key, [*BESIDE, *allowed]))
             channel, value = vessel.commands.get(key), goal[key]
             if channel and isinstance(value, float) and not channel.low <= value <= channel.high:
                 raise BadInput(f"[[goal]] {key} = {value:g}; allowed {channel.low:g} to {channel.high:g}")
