@@ -1,0 +1,108 @@
+"""Kernels of a fleet: one thread a boat. `boatsim.warp.program` writes a vessel's own functions before them.
+
+The text below is Warp's: it is read, not imported.
+"""
+
+HEAD = '''"""A vessel's program for Warp, translated by boatsim; not meant to be edited."""
+
+import warp as wp
+
+wp.set_module_options({"enable_backward": False, "max_unroll": 1, "fast_math": False})
+T = wp.{real}
+
+
+@wp.func
+def hypotenuse(a: T, b: T):
+    return wp.sqrt(a * a + b * b)
+
+
+@wp.func
+def with_sign(size: T, of: T):
+    return wp.abs(size) if of >= T(0.0) else -wp.abs(size)
+
+
+@wp.func
+def sign_of(x: T):
+    return wp.where(x > T(0.0), T(1.0), wp.where(x < T(0.0), T(-1.0), T(0.0)))
+
+
+@wp.func
+def remainder(a: int, b: int):
+    return ((a % b) + b) % b
+
+
+@wp.func
+def power_2(x: T):
+    return x * x
+
+
+@wp.func
+def power_3(x: T):
+    return x * x * x
+
+
+@wp.func
+def power_4(x: T):
+    return (x * x) * (x * x)
+
+
+@wp.func
+def bits(high: wp.uint32, low: wp.uint32):
+    return (wp.uint64(high) << wp.uint64(32)) | wp.uint64(low)
+'''
+
+PASSIVE = '''
+@wp.kernel
+def add_forces(
+    t: wp.array(dtype=wp.float64), part: wp.array(dtype=T), share: T, at: int, q: wp.array2d(dtype=T),
+    qd: wp.array2d(dtype=T), act: wp.array2d(dtype=T), p: wp.array2d(dtype=T), k: wp.array2d(dtype=T),
+    force: wp.array2d(dtype=T), M: wp.array2d(dtype=T),
+):
+    """What the passive callback does: forces, and the mass of the water, at one stage of a Runge-Kutta step."""
+    i = wp.tid()
+    motion_add_to_mujoco(
+        T(t[i]) + share * part[i], q[i], qd[i], act[i], at, p[i % p.shape[0]], k[i % k.shape[0]], force[i], M[i]
+    )
+'''
+
+ACTUATE = '''
+@wp.kernel
+def begin_part(
+    commands: wp.array2d(dtype=T), dt: T, p: wp.array2d(dtype=T), t: wp.array(dtype=wp.float64), part: wp.array(dtype=T),
+    ahead: wp.array(dtype=int), left: wp.array(dtype=T), least: wp.array(dtype=T), before: wp.array(dtype=T),
+    memory: wp.array2d(dtype=T), act: wp.array2d(dtype=T),
+):
+    """The next part of each boat's own step: it ends where a signal jumps or bends. One that is done stands still."""
+    i = wp.tid()
+    t[i] = t[i] + wp.float64(part[i])
+    part[i] = T(0.0)
+    if left[i] <= T({enough}) and ahead[i] > 0:
+        ahead[i] = ahead[i] - 1
+        left[i] = dt
+        least[i] = T({shortest})
+        before[i] = T(0.0)
+    own = i % p.shape[0]
+    if left[i] > T({enough}):
+        length = run_until_bend(commands[i], memory[i], left[i], least[i], p[own])
+        least[i] = run_least_after(length, before[i], least[i])
+        before[i] = length
+        run_actuate_in_place(commands[i], memory[i], length, p[own], act[i])
+        left[i] = left[i] - length
+        part[i] = length
+
+
+@wp.kernel
+def finish_part(t: wp.array(dtype=wp.float64), part: wp.array(dtype=T)):
+    """The clock at the end of what was stepped."""
+    i = wp.tid()
+    t[i] = t[i] + wp.float64(part[i])
+    part[i] = T(0.0)
+
+
+@wp.kernel
+def look(ahead: wp.array(dtype=int), left: wp.array(dtype=T), unfinished: wp.array(dtype=int)):
+    """Whether any boat is still on its way."""
+    i = wp.tid()
+    if left[i] > T({enough}) or ahead[i] > 0:
+        unfinished[0] = 1
+'''

@@ -1,0 +1,47 @@
+"""A vessel's compiled program, translated for Warp and kept where compiled programs are."""
+
+import sys
+from collections.abc import Sequence
+from hashlib import sha256
+from types import ModuleType
+
+from boatsim.errors import BadInput
+from boatsim.physics import cache, vessel
+from boatsim.physics.program import Program
+from boatsim.warp.kernels import ACTUATE, HEAD, PASSIVE
+from boatsim.warp.kinds import NOTHING, REAL, ROW, WHOLE, Kind
+from boatsim.warp.translate import NoForm, Translation
+
+ENTRIES: dict[str, tuple[Kind, ...]] = {  # what kernels call, and the kinds of its arguments
+    "add_to_mujoco": (REAL, ROW, ROW, ROW, WHOLE, ROW, ROW, ROW, ROW),
+    "actuate_in_place": (ROW, ROW, REAL, ROW, NOTHING, ROW),
+    "until_bend": (ROW, ROW, REAL, REAL, ROW, NOTHING),
+    "least_after": (REAL, REAL, REAL),
+}
+
+
+def text_of(program: Program, real: str = "float32") -> str:
+    """The whole module; `real` is the kind of its floats. Raises BadInput for an effect that has no form there."""
+    code, translation = program.module, Translation()
+    try:
+        for name, kinds in ENTRIES.items():
+            translation.function(getattr(code, name), kinds)
+    except NoForm as error:
+        raise BadInput(f"{program.vessel.name}: {error}") from None
+    limits = {"enough": code.run.ENOUGH, "shortest": code.run.SHORTEST}
+    return "\n\n".join([HEAD.replace("{real}", real), translation.text, PASSIVE, ACTUATE.format(**limits)])
+
+
+def module(program: Program, real: str = "float32") -> ModuleType:
+    """The translated program, ready for Warp to compile, with the kernels of `boatsim.warp.kernels`."""
+    text = text_of(program, real)
+    return cache.package({"__init__.py": text}, f"warp_{sha256(text.encode()).hexdigest()[:16]}")
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Print a vessel's program as Warp has it."""
+    print(text_of(Program(vessel.load(arguments[0]))))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
