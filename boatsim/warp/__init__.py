@@ -1,1 +1,3 @@
-"""Large fleets on mujoco_warp: the compiled program of a vessel written anew for Warp, on a GPU or on Warp's CPU device."""
+"""Large fleets on Warp: a vessel's compiled program, translated, on a GPU or on Warp's CPU device."""
+
+from boatsim.warp.fleet import Fleet as Fleet

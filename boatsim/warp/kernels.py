@@ -32,6 +32,11 @@ def remainder(a: int, b: int):
 
 
 @wp.func
+def quotient(a: int, b: int):
+    return (a - remainder(a, b)) / b
+
+
+@wp.func
 def power_2(x: T):
     return x * x
 
@@ -47,11 +52,13 @@ def power_4(x: T):
 
 
 @wp.func
-def bits(high: wp.uint32, low: wp.uint32):
-    return (wp.uint64(high) << wp.uint64(32)) | wp.uint64(low)
+def bits(a: int, b: int, c: int, d: int):
+    return ((wp.uint64(a) * wp.uint64(65536) + wp.uint64(b)) * wp.uint64(65536) + wp.uint64(c)) * wp.uint64(
+        65536
+    ) + wp.uint64(d)
 '''
 
-PASSIVE = '''
+FORCES = '''
 @wp.kernel
 def add_forces(
     t: wp.array(dtype=wp.float64), part: wp.array(dtype=T), share: T, at: int, q: wp.array2d(dtype=T),
@@ -65,7 +72,7 @@ def add_forces(
     )
 '''
 
-ACTUATE = '''
+PARTS = '''
 @wp.kernel
 def begin_part(
     commands: wp.array2d(dtype=T), dt: T, p: wp.array2d(dtype=T), t: wp.array(dtype=wp.float64), part: wp.array(dtype=T),
@@ -105,4 +112,26 @@ def look(ahead: wp.array(dtype=int), left: wp.array(dtype=T), unfinished: wp.arr
     i = wp.tid()
     if left[i] > T({enough}) or ahead[i] > 0:
         unfinished[0] = 1
+'''
+
+ALONE = '''
+@wp.kernel
+def run_on(
+    commands: wp.array2d(dtype=T), dt: T, steps: int, p: wp.array2d(dtype=T), k: wp.array2d(dtype=T),
+    none: wp.array(dtype=T), t: wp.array(dtype=wp.float64), y: wp.array2d(dtype=T), memory: wp.array2d(dtype=T),
+    act: wp.array2d(dtype=T),
+):
+    """Many steps without MuJoCo, as the twin goes."""
+    i = wp.tid()
+    own, mass = i % p.shape[0], i % k.shape[0]
+    for _ in range(steps):
+        left, least, before = T(dt), T({shortest}), T(0.0)
+        while left > T({enough}):
+            part = run_until_bend(commands[i], memory[i], left, least, p[own])
+            least = run_least_after(part, before, least)
+            before = T(part)
+            run_actuate_in_place(commands[i], memory[i], part, p[own], act[i])
+            motion_step_in_place(T(t[i]), y[i], part, act[i], p[own], k[mass], none)
+            t[i] = t[i] + wp.float64(part)
+            left = left - part
 '''

@@ -6,33 +6,18 @@ a tuple variables of their own. What has no form there is refused, with its file
 """
 
 import ast
+import builtins
 import inspect
-import math
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
-import numpy as np
-
 from boatsim.errors import BadInput
-from boatsim.warp.kinds import (
-    BITS, NONE, NOTHING, REAL, ROW, TRUTH, WHOLE, Kind, Record, Value, constant, flat, named, real, tuple_of, written,
+from boatsim.warp.values import (
+    BITS, NONE, NOTHING, REAL, ROW, TRUTH, WHOLE, Kind, Record, Value, constant, flat, named, real, truth, tuple_of,
+    written,
 )  # fmt: skip
-
-MATH: Mapping[Any, str] = {
-    **{getattr(source, name): f"wp.{name}" for source in (math, np) for name in ("cos", "sin", "tan", "exp", "log", "sqrt", "tanh", "floor")},
-    math.atan2: "wp.atan2", np.arctan2: "wp.atan2", math.acos: "wp.acos", math.asin: "wp.asin", math.atan: "wp.atan",
-    math.hypot: "hypotenuse", np.hypot: "hypotenuse", math.copysign: "with_sign", np.copysign: "with_sign",
-    np.sign: "sign_of", np.abs: "wp.abs", abs: "wp.abs", math.fabs: "wp.abs", math.pow: "wp.pow",
-    min: "wp.min", max: "wp.max", np.minimum: "wp.min", np.maximum: "wp.max",
-}  # fmt: skip
-CASTS: Mapping[Any, Kind] = {float: REAL, np.float64: REAL, int: WHOLE, np.int64: WHOLE, np.uint64: BITS, bool: TRUTH}
-OPERATORS: Mapping[type[ast.AST], str] = {
-    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**", ast.Mod: "%", ast.FloorDiv: "//",
-    ast.BitXor: "^", ast.BitAnd: "&", ast.BitOr: "|", ast.LShift: "<<", ast.RShift: ">>",
-    ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
-    ast.And: "and", ast.Or: "or", ast.USub: "-", ast.UAdd: "+", ast.Not: "not",
-}  # fmt: skip
+from boatsim.warp.words import CASTS, MATH, OF_TRUTHS, OF_TWO, OF_WHOLE, OF_WHOLES, OPERATORS, safe
 
 
 class NoForm(BadInput):
@@ -58,7 +43,9 @@ class Translation:
         """The struct of a named tuple's type, by the name that it has where it is first met."""
         if kind not in self._records:
             found = Record(self.unused(name), tuple(kind._fields))
-            self.structs.append("\n".join(["@wp.struct", f"class {found.name}:", *(f"    {f}: T" for f in found.fields), ""]))
+            self.structs.append(
+                "\n".join(["@wp.struct", f"class {found.name}:", *(f"    {f}: T" for f in found.fields), ""])
+            )
             self._records[kind] = found
         return self._records[kind]
 
@@ -195,7 +182,7 @@ class Body:
 
     def say_If(self, node: ast.If) -> bool:  # noqa: N802
         """A branch; of one that is decided beforehand the other is not written at all."""
-        test = self.value(node.test)
+        test = truth(self.value(node.test))
         if test.fixed is not None:
             return self.block(node.body if test.fixed else node.orelse)
         self.say(f"if {test.text}:")
@@ -218,7 +205,7 @@ class Body:
     def say_While(self, node: ast.While) -> None:  # noqa: N802
         """A loop while something holds."""
         before = len(self.lines)
-        test = self.value(node.test)
+        test = truth(self.value(node.test))
         if len(self.lines) != before:
             raise self.refuse(node, f"'while {ast.unparse(node.test)}'")
         self.say(f"while {test.text}:")
@@ -284,10 +271,7 @@ class Body:
             return getattr(self.found(node.value), node.attr, None)
         if not isinstance(node, ast.Name) or node.id in self.variables:
             return None
-        inner = inspect.getclosurevars(self.python).nonlocals
-        import builtins
-
-        return inner.get(node.id, self.python.__globals__.get(node.id, getattr(builtins, node.id, None)))
+        return self.python.__globals__.get(node.id, getattr(builtins, node.id, None))
 
     def of_Attribute(self, node: ast.Attribute) -> Value:  # noqa: N802
         """A field of a record, or a number of a module."""
@@ -310,6 +294,11 @@ class Body:
                 return owner.parts[index.fixed]
             if isinstance(owner.kind, Record):
                 return Value(REAL, f"{owner.text}.{owner.kind.fields[index.fixed]}")
+        if index.kind == WHOLE and isinstance(owner.kind, tuple) and not store:
+            found = owner.parts[-1]
+            for i, part in reversed(list(enumerate(owner.parts[:-1]))):
+                found = Value(part.kind, f"({part.text} if {index.text} == {i} else {found.text})")
+            return found
         raise self.refuse(node, f"'{ast.unparse(node)}'")
 
     def of_Tuple(self, node: ast.Tuple) -> Value:  # noqa: N802
@@ -322,26 +311,24 @@ class Body:
         if isinstance(node.op, ast.USub) and isinstance(of.fixed, int | float):
             return constant(-of.fixed)
         if isinstance(node.op, ast.Not):
-            return constant(not of.fixed) if of.fixed is not None else Value(TRUTH, f"(not {of.text})")
+            return constant(not of.fixed) if of.fixed is not None else Value(TRUTH, f"(not {truth(of).text})")
         return Value(of.kind, f"({self.operator(node.op)}{of.text})")
 
     def of_BinOp(self, node: ast.BinOp) -> Value:  # noqa: N802
         """Arithmetic; whole numbers become floats beside floats, and where they are divided."""
         a, b, op = self.value(node.left), self.value(node.right), self.operator(node.op)
-        if op == "/" or REAL in (a.kind, b.kind) or TRUTH in (a.kind, b.kind):
+        if a.kind == b.kind == TRUTH and op in OF_TRUTHS:
+            return Value(TRUTH, f"({a.text} {OF_TRUTHS[op]} {b.text})")
+        if op == "/" or not {a.kind, b.kind} <= {WHOLE, BITS}:
             if op == "**":
                 return self.power(a, b)
-            a, b = real(a), real(b)
-            if op in ("%", "//"):
+            if op not in "+-*/" or op == "//":
                 raise self.refuse(node, f"'{ast.unparse(node)}'")
-        elif a.kind != b.kind or a.kind not in (WHOLE, BITS):
+            return Value(REAL, f"({real(a).text} {op} {real(b).text})")
+        if a.kind != b.kind or op == "**":
             raise self.refuse(node, f"'{ast.unparse(node)}'")
-        elif op in ("**", "//"):
-            raise self.refuse(node, f"'{ast.unparse(node)}'")
-        elif op == "%":
-            return Value(WHOLE, f"remainder({a.text}, {b.text})")
-        if a.kind == WHOLE and isinstance(a.fixed, int) and isinstance(b.fixed, int):
-            return constant(eval(f"{a.fixed} {op} {b.fixed}"))  # noqa: S307  # two whole numbers and an operator
+        if op in OF_WHOLES:
+            return Value(WHOLE, f"{OF_WHOLES[op]}({a.text}, {b.text})")
         return Value(a.kind, f"({a.text} {op} {b.text})")
 
     def power(self, base: Value, exponent: Value) -> Value:
@@ -364,7 +351,7 @@ class Body:
     def of_BoolOp(self, node: ast.BoolOp) -> Value:  # noqa: N802
         """And, or: as far as needed."""
         before = len(self.lines)
-        parts = [self.value(v) for v in node.values]
+        parts = [truth(self.value(v)) for v in node.values]
         if len(self.lines) != before:
             raise self.refuse(node, f"'{ast.unparse(node)}'")
         deciding = isinstance(node.op, ast.Or)
@@ -377,7 +364,7 @@ class Body:
 
     def of_IfExp(self, node: ast.IfExp) -> Value:  # noqa: N802
         """One or the other; as a branch where either needs more than an expression."""
-        test = self.value(node.test)
+        test = truth(self.value(node.test))
         if test.fixed is not None:
             return self.value(node.body if test.fixed else node.orelse)
         before, begun = len(self.lines), self.temporaries
@@ -418,10 +405,12 @@ class Body:
             name = ast.unparse(node.func).rpartition(".")[2]
             record, given = self.program.record(what, name), self.bound(node, what.__new__, skip=1)
             return Value(record, f"{record.name}({', '.join(real(v).text for v in given)})")
-        if _hashable(what) and what in CASTS:
+        if isinstance(what, Hashable) and what in CASTS:
             return self.cast(CASTS[what], self.value(node.args[0]))
-        if _hashable(what) and what in MATH:
+        if isinstance(what, Hashable) and what in MATH:
             return self.mathematics(what, [self.value(a) for a in node.args])
+        if what is len:
+            return constant(len(self.found(node.args[0])))
         python = getattr(what, "py_func", what)
         if inspect.isfunction(python):
             return self.call(what, self.bound(node, python))
@@ -438,7 +427,9 @@ class Body:
         """A call of a function of ours; a tuple that it returns goes into variables."""
         python = getattr(what, "py_func", what)
         floats = [python.__annotations__.get(n) in (float, "float") for n in python.__code__.co_varnames[: len(given)]]
-        given = [real(v) if is_float and v.kind in (WHOLE, TRUTH) else v for v, is_float in zip(given, floats, strict=True)]
+        given = [
+            real(v) if is_float and v.kind in (WHOLE, TRUTH) else v for v, is_float in zip(given, floats, strict=True)
+        ]
         name, kind = self.program.function(what, [v.kind for v in given])
         text = f"{name}({', '.join(leaf.text for v in given for leaf in flat(v))})"
         if not isinstance(kind, tuple):
@@ -448,14 +439,13 @@ class Body:
         return own
 
     def mathematics(self, what: Any, given: Sequence[Value]) -> Value:
-        """A function of one number or two; of `min` and `max` any number."""
+        """A function of numbers; `min` and `max` of many by twos."""
         name = MATH[what]
-        whole = name in ("wp.min", "wp.max", "wp.abs") and all(v.kind == WHOLE for v in given)
+        whole = name in OF_WHOLE and all(v.kind == WHOLE for v in given)
         texts = [v.text if whole else real(v).text for v in given]
-        text = texts[0] if name in ("wp.min", "wp.max") else f"{name}({', '.join(texts)})"
-        for more in texts[1:] if name in ("wp.min", "wp.max") else ():
-            text = f"{name}({text}, {more})"
-        return Value(WHOLE if whole else REAL, text)
+        while name in OF_TWO and len(texts) > 2:
+            texts[:2] = [f"{name}({texts[0]}, {texts[1]})"]
+        return Value(WHOLE if whole else REAL, f"{name}({', '.join(texts)})")
 
     def cast(self, kind: Kind, value: Value) -> Value:
         """A number as another kind."""
@@ -464,22 +454,10 @@ class Body:
         if value.kind == kind:
             return value
         if kind == TRUTH:
-            return Value(TRUTH, f"({value.text} != {constant(0.0).text if value.kind == REAL else 'int(0)'})")
+            return truth(value)
         if kind == WHOLE and isinstance(value.fixed, int | float):
             return constant(int(value.fixed))
         if kind == BITS and isinstance(value.fixed, int):
-            return Value(BITS, f"bits({value.fixed >> 32}, {value.fixed & 0xFFFFFFFF})")
+            parts = (str(value.fixed >> shift & 0xFFFF) for shift in (48, 32, 16, 0))  # Warp's literals are shorter
+            return Value(BITS, f"bits({', '.join(parts)})")
         return Value(kind, f"{kind}({value.text})")
-
-
-def safe(name: str) -> str:
-    """A variable's name, less what Warp keeps to itself."""
-    return f"{name}_" if name in ("T", "wp", "int", "float", "bool", "range") else name
-
-
-def _hashable(what: Any) -> bool:
-    try:
-        hash(what)
-    except TypeError:
-        return False
-    return True

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 from typing import Union
 
 REAL, WHOLE, BITS, TRUTH, ROW, NOTHING = "T", "int", "wp.uint64", "bool", "wp.array(dtype=T)", ""
@@ -57,7 +58,7 @@ def constant(number: object) -> Value:
     if isinstance(number, int):
         return Value(WHOLE, str(number), fixed=number)
     assert isinstance(number, float)
-    text = f"T({number!r})" if abs(number) < float("inf") else ("T(wp.inf)" if number > 0.0 else "-T(wp.inf)")
+    text = f"T({number!r})" if isfinite(number) else ("T(wp.inf)" if number > 0.0 else "-T(wp.inf)")
     return Value(REAL, text, fixed=number)
 
 
@@ -68,6 +69,15 @@ def real(value: Value) -> Value:
     if isinstance(value.fixed, bool | int):
         return constant(float(value.fixed))
     return Value(REAL, f"wp.where({value.text}, T(1.0), T(0.0))" if value.kind == TRUTH else f"T({value.text})")
+
+
+def truth(value: Value) -> Value:
+    """A number as whether it is not zero."""
+    if value.kind == TRUTH:
+        return value
+    if value.fixed is not None:
+        return constant(bool(value.fixed))
+    return Value(TRUTH, f"({value.text} != {'T(0.0)' if value.kind == REAL else '0'})")
 
 
 def written(kind: Kind) -> str:

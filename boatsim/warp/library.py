@@ -1,0 +1,29 @@
+"""Warp itself: imported when a fleet is made, quiet, with its compiled kernels in boatsim's own folder."""
+
+import os
+from typing import Any
+
+from boatsim.errors import BadInput
+from boatsim.physics.cache import cache_folder
+
+
+def warp() -> Any:
+    """The library. Raises BadInput where it is missing."""
+    try:
+        import warp as wp
+    except ImportError:
+        raise BadInput('a fleet on Warp needs it installed: pip install "boatsim[warp]"') from None
+    if wp.config.kernel_cache_dir is None and "WARP_CACHE_PATH" not in os.environ:
+        wp.config.kernel_cache_dir = str(cache_folder() / "warp")
+        wp.config.log_level = wp.LOG_ERROR  # it would tell of every module that it compiles
+    return wp
+
+
+def device(name: str) -> Any:
+    """A device by its name, "cpu" or "cuda:0". Raises BadInput for one that is not there."""
+    wp = warp()
+    try:
+        return wp.get_device(name)
+    except (ValueError, RuntimeError):
+        there = ", ".join(str(found) for found in wp.get_devices())
+        raise BadInput(f"device = {name!r}; allowed here: {there}") from None
