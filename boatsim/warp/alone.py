@@ -3,7 +3,7 @@
 import numpy as np
 
 from boatsim.physics.signals import Array
-from boatsim.warp.boats import Boats
+from boatsim.warp.boats import Boats, Places
 
 
 class Alone:
@@ -14,7 +14,7 @@ class Alone:
         self._y = boats.zeros(2 * boats.code.NQ)
         self._none = boats.filled(np.zeros(boats.code.NQ))
 
-    def put(self, rows: Array, y: Array) -> None:
+    def put(self, rows: Places, y: Array) -> None:
         """States (N, 2 NQ) of some boats, joint coordinates and rates."""
         self.boats.put(self._y, rows, y)
 

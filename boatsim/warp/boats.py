@@ -1,14 +1,17 @@
-"""What a device holds of a fleet beside its motion: commands, actuators, parameters, the masses that follow from them."""
+"""What a device holds of a fleet beside its motion: commands, actuators, parameters and masses."""
 
 from types import ModuleType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
 from boatsim.warp import program as programs
 from boatsim.warp.library import device, warp
+
+Places = NDArray[np.int64]  # of boats in a fleet
 
 
 class Boats:
@@ -42,7 +45,7 @@ class Boats:
         """These numbers on the device."""
         return self.wp.array(values, dtype=kind or self.real, device=self.device)
 
-    def put(self, where: Any, rows: Array, what: Any) -> None:
+    def put(self, where: Any, rows: Places, what: Any) -> None:
         """Rows of an array of the device."""
         found = where.numpy()
         found[rows] = what

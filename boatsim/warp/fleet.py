@@ -11,7 +11,7 @@ from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.warp.alone import Alone
-from boatsim.warp.boats import Boats
+from boatsim.warp.boats import Boats, Places
 from boatsim.warp.on_mujoco import OnMujoco
 
 MOST = 2**24  # whole numbers up to here are what they are in single precision
@@ -43,13 +43,13 @@ class Fleet:
         self.motion: OnMujoco | Alone = OnMujoco(self._boats) if mujoco else Alone(self._boats)
         self.reset()
 
-    def reset(self, states: Any = None, commands: Any = None, boats: Sequence[int] | Array | None = None) -> None:
+    def reset(self, states: Any = None, commands: Any = None, boats: Sequence[int] | Places | None = None) -> None:
         """Put boats (default: all) to t = 0 and to states, default the origin at rest, actuators settled at commands.
 
         A single row of states or commands is for all of them; without commands the actuators are neutral.
         """
         code, on = self.program.module, self.program.switches()
-        rows = np.arange(self.n) if boats is None else np.asarray(boats, dtype=int)
+        rows = np.arange(self.n) if boats is None else np.asarray(boats, dtype=np.int64)
         start = np.zeros(2 * code.NQ) if states is None else np.asarray(states, dtype=float)
         if start.shape not in ((2 * code.NQ,), (len(rows), 2 * code.NQ)):
             raise BadInput(f"states are {start.shape}; allowed is ({len(rows)}, {2 * code.NQ}), or one row")

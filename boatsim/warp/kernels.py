@@ -75,9 +75,9 @@ def add_forces(
 PARTS = '''
 @wp.kernel
 def begin_part(
-    commands: wp.array2d(dtype=T), dt: T, p: wp.array2d(dtype=T), t: wp.array(dtype=wp.float64), part: wp.array(dtype=T),
-    ahead: wp.array(dtype=int), left: wp.array(dtype=T), least: wp.array(dtype=T), before: wp.array(dtype=T),
-    memory: wp.array2d(dtype=T), act: wp.array2d(dtype=T),
+    commands: wp.array2d(dtype=T), dt: T, p: wp.array2d(dtype=T), t: wp.array(dtype=wp.float64),
+    part: wp.array(dtype=T), ahead: wp.array(dtype=int), left: wp.array(dtype=T), least: wp.array(dtype=T),
+    before: wp.array(dtype=T), memory: wp.array2d(dtype=T), act: wp.array2d(dtype=T),
 ):
     """The next part of each boat's own step: it ends where a signal jumps or bends. One that is done stands still."""
     i = wp.tid()

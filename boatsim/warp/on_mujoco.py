@@ -13,7 +13,7 @@ from boatsim.errors import BadInput
 from boatsim.physics.kernel.equations import COORDINATES, SIGN
 from boatsim.physics.signals import Array
 from boatsim.simulate import world
-from boatsim.warp.boats import Boats
+from boatsim.warp.boats import Boats, Places
 
 STAGES = ((0.0, 0), (0.5, 1), (0.5, 1), (1.0, 2))  # of a step: its share, and the actuators at begin, middle or end
 IDLE = (
@@ -49,7 +49,7 @@ class OnMujoco:
         self._stage = 0
         self._graph: Any = None
 
-    def put(self, rows: Array, y: Array) -> None:
+    def put(self, rows: Places, y: Array) -> None:
         """States (N, 2 NQ) of some boats, joint coordinates and rates."""
         half = y.shape[1] // 2
         for where, what in ((self.data.qpos, y[:, :half]), (self.data.qvel, y[:, half:])):

@@ -14,9 +14,24 @@ from typing import Any
 
 from boatsim.errors import BadInput
 from boatsim.warp.values import (
-    BITS, NONE, NOTHING, REAL, ROW, TRUTH, WHOLE, Kind, Record, Value, constant, flat, named, real, truth, tuple_of,
+    BITS,
+    NONE,
+    NOTHING,
+    REAL,
+    ROW,
+    TRUTH,
+    WHOLE,
+    Kind,
+    Record,
+    Value,
+    constant,
+    flat,
+    named,
+    real,
+    truth,
+    tuple_of,
     written,
-)  # fmt: skip
+)
 from boatsim.warp.words import CASTS, MATH, OF_TRUTHS, OF_TWO, OF_WHOLE, OF_WHOLES, OPERATORS, safe
 
 

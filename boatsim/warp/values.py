@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import Union
+from typing import TypeAlias
 
 REAL, WHOLE, BITS, TRUTH, ROW, NOTHING = "T", "int", "wp.uint64", "bool", "wp.array(dtype=T)", ""
 
@@ -16,7 +16,7 @@ class Record:
     fields: tuple[str, ...]
 
 
-Kind = Union[str, Record, tuple["Kind", ...]]  # a tuple is no value of Warp's: its parts go their own ways
+Kind: TypeAlias = "str | Record | tuple[Kind, ...]"  # a tuple is no value of Warp's: its parts go their own ways
 
 
 @dataclass(frozen=True)
