@@ -26,7 +26,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "physics",
     "recordings control",
     "simulate",
-    "measures",
+    "measures warp",
     "view",
     "diagnose",
     "newboat",
@@ -39,6 +39,7 @@ ABOUT = {  # what the picture says of each folder
     "control": "blocks of controllers",
     "simulate": "what a run is",
     "measures": "norms of a run",
+    "warp": "fleets on a GPU",
     "view": "runs in rerun",
     "diagnose": "what was left out",
     "newboat": "from particulars",
@@ -121,6 +122,7 @@ COLOURS = (
     "#648729",
     "#7074dc",
     "#b0588f",
+    "#1f7f9c",
     "#768290",
 )  # of a folder
 STYLE = (

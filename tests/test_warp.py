@@ -23,7 +23,7 @@ from boatsim.warp import Fleet
 from boatsim.warp.kernels import HEAD
 from boatsim.warp.library import warp
 from boatsim.warp.on_mujoco import OnMujoco
-from boatsim.warp.program import kept
+from boatsim.warp.program import kept, module
 from boatsim.warp.translate import Translation
 from boatsim.warp.values import REAL, ROW, WHOLE
 
@@ -214,3 +214,9 @@ def test_without_the_libraries_one_line_says_what_brings_them(missing: str, monk
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(BadInput, match=r'pip install "boatsim\[warp\]"'):
         Fleet(vessel.load("joystick_boat"), 2)
+
+
+@pytest.mark.parametrize("name", ["joystick_boat", "otter"])
+def test_a_program_compiles_for_a_gpu_where_there_is_none(name: str, tmp_path: Path) -> None:
+    warp().compile_aot_module(module(Program(vessel.load(name))), arch=90, module_dir=tmp_path)
+    assert any(path.stat().st_size > 10_000 for path in tmp_path.glob("*.cubin"))
