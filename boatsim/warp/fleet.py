@@ -38,8 +38,8 @@ class Fleet:
         self.vessel, self.n, self.step = vessel, n, step
         self.program = Program(vessel)
         self._boats = Boats(self.program, n, step, device, "float64" if double else "float32")
-        if not double:
-            self._check_courses()
+        self._whole = () if double else self._courses()
+        self._check_courses(self._boats.values)
         self.motion: OnMujoco | Alone = OnMujoco(self._boats) if mujoco else Alone(self._boats)
         self.reset()
 
@@ -57,8 +57,11 @@ class Fleet:
         sent = self._taken(self.program.command_array({}) if commands is None else commands, len(rows))
         memory, act = np.zeros((len(rows), self.program.memory_size)), np.zeros((len(rows), self.program.held_size))
         values = self._boats.values
-        for i, row in enumerate(rows.tolist()):
+        alike = len(values) == 1 and (sent == sent[:1]).all()
+        for i, row in enumerate(rows[:1].tolist() if alike else rows.tolist()):
             code.settle(sent[i], memory[i], values[row % len(values)], on, act[i])
+        if alike:
+            memory[:], act[:] = memory[:1], act[:1]
         self.motion.put(rows, np.broadcast_to(y, (len(rows), 2 * code.NQ)))
         for where, what in zip(("commands", "memory", "act", "t"), (sent, memory, act, 0.0), strict=True):
             self._boats.put(getattr(self._boats, where), rows, what)
@@ -80,7 +83,9 @@ class Fleet:
         if given.ndim and len(own) != self.n:
             own = np.repeat(own, self.n, axis=0)
         effect, _, key = parameter.rpartition(".")
+        own = own.copy()
         own[:, self.program.index(effect, key)] = given
+        self._check_courses(own)
         self._boats.take(own)
         self.motion.renew()
 
@@ -102,10 +107,16 @@ class Fleet:
             raise BadInput(f"commands are {rows.shape}; allowed is ({n}, {width}), or one row")
         return np.ascontiguousarray(np.broadcast_to(taken(self.vessel, rows), (n, width)))
 
-    def _check_courses(self) -> None:
+    def _courses(self) -> tuple[int, ...]:
+        """Places of the parameters that number a random course: those that a seed changes."""
+        found = list[int]()
+        for effect, first in zip(self.program.effects, self.program.offsets, strict=True):
+            pairs = zip(effect.values(), effect.seeded(1).values(), strict=True)
+            found += [first + i for i, (value, other) in enumerate(pairs) if value != other]
+        return tuple(found)
+
+    def _check_courses(self, values: Array) -> None:
         """Raises BadInput for a random course by a number that single precision lacks: it would be another one."""
-        for effect in self.program.effects:
-            drawn = zip(type(effect).params(), effect.values(), effect.seeded(1).values(), strict=True)
-            for key, value, other in drawn:
-                if value != other and value > MOST:
-                    raise BadInput(f"{self.vessel.name}: {effect.name}.{key} = {value:.0f}; on Warp allowed to {MOST}")
+        worst = values[:, self._whole].max(initial=0.0)
+        if worst > MOST:
+            raise BadInput(f"{self.vessel.name}: realisation = {worst:.0f}; in single precision allowed to {MOST}")

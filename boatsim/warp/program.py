@@ -1,12 +1,10 @@
 """A vessel's compiled program, translated for Warp and kept where compiled programs are."""
 
-import sys
-from collections.abc import Sequence
 from hashlib import sha256
 from types import ModuleType
 
 from boatsim.errors import BadInput
-from boatsim.physics import cache, vessel
+from boatsim.physics import cache
 from boatsim.physics.program import Program
 from boatsim.warp.kernels import ALONE, FORCES, HEAD, PARTS
 from boatsim.warp.translate import NoForm, Translation
@@ -44,12 +42,3 @@ def module(program: Program, real: str = "float32") -> ModuleType:
 def kept(text: str) -> ModuleType:
     """A module of Warp's as a file in the cache: Warp reads the text of what it compiles."""
     return cache.package({"__init__.py": text}, f"warp_{sha256(text.encode()).hexdigest()[:16]}")
-
-
-def main(arguments: Sequence[str]) -> None:
-    """Print a vessel's program as Warp has it."""
-    print(text_of(Program(vessel.load(arguments[0])), "float32"))
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])
