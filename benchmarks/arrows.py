@@ -39,7 +39,7 @@ ABOUT = {  # what the picture says of each folder
     "control": "blocks of controllers",
     "simulate": "what a run is",
     "measures": "norms of a run",
-    "warp": "fleets on a GPU",
+    "warp": "boats on a GPU",
     "view": "runs in rerun",
     "diagnose": "what was left out",
     "newboat": "from particulars",

@@ -1,4 +1,4 @@
-"""Speed of fleets on one of Warp's devices, and how far they are from the twin.
+"""Speed of batches on one of Warp's devices, and how far they are from the twin.
 
 python -m benchmarks.gpu                     boat-steps/s against the number of boats, about a minute
 python -m benchmarks.gpu --device cuda:0     the same on a GPU, up to a million boats
@@ -22,7 +22,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.twin import Twin
-from boatsim.warp import Fleet
+from boatsim.warp import Batch
 from boatsim.warp.library import device as known
 
 STEP, SECOND = 0.02, 50  # [s], steps in a second
@@ -42,17 +42,17 @@ def drawn(boat: Vessel, *shape: int) -> tuple[Array, Array]:
     return starts, rng.uniform(ranges[:, 0], ranges[:, 1], (*shape, len(ranges)))
 
 
-def rate(fleet: Fleet) -> float:
+def rate(batch: Batch) -> float:
     """Boat-steps/s, the median of some seconds of sailing."""
-    starts, commands = drawn(fleet.vessel, ROUNDS + 1, fleet.n)
-    fleet.reset(starts[0], commands[0])  # one start for all: settling each at its own is not what is measured
-    fleet.advance(commands[0], SECOND)  # compiles, warms up
+    starts, commands = drawn(batch.vessels[0], ROUNDS + 1, batch.n)
+    batch.reset(starts, commands[0])
+    batch.advance(commands[0], SECOND)  # compiles, warms up
     found = []
     for row in commands[1:]:
         begin = perf_counter()
-        fleet.advance(row, SECOND)
-        _ = fleet.t  # waits for the device
-        found.append(fleet.n * SECOND / (perf_counter() - begin))
+        batch.advance(row, SECOND)
+        batch.motion.boats.t.numpy()  # waits for the device
+        found.append(batch.n * SECOND / (perf_counter() - begin))
     return median(found)
 
 
@@ -60,20 +60,20 @@ def speed(boat: Vessel, device: str, largest: int) -> Table:
     """The table of rates."""
     table = Table("boats", *(f"{way} [boat-steps/s]" for way in WAYS), box=None)
     for n in (n for n in SIZES if n <= largest):
-        rates = (rate(Fleet(boat, n, STEP, device, mujoco=on_mujoco)) for on_mujoco in WAYS.values())
+        rates = (rate(Batch(boat, n, STEP, device, mujoco=on_mujoco)) for on_mujoco in WAYS.values())
         table.add_row(f"{n:,}", *(f"{found:.2e}" for found in rates))
     return table
 
 
 def furthest(boat: Vessel, device: str, on_mujoco: bool) -> float:
     """Largest difference to the twin, each state by its largest size over all boats and times."""
-    fleet, twin = Fleet(boat, BOATS, STEP, device, mujoco=on_mujoco), Twin(boat, STEP)
+    batch, twin = Batch(boat, BOATS, STEP, device, mujoco=on_mujoco), Twin(boat, STEP)
     starts, commands = drawn(boat, SECONDS, BOATS)
-    fleet.reset(starts, commands[0])
-    found = [fleet.states]
+    batch.reset(starts, commands[0])
+    found = [batch.states]
     for row in commands:
-        fleet.advance(row, SECOND)
-        found.append(fleet.states)
+        batch.advance(row, SECOND)
+        found.append(batch.states)
     wanted = np.stack([twin.rollout(starts[i], commands[:, i], 1.0) for i in range(BOATS)], axis=1)
     return float((np.abs(np.array(found) - wanted) / np.abs(wanted).max(axis=(0, 1))).max())
 
@@ -89,7 +89,7 @@ def agreement(device: str) -> Table:
 
 def main() -> None:
     """Print a table."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.gpu", description="Fleets on Warp.")
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.gpu", description="Batches on Warp.")
     parser.add_argument("--device", default="cpu", help="one of Warp's: cpu, cuda:0")
     parser.add_argument("--vessel", default="joystick_boat", help="whose speed is measured")
     parser.add_argument("--most", type=int, help="boats at most")

@@ -1,4 +1,4 @@
-"""Fleets on Warp's CPU device: the twin's laws, the water's mass in MuJoCo's matrix, each boat its own."""
+"""Batches on Warp's CPU device: the twin's laws, the water's mass in MuJoCo's matrix, each boat its own."""
 
 import sys
 from collections.abc import Callable
@@ -18,8 +18,9 @@ from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 from boatsim.physics.trust import trusting
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate import batch as cores
 from boatsim.simulate.twin import Twin
-from boatsim.warp import Fleet
+from boatsim.warp import Batch
 from boatsim.warp.kernels import HEAD
 from boatsim.warp.library import warp
 from boatsim.warp.on_mujoco import OnMujoco
@@ -58,54 +59,55 @@ def drawn_starts(boat: Vessel, n: int) -> Array:
     return np.random.default_rng(2).uniform(-0.3, 0.3, (n, 2 * len(boat.freedoms)))
 
 
-def sailed(fleet: Fleet, starts: Array, commands: Array) -> Array:
+def sailed(batch: Batch, starts: Array, commands: Array) -> Array:
     """States (rows + 1, n, 2 NQ) once a second, each row of commands (rows, n, C) held for one."""
-    fleet.reset(starts, commands[0])
-    found = [fleet.states]
+    batch.reset(starts, commands[0])
+    found = [batch.states]
     for row in commands:
-        fleet.advance(row, round(1.0 / fleet.step))
-        found.append(fleet.states)
+        batch.advance(row, round(1.0 / batch.step))
+        found.append(batch.states)
     return np.array(found)
 
 
-def furthest(fleet: Fleet, boats_there: int) -> float:
+def furthest(batch: Batch, boats_there: int) -> float:
     """Largest difference to the twin over ten seconds, each state by its largest size."""
-    boat = fleet.vessel
-    starts, commands = drawn_starts(boat, fleet.n), drawn_commands(boat, (SECONDS, fleet.n))
-    found, twin = sailed(fleet, starts, commands)[:, :boats_there], Twin(boat, fleet.step)
+    boat = batch.vessels[0]
+    starts, commands = drawn_starts(boat, batch.n), drawn_commands(boat, (SECONDS, batch.n))
+    found, twin = sailed(batch, starts, commands)[:, :boats_there], Twin(boat, batch.step)
     wanted = np.stack([twin.rollout(starts[i], commands[:, i], 1.0) for i in range(boats_there)], axis=1)
     return float((np.abs(found - wanted) / np.abs(wanted).max(axis=(0, 1))).max())
 
 
-def test_a_fleet_on_mujoco_goes_as_the_twin() -> None:
-    assert furthest(Fleet(vessel.load("joystick_boat"), 1000), 50) < 1e-4
+def test_a_batch_on_mujoco_goes_as_the_twin() -> None:
+    assert furthest(Batch(vessel.load("joystick_boat"), 1000), 50) < 1e-4
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_a_thousand_boats_of_any_vessel_go_as_the_twin(name: str) -> None:
-    assert furthest(Fleet(vessel.load(name), 1000), 1000) < 1e-4
+    assert furthest(Batch(vessel.load(name), 1000), 1000) < 1e-4
 
 
 @pytest.mark.parametrize("double", [False, True])
-def test_a_fleet_without_mujoco_goes_as_the_twin(double: bool) -> None:
-    fleet = Fleet(vessel.load("joystick_boat"), 100, mujoco=False, double=double)
-    assert furthest(fleet, 100) < (1e-9 if double else 1e-4)
+def test_a_batch_without_mujoco_goes_as_the_twin(double: bool) -> None:
+    batch = Batch(vessel.load("joystick_boat"), 100, mujoco=False, double=double)
+    assert furthest(batch, 100) < (1e-9 if double else 1e-4)
 
 
 def test_accelerations_are_the_forces_by_the_whole_mass(tmp_path: Path) -> None:
     """Water with a centre ahead of the origin: M nu' = thrust, at rest on any heading."""
     boat = boats.planar(tmp_path, {"added_mass": {"sway_at": 0.2}})
-    fleet = Fleet(boat, 3)
+    batch = Batch(boat, 3)
     headings, pushed = (0.0, 0.7, -2.0), (4.0, 0.5)  # [rad], [N] ahead, [N m]
     commands = {**boats.push(*pushed), "steer_port_rad": 0.6, "steer_starboard_rad": 0.6}
-    fleet.reset([(0, 0, psi, 0, 0, 0) for psi in headings], [[commands[c] for c in boat.commands]])
+    batch.reset([(0, 0, psi, 0, 0, 0) for psi in headings], [[commands[c] for c in boat.commands]])
     c, s = np.cos(0.6), np.sin(0.6)
     force = np.array([pushed[0] * c, pushed[0] * s, pushed[1] * c])
     M = np.array([[6.0 + 0.6, 0, 0], [0, 6.0 + 3.0, 3.0 * 0.2], [0, 3.0 * 0.2, 0.5 + 0.3 + 3.0 * 0.2**2]])
     ahead, aside, turning = np.linalg.solve(M, force)
-    assert isinstance(fleet.motion, OnMujoco)
-    for psi, found in zip(headings, fleet.motion.accelerations(), strict=True):
+    batch.send()
+    assert isinstance(batch.motion, OnMujoco)
+    for psi, found in zip(headings, batch.motion.accelerations(), strict=True):
         turned = (np.cos(psi) * ahead - np.sin(psi) * aside, np.sin(psi) * ahead + np.cos(psi) * aside, turning)
         assert found == pytest.approx(turned, rel=1e-5, abs=1e-6)
 
@@ -144,53 +146,58 @@ def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
 
 
 @pytest.fixture(scope="module")
-def fleet() -> Fleet:
+def batch() -> Batch:
     """Five boats, which tests put back to where they begin."""
-    return Fleet(vessel.load("joystick_boat"), 5)
+    return Batch(vessel.load("joystick_boat"), 5)
 
 
-def test_each_boat_has_its_own_commands_parameters_and_clock(fleet: Fleet) -> None:
-    commands = drawn_commands(fleet.vessel, (5,))
-    fleet.reset(drawn_starts(fleet.vessel, 5), commands)
-    fleet.set("surge_drag.linear", [1.0, 2.0, 3.0, 4.0, 5.0])
-    fleet.advance(commands, 20)
-    together = fleet.states
-    for i in range(5):
-        fleet.reset(drawn_starts(fleet.vessel, 5)[i], commands[i])
-        fleet.set("surge_drag.linear", 1.0 + i)
-        fleet.advance(steps=20)
-        assert fleet.states == pytest.approx(np.tile(together[i], (5, 1)), abs=1e-6)
-    fleet.reset(boats=[1, 3])
-    assert fleet.t == pytest.approx([0.4, 0.0, 0.4, 0.0, 0.4])
-    assert not fleet.states[[1, 3]].any()
+@pytest.mark.parametrize("mujoco", [True, False])
+def test_all_calls_do_what_they_do_on_cores(mujoco: bool) -> None:
+    """Parameters, resets of some boats, another load, commands by name: a batch on cores beside that of a device."""
+    boats_there = [vessel.load("joystick_boat", [load]) for load in ("light", "heavy")]
+    there, here = Batch(boats_there, 5, mujoco=mujoco), cores.Batch(boats_there, 5)
+    commands, starts = drawn_commands(boats_there[0], (5,)), drawn_starts(boats_there[0], 5)
+    for batch in (there, here):
+        batch.reset(starts, commands)
+        batch.set("surge_drag.linear", [0.1, 0.2, 0.3, 0.4, 0.5])
+        batch.advance(commands[::-1], 20)
+        batch.reset(starts[0], boats=[1, 3])
+        batch.assign(0, boats=[4])
+        batch.advance({"pwm_port": 100.0, "steer_port_rad": 0.3}, 17)
+        batch.set("surge_drag.quadratic", 1.0, boats=[0])
+        batch.advance(steps=3)
+    assert there.t.tolist() == here.t.tolist()
+    assert there.states == pytest.approx(here.states, rel=1e-4, abs=1e-5)
+    assert there.actuators == pytest.approx(here.actuators, rel=1e-4, abs=1e-5)
+    assert len(np.unique(here.states[:, 0].round(4))) == 5  # no two alike
 
 
-def test_what_comes_in_two_calls_is_what_comes_in_one(fleet: Fleet) -> None:
-    commands, starts = drawn_commands(fleet.vessel, (5,)), drawn_starts(fleet.vessel, 5)
-    fleet.reset(starts)
-    fleet.advance(commands, 30)
-    at_once = fleet.states
-    fleet.reset(starts)
-    fleet.advance(commands, 13)
-    fleet.advance(steps=17)
-    assert fleet.states.tolist() == at_once.tolist()
+def test_what_comes_in_two_calls_is_what_comes_in_one(batch: Batch) -> None:
+    commands, starts = drawn_commands(batch.vessels[0], (5,)), drawn_starts(batch.vessels[0], 5)
+    batch.reset(starts)
+    batch.advance(commands, 30)
+    at_once = batch.states
+    batch.reset(starts)
+    batch.advance(commands, 13)
+    batch.advance(steps=17)
+    assert batch.states.tolist() == at_once.tolist()
 
 
 @pytest.mark.parametrize(
     ("does", "says"),
     [
-        (lambda f: f.advance([[1.0]]), "commands are (1, 1); allowed is (5, 6), or one row"),
-        (lambda f: f.reset([1.0, 2.0]), "states are (2,); allowed is (5, 6), or one row"),
+        (lambda f: f.advance([[1.0]]), "commands of shape (1, 1); allowed are 6 a boat"),
+        (lambda f: f.reset([1.0, 2.0]), "states of shape (2,); allowed are 6 finite numbers a boat"),
         (lambda f: f.set("surge_drag.liner", 1.0), "did you mean 'surge_drag.linear'"),
-        (lambda f: f.set("surge_drag.linear", [1.0]), "surge_drag.linear is (1,); allowed is (5,), or one number"),
-        (lambda f: Fleet(f.vessel, 2, device="moon"), "device = 'moon'; allowed here: cpu"),
-        (lambda f: Fleet(f.vessel, 2, double=True), "mujoco_warp knows single precision alone"),
-        (lambda f: Fleet(vessel.load("kynoc", settings={"filtered_sea": {"realisation": 2**24 + 1}}), 2), "allowed to"),
+        (lambda f: f.set("surge_drag.linear", -1.0), "surge_drag.linear = -1; allowed 0 to"),
+        (lambda f: Batch(f.vessels[0], 2, device="moon"), "device = 'moon'; allowed here: cpu"),
+        (lambda f: Batch(f.vessels[0], 2, double=True), "mujoco_warp knows single precision alone"),
+        (lambda f: Batch(vessel.load("kynoc", settings={"filtered_sea": {"realisation": 2**24 + 1}}), 2), "allowed to"),
     ],
 )
-def test_a_mistake_is_named_in_one_line(fleet: Fleet, does: Callable[[Fleet], object], says: str) -> None:
+def test_a_mistake_is_named_in_one_line(batch: Batch, does: Callable[[Batch], object], says: str) -> None:
     with pytest.raises(BadInput) as caught:
-        does(fleet)
+        does(batch)
     assert says in str(caught.value) and "\n" not in str(caught.value)
 
 
@@ -206,14 +213,14 @@ def test_an_effect_that_has_no_form_there_is_named_with_its_line(tmp_path: Path)
     place = boats.written(tmp_path, "odd_boat", boats.PLANAR + '\n[[effect]]\nuse = "odd.py"\n')
     (place / "odd.py").write_text(law)
     with trusting(allowed=[tmp_path]), pytest.raises(BadInput, match=r"odd_boat: .*odd.py:10: .* has no Warp form"):
-        Fleet(vessel.load(str(place)), 2)
+        Batch(vessel.load(str(place)), 2)
 
 
 @pytest.mark.parametrize("missing", ["warp", "mujoco_warp"])
 def test_without_the_libraries_one_line_says_what_brings_them(missing: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(BadInput, match=r'pip install "boatsim\[warp\]"'):
-        Fleet(vessel.load("joystick_boat"), 2)
+        Batch(vessel.load("joystick_boat"), 2)
 
 
 @pytest.mark.parametrize("name", ["joystick_boat", "otter"])

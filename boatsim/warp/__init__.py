@@ -1,3 +1,3 @@
-"""Large fleets on Warp: a vessel's compiled program, translated, on a GPU or on Warp's CPU device."""
+"""Large batches on Warp: a vessel's compiled program, translated, on a GPU or on Warp's CPU device."""
 
-from boatsim.warp.fleet import Fleet as Fleet
+from boatsim.warp.batch import Batch as Batch

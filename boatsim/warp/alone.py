@@ -1,9 +1,10 @@
-"""A fleet's motion in one kernel of its own, without MuJoCo: the twin's Runge-Kutta steps, boat by boat."""
+"""A batch's motion in one kernel of its own, without MuJoCo: the twin's Runge-Kutta steps, boat by boat."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.physics.signals import Array
-from boatsim.warp.boats import Boats, Places
+from boatsim.warp.boats import Boats
 
 
 class Alone:
@@ -14,16 +15,16 @@ class Alone:
         self._y = boats.zeros(2 * boats.code.NQ)
         self._none = boats.filled(np.zeros(boats.code.NQ))
 
-    def put(self, rows: Places, y: Array) -> None:
-        """States (N, 2 NQ) of some boats, joint coordinates and rates."""
-        self.boats.put(self._y, rows, y)
+    def take(self, numbers: NDArray[np.int64]) -> None:
+        """Boats become of other vessels: what they weigh is among the masses already."""
+
+    def put(self, y: Array) -> None:
+        """States (n, 2 NQ), joint coordinates and rates."""
+        self._y.assign(y)
 
     def states(self) -> Array:
         """(n, 2 NQ)."""
         return np.asarray(self._y.numpy(), dtype=float)
-
-    def renew(self) -> None:
-        """Nothing here remembers where the parameters lie."""
 
     def advance(self, steps: int) -> None:
         """Steps under the commands there are."""

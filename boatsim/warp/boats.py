@@ -1,17 +1,14 @@
-"""What a device holds of a fleet beside its motion: commands, actuators, parameters and masses."""
+"""What a device holds of a batch beside its motion: commands, actuators, parameters and masses."""
 
 from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
 from boatsim.warp import program as programs
 from boatsim.warp.library import device, warp
-
-Places = NDArray[np.int64]  # of boats in a fleet
 
 
 class Boats:
@@ -27,15 +24,19 @@ class Boats:
         self.commands = self.zeros(len(program.vessel.inputs))
         self.memory, self.act = self.zeros(program.memory_size), self.zeros(program.held_size)
         self.t = self.filled(np.zeros(n), self.wp.float64)  # [s]
-        self.take(program.values()[None])
+        self.moves = 0  # how often parameters came to lie elsewhere
+        self.p = self.k = self.filled(np.zeros((0, 0)))
 
-    def take(self, values: Array) -> None:
-        """Parameters (n, P), or (1, P) for all boats alike."""
-        self.values = values
-        k, on = np.zeros((len(values), self.code.K)), self.program.switches()
-        for row, masses in zip(values, k, strict=True):
-            self.code.constants(self.program.body, row, on, masses)
-        self.p, self.k = self.filled(values), self.filled(k)
+    def take(self, p: Array, k: Array) -> None:
+        """Parameters (n, P) and masses (n, K); a single row of each where all boats are alike."""
+        alike = (p == p[:1]).all() and (k == k[:1]).all()
+        p, k = (p[:1], k[:1]) if alike else (p, k)
+        if self.p.shape == p.shape:
+            self.p.assign(p)
+            self.k.assign(k)
+        else:
+            self.p, self.k = self.filled(p), self.filled(k)
+            self.moves += 1
 
     def zeros(self, *shape: int) -> Any:
         """(n, ...) of zeros."""
@@ -44,12 +45,6 @@ class Boats:
     def filled(self, values: Array, kind: Any = None) -> Any:
         """These numbers on the device."""
         return self.wp.array(values, dtype=kind or self.real, device=self.device)
-
-    def put(self, where: Any, rows: Places, what: Any) -> None:
-        """Rows of an array of the device."""
-        found = where.numpy()
-        found[rows] = what
-        where.assign(found)
 
     def launch(self, kernel: str, *inputs: Any) -> None:
         """One of the program's kernels, a thread a boat."""

@@ -1,4 +1,4 @@
-"""Kernels of a fleet: one thread a boat. `boatsim.warp.program` writes a vessel's own functions before them.
+"""Kernels of a batch: one thread a boat. `boatsim.warp.program` writes a vessel's own functions before them.
 
 The text below is Warp's: it is read, not imported.
 """
@@ -99,11 +99,9 @@ def begin_part(
 
 
 @wp.kernel
-def finish_part(t: wp.array(dtype=wp.float64), part: wp.array(dtype=T)):
-    """The clock at the end of what was stepped."""
-    i = wp.tid()
-    t[i] = t[i] + wp.float64(part[i])
-    part[i] = T(0.0)
+def rest(part: wp.array(dtype=T)):
+    """Nothing of what was stepped is left over for the clock."""
+    part[wp.tid()] = T(0.0)
 
 
 @wp.kernel
@@ -117,21 +115,23 @@ def look(ahead: wp.array(dtype=int), left: wp.array(dtype=T), unfinished: wp.arr
 ALONE = '''
 @wp.kernel
 def run_on(
-    commands: wp.array2d(dtype=T), dt: T, steps: int, p: wp.array2d(dtype=T), k: wp.array2d(dtype=T),
+    commands: wp.array2d(dtype=T), step: wp.float64, steps: int, p: wp.array2d(dtype=T), k: wp.array2d(dtype=T),
     none: wp.array(dtype=T), t: wp.array(dtype=wp.float64), y: wp.array2d(dtype=T), memory: wp.array2d(dtype=T),
     act: wp.array2d(dtype=T),
 ):
     """Many steps without MuJoCo, as the twin goes."""
     i = wp.tid()
     own, mass = i % p.shape[0], i % k.shape[0]
-    for _ in range(steps):
+    for j in range(steps):
+        now = t[i] + wp.float64(j) * step
+        dt = T(step)
         left, least, before = T(dt), T({shortest}), T(0.0)
         while left > T({enough}):
             part = run_until_bend(commands[i], memory[i], left, least, p[own])
             least = run_least_after(part, before, least)
             before = T(part)
             run_actuate_in_place(commands[i], memory[i], part, p[own], act[i])
-            motion_step_in_place(T(t[i]), y[i], part, act[i], p[own], k[mass], none)
-            t[i] = t[i] + wp.float64(part)
+            motion_step_in_place(T(now), y[i], part, act[i], p[own], k[mass], none)
+            now = now + wp.float64(part)
             left = left - part
 '''

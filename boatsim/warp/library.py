@@ -1,4 +1,4 @@
-"""Warp itself: imported when a fleet is made, quiet, with its compiled kernels in boatsim's own folder."""
+"""Warp itself: imported when a batch is made, quiet, with its compiled kernels in boatsim's own folder."""
 
 import os
 import sys
@@ -15,7 +15,7 @@ def warp() -> Any:
     try:
         import warp as wp
     except ImportError:
-        raise BadInput('a fleet on Warp needs it installed: pip install "boatsim[warp]"') from None
+        raise BadInput('a batch on Warp needs it installed: pip install "boatsim[warp]"') from None
     if wp.config.kernel_cache_dir is None and "WARP_CACHE_PATH" not in os.environ:
         wp.config.kernel_cache_dir = str(cache_folder() / "warp")
         wp.config.log_level = wp.LOG_ERROR  # it would tell of every module that it compiles

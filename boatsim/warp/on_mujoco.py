@@ -1,21 +1,25 @@
-"""A fleet's motion on mujoco_warp: forces and the mass of the water enter through its passive callback.
+"""A batch's motion on mujoco_warp: forces and the mass of the water enter through its passive callback.
 
 mujoco_warp steps all its worlds together, by MuJoCo's Runge-Kutta method. Each boat has a step length of its own there,
 so that each may end a step where a signal of its actuators jumps or bends, and go on from there while others are ahead.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
 from boatsim.physics.kernel.equations import COORDINATES, SIGN
 from boatsim.physics.signals import Array
+from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
-from boatsim.warp.boats import Boats, Places
+from boatsim.warp.boats import Boats
 
 STAGES = ((0.0, 0), (0.5, 1), (0.5, 1), (1.0, 2))  # of a step: its share, and the actuators at begin, middle or end
+BODY = ("body_mass", "body_subtreemass", "body_inertia", "body_ipos", "jnt_pos")  # what loads differ in
 IDLE = (
     mujoco.mjtDisableBit.mjDSBL_CONSTRAINT | mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_GRAVITY
 )
@@ -24,14 +28,15 @@ IDLE = (
 class OnMujoco:
     """All boats as the worlds of one model in open water."""
 
-    def __init__(self, boats: Boats) -> None:
-        """Raises BadInput where mujoco_warp is missing."""
+    def __init__(self, boats: Boats, vessels: Sequence[Vessel]) -> None:
+        """`vessels` are those that boats may be of. Raises BadInput where mujoco_warp is missing."""
         try:
             import mujoco_warp
         except ImportError:
-            raise BadInput('a fleet on MuJoCo needs mujoco_warp: pip install "boatsim[warp]"') from None
+            raise BadInput('a batch on MuJoCo needs mujoco_warp: pip install "boatsim[warp]"') from None
         self.boats, self._mjw = boats, mujoco_warp
-        model = world.build(boats.program.vessel, step=boats.step, show=False)
+        self._models = [world.build(v, step=boats.step, show=False) for v in vessels]
+        model = self._models[0]
         model.opt.disableflags = IDLE  # nothing touches anything; its forces are ours
         joints = [model.joint(i).name for i in range(model.njnt)]
         coordinates = [COORDINATES[i] for i in boats.code.FREE]
@@ -48,14 +53,26 @@ class OnMujoco:
         self.model.callback.passive = self._passive
         self._stage = 0
         self._graph: Any = None
+        self._recorded = -1
 
-    def put(self, rows: Places, y: Array) -> None:
-        """States (N, 2 NQ) of some boats, joint coordinates and rates."""
+    def take(self, numbers: NDArray[np.int64]) -> None:
+        """Boats become of the vessels of these numbers (n,): each world has its hull's mass, inertia and joints."""
+        b = self.boats
+        for name in BODY if len(self._models) > 1 else ():
+            found, there = np.stack([getattr(m, name) for m in self._models])[numbers], getattr(self.model, name)
+            if len(there) == b.n:
+                there.assign(found)
+            else:
+                setattr(self.model, name, b.filled(found, there.dtype))
+                b.moves += 1
+
+    def put(self, y: Array) -> None:
+        """States (n, 2 NQ), joint coordinates and rates."""
         half = y.shape[1] // 2
         for where, what in ((self.data.qpos, y[:, :half]), (self.data.qvel, y[:, half:])):
             turned = np.empty(what.shape)
             turned[:, self._place] = self._sign * what
-            self.boats.put(where, rows, turned)
+            where.assign(turned)
 
     def states(self) -> Array:
         """(n, 2 NQ)."""
@@ -63,28 +80,24 @@ class OnMujoco:
         return np.hstack([self._sign * q, self._sign * qd]).astype(float)
 
     def accelerations(self) -> Array:
-        """(n, NQ) of the joint coordinates, as they are now."""
+        """(n, NQ) of the joint coordinates, of what is on the device now."""
         self._stage = 0
         with self.boats.wp.ScopedDevice(self.boats.device):
             self._mjw.forward(self.model, self.data)
         return np.asarray(self._sign * self.data.qacc.numpy()[:, self._place], dtype=float)
 
-    def renew(self) -> None:
-        """Parameters lie elsewhere: what was recorded knows the old ones."""
-        self._graph = None
-
     def advance(self, steps: int) -> None:
         """Steps under the commands there are; boats that cut theirs take longer, and the last one is waited for."""
         b = self.boats
         with b.wp.ScopedDevice(b.device):
-            if b.device.is_cuda and self._graph is None:
+            if b.device.is_cuda and self._recorded != b.moves:  # a graph knows where parameters lay
                 self._record()
             self._ahead.fill_(steps)
             for _ in range(steps):
                 self._all_on()
             while b.code.HAS_PAUSE and self._any_left():
                 self._all_on()
-        b.launch("finish_part", b.t, self._part)
+        b.launch("rest", self._part)
 
     def _all_on(self) -> None:
         """A part of a step of each boat."""
@@ -98,7 +111,7 @@ class OnMujoco:
         self._part_of_all()  # nobody has steps ahead: nothing moves
         with self.boats.wp.ScopedCapture() as capture:
             self._part_of_all()
-        self._graph = capture.graph
+        self._graph, self._recorded = capture.graph, self.boats.moves
 
     def _part_of_all(self) -> None:
         """Actuators over a part of each boat's own step, then a Runge-Kutta step as long."""
