@@ -9,6 +9,7 @@ its own commands, which jump once a second; what it takes to end steps where a l
 """
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -87,14 +88,14 @@ def agreement(device: str) -> Table:
     return table
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print a table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.gpu", description="Batches on Warp.")
     parser.add_argument("--device", default="cpu", help="one of Warp's: cpu, cuda:0")
     parser.add_argument("--vessel", default="joystick_boat", help="whose speed is measured")
     parser.add_argument("--most", type=int, help="boats at most")
     parser.add_argument("--agreement", action="store_true", help="how far from the twin, over ten seconds")
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     try:
         found = known(given.device)
         print(f"{found} ({found.name}), steps of {STEP:g} s" + ("" if given.agreement else f", {given.vessel}"))

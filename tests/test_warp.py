@@ -11,6 +11,7 @@ import pytest
 pytest.importorskip("warp")
 pytest.importorskip("mujoco_warp")
 
+from benchmarks import gpu
 from boatsim.diagnose.tried import library_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
@@ -227,3 +228,10 @@ def test_without_the_libraries_one_line_says_what_brings_them(missing: str, monk
 def test_a_program_compiles_for_a_gpu_where_there_is_none(name: str, tmp_path: Path) -> None:
     warp().compile_aot_module(module(Program(vessel.load(name))), arch=90, module_dir=tmp_path)
     assert any(path.stat().st_size > 10_000 for path in tmp_path.glob("*.cubin"))
+
+
+def test_the_benchmark_prints_a_rate_for_each_number_of_boats(capsys: pytest.CaptureFixture[str]) -> None:
+    gpu.main(["--vessel", "kvlcc2_roll", "--most", "10"])
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()[2:]]
+    assert [row[0] for row in rows] == ["1", "10"]
+    assert all(float(cell) > 0.0 for row in rows for cell in row[1:])

@@ -12,47 +12,47 @@ T = wp.{real}
 
 
 @wp.func
-def hypotenuse(a: T, b: T):
+def hypotenuse_(a: T, b: T):
     return wp.sqrt(a * a + b * b)
 
 
 @wp.func
-def with_sign(size: T, of: T):
+def with_sign_(size: T, of: T):
     return wp.abs(size) if of >= T(0.0) else -wp.abs(size)
 
 
 @wp.func
-def sign_of(x: T):
+def sign_of_(x: T):
     return wp.where(x > T(0.0), T(1.0), wp.where(x < T(0.0), T(-1.0), T(0.0)))
 
 
 @wp.func
-def remainder(a: int, b: int):
+def remainder_(a: int, b: int):
     return ((a % b) + b) % b
 
 
 @wp.func
-def quotient(a: int, b: int):
-    return (a - remainder(a, b)) / b
+def quotient_(a: int, b: int):
+    return (a - remainder_(a, b)) / b
 
 
 @wp.func
-def power_2(x: T):
+def power_2_(x: T):
     return x * x
 
 
 @wp.func
-def power_3(x: T):
+def power_3_(x: T):
     return x * x * x
 
 
 @wp.func
-def power_4(x: T):
+def power_4_(x: T):
     return (x * x) * (x * x)
 
 
 @wp.func
-def bits(a: int, b: int, c: int, d: int):
+def bits_(a: int, b: int, c: int, d: int):
     return ((wp.uint64(a) * wp.uint64(65536) + wp.uint64(b)) * wp.uint64(65536) + wp.uint64(c)) * wp.uint64(
         65536
     ) + wp.uint64(d)

@@ -8,6 +8,7 @@ a tuple variables of their own. What has no form there is refused, with its file
 import ast
 import builtins
 import inspect
+import re
 import textwrap
 from collections.abc import Callable, Hashable, Sequence
 from typing import Any
@@ -93,14 +94,14 @@ class Body:
         assert isinstance(tree, ast.FunctionDef)
         self.tree = tree
         self.about = f"{function.__module__.rpartition('.')[2]}.{function.__name__}"
-        self.name = program.unused(self.about.replace(".", "_"))
+        self.name = program.unused(re.sub(r"\W", "_", self.about))
         self.lines: list[str] = []
         self.depth = 1
         self.temporaries = 0
         self.returned: Kind = NOTHING
-        wholes = {n for n, a in function.__annotations__.items() if a is float or a == "float"}
+        floats = {n for n, a in function.__annotations__.items() if a is float or a == "float"}
         self.arguments = {
-            arg.arg: named(REAL if kind == WHOLE and arg.arg in wholes else kind, safe(arg.arg))
+            arg.arg: named(REAL if kind == WHOLE and arg.arg in floats else kind, safe(arg.arg))
             for arg, kind in zip(tree.args.args, kinds, strict=True)
         }
         self.variables: dict[str, Value] = dict(self.arguments)
@@ -109,7 +110,7 @@ class Body:
         """The function in Warp's Python."""
         self.block(self.tree.body)
         taken = ", ".join(f"{v.text}: {written(v.kind)}" for a in self.arguments.values() for v in flat(a))
-        whole = ["@wp.func", f"def {self.name}({taken}):", f'    """{self.about}"""', *self.lines]
+        whole = ["@wp.func", f"def {self.name}({taken}):", f"    {self.about!r}", *self.lines]
         return ast.unparse(ast.parse("\n".join(whole))) + "\n"  # without the brackets that nobody needs
 
     # Statements -------------------------------------------------------------------------------------------------------
@@ -133,20 +134,20 @@ class Body:
                 return True
         return False
 
-    def say_Pass(self, node: ast.Pass) -> None:  # noqa: N802  # named by Python's grammar, as all below
+    def say_Pass(self, node: ast.Pass) -> None:
         """Nothing."""
 
-    def say_Break(self, node: ast.Break) -> None:  # noqa: N802
+    def say_Break(self, node: ast.Break) -> None:
         """Out of a loop."""
         self.say("break")
 
-    def say_Expr(self, node: ast.Expr) -> None:  # noqa: N802
+    def say_Expr(self, node: ast.Expr) -> None:
         """A call for what it does; docstrings are left out."""
         if isinstance(node.value, ast.Constant):
             return
         self.say(self.value(node.value).text)
 
-    def say_Return(self, node: ast.Return) -> None:  # noqa: N802
+    def say_Return(self, node: ast.Return) -> None:
         """Back, with the parts of a tuple."""
         value = self.value(node.value) if node.value else NONE
         declared = str(self.python.__annotations__.get("return", ""))
@@ -157,17 +158,17 @@ class Body:
         self.returned = value.kind
         self.say(f"return {', '.join(v.text for v in flat(value))}".rstrip())
 
-    def say_Assign(self, node: ast.Assign) -> None:  # noqa: N802
+    def say_Assign(self, node: ast.Assign) -> None:
         """To names, tuples of names and entries of rows."""
         value = self.value(node.value)
         read = {n.id for n in ast.walk(node.value) if isinstance(n, ast.Name)}
         set_ = {n.id for t in node.targets for n in ast.walk(t) if isinstance(n, ast.Name)}
-        if len(flat(value)) > 1 and (read & set_):
+        if (len(flat(value)) > 1 and read & set_) or (len(node.targets) > 1 and isinstance(node.value, ast.Call)):
             value = self.kept(value)
         for target in node.targets:
             self.assign(target, value)
 
-    def say_AugAssign(self, node: ast.AugAssign) -> None:  # noqa: N802
+    def say_AugAssign(self, node: ast.AugAssign) -> None:
         """Read, and then written: Warp's own would be atomic."""
         before = ast.parse(ast.unparse(node.target), mode="eval").body
         self.assign(node.target, self.value(ast.copy_location(ast.BinOp(before, node.op, node.value), node)))
@@ -195,7 +196,7 @@ class Body:
         else:
             raise self.refuse(target, f"'{ast.unparse(target)} = ...'")
 
-    def say_If(self, node: ast.If) -> bool:  # noqa: N802
+    def say_If(self, node: ast.If) -> bool:
         """A branch; of one that is decided beforehand the other is not written at all."""
         test = truth(self.value(node.test))
         if test.fixed is not None:
@@ -207,7 +208,7 @@ class Body:
             self.deeper(node.orelse)
         return False
 
-    def say_For(self, node: ast.For) -> None:  # noqa: N802
+    def say_For(self, node: ast.For) -> None:
         """A loop over a range."""
         call = node.iter
         if not (isinstance(call, ast.Call) and self.found(call.func) is range and isinstance(node.target, ast.Name)):
@@ -217,7 +218,7 @@ class Body:
         self.say(f"for {safe(node.target.id)} in range({bounds}):")
         self.deeper(node.body)
 
-    def say_While(self, node: ast.While) -> None:  # noqa: N802
+    def say_While(self, node: ast.While) -> None:
         """A loop while something holds."""
         before = len(self.lines)
         test = truth(self.value(node.test))
@@ -259,13 +260,13 @@ class Body:
         found: Value = written_by(node)
         return found
 
-    def of_Constant(self, node: ast.Constant) -> Value:  # noqa: N802
+    def of_Constant(self, node: ast.Constant) -> Value:
         """A number."""
         if not isinstance(node.value, bool | int | float):
             raise self.refuse(node, f"'{ast.unparse(node)}'")
         return constant(node.value)
 
-    def of_Name(self, node: ast.Name) -> Value:  # noqa: N802
+    def of_Name(self, node: ast.Name) -> Value:
         """A variable, or a number of the file."""
         if node.id in self.variables:
             return self.variables[node.id]
@@ -288,7 +289,7 @@ class Body:
             return None
         return self.python.__globals__.get(node.id, getattr(builtins, node.id, None))
 
-    def of_Attribute(self, node: ast.Attribute) -> Value:  # noqa: N802
+    def of_Attribute(self, node: ast.Attribute) -> Value:
         """A field of a record, or a number of a module."""
         if isinstance(node.value, ast.Name) and node.value.id not in self.variables:
             return self.outside(node)
@@ -316,11 +317,11 @@ class Body:
             return found
         raise self.refuse(node, f"'{ast.unparse(node)}'")
 
-    def of_Tuple(self, node: ast.Tuple) -> Value:  # noqa: N802
+    def of_Tuple(self, node: ast.Tuple) -> Value:
         """Values beside one another."""
         return tuple_of([self.value(e) for e in node.elts])
 
-    def of_UnaryOp(self, node: ast.UnaryOp) -> Value:  # noqa: N802
+    def of_UnaryOp(self, node: ast.UnaryOp) -> Value:
         """A sign, or not."""
         of = self.value(node.operand)
         if isinstance(node.op, ast.USub) and isinstance(of.fixed, int | float):
@@ -329,7 +330,7 @@ class Body:
             return constant(not of.fixed) if of.fixed is not None else Value(TRUTH, f"(not {truth(of).text})")
         return Value(of.kind, f"({self.operator(node.op)}{of.text})")
 
-    def of_BinOp(self, node: ast.BinOp) -> Value:  # noqa: N802
+    def of_BinOp(self, node: ast.BinOp) -> Value:
         """Arithmetic; whole numbers become floats beside floats, and where they are divided."""
         a, b, op = self.value(node.left), self.value(node.right), self.operator(node.op)
         if a.kind == b.kind == TRUTH and op in OF_TRUTHS:
@@ -349,10 +350,10 @@ class Body:
     def power(self, base: Value, exponent: Value) -> Value:
         """Small whole powers by products, as they may have a negative base."""
         if isinstance(exponent.fixed, int) and 2 <= exponent.fixed <= 4:
-            return Value(REAL, f"power_{exponent.fixed}({real(base).text})")
+            return Value(REAL, f"power_{exponent.fixed}_({real(base).text})")
         return Value(REAL, f"wp.pow({real(base).text}, {real(exponent).text})")
 
-    def of_Compare(self, node: ast.Compare) -> Value:  # noqa: N802
+    def of_Compare(self, node: ast.Compare) -> Value:
         """One comparison, or several in a row."""
         ends, parts = [self.value(e) for e in (node.left, *node.comparators)], []
         for op, a, b in zip(node.ops, ends, ends[1:], strict=False):
@@ -363,7 +364,7 @@ class Body:
             parts.append(f"({a.text} {self.operator(op)} {b.text})")
         return Value(TRUTH, " and ".join(parts) if len(parts) == 1 else f"({' and '.join(parts)})")
 
-    def of_BoolOp(self, node: ast.BoolOp) -> Value:  # noqa: N802
+    def of_BoolOp(self, node: ast.BoolOp) -> Value:
         """And, or: as far as needed."""
         before = len(self.lines)
         parts = [truth(self.value(v)) for v in node.values]
@@ -377,7 +378,7 @@ class Body:
             return constant(not deciding)
         return Value(TRUTH, f"({f' {self.operator(node.op)} '.join(p.text for p in parts)})")
 
-    def of_IfExp(self, node: ast.IfExp) -> Value:  # noqa: N802
+    def of_IfExp(self, node: ast.IfExp) -> Value:
         """One or the other; as a branch where either needs more than an expression."""
         test = truth(self.value(node.test))
         if test.fixed is not None:
@@ -413,7 +414,7 @@ class Body:
 
     # Calls ------------------------------------------------------------------------------------------------------------
 
-    def of_Call(self, node: ast.Call) -> Value:  # noqa: N802
+    def of_Call(self, node: ast.Call) -> Value:
         """A function of ours, of mathematics, a named tuple or a cast."""
         what = self.found(node.func)
         if isinstance(what, type) and issubclass(what, tuple) and hasattr(what, "_fields"):
@@ -474,5 +475,5 @@ class Body:
             return constant(int(value.fixed))
         if kind == BITS and isinstance(value.fixed, int):
             parts = (str(value.fixed >> shift & 0xFFFF) for shift in (48, 32, 16, 0))  # Warp's literals are shorter
-            return Value(BITS, f"bits({', '.join(parts)})")
+            return Value(BITS, f"bits_({', '.join(parts)})")
         return Value(kind, f"{kind}({value.text})")

@@ -13,8 +13,8 @@ ALIKE = ("cos", "sin", "tan", "exp", "log", "sqrt", "tanh", "floor")
 MATH: Mapping[Any, str] = {
     **{getattr(source, name): f"wp.{name}" for source in (math, np) for name in ALIKE},
     math.atan2: "wp.atan2", np.arctan2: "wp.atan2", math.acos: "wp.acos", math.asin: "wp.asin", math.atan: "wp.atan",
-    math.hypot: "hypotenuse", np.hypot: "hypotenuse", math.copysign: "with_sign", np.copysign: "with_sign",
-    np.sign: "sign_of", np.abs: "wp.abs", abs: "wp.abs", math.fabs: "wp.abs", math.pow: "wp.pow",
+    math.hypot: "hypotenuse_", np.hypot: "hypotenuse_", math.copysign: "with_sign_", np.copysign: "with_sign_",
+    np.sign: "sign_of_", np.abs: "wp.abs", abs: "wp.abs", math.fabs: "wp.abs", math.pow: "wp.pow",
     min: "wp.min", max: "wp.max", np.minimum: "wp.min", np.maximum: "wp.max",
 }  # fmt: skip
 OF_WHOLE = ("wp.min", "wp.max", "wp.abs")  # those that leave whole numbers whole
@@ -27,7 +27,7 @@ OPERATORS: Mapping[type[ast.AST], str] = {
     ast.And: "and", ast.Or: "or", ast.USub: "-", ast.UAdd: "+", ast.Not: "not",
 }  # fmt: skip
 OF_TRUTHS = {"&": "and", "|": "or"}  # of two truths
-OF_WHOLES = {"%": "remainder", "//": "quotient"}  # rounded down, as Python has them
+OF_WHOLES = {"%": "remainder_", "//": "quotient_"}  # rounded down, as Python has them
 RESERVED = ("T", "wp", "int", "float", "bool", "range", "lambda")
 
 
