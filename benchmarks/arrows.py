@@ -26,7 +26,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "physics",
     "recordings control",
     "simulate",
-    "measures",
+    "measures warp",
     "view",
     "drive",
     "diagnose",
@@ -40,6 +40,7 @@ ABOUT = {  # what the picture says of each folder
     "control": "blocks of controllers",
     "simulate": "what a run is",
     "measures": "norms of a run",
+    "warp": "boats on a GPU",
     "view": "runs in rerun",
     "drive": "hands on the sticks",
     "diagnose": "what was left out",
@@ -124,6 +125,7 @@ COLOURS = (
     "#648729",
     "#b4632c",
     "#b0588f",
+    "#1f7f9c",
     "#768290",
 )  # of a folder
 STYLE = (
