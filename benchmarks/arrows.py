@@ -29,6 +29,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "measures",
     "view",
     "diagnose",
+    "sweep",
     "newboat",
     "api",
     "cli __main__ __init__",
@@ -41,6 +42,7 @@ ABOUT = {  # what the picture says of each folder
     "measures": "norms of a run",
     "view": "runs in rerun",
     "diagnose": "what was left out",
+    "sweep": "many runs",
     "newboat": "from particulars",
     "cli": "commands",
 }

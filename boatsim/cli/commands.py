@@ -82,6 +82,12 @@ Content = Annotated[
     list[Path] | None,
     typer.Option("--content", metavar="DIR", help="A folder of your own content, trusted to run; may be repeated."),
 ]
+Jobs = Annotated[
+    int | None, typer.Option(min=1, metavar="N", help="At the same time [default: one for each processor].")
+]
+Ray = Annotated[
+    str | None, typer.Option("--ray", metavar="auto|ADDRESS", help="On this Ray cluster instead; needs boatsim[ray].")
+]
 Trusted = Annotated[
     bool, typer.Option("--trust", help="Let the Python files run that lie beside the files named here.")
 ]
@@ -176,6 +182,40 @@ def run(
     several = controller or []
     with asking(content, trust, [*scenarios, *several]):
         return run_all(scenarios, out, jobs, seed, watched, several, side_by_side or len(several) > 1)
+
+
+@app.command()
+@guarded
+def sweep(
+    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=A:B:N|KEY=X,Y,...", help="A direction of the grid; may be repeated."),
+    ] = None,
+    draw: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=LAW(...)", help="Drawn anew for each run: normal(mean,sd), ...; may be repeated."),
+    ] = None,
+    runs: Annotated[int, typer.Option(min=1, metavar="N", help="Draws, the same at every point of the grid.")] = 1,
+    latin: Annotated[bool, typer.Option("--latin", help="Draws as a Latin hypercube.")] = False,
+    sobol: Annotated[
+        bool, typer.Option("--sobol", help="Saltelli's design and Sobol indices: N (D + 2) runs a point.")
+    ] = False,
+    seed: Annotated[int, typer.Option(min=0, metavar="N", help="Of all that is drawn, noise too.")] = 0,
+    out: Annotated[Path, typer.Option(metavar="DIR", parser=_folder, help="Folder of the sweep.")] = Path("out/sweep"),
+    jobs: Jobs = None,
+    ray: Ray = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Run scenarios over a grid and over draws: sweep.parquet, report.html; the same command goes on where it ended."""
+    from boatsim.cli.sweeping import sweep as carry_out
+
+    if latin and sobol:
+        raise BadInput("--latin and --sobol are two designs; choose one")
+    with asking(content, trust, scenarios):
+        kind: Literal["random", "latin", "sobol"] = "sobol" if sobol else "latin" if latin else "random"
+        return carry_out(scenarios, vary or [], draw or [], runs, kind, seed, out, jobs, ray)
 
 
 @app.command()
