@@ -124,6 +124,7 @@ COLOURS = (
     "#7074dc",
     "#b0588f",
     "#768290",
+    "#a3722f",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"

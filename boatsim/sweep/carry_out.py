@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 from boatsim.progress import Report, silent
+from boatsim.sweep import page
 from boatsim.sweep.campaign import carry_out
 from boatsim.sweep.plan import Plan
 from boatsim.sweep.results import Results
@@ -28,6 +29,7 @@ def swept(
     done = carry_out(folder, plan.about(), plan.count, plan.tasks(), carried_out, backend(jobs, ray), RUNS, report)
     found = Results(plan, done.entries)
     found.write(folder)
+    page.write(found, folder)
     return found, done.whole
 
 
