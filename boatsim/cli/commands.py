@@ -202,6 +202,9 @@ def sweep(
         bool, typer.Option("--sobol", help="Saltelli's design and Sobol indices: N (D + 2) runs a point.")
     ] = False,
     seed: Annotated[int, typer.Option(min=0, metavar="N", help="Of all that is drawn, noise too.")] = 0,
+    norm: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Print and draw this one, not all; may be repeated.")
+    ] = None,
     out: Annotated[Path, typer.Option(metavar="DIR", parser=_folder, help="Folder of the sweep.")] = Path("out/sweep"),
     jobs: Jobs = None,
     ray: Ray = None,
@@ -215,7 +218,7 @@ def sweep(
         raise BadInput("--latin and --sobol are two designs; choose one")
     with asking(content, trust, scenarios):
         kind: Literal["random", "latin", "sobol"] = "sobol" if sobol else "latin" if latin else "random"
-        return carry_out(scenarios, vary or [], draw or [], runs, kind, seed, out, jobs, ray)
+        return carry_out(scenarios, vary or [], draw or [], runs, kind, seed, out, jobs, ray, norm or [])
 
 
 @app.command()

@@ -20,12 +20,12 @@ REASONS = 5  # reasons of failed runs that are told
 
 def sweep(
     scenarios: Sequence[str], vary: Sequence[str], drawn: Sequence[str], runs: int, kind: Kind, seed: int, out: Path,
-    jobs: int | None, ray: str | None,
+    jobs: int | None, ray: str | None, norms: Sequence[str] = (),
 ) -> int:  # fmt: skip
     """Carry out a sweep, or go on with it, and print what its runs say together."""
     made = plan(scenarios, [axis(text) for text in vary], [draw(text) for text in drawn], runs, seed, kind)
     with counting() as report:
-        found, whole = swept(made, out, jobs, ray, report)
+        found, whole = swept(made, out, jobs, ray, norms, report)
     _tell(found, out)
     if not whole:
         complain(f"interrupted after {len(found.numbers)} of {made.count} runs; the same command goes on")

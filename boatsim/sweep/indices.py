@@ -11,7 +11,6 @@ import numpy as np
 from boatsim.physics.signals import Array
 from boatsim.sweep.keys import Value
 from boatsim.sweep.results import Results
-from boatsim.sweep.summary import point_names
 
 RESAMPLES = 400
 LOW, HIGH = 0.025, 0.975  # of the bootstrap
@@ -60,9 +59,8 @@ def indices(results: Results) -> list[Index]:
         return []
     names, found = [draw.target.name for draw in plan.draws], list[Index]()
     for number in range(len(plan.points)):
-        run = plan.values(number * len(plan.drawn))
-        point = run[: len(point_names(results))]
-        for norm in results.units:
+        point = plan.point(number)
+        for norm in results.told:
             blocks = results.norm(norm)[results.point == number].reshape(len(names) + 2, plan.runs)
             whole = blocks[:, np.isfinite(blocks).all(axis=0)]
             if whole.shape[1] < 2 or np.ptp(whole) == 0.0:

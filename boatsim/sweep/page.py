@@ -36,7 +36,8 @@ def _facts(results: Results) -> list[tuple[str, str]]:
     axes = [f"{axis.target.name}: {', '.join(_short(axis.values))}" for axis in plan.axes]
     draws = [f"{draw.target.name}: {draw}" for draw in plan.draws]
     found = [("Varied", "; ".join(axes)), ("Drawn", "; ".join(draws)), ("Draws", f"{plan.runs}, {plan.kind}")]
-    failed = f"{int(results.failed.sum())} of {len(results.numbers)}, of {plan.count} wanted"
+    done = "" if len(results.numbers) == plan.count else f" (of {plan.count}: interrupted)"
+    failed = f"{int(results.failed.sum())} of {len(results.numbers)} runs{done}"
     return [(name, words) for name, words in (*found, ("Seed", str(plan.seed)), ("Failed", failed)) if words]
 
 
@@ -54,7 +55,7 @@ def _sections(results: Results) -> list[Section]:
     for number, scenario in enumerate(results.plan.scenarios):
         section = Section(f"norms-{number + 1}", scenario if several else "Norms against what varied")
         among = names == scenario
-        for norm in results.units:
+        for norm in results.told:
             if drawn := pictures(results, norm, among):
                 section.blocks.extend([Heading(norm), Figures(legend_of(groups(results, among)), drawn)])
         made.append(section)

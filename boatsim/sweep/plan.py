@@ -16,6 +16,7 @@ from boatsim.errors import BadInput, BadPhysics
 from boatsim.physics.content import find
 from boatsim.physics.signals import Array
 from boatsim.simulate.cases import Place, content, meant
+from boatsim.simulate.norms import names as norm_names
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import from_table
 from boatsim.sweep.axes import Axis
@@ -83,6 +84,18 @@ class Plan:
         several = ["scenario"] if len(self.scenarios) > 1 else []
         return [*several, *(target.name for target in self.targets)]
 
+    @cached_property
+    def differ(self) -> list[str]:
+        """Those columns of the grid in which its points differ."""
+        several = ["scenario"] if len(self.scenarios) > 1 else []
+        return [*several, *(axis.target.name for axis in self.axes if len(axis.values) > 1)]
+
+    def point(self, number: int) -> tuple[Value, ...]:
+        """In what a point of the grid differs from the others, by its number."""
+        at = self.points[number]
+        varied = (v for v, axis in zip(at.varied, self.axes, strict=True) if len(axis.values) > 1)
+        return (*((at.scenario,) if len(self.scenarios) > 1 else ()), *varied)
+
     def values(self, number: int) -> tuple[Value, ...]:
         """What was varied and drawn in a run."""
         point = self.points[number // len(self.drawn)]
@@ -102,11 +115,12 @@ class Plan:
             said = self._with_draws(point, self.drawn[number % len(self.drawn)])
             yield number, Told(said, point.place, self.seed_of(number))
 
-    def rehearse(self) -> None:
+    def rehearse(self) -> set[str]:
         """Begin a run at the corners of the grid, all drawn values in their middle: it tells mistakes, and compiles.
 
-        Raises BadInput.
+        Returns the names of the norms that runs can have. Raises BadInput.
         """
+        there = set[str]()
         middle = [d.at(np.array([0.5]))[0] for d in self.draws]
         ends = [{axis.values[0], axis.values[-1]} if axis.ranged else set(axis.values) for axis in self.axes]
         for point in self.points:
@@ -115,6 +129,8 @@ class Plan:
                 short = scenario.file.model_copy(update={"duration": BEGINNING * scenario.file.step})
                 with suppress(BadPhysics):  # that run's failure, and told there
                     run(replace(scenario, file=short))
+                there |= norm_names(scenario)
+        return there
 
     def about(self) -> dict[str, Any]:
         """What the sweep is, for whoever goes on with it: plain words, and what the files said when it began."""

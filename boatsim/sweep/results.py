@@ -23,6 +23,7 @@ class Results:
 
     plan: Plan
     entries: Mapping[int, Entry]
+    norms: tuple[str, ...] = ()  # that are told and drawn; none: all of them
 
     @cached_property
     def numbers(self) -> list[int]:
@@ -33,6 +34,11 @@ class Results:
     def units(self) -> dict[str, str]:
         """Norm -> unit, in the order in which runs have them."""
         return {name: unit for entry in self.entries.values() for name, (_, unit) in entry.get("norms", {}).items()}
+
+    @property
+    def told(self) -> list[str]:
+        """Norms that are told and drawn; the table holds all."""
+        return [name for name in self.units if name in self.norms or not self.norms]
 
     @cached_property
     def point(self) -> Array:

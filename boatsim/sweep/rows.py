@@ -21,7 +21,7 @@ class Rows:
 
 def tables(found: Results) -> list[Rows]:
     """Spread of the norms, controllers in pairs, Sobol indices: those of them that there are."""
-    names = summary.point_names(found)
+    names = found.plan.differ
     rest = [name for name in names if name != summary.CONTROLLER]
     made = [_spreads(names, found), *_pairs(rest, summary.pairs(found)), _indices(names, indices.indices(found))]
     return [table for table in made if table.rows]

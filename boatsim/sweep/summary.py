@@ -46,16 +46,10 @@ class Pair(NamedTuple):
     second_lower: float
 
 
-def point_names(results: Results) -> list[str]:
-    """Columns that tell grid points apart."""
-    plan = results.plan
-    return plan.columns[: len(plan.columns) - len(plan.draws)]
-
-
 def spreads(results: Results) -> list[Spread]:
     """Every norm at every grid point, those that no run of the point has left out."""
     found: list[Spread] = []
-    norms = {name: results.norm(name) for name in results.units}
+    norms = {name: results.norm(name) for name in results.told}
     for point, rows in _points(results):
         failed = int(results.failed[rows].sum())
         for name, values in norms.items():
@@ -69,7 +63,7 @@ def spreads(results: Results) -> list[Spread]:
 
 def pairs(results: Results) -> list[Pair]:
     """Controllers against the first one that was named, where several were varied, draw by draw."""
-    names = point_names(results)
+    names = results.plan.differ
     if CONTROLLER not in names:
         return []
     at = names.index(CONTROLLER)
@@ -94,8 +88,8 @@ def _paired(
     """Every norm that both have."""
     found: list[Pair] = []
     common, one, other = np.intersect1d(*(results.draw[r] for r in rows), return_indices=True)
-    for name, unit in results.units.items():
-        values = results.norm(name)
+    for name in results.told:
+        unit, values = results.units[name], results.norm(name)
         first, second = values[rows[0]][one], values[rows[1]][other]
         both = np.isfinite(first) & np.isfinite(second)
         if not both.any():
@@ -115,10 +109,9 @@ def _paired(
 
 def _points(results: Results) -> Sequence[tuple[tuple[Value, ...], Array]]:
     """Grid points that have runs, and which runs (R,) are theirs."""
-    several = len(results.plan.scenarios) > 1
     found = []
-    for number, point in enumerate(results.plan.points):
+    for number in range(len(results.plan.points)):
         rows = results.point == number
         if rows.any():
-            found.append((((point.scenario,) if several else ()) + point.varied, rows))
+            found.append((results.plan.point(number), rows))
     return found
