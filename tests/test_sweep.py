@@ -135,7 +135,6 @@ def test_a_goal_is_the_only_one_that_says_the_key_or_one_by_its_number(short: st
         ("controller.poel", 1, "did you mean 'pole'?"),
         ("start.xx", 1, "did you mean 'x'?"),
         ("goal.3.sway_mps", 1, "there are 2, counted from 1"),
-        ("goal.from", 1, "goal.2.from"),
         ("goal.surge_mps", 1, "say of which"),
         ("duratoin", 1, "did you mean 'duration'?"),
         ("load+", "heavy", "no number is stated there"),
@@ -160,7 +159,7 @@ def test_a_key_or_value_that_can_not_be_is_one_line(short: str, key: str, value:
         ("a.b=3:1:3", (3, 2, 1)),
         ("a.b=0.01:1:3:log", (0.01, 0.1, 1.0)),
         ("a.b=light, heavy", ("light", "heavy")),
-        ("a.b=1,2.5,true", (1, 2.5, True)),
+        ("a.b=0,2.5,true", (0, 2.5, True)),
     ],
 )
 def test_an_axis_is_a_range_or_a_list(text: str, values: tuple[object, ...]) -> None:
@@ -195,12 +194,14 @@ def test_a_choice_is_made_as_often_of_each() -> None:
     assert found.count("light") == found.count("heavy") == 50
 
 
-@pytest.mark.parametrize("text", ["a.b", "a.b=3", "a.b=norml(0,1)", "a.b=normal(0)", "a.b=normal(0,-1)", "a.b=uniform(2,1)",
-                                  "a.b=normal(0,x)", "a.b=choice(1)", "a.b=loguniform(0,1)", "a.b=truncated(0,1,2,1)",
-                                  "a.b=triangular(0,5,4)", "a.b=lognormal(-1,1)"])  # fmt: skip
-def test_a_draw_that_can_not_be_is_refused(text: str) -> None:
+@pytest.mark.parametrize(
+    "law",
+    ["", "3", "norml(0,1)", "normal(0)", "normal(0,-1)", "uniform(2,1)", "normal(0,x)", "choice(1)", "loguniform(0,1)",
+     "truncated(0,1,2,1)", "triangular(0,5,4)", "lognormal(-1,1)"],
+)  # fmt: skip
+def test_a_draw_that_can_not_be_is_refused(law: str) -> None:
     with pytest.raises(BadInput, match="--draw"):
-        draw(text)
+        draw(f"a.b={law}")
 
 
 def test_a_latin_hypercube_has_one_value_in_each_stratum_of_each_quantity() -> None:
@@ -317,16 +318,15 @@ def once_it_has(out: Path, lines: int, running: "subprocess.Popen[str]") -> None
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_killed_and_continued_it_ends_with_the_same_bytes(short: str, tmp_path: Path, jobs: int) -> None:
     whole, cut = tmp_path / "whole", tmp_path / "cut"
-    assert begun(short, whole, jobs, 60).wait() == 0
-    for lines in (3, 20):
-        running = begun(short, cut, jobs, 60)
-        once_it_has(cut, lines, running)
-        running.kill()
-        running.communicate()
-        assert not (cut / "sweep.parquet").exists()
+    assert begun(short, whole, jobs, 20).wait() == 0
+    running = begun(short, cut, jobs, 20)
+    once_it_has(cut, 3, running)
+    running.kill()
+    running.communicate()
+    assert not (cut / "sweep.parquet").exists()
     with (cut / "journal.jsonl").open("ab") as journal:
-        journal.write(b'{"run": 119, "fail')  # as a process leaves it that is killed while it writes
-    assert begun(short, cut, jobs, 60).wait() == 0
+        journal.write(b'{"run": 39, "fail')  # as a process leaves it that is killed while it writes
+    assert begun(short, cut, jobs, 20).wait() == 0
     assert (cut / "sweep.parquet").read_bytes() == (whole / "sweep.parquet").read_bytes()
 
 
