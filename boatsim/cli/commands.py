@@ -386,6 +386,11 @@ def diagnose(
     horizon: Annotated[
         float | None, typer.Option(min=0.1, metavar="S", help="Length of each free run [s], if not the usual one.")
     ] = None,
+    each: Annotated[
+        bool, typer.Option("--each", help="Each recording by itself, folders for those in them: diagnoses.parquet.")
+    ] = False,
+    jobs: Jobs = None,
+    ray: Ray = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
@@ -393,7 +398,15 @@ def diagnose(
     from boatsim.cli import diagnosis as commands
 
     held, own, left_out = hold_out or [], library or [], without or []
+    if not each and (jobs is not None or ray is not None):
+        raise BadInput("--jobs and --ray are for many recordings, each diagnosed by itself; give --each too")
     with asking(content, trust, [*runs, *held, vessel]):
+        if each:
+            from boatsim.cli.sweeping import diagnose_each
+            from boatsim.sweep.diagnoses import Asked
+
+            names = tuple(map(str, held)), vessel, tuple(_loads(load)), tuple(own), tuple(left_out)
+            return diagnose_each(runs, Asked(*names, horizon), out, jobs, ray)
         return commands.diagnose(runs, held, vessel, _loads(load), out, own, left_out, horizon)
 
 

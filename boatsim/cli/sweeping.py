@@ -1,4 +1,4 @@
-"""What `boatsim sweep` does: many runs into one folder, one table of them printed."""
+"""What `boatsim sweep` and `boatsim diagnose --each` do: many tasks into one folder, one table of them printed."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -6,10 +6,12 @@ from pathlib import Path
 from boatsim.cli.exits import Exit, complain, say
 from boatsim.cli.progress import counting
 from boatsim.cli.show import printed
+from boatsim.sweep import diagnoses
 from boatsim.sweep.axes import axis
-from boatsim.sweep.carry_out import swept
+from boatsim.sweep.carry_out import backend, swept
 from boatsim.sweep.designs import Kind
 from boatsim.sweep.draws import draw
+from boatsim.sweep.journal import Entry
 from boatsim.sweep.plan import plan
 from boatsim.sweep.results import Results
 from boatsim.sweep.rows import once, tables
@@ -42,3 +44,35 @@ def _tell(found: Results, out: Path) -> None:
         say([f"{failed} of {len(found.numbers)} runs failed:"])
         say(f"  {count} times: {why}" for why, count in list(found.reasons.items())[:REASONS])
     say([f"written to {out}: sweep.parquet, report.html"])
+
+
+def diagnose_each(given: Sequence[Path], asked: diagnoses.Asked, out: Path, jobs: int | None, ray: str | None) -> int:
+    """Diagnose recordings one by one, or go on with it, and print what was found in each."""
+    paths = diagnoses.recordings(given)
+    with counting() as report:
+        done = diagnoses.diagnosed(paths, asked, out, backend(jobs, ray), report)
+    names = [str(path) for path in paths]
+    rows = [
+        [names[n], e.get("verdict", "failed"), _causes(e) if e["failure"] is None else e["failure"]]
+        for n, e in done.entries.items()
+    ]
+    printed("Each recording by itself", ["recording", "verdict", "causes"], rows[:MOST], 3)
+    if len(rows) > MOST:
+        say([f"{len(rows) - MOST} more: {diagnoses.NAME} has them"])
+    verdicts = [row[1] for row in rows]
+    say([", ".join(f"{verdict} {verdicts.count(verdict)}" for verdict in dict.fromkeys(verdicts))])
+    say([f"written to {out}: {diagnoses.NAME}, and a folder for each recording"])
+    if not done.whole:
+        complain(f"interrupted after {len(rows)} of {len(paths)} recordings; the same command goes on")
+        return Exit.INTERRUPTED
+    return Exit.MET
+
+
+def _causes(entry: Entry) -> str:
+    """What was named, with the values found."""
+    said = []
+    for cause in entry["causes"]:
+        own = {k.removeprefix(f"{cause}."): v for k, v in entry["values"].items() if k.startswith(f"{cause}.")}
+        numbers = [f"{k} {v[0]:.4g} ± {own[f'{k} sd'][0]:.2g}" for k, v in own.items() if f"{k} sd" in own]
+        said.append(f"{cause}: {', '.join(numbers)}")
+    return "; ".join(said)

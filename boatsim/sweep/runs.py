@@ -30,9 +30,9 @@ def carried_out(told: Told) -> Entry:
             raise KeyboardInterrupt
         norms = all_norms(done)
     except BoatsimError as error:
-        return {"failure": _reason(str(error))}
+        return {"failure": reason(str(error))}
     except Exception as error:  # of a controller, a law, a measure: this boat's, not the sweep's
-        return {"failure": _reason(f"{type(error).__name__}: {error}")}
+        return {"failure": reason(f"{type(error).__name__}: {error}")}
     judged = [norm.ok for norm in norms.values() if norm.ok is not None]
     return {
         "failure": None,
@@ -47,5 +47,6 @@ def _ended(t: float) -> None:
         raise KeyboardInterrupt
 
 
-def _reason(text: str) -> str:
+def reason(text: str) -> str:
+    """Why something failed, as a table has it: one line, not too long."""
     return " ".join(text.split())[:LONGEST]
