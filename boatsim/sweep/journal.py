@@ -67,8 +67,15 @@ def _check(folder: Path, first: bytes, about: Mapping[str, Any]) -> None:
         there = json.loads(first)
     except ValueError:
         raise BadInput(f"{folder / NAME}: is not a journal of boatsim; choose another --out") from None
-    asked = json.loads(_line(about))
-    for key in dict.fromkeys((*asked, *there)):
-        if there.get(key) != asked.get(key):
-            was, now = (json.dumps(one.get(key), ensure_ascii=False) for one in (there, asked))
-            raise BadInput(f"{folder} holds another campaign: its {key} is {was}, not {now}; choose another --out")
+    was, now = _flat(there), _flat(json.loads(_line(about)))
+    for key in dict.fromkeys((*now, *was)):
+        if was.get(key) != now.get(key):
+            told = f"its {key} is {was.get(key, 'not there')}, not {now.get(key, 'there')}"
+            raise BadInput(f"{folder} holds another campaign: {told}; choose another --out")
+
+
+def _flat(about: Mapping[str, Any]) -> dict[str, str]:
+    """`vary load` and such, each with its value in words."""
+    inner = {k: v for k, v in about.items() if isinstance(v, dict)}
+    flat = {k: json.dumps(v, ensure_ascii=False) for k, v in about.items() if k not in inner}
+    return flat | {f"{k} {name}": json.dumps(v, ensure_ascii=False) for k, t in inner.items() for name, v in t.items()}
