@@ -25,8 +25,10 @@ def __getattr__(name: str) -> object:
     """What the package offers, looked up at first use."""
     if name == "__version__":
         return import_module("boatsim.version").version()
-    if name in FOLDERS:
-        return import_module(f"boatsim.{name}")
+    if name == "diagnose":  # two folders of ours are called so too
+        return import_module("boatsim.diagnose")
+    if name == "sweep":
+        return import_module("boatsim.sweep")
     if name in __all__:
         return getattr(import_module("boatsim.api"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -27,8 +27,8 @@ def test_a_folder_stands_for_the_recordings_in_it_and_runs_for_what_the_camera_s
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
     found = recordings([tmp_path / "logs", tmp_path / "runs"])
-    assert [str(p.relative_to(tmp_path)) for p in found] == ["logs/b.csv", "logs/a.parquet", "runs/one/camera.csv"]
-    assert folders_of(found) == ["logs/b", "logs/a", "runs/one"]
+    assert [str(p.relative_to(tmp_path)) for p in found] == ["logs/a.parquet", "logs/b.csv", "runs/one/camera.csv"]
+    assert folders_of(found) == ["logs/a", "logs/b", "runs/one"]
     assert folders_of([tmp_path / "x.csv", tmp_path / "x.parquet"]) == ["x.csv", "x.parquet"]
 
 
