@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -290,6 +291,23 @@ def test_a_sweep_that_can_not_be_is_refused_before_it_runs(
     with pytest.raises(BadInput, match=said.replace("?", r"\?")):
         boatsim.sweep(short, **options, out=tmp_path / "out", jobs=1)
     assert not (tmp_path / "out").exists()
+
+
+def test_the_page_shows_every_norm_against_what_varied_and_fetches_nothing(short: str, tmp_path: Path) -> None:
+    strange = tmp_path / "<b>&.toml"
+    strange.write_text(SHORT)
+    boatsim.sweep(
+        str(strange), {"start.x": "0:1:3", "load": "light,heavy"}, {"start.u": "uniform(0,1)"}, 5, out=tmp_path / "out",
+        jobs=1, norms="x_m_inf",
+    )  # fmt: skip
+    page = (tmp_path / "out" / "report.html").read_text()
+    for caption in ("over start.x", "by load", "over start.u, rank correlation"):
+        assert page.count(f"<figcaption>x_m_inf [m] {caption}") == 1
+    assert page.count('class="box one"') == 2 and page.count('class="band"') == 1
+    dots = re.findall(r'class="dots one" d="([^"]*)"', page)
+    assert [d.count("M") for d in dots] == [5 * 3 * 2]
+    assert "<b>" not in page and "&lt;b&gt;&amp;" in page
+    assert not re.search(r"(src|href)=\"(?!#)", page)
 
 
 # Cut off ------------------------------------------------------------------------------------------------------------

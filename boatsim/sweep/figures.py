@@ -44,7 +44,7 @@ def legend_of(found: Sequence[Group]) -> str:
 
 def pictures(results: Results, norm: str, among: Array) -> list[str]:
     """One norm of some of the runs (R,), against every axis, and the draws that go with it most."""
-    values, unit = results.norm(norm), results.units[norm]
+    values, unit = results.norm[norm], results.units[norm]
     seen = among & np.isfinite(values)
     if not seen.any():
         return []

@@ -61,7 +61,7 @@ def indices(results: Results) -> list[Index]:
     for number in range(len(plan.points)):
         point = plan.point(number)
         for norm in results.told:
-            blocks = results.norm(norm)[results.point == number].reshape(len(names) + 2, plan.runs)
+            blocks = results.norm[norm][results.point == number].reshape(len(names) + 2, plan.runs)
             whole = blocks[:, np.isfinite(blocks).all(axis=0)]
             if whole.shape[1] < 2 or np.ptp(whole) == 0.0:
                 continue

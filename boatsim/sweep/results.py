@@ -55,10 +55,14 @@ class Results:
         """(R,) whether each run failed."""
         return np.array([entry["failure"] is not None for entry in self.entries.values()], dtype=bool)
 
-    def norm(self, name: str) -> Array:
-        """(R,) one norm of each run, nan where it has none."""
-        found = (entry.get("norms", {}).get(name, (None,))[0] for entry in self.entries.values())
-        return np.array([np.nan if value is None else value for value in found], dtype=float)
+    @cached_property
+    def norm(self) -> dict[str, Array]:
+        """(R,) by name: each norm of each run, nan where it has none."""
+        found: dict[str, Array] = {}
+        for name in self.units:
+            values = (entry.get("norms", {}).get(name, (None,))[0] for entry in self.entries.values())
+            found[name] = np.array([np.nan if value is None else value for value in values], dtype=float)
+        return found
 
     def varied(self, name: str) -> list[Any]:
         """(R,) what a column of the plan was in each run."""

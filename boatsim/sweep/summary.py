@@ -49,7 +49,7 @@ class Pair(NamedTuple):
 def spreads(results: Results) -> list[Spread]:
     """Every norm at every grid point, those that no run of the point has left out."""
     found: list[Spread] = []
-    norms = {name: results.norm(name) for name in results.told}
+    norms = {name: results.norm[name] for name in results.told}
     for point, rows in _points(results):
         failed = int(results.failed[rows].sum())
         for name, values in norms.items():
@@ -89,7 +89,7 @@ def _paired(
     found: list[Pair] = []
     common, one, other = np.intersect1d(*(results.draw[r] for r in rows), return_indices=True)
     for name in results.told:
-        unit, values = results.units[name], results.norm(name)
+        unit, values = results.units[name], results.norm[name]
         first, second = values[rows[0]][one], values[rows[1]][other]
         both = np.isfinite(first) & np.isfinite(second)
         if not both.any():
