@@ -30,6 +30,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "view",
     "drive",
     "diagnose",
+    "sweep",
     "newboat",
     "api",
     "cli __main__ __init__",
@@ -44,6 +45,7 @@ ABOUT = {  # what the picture says of each folder
     "view": "runs in rerun",
     "drive": "hands on the sticks",
     "diagnose": "what was left out",
+    "sweep": "many runs",
     "newboat": "from particulars",
     "cli": "commands",
 }
@@ -127,6 +129,7 @@ COLOURS = (
     "#b0588f",
     "#1f7f9c",
     "#768290",
+    "#a3722f",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"
