@@ -71,6 +71,7 @@ class L1Joystick(Outboards, CompiledController):
     words: ClassVar[str] = "L1 adaptive joystick, corrected: surge, sway and yaw commands at once"
     commands: ClassVar[tuple[str, ...]] = ("pwm_port", "pwm_starboard", "steer_port_rad", "steer_starboard_rad")
     goals: ClassVar[tuple[str, ...]] = STICK
+    unsaid: ClassVar = dict.fromkeys(STICK, 0.0)
     law: ClassVar = law
     remembers: ClassVar = REMEMBERS
 

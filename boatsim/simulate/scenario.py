@@ -116,6 +116,7 @@ class ScenarioFile(Table):
     duration: float = Field(gt=0, le=86400)  # [s]
     step: float = Field(default=0.02, gt=1e-4, le=1.0)  # [s]
     seed: int = Field(default=0, ge=0)
+    engine: Literal["mujoco", "twin"] = "mujoco"  # twin: compiled code alone, in open water; the same to rounding
     tank: TankTable | None = None
     start: StartTable = StartTable()
     until: UntilTable = UntilTable()
@@ -165,6 +166,11 @@ class Scenario:
     def goal_keys(self) -> list[str]:
         """All that its goals speak of, in the order of the file."""
         return list(dict.fromkeys(key for goal in self.file.goal for key in goal if key not in BESIDE))
+
+    @property
+    def lets_go(self) -> bool:
+        """Whether nobody steers for some of the time."""
+        return any(goal.get(OFF) for goal in self.file.goal)
 
     def goal_at(self, t: float) -> Mapping[str, float]:
         """Goals in force at time t [s]: the last [[goal]] that has begun."""
@@ -269,6 +275,8 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
     """The boat starts inside its tank, and the controller's period holds at least one step."""
     if controller.period < file.step - 1e-12:
         raise BadInput(f"step = {file.step:g} s; allowed is at most the controller's period, {controller.period:g} s")
+    if file.tank and file.engine == "twin":
+        raise BadInput('engine = "twin" with a [tank]; allowed is open water: its walls are MuJoCo\'s')
     if file.tank:
         dx, dy = file.start.x - file.tank.centre[0], file.start.y - file.tank.centre[1]
         if abs(dx) > file.tank.length / 2 or abs(dy) > file.tank.width / 2:
@@ -286,4 +294,4 @@ def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) ->
         measure.check(camera)
 
 
-__all__ = ["CheckTable", "NormTable", "Scenario", "ScenarioFile", "from_table", "load"]
+__all__ = ["CheckTable", "NormTable", "Scenario", "ScenarioFile", "UntilTable", "from_table", "load"]
