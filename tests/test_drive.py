@@ -3,6 +3,7 @@
 import asyncio
 import json
 import re
+import socket
 import subprocess
 import sys
 import threading
@@ -350,6 +351,16 @@ def test_goals_too_many_for_a_file_are_left_out_of_it_and_what_they_are_of_stays
     many = [(0.02 * i, {"surge_mps": 0.01 * (i % 50), "sway_mps": 0.0, "yaw_radps": 0.0}) for i in range(40_000)]
     assert task.toml(many, 800.0) is None
     assert "l1_joystick" in str(task.toml([], 800.0)) and "from" not in str(task.toml([], 800.0))
+
+
+def test_a_port_that_is_taken_is_one_line(tmp_path: Path) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        done = boatsim("drive", "otter", "--port", port, "--out", tmp_path / "out")
+    assert done.exit_code == 2 and done.stderr.count("\n") == 1
+    assert f"port {port}: " in done.stderr and "without --port" in done.stderr
 
 
 def test_nobody_waits_for_ever_where_the_package_is_missing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
