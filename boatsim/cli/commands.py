@@ -206,6 +206,7 @@ def drive(
         bool | None,
         typer.Option("--open/--no-open", help="Open the page in a browser [default: with a screen]."),
     ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, metavar="N", help="Of the page; 0: any that is free.")] = 0,
     live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer too.")] = False,
     serve: Annotated[bool, typer.Option("--serve", help="Show it in rerun's web viewer too.")] = False,
     content: Content = None,
@@ -215,7 +216,7 @@ def drive(
     from boatsim.cli.driving import drive as driven
 
     with asking(content, trust, [vessel, controller, scenario]):
-        return driven(vessel, scenario, controller, _loads(load), seconds, out, open_, live or serve, serve)
+        return driven(vessel, scenario, controller, _loads(load), seconds, out, open_, port, live or serve, serve)
 
 
 @app.command()
