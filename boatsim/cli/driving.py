@@ -11,7 +11,7 @@ from boatsim.cli.exits import Exit, complain, remark
 from boatsim.drive.hands import Hands
 from boatsim.drive.server import Server
 from boatsim.drive.session import Session, folder_name
-from boatsim.drive.task import Task
+from boatsim.drive.task import FILE, Task
 from boatsim.simulate.norms import RunEntry
 from boatsim.view.outputs import run_into
 from boatsim.view.viewer import display
@@ -47,7 +47,10 @@ def _told(content: RunEntry, folder: Path, session: Session) -> int:
     if latencies:
         middle, last = (1e3 * latencies[i] for i in (len(latencies) // 2, -1))
         print(f"from stick to log {middle:.0f} ms (median of {len(latencies)}), at most {last:.0f} ms")
-    print(f"again, without hands: boatsim run {folder / 'scenario.toml'}")
+    if session.again:
+        print(f"again, without hands: boatsim run {folder / FILE}")
+    else:
+        complain(f"{folder / FILE}: so many goals fit no file of ours; it says all but them, and can not go again")
     if not content["complete"]:
         complain("interrupted; what was logged is kept")
         return Exit.INTERRUPTED

@@ -35,6 +35,7 @@ class Session:
         self._at, self._heading, self._end = -1.0, task.scenario.file.start.psi, 0.0
         self._away: list[str] = []  # when the sticks were let go, and why
         self._moved = -1.0
+        self.again = True  # whether its file holds all goals
         self.latencies: list[float] = []  # [s] from a stick to the log
 
     # What a run asks of it ------------------------------------------------------------------------------------------
@@ -87,7 +88,10 @@ class Session:
 
     def files(self) -> Mapping[str, str]:
         """The scenario by which the run goes again, as far as it has come."""
-        return {FILE: self.task.toml(self._goals, self._end or self.task.scenario.file.duration)}
+        end = self._end or self.task.scenario.file.duration
+        whole = self.task.toml(self._goals, end)
+        self.again = whole is not None
+        return {FILE: whole or self.task.toml([], end) or ""}
 
     # ----------------------------------------------------------------------------------------------------------------
 

@@ -46,19 +46,19 @@ class Task:
         """The scenario as it is found again in the folder of its run."""
         return replace(self.scenario, address=str(folder.resolve() / FILE))
 
-    def toml(self, goals: Goals, duration: float) -> str:
-        """Its file with the goals that hands have asked for; without them where no file of ours may be so large."""
+    def toml(self, goals: Goals, duration: float) -> str | None:
+        """Its file with the goals that hands have asked for; None where no file of ours may be so large."""
         said = {k: v for k, v in self._said.items() if k != "goal"}
         head = tomlkit.dumps({**said, "duration": duration})
         rows = "".join(f"  {_row(t, goal)},\n" for t, goal in goals)
         own, _, tables = head.partition("\n[")  # an array of a file itself stands in front of its tables
         text = f"{own.rstrip()}\ngoal = [\n{rows}]\n" + (f"\n[{tables}" if tables else "")
-        return text if len(text.encode()) <= LARGEST else head
+        return text if len(text.encode()) <= LARGEST else None
 
 
 def _row(t: float, goal: Mapping[str, float] | None) -> str:
     said = f"{OFF} = true" if goal is None else ", ".join(f"{key} = {value!r}" for key, value in goal.items())
-    return f"{{ from = {t!r}, {said} }}"
+    return f"{{ from = {round(t, 9)!r}, {said} }}"
 
 
 def _around(vessel: str, scenario: str | None, load: Sequence[str]) -> tuple[dict[str, Value], Place]:
