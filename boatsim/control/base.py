@@ -44,6 +44,7 @@ class Controller(Checked):
     words: ClassVar[str] = ""  # one line for `boatsim list`
     commands: ClassVar[tuple[str, ...]] = ()  # command channels it sets; empty: any
     goals: ClassVar[tuple[str, ...]] = ()  # keys a [[goal]] may have; empty: the vessel's command channels
+    passes_on: ClassVar[bool] = False  # its goals are the commands, whatever is sensed
 
     period: float = param(0.08, low=0.001, high=10.0, unit="s", words="time between two control steps")
 

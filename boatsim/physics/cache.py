@@ -32,10 +32,16 @@ from boatsim.physics.kinds.effect import Effect
 PACKAGE = Path(__file__).parents[1]
 KERNEL = PACKAGE / "physics" / "kernel"
 WRITTEN = ("laws.py", "motion.py")  # generated in place of the kernel's files of these names
-SHARED = ("compiling.py", "correction.py", "matrices.py")  # imported by every program, and compiled once for all
+SHARED = (
+    "compiling.py",
+    "correction.py",
+    "matrices.py",
+    "turned.py",
+)  # imported by every program, and compiled once for all
 LEFT_OUT = ("algebra.py", "equations.py", "source.py", *SHARED)  # the first three write programs
 EXPORTS = '''"""A vessel's program, composed by boatsim; not meant to be edited."""
 
+from .batch import *
 from .callback import *
 from .filter import *
 from .inertia import *

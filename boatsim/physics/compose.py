@@ -162,12 +162,11 @@ class Composition:
         # without the vessel's name: one that is patched, or another with the same effects, is not compiled anew
         yield '"""Effects of a vessel, composed by boatsim; not meant to be edited."""'
         yield ""
-        yield "from math import cos, sin"
-        yield ""
         yield "import numpy as np"
         yield ""
         yield "from boatsim.physics.compose import classes_of"
         yield "from boatsim.physics.kernel.compiling import inlined, merged, shared"
+        yield "from boatsim.physics.kernel.turned import hold_turned"
         yield "from boatsim.physics.signals import Course, Swell, Wander, Wrench"
         yield ""
         yield f"E = classes_of({[address(type(e)) for e in self.effects]!r})"

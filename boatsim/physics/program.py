@@ -85,19 +85,24 @@ class Program:
     def body_rates(self, states: Array) -> Array:
         """States (N, 2 NQ), joint rates replaced by body rates."""
         code, out = self.module, np.empty(states.shape)
-        numpy_names = {**vars(code.motion), "cos": np.cos, "sin": np.sin}  # the same text over all states at once
-        seen = FunctionType(code.moved.py_func.__code__, numpy_names)(states.T)
+        seen = self._of_many("moved")(states.T)
         for i, k in enumerate(code.SHOWS):
             out[:, i] = seen[k]
         return out
 
-    def joint_rates(self, state: Array) -> Array:
-        """The inverse of `body_rates` for one state (2 NQ,)."""
-        code, out = self.module, np.array(state, dtype=float)
-        J = np.zeros((len(AXES), code.NQ))
-        code.jacobian.py_func(out, J)  # one call needs no compiling
-        out[code.NQ :] = np.linalg.solve(J[list(code.FREE)], out[code.NQ :])
-        return out
+    def joint_rates(self, states: Array) -> Array:
+        """The inverse of `body_rates`, for states (N, 2 NQ) or one (2 NQ,)."""
+        code, rows = self.module, np.array(np.atleast_2d(states), dtype=float)
+        J = np.zeros((len(AXES), code.NQ, len(rows)))
+        self._of_many("jacobian")(rows.T, J)
+        rates = np.linalg.solve(J[list(code.FREE)].transpose(2, 0, 1), rows[:, code.NQ :, None])
+        rows[:, code.NQ :] = rates[:, :, 0]
+        return rows.reshape(np.shape(states))
+
+    def _of_many(self, name: str) -> FunctionType:
+        """A function of the motion of one state, in Python and over all states at once."""
+        motion = self.module.motion
+        return FunctionType(getattr(motion, name).py_func.__code__, {**vars(motion), "cos": np.cos, "sin": np.sin})
 
     @cached_property
     def module(self) -> ModuleType:

@@ -17,7 +17,8 @@ def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: f
     drive = (abs(off) - q.dead) / (q.span - q.dead)
     if drive <= 0.0:
         return x
-    given = q.at_span * drive**q.exponent if off > 0.0 else -q.at_span * drive**q.exponent
+    share = drive if q.exponent == 1.0 else drive**q.exponent  # a power takes longer than all the rest
+    given = q.at_span * share if off > 0.0 else -q.at_span * share
     return Course(x.begin + given, x.middle + given, x.end + given)
 
 

@@ -61,6 +61,8 @@ compiled = kept()
 # The same for what allocates no arrays, nor do the laws in it: numba counts no references then, which it does with
 # locked instructions at every assignment of an array, for longer than the laws themselves take.
 lean = kept(_nrt=False)
+# The same, and other threads may run beside it.
+unlocked = kept(_nrt=False, nogil=True)
 # A part that few boats ever call: called as it stands, so that it lengthens none of the programs it is in.
 apart: Any = njit(error_model="numpy", _nrt=False)
 # A small part of another function, or a part of one or two: numba analyses it anew in each of them.

@@ -26,6 +26,8 @@ def actuate_in_place(commands: Array, memory: Array, dt: float, p: Array, on: An
 @compiled
 def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> None:
     """Let the actuators reach their commands: a few steps far longer than any actuator takes, in place."""
+    for i in range(3 * HELD):
+        act[i] = 0.0
     for _ in range(3):
         actuate_in_place(commands, memory, LONG, p, on, act)
     for i in range(HELD):

@@ -15,15 +15,13 @@ def actuators(program: Composed) -> Sequence[Station]:
     """Each signal begins as its command or reading, held over the step, and ends in the rows of `act`."""
     stations = []
     for name in program.signals:
-        places = {"x.{0}": program.held.index(name)}
-        for part in ("cos", "sin"):
-            if f"{part}_{name}" in program.held:
-                places[f"{part}(x.{{0}})"] = program.held.index(f"{part}_{name}")
-        end = [
-            f"act[{row}{k}] = {text.format(when)}"
-            for text, k in places.items()
-            for row, when in (("", "begin"), ("held + ", "middle"), ("2 * held + ", "end"))
-        ]
+        place = program.held.index(name)
+        rows = (("", "begin"), ("held + ", "middle"), ("2 * held + ", "end"))
+        end = [f"act[{row}{place}] = x.{when}" for row, when in rows]
+        turned = [program.held.index(f"{part}_{name}") for part in ("cos", "sin") if f"{part}_{name}" in program.held]
+        if turned:  # first: it looks at the end of the step before, which the rows still hold
+            places = ", ".join(f"np.int64({k})" for k in (place, *turned))
+            end.insert(0, f"hold_turned(x, act, held, {places})")
         begin = (f"c = commands[{program.commands.index(name)}]", "x = Course(c, c, c)")
         stations.append(Station(begin, tuple(end), name))
     return [*stations, Station(tuple(sums(program)), (), WHOLE)]

@@ -1,0 +1,27 @@
+"""Cosine and sine of the actuators that are angles, over a step."""
+
+from math import cos, sin
+from typing import Any
+
+from boatsim.physics.kernel.compiling import merged
+from boatsim.physics.signals import Array, Course
+
+
+@merged
+def hold_turned(x: Course, act: Array, held: Any, angle: int, cosine: int, sine: int) -> None:
+    """Cosine and sine of an angle at begin, middle and end of a step, to act (3 held,).
+
+    They take longer than the rest of an actuator, so what stands still is not computed anew: the begin is the end of
+    the step before, which act still holds (zeros in both: nothing yet), and an angle that is reached stays.
+    """
+    last = 2 * held
+    if act[last + angle] == x.begin and (act[last + cosine] != 0.0 or act[last + sine] != 0.0):
+        act[cosine], act[sine] = act[last + cosine], act[last + sine]
+    else:
+        act[cosine], act[sine] = cos(x.begin), sin(x.begin)
+    if x.middle == x.begin and x.end == x.begin:
+        act[held + cosine], act[held + sine] = act[cosine], act[sine]
+        act[last + cosine], act[last + sine] = act[cosine], act[sine]
+    else:
+        act[held + cosine], act[held + sine] = cos(x.middle), sin(x.middle)
+        act[last + cosine], act[last + sine] = cos(x.end), sin(x.end)
