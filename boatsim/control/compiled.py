@@ -71,6 +71,11 @@ class CompiledController(Controller):
         return dict(zip(type(self).commands, self._sent[0].item(), strict=True))
 
     @property
+    def is_its_law(self) -> bool:
+        """Whether it does what its law says; one with a `step` of its own does more."""
+        return type(self).step is CompiledController.step
+
+    @property
     def remembered(self) -> Any:
         """Its memory, a record."""
         return self._memory[0]

@@ -1,6 +1,6 @@
 """Pulses from rest by which gyro and accelerometer tell how two outboards differ from what is believed of them.
 
-One motor is turned inward, the other is straight. Both push ahead, twice as long astern, and ahead again, and the boat
+One motor is turned inward, the other is straight. Both push ahead, twice astern, and ahead again, and the boat
 ends where it was, at rest. Whatever her inertia and the levers, the two yaw accelerations are as the two thrusts, so
 that what the motors lack astern is known. Then the other motor is turned inward: where both steerings are off by the
 same angle, one side turns the boat more than the other.
@@ -8,14 +8,18 @@ same angle, one side turns the boat more than the other.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from math import exp, log
 from typing import NamedTuple
 
 import numpy as np
 
 from boatsim.control.base import LowPass, clip
+from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 
 PORT, STARBOARD, NEITHER = 0, 1, 2  # which motor is turned inward
+POWERS = (0.8, 2.0)  # exponents of thrust over setting that are believed
+FAR = 0.15  # logarithm of two settings' ratio from which on they tell the exponent
 WILDEST = 3.0  # thrust astern over ahead, or its inverse, beyond which a reading is not believed
 
 
@@ -50,18 +54,17 @@ class Found(NamedTuple):
 class Train:
     """One train of pulses and what was felt under it.
 
-    The motors stand still between two senses, so that the lag of one has no part in the other.
+    The motors stand still between pulses and all are as long, so that it is no matter how their thrust comes and goes.
     """
 
-    pulse: int  # [periods] ahead at either end
+    pulse: int  # [periods]
     rest: int  # [periods] before, between and behind
     rates: list[float] = field(default_factory=list)  # [rad/s] one a period, the first before the train
     felt: list[float] = field(default_factory=list)  # [m/s^2] ahead, at the same times
 
     def __post_init__(self) -> None:
         still = [0] * self.rest
-        parts = ((1, self.pulse), (-1, 2 * self.pulse), (1, self.pulse))
-        self.senses = still + [s for sense, n in parts for s in [sense] * n + still]
+        self.senses = still + [s for sense in (1, -1, -1, 1) for s in [sense] * self.pulse + still]
 
     def feel(self, rate: float, felt: float) -> None:
         """Readings at the beginning of a period, and at the end of the last."""
@@ -75,6 +78,10 @@ class Train:
         square = np.cumsum(np.square(self.rates)) * period
         turns, spread = _fitted(gained, np.array(self.rates) - aside * drift.yaw * square)
         pushes, _ = _fitted(on, np.array(self.felt))
+        if pushes[0] <= 0.0 or turns[0] == 0.0:
+            raise BadInput(
+                f"the motors were tried and pushed the boat ahead by {pushes[0]:.3g} m/s^2; is it free to move?"
+            )
         reverse = clip(float(-turns[1] / turns[0]), 1.0 / WILDEST, WILDEST)
         variance = float(spread[0] * reverse**2 + spread[1]) / float(turns[0]) ** 2
         return Found(float(turns[0]), reverse, variance, float(pushes[0]), drift.surge * float(square[-1]))
@@ -120,6 +127,7 @@ class MotorCheck:
         self.speed = 0.0  # [m/s] that the boat is left with
         self.done = False
         self._found: list[Found] = []
+        self._read: list[tuple[float, float]] = []  # logarithms of setting and reverse, by pair
         self._reading = (0.0, 0.0)
         self._program: Iterator[Pulse] | None = None
 
@@ -156,33 +164,36 @@ class MotorCheck:
                     yield Pulse(sense, side)
                 train.feel(*self._reading)
                 self._found.append(train.found(self.period, self.lag, self.drift, 1 if side == STARBOARD else -1))
-            reverse = self._learn(train.senses)
-            for sense in self._amends(reverse):
+            self._learn(train.senses)
+            for sense in self._amends():
                 yield Pulse(sense, NEITHER)
             if pair and self._spread() < self.enough:
                 return
             length = clip(self.reach / self.push, self.shortest, self.longest)
 
-    def _learn(self, senses: list[int]) -> float:
-        """Mend the astern setting by the last pair: in full at first, then by the mean of all pairs but the first.
-
-        Returns thrust astern over ahead of what was played.
-        """
-        pair, count = self._found[-2:], len(self._found) // 2
+    def _learn(self, senses: list[int]) -> None:
+        """Reckon what the last pair left of speed, and mend the astern setting by it."""
+        pair = self._found[-2:]
         reverse = (pair[PORT].reverse * pair[STARBOARD].reverse) ** 0.5
         self.speed += 2.0 * self.push * self.period * (senses.count(1) - reverse * senses.count(-1))
         self.speed -= sum(found.slowed for found in pair)
-        self.astern *= reverse ** (-1.0 / (self.power * max(count - 1, 1)))
-        return reverse
+        self._read.append((log(self.astern), log(reverse)))
+        self.astern = exp(self._balanced())
 
-    def _amends(self, reverse: float) -> list[int]:
-        """Senses that take out the speed."""
-        sense, thrust = (1, 1.0) if self.speed < 0.0 else (-1, reverse)
-        gain = self.push * self.straight * thrust * self.period
+    def _balanced(self) -> float:
+        """Logarithm of the setting that gives as much thrust as ahead: the mean of what all pairs but the first say."""
+        power = self.power
+        if len(self._read) > 1:
+            (s0, r0), (s1, r1) = self._read[:2]
+            power = clip((r1 - r0) / (s1 - s0), *POWERS) if abs(s1 - s0) > FAR else power
+        return float(np.mean([s - r / power for s, r in self._read[1:] or self._read]))
+
+    def _amends(self) -> list[int]:
+        """Senses that take out the speed; astern as mended, as strong as ahead."""
+        sense, gain = -1 if self.speed > 0.0 else 1, self.push * self.straight * self.period
         count = round(abs(self.speed) / gain)
         self.speed += sense * count * gain
-        rest = [0] * round(self.rest / self.period)
-        return [sense] * count + rest if count else []
+        return [sense] * count + [0] * round(self.rest / self.period) if count else []
 
     def _spread(self) -> float:
         """Standard deviation of the mean of all pairs but the first."""

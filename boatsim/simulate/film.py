@@ -74,7 +74,8 @@ def film(camera: Recording, truth: Recording, start: Pose, every: int, begin: fl
     """Every so many frames of what a camera recorded from `begin` [s] on, beside the log of the run."""
     if begin > 0.0:
         camera = camera.between(begin, np.inf)
-        start = tuple(float(np.interp(begin, truth.t, truth[name])) for name in ("x_m", "y_m", "psi_rad"))
+        x, y, psi = (float(np.interp(begin, truth.t, truth[name])) for name in ("x_m", "y_m", "psi_rad"))
+        start = (x, y, psi)
     t = camera.t[::every]
     c, s = np.cos(start[2]), np.sin(start[2])
 
@@ -88,8 +89,8 @@ def film(camera: Recording, truth: Recording, start: Pose, every: int, begin: fl
         for n in names
         if not n.endswith("_y_m")
     }
-    x, y, psi = (np.interp(t, truth.t, truth[name]) for name in ("x_m", "y_m", "psi_rad"))
-    return Film(t - begin, camera["psi_rad"][::every] - start[2], marks, ahead(x, y), psi - start[2])
+    north, east, heading = (np.interp(t, truth.t, truth[name]) for name in ("x_m", "y_m", "psi_rad"))
+    return Film(t - begin, camera["psi_rad"][::every] - start[2], marks, ahead(north, east), heading - start[2])
 
 
 def noise(frames: int, camera: Camera) -> Array:
