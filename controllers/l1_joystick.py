@@ -79,7 +79,7 @@ class L1Joystick(Outboards, CompiledController):
     inertia: float = param(2.0, low=0.1, high=50.0, unit="kg m^2", words="assumed yaw inertia, added mass included")
     mass: float = param(5.0, low=0.5, high=500.0, unit="kg", words="assumed surge mass")
     yaw_bandwidth: float = param(2.0, low=0.1, high=20.0, unit="rad/s", words="low-pass of the yaw estimate")
-    surge_bandwidth: float = param(0.5, low=0.05, high=20.0, unit="rad/s", words="low-pass of the surge estimate")
+    surge_bandwidth: float = param(2.0, low=0.05, high=20.0, unit="rad/s", words="low-pass of the surge estimate")
     heading_gain: float = param(0.2, low=0.0, high=5.0, unit="1/s", words="yaw rate asked for per heading error")
     hold_rate: float = param(0.1, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate without a yaw command")
     turn_rate: float = param(0.25, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate in a rated turn")

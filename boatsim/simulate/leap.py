@@ -46,7 +46,7 @@ class Leap:
             return None
         kind, each = type(law), law.period / engine.step
         acts_between = kind.early is not Controller.early or kind.done is not Controller.done
-        if acts_between or scenario.file.until != UntilTable() or abs(each - round(each)) > 1e-9:
+        if acts_between or not law.is_its_law or scenario.file.until != UntilTable() or abs(each - round(each)) > 1e-9:
             return None
         return cls(scenario, engine, law, imu)
 
