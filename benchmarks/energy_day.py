@@ -67,9 +67,7 @@ def kept(state: Array) -> Array:
     """Energy [J] and momentum north and east [N s]."""
     psi, nu = state[2], state[3:]
     p = MASS * nu
-    return np.array(
-        [0.5 * p @ nu, p[0] * np.cos(psi) - p[1] * np.sin(psi), p[0] * np.sin(psi) + p[1] * np.cos(psi)]
-    )
+    return np.array([0.5 * p @ nu, p[0] * np.cos(psi) - p[1] * np.sin(psi), p[0] * np.sin(psi) + p[1] * np.cos(psi)])
 
 
 def of_engine(made: Vessel, step: float) -> Advance:
