@@ -79,6 +79,7 @@ class PidAutopilot(Outboards, CompiledController):
     words: ClassVar[str] = "PID heading and PI surge speed on the joystick's allocation"
     commands: ClassVar[tuple[str, ...]] = ("pwm_port", "pwm_starboard", "steer_port_rad", "steer_starboard_rad")
     goals: ClassVar[tuple[str, ...]] = STICK
+    unsaid: ClassVar = dict.fromkeys(STICK, 0.0)
     law: ClassVar = law
     remembers: ClassVar = REMEMBERS
 

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from boatsim.control.base import clip, wrap
+from boatsim.control.base import wrap
 from boatsim.control.compiled import record
 from boatsim.physics.base import Checked, param
 from boatsim.physics.kernel.compiling import lean, merged
@@ -261,6 +261,10 @@ class Outboards(Checked):
         """Thrust difference D [N] for a sway command [m/s]; sway is open loop, so D is all there is to choose."""
         return sway_difference(self.nominal, sway)
 
+    def largest_goals(self) -> Mapping[str, float]:
+        """The sway command [m/s] that takes the largest thrust difference."""
+        return {"sway_mps": self.rated_sway * self.largest_difference / self.sway_thrust}
+
     def lever(self, angle: float) -> float:
         """Moment over thrust difference [m] with both motors turned inward by `angle` [rad]."""
         return lever(self.nominal, angle)
@@ -295,27 +299,27 @@ class Outboards(Checked):
         return self.push(Drive(self.thrust(setting.pwm_port), self.thrust(setting.pwm_starboard), angle))
 
 
-@dataclass(frozen=True)
-class JetThrottle:
-    """Throttle of a water jet, 1 idle to 7 full, and its shaft power per mass [m^2/s^3]; thrust is power / speed.
+JET_Q2 = 154.9  # [m^2/s^3] printed 164.5, with which the power jumps at throttle 4
+
+
+@lean
+def power_of(throttle: float, q2: float) -> float:
+    """Shaft power per mass [m^2/s^3] of a water jet at a throttle, 1 idle to 7 full; thrust is power / speed.
 
     Svendsen et al., IFAC MCMC 2012, eq. 10 and Table 2, with the printed s_i taken as the coefficients of throttle^i.
     """
+    if throttle < 2.0:
+        return 12.10 * throttle - 11.30
+    if throttle < 4.0:
+        return -21.1 - 20.0 * throttle + 18.5 * throttle * throttle
+    return 10.00 * throttle + q2
 
-    q2: float = 154.9  # printed 164.5, with which the power jumps at throttle 4
 
-    def power(self, throttle: float) -> float:
-        """Power of a throttle."""
-        if throttle < 2.0:
-            return 12.10 * throttle - 11.30
-        if throttle < 4.0:
-            return -21.1 - 20.0 * throttle + 18.5 * throttle * throttle
-        return 10.00 * throttle + self.q2
-
-    def throttle(self, power: float) -> float:
-        """Throttle of a power, within idle and full."""
-        if power < 12.90:  # at 2
-            return max((power + 11.30) / 12.10, 1.0)
-        if power < 194.9:  # at 4
-            return (20.0 + sqrt(400.0 + 74.0 * (power + 21.1))) / 37.0
-        return clip(0.1 * (power - self.q2), 4.0, 7.0)
+@lean
+def throttle_of(power: float, q2: float) -> float:
+    """Throttle of a power, within idle and full."""
+    if power < 12.90:  # at 2
+        return max((power + 11.30) / 12.10, 1.0)
+    if power < 194.9:  # at 4
+        return (20.0 + sqrt(400.0 + 74.0 * (power + 21.1))) / 37.0
+    return within(0.1 * (power - q2), 4.0, 7.0)

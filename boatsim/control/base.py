@@ -67,6 +67,10 @@ class Controller(Checked):
         """Adaptive estimates with their bounds, and the reference model's states where there is one, for the log."""
         return {}
 
+    def largest_goals(self) -> Mapping[str, float]:
+        """The largest goals that it is made for, by key: a joystick's full way. Others follow from the vessel."""
+        return {}
+
     @property
     def done(self) -> bool:
         """Whether all it was to do is done, so that the run may end."""

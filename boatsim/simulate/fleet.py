@@ -4,7 +4,7 @@ As `boatsim run` without MuJoCo: nothing touches a wall, and no camera films. Th
 `boatsim run` with its seed.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -66,6 +66,8 @@ class Fleet:
         self.seeds = np.arange(file.seed, file.seed + count) if seeds is None else np.asarray(seeds, dtype=int)
         if len(self.seeds) != count:
             raise BadInput(f"{len(self.seeds)} seeds for {count} boats; allowed is one for each")
+        if scenario.lets_go:
+            raise BadInput(f"{scenario.name}: a goal says off; boats of a fleet are steered all the time")
         self.scenario = scenario
         self.batch = Batch(boats, count, file.step, threads=threads, seeds=self.seeds.tolist())
         given = scenario.controller if controller is None else controller
@@ -114,19 +116,12 @@ class Fleet:
         return Voyages(t, named, states, boat.inputs, commands)
 
     def _sail(self, periods: int) -> None:
-        """So many control periods, in parts in which the goal stands still."""
+        """So many control periods, some at a time."""
         while periods > 0:
-            goal, part = self._goal(min(periods, AHEAD))
-            self._controlled.sail(goal, part)
+            part = min(periods, AHEAD)
+            times = [(self._periods + k) * self._period for k in range(part)]
+            self._controlled.sail([self.scenario.goal_at(t) for t in times])
             self._periods, periods = self._periods + part, periods - part
-
-    def _goal(self, most: int) -> tuple[Mapping[str, float], int]:
-        """The goal in force, and for how many periods it surely is."""
-        now = self.scenario.goal_at(self._periods * self._period)
-        for k in range(1, most):
-            if self.scenario.goal_at((self._periods + k) * self._period) != now:
-                return now, k
-        return now, most
 
     def _way(self) -> PassedOn | ByFunction | ByLaw:
         """How the boats are steered. Raises BadInput."""

@@ -5,6 +5,7 @@ Any further sensor is a file of `boatsim/simulate/sensors/`.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from math import nan
 from typing import ClassVar
 
@@ -13,7 +14,7 @@ import numpy as np
 from boatsim.control.base import Sense
 from boatsim.physics.base import Array, Checked, param
 from boatsim.physics.kernel.compiling import lean
-from boatsim.simulate.engine import Engine
+from boatsim.simulate.stepper import Stepper
 
 NOISES = 7  # normal numbers that a sample takes
 
@@ -64,9 +65,10 @@ class Sensors(Checked):
         if self.ideal:
             return Sense(*felt)
         row = np.array(felt)
-        disturb(row, self.numbers(), rng.standard_normal(NOISES))
+        disturb(row, self.numbers, rng.standard_normal(NOISES))
         return Sense(*row.tolist())
 
+    @cached_property
     def numbers(self) -> Array:
         """What `disturb` takes of it."""
         return np.array([float(self.ideal), *(float(getattr(self, name)) for name in type(self).params())])
@@ -82,17 +84,17 @@ class Sensor(Checked):
     words: ClassVar[str] = ""  # one line for `boatsim list`
     columns: ClassVar[Mapping[str, str]] = {}  # what it reads -> its column in the log, with the unit, after `sensed_`
 
-    def read(self, engine: Engine, rng: np.random.Generator) -> Mapping[str, float]:
+    def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
         """One sample of everything in `columns` from the boat as it is."""
         raise NotImplementedError
 
 
-def sensed(base: Sense, aboard: Sequence[Sensor], engine: Engine, rngs: Sequence[np.random.Generator]) -> Sense:
+def sensed(base: Sense, aboard: Sequence[Sensor], engine: Stepper, rngs: Sequence[np.random.Generator]) -> Sense:
     """What the usual sensors say, with what the further ones read; each has randomness of its own."""
+    if not aboard:
+        return base
     usual = {f.name for f in fields(Sense)} - {"more"}
     read: dict[str, float] = {}
     for sensor, rng in zip(aboard, rngs, strict=True):
         read |= sensor.read(engine, rng)
-    if not read:
-        return base
     return replace(base, **{n: x for n, x in read.items() if n in usual}, more=read)

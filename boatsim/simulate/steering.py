@@ -1,7 +1,8 @@
 """The ways in which the boats of a fleet are steered: goals passed on, a compiled law, a function over all of them."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import groupby
 from typing import Any, TypeAlias
 
 import numba
@@ -29,6 +30,10 @@ class Aboard:
     steps: int
     saturated: Array  # (n, inputs)
     random: Sequence[np.random.Generator] = ()  # of each boat's sensors
+    total: Array = field(init=False)  # (n, inputs) sum over time [s] of the commands of compiled laws
+
+    def __post_init__(self) -> None:
+        self.total = np.zeros_like(self.saturated)
 
     @property
     def limits(self) -> tuple[Array, Array]:
@@ -60,9 +65,11 @@ class PassedOn:
     def reset(self) -> None:
         """Nothing is remembered."""
 
-    def sail(self, goal: Mapping[str, float], periods: int) -> None:
-        """So many periods under one goal."""
-        self.aboard.send(sent_row(self.aboard.batch.vessels[0], goal), periods * self.aboard.steps)
+    def sail(self, goals: Sequence[Mapping[str, float]]) -> None:
+        """A period for each goal."""
+        for goal, same in groupby(goals):
+            steps = len(list(same)) * self.aboard.steps
+            self.aboard.send(sent_row(self.aboard.batch.vessels[0], goal), steps)
 
 
 class ByFunction:
@@ -75,12 +82,12 @@ class ByFunction:
     def reset(self) -> None:
         """The function remembers what it likes."""
 
-    def sail(self, goal: Mapping[str, float], periods: int) -> None:
-        """So many periods under one goal. Raises BadInput for a channel that is not there."""
-        batch, numbers = self.aboard.batch, self.aboard.sensors.numbers()
+    def sail(self, goals: Sequence[Mapping[str, float]]) -> None:
+        """A period for each goal. Raises BadInput for a channel that is not there."""
+        batch, numbers = self.aboard.batch, self.aboard.sensors.numbers
         everyone, boat = np.arange(len(batch)), batch.vessels[0]
-        noise = self.aboard.noise(everyone, periods)
-        for i in range(periods):
+        noise = self.aboard.noise(everyone, len(goals))
+        for i, goal in enumerate(goals):
             batch.feel(as_table(self._sense))
             loop.disturb_boats(everyone, as_table(self._sense), numbers, noise, i)
             orders = np.tile(sent_row(boat, {}), (len(batch), 1))
@@ -94,8 +101,13 @@ class ByFunction:
 class ByLaw:
     """A compiled law, each boat with the settings of its controller and a memory of its own."""
 
-    def __init__(self, aboard: Aboard, controllers: Sequence[CompiledController]) -> None:
-        """Boat i has the controller i modulo their number. Raises BadInput where they are not of one kind."""
+    def __init__(
+        self, aboard: Aboard, controllers: Sequence[CompiledController], memory: Records | None = None
+    ) -> None:
+        """Boat i has the controller i modulo their number, and remembers in `memory`, or anew.
+
+        Raises BadInput where they are not of one kind.
+        """
         kind = type(controllers[0])
         if any(type(c) is not kind or c.period != controllers[0].period for c in controllers):
             raise BadInput("controllers of a fleet of several kinds or periods; allowed are other settings")
@@ -103,9 +115,11 @@ class ByLaw:
         n, boat = len(aboard.batch), aboard.batch.vessels[0]
         rows = np.concatenate([c.settings() for c in controllers])
         self._settings = rows[np.arange(n) % len(rows)]
-        self._memory, self._sense = np.zeros(n, kind.remembers), np.zeros(n, SENSE)
+        self._memory = np.zeros(n, kind.remembers) if memory is None else memory
+        self._sense = np.zeros(n, SENSE)
         self._goal, self._sent = (np.zeros(n, t) for t in kind.asked_and_sent())
-        self._places = columns(kind.commands, boat.inputs)
+        self._felt, self._wanted, self.orders = (as_table(r) for r in (self._sense, self._goal, self._sent))
+        self.places = columns(kind.commands, boat.inputs)
         self._low, self._high = aboard.limits
         self._loop = self._compiled()
 
@@ -113,27 +127,28 @@ class ByLaw:
         """Nothing learnt."""
         self._memory[:] = np.zeros(1, self.kind.remembers)
 
-    def sail(self, goal: Mapping[str, float], periods: int) -> None:
-        """So many periods under one goal, each boat's on one thread."""
-        for name in self.kind.goals:
-            self._goal[name] = goal.get(name, 0.0)
-        self.aboard.batch.shared(lambda boats: self._sailed(boats, periods))
+    def sail(self, goals: Sequence[Mapping[str, float]], begins: bool = True) -> None:
+        """A period for each goal, each boat's on one thread; it begins with the law, or ends with it."""
+        table = np.array([self.kind.asked(goal) for goal in goals], dtype=float)
+        self.aboard.batch.shared(lambda boats: self._sailed(boats, table, begins))
 
-    def _sailed(self, boats: Boats, periods: int) -> None:
-        a, b = self.aboard, self.aboard.batch
+    def _sailed(self, boats: Boats, goals: Array, begins: bool) -> None:
+        a, b, periods = self.aboard, self.aboard.batch, len(goals)
         self._loop(
-            self.kind.law, b.code.feel_boats, b.code.advance_boats, boats, periods, a.steps, b.step, b.t, b._y,
+            *self._pointers, boats, begins, periods, a.steps, b.step, b.t, b._y,
             b._commands, b._memory, b._act, b._p, b._on, b._k, b._none, self._settings, self._memory, self._sense,
-            as_table(self._sense), a.sensors.numbers(), a.noise(boats, periods), self._goal, self._sent,
-            as_table(self._sent), self._places, self._low, self._high, a.saturated,
+            self._felt, a.sensors.numbers, a.noise(boats, periods), self._goal, self._wanted, goals, self._sent,
+            self.orders, self.places, self._low, self._high, a.saturated, a.total,
         )  # fmt: skip
 
     def _compiled(self) -> Any:
         """The loop, law and program being pointers to functions: so it is kept on disk, whatever boat it steers."""
         code, typeof = self.aboard.batch.code, numba.typeof
         records = tuple(typeof(r) for r in (self._settings, self._memory, self._sense, self._goal, self._sent))
-        signatures = (types.void(loop.Boats, *records), loop.FEEL, loop.ADVANCE)
-        functions: tuple[Any, ...] = (self.kind.law, code.feel_boats, code.advance_boats)
-        for function, signature in zip(functions, signatures, strict=True):
-            function.compile(signature.args)
-        return loop.sailing(self.kind.law, tuple(types.FunctionType(s) for s in signatures), records)
+        law = types.void(loop.Boats, *records)
+        self._pointers = (
+            loop.Pointer(self.kind.law, law),
+            loop.Pointer(code.feel_boats, loop.FEEL),
+            loop.Pointer(code.advance_boats, loop.ADVANCE),
+        )
+        return loop.sailing(tuple(p._numba_type_ for p in self._pointers), records)

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.physics.base import param
-from boatsim.simulate.engine import Engine
+from boatsim.simulate.stepper import Stepper
 from boatsim.simulate.sensing import Sensor
 
 
@@ -20,6 +20,6 @@ class DriftLog(Sensor):
 
     speed_sd: float = param(0.01, low=0.0, high=1.0, unit="m/s", words="noise of the velocity")
 
-    def read(self, engine: Engine, rng: np.random.Generator) -> Mapping[str, float]:
+    def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
         """The boat's sway velocity, off by the noise."""
         return {"v": engine.state.v + self.speed_sd * float(rng.standard_normal())}
