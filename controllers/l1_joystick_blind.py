@@ -3,26 +3,25 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import cos, degrees, nan, sin
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from boatsim.control.adaptive import LoopChannel
 from boatsim.control.allocation import ANGLE_MAX, PWM_MAX, Setting
 from boatsim.control.base import Estimate, Sense, clip, wrap
+from boatsim.control.joystick import AdaptiveJoystick
 from boatsim.control.motor_check import PORT, STARBOARD, Drift, MotorCheck, Pulse
 from boatsim.physics.base import param
-from boatsim.physics.content import load_class
 
-L1Joystick: Any = load_class("controller", "l1_joystick")
 TURN_BACK = 0.03  # [rad/s] at which what the check turned is turned back
 
 
 @dataclass
-class L1JoystickBlind(L1Joystick):  # type: ignore[misc]  # content is loaded by name
-    """Yaw by the gyro as its parent; surge by what the motors are known to give, for nothing aboard feels it.
+class L1JoystickBlind(AdaptiveJoystick):
+    """Yaw by the gyro as its base; surge by what the motors are known to give, for nothing aboard feels it.
 
     From rest the motors are pulsed for 20 to 40 s in which the stick is not heard, or what such a check found before
-    is stated (`known_`). Commands then go out as they must for the boat to do what the parent believes: astern by a
-    factor, both motors turned by an angle. So trimmed, speed and way are the sums of what was applied; the parent
+    is stated (`known_`). Commands then go out as they must for the boat to do what the base believes: astern by a
+    factor, both motors turned by an angle. So trimmed, speed and way are the sums of what was applied; the base
     takes that speed for measured and gives the way back.
     """
 
@@ -53,12 +52,12 @@ class L1JoystickBlind(L1Joystick):  # type: ignore[misc]  # content is loaded by
         super().reset()
         self._check = None if self.known_astern else self._new_check()
         self._astern, self._angle, self._scale = self.known_astern or 1.0, self.known_angle, self.known_scale
-        self._psi = self._start = nan  # [rad] compass when the parent took over, and before the check
+        self._psi = self._start = nan  # [rad] compass when the base took over, and before the check
         self._left = 0.0  # [rad] still to be turned back
         self._u = self._x = 0.0  # [m/s], [m] reckoned, beside what the stick asked for
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Pulses until the motors are known, then the parent's commands, trimmed."""
+        """Pulses until the motors are known, then the base's commands, trimmed."""
         if self._psi != self._psi:
             self._psi = sense.psi
         if self._check:
@@ -70,7 +69,7 @@ class L1JoystickBlind(L1Joystick):  # type: ignore[misc]  # content is loaded by
         return self._answered(sense, goal)
 
     def estimates(self) -> dict[str, Estimate]:
-        """The parent's, what was found of the motors, and the reckoning."""
+        """The base's, what was found of the motors, and the reckoning."""
         found = {
             "trim_astern": self._check.astern if self._check else self._astern,
             "trim_angle_rad": self._angle,
@@ -128,7 +127,7 @@ class L1JoystickBlind(L1Joystick):  # type: ignore[misc]  # content is loaded by
         self._check = None
 
     def _answered(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """The parent's answer to the reckoned speed, trimmed for the motors as they are."""
+        """The base's answer to the reckoned speed, trimmed for the motors as they are."""
         stick = goal.get("surge_mps", 0.0)
         turn = clip(self._left, -TURN_BACK * self.period, TURN_BACK * self.period)
         self._left -= turn
@@ -149,7 +148,7 @@ class L1JoystickBlind(L1Joystick):  # type: ignore[misc]  # content is loaded by
         self._x += self.period * (self._u - stick)
 
     def _trim(self, name: str, value: float) -> float:
-        """Command under which these motors do what the parent's would have done."""
+        """Command under which these motors do what the base's would have done."""
         if name.startswith("steer"):
             return value - self._angle
         return value if value >= 0.0 else float(round(max(value * self._astern, -PWM_MAX)))

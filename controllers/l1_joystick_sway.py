@@ -1,6 +1,5 @@
 """The L1 joystick with its sway closed too, for a boat that measures her sway velocity: three channels."""
 
-import sys
 from dataclasses import dataclass
 from functools import partial
 from math import atan2, copysign, isnan, nan, sin
@@ -11,13 +10,8 @@ from boatsim.control.allocation import HEADING, set_outboards, sway_difference, 
 from boatsim.control.axis import AXIS, missing
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import merged, record, unlocked
+from boatsim.control.joystick import SERVO_LAG, AdaptiveJoystick, surge_force, yaw_moment
 from boatsim.physics.base import param
-from boatsim.physics.content import load_class
-
-L1Joystick: Any = load_class("controller", "l1_joystick")
-yaw_moment, surge_force, servo_lag = (
-    getattr(sys.modules[L1Joystick.__module__], name) for name in ("yaw_moment", "surge_force", "SERVO_LAG")
-)
 
 
 @merged
@@ -51,8 +45,8 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 
 @dataclass
-class L1JoystickSway(L1Joystick):  # type: ignore[misc]  # content is loaded by name
-    """As its parent, and sway speed by an L1 channel of its own where a sensor gives it.
+class L1JoystickSway(AdaptiveJoystick):
+    """As its base, and sway speed by an L1 channel of its own where a sensor gives it.
 
     The motion asked for in sway is half as fast as in surge and yaw: what two small motors can give a hull that takes
     her own mass of water with her. While the stick asks for no sway the motors do not work against each other for one.
@@ -68,7 +62,7 @@ class L1JoystickSway(L1Joystick):  # type: ignore[misc]  # content is loaded by 
     least_difference: float = param(0.3, low=0.01, high=5.0, unit="N", words="least thrust difference while swaying")
 
     def estimates(self) -> dict[str, Estimate]:
-        """The parent's, and those of sway."""
+        """The base's, and those of sway."""
         sway = self.remembered["sway"]
         return {
             **super().estimates(),
@@ -77,6 +71,6 @@ class L1JoystickSway(L1Joystick):  # type: ignore[misc]  # content is loaded by 
         }
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """The parent's, and sway."""
-        delayed = partial(LoopChannel, hold_s=0.5 * self.period, servo_lag_s=servo_lag, input_gain=(0.5, 1.0, 1.8))
+        """The base's, and sway."""
+        delayed = partial(LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8))
         return (*super().loop_channels(), delayed("sway", pole=self.sway_pole, bandwidth=self.sway_bandwidth))

@@ -10,7 +10,7 @@ from benchmarks.arrows import HOME, OURS, counts, imported, level, main, on_shel
 
 FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "errors physics.base control.base control.adaptive control.adaptive_loop control.allocation "
-    "control.identification control.helm control.compiled control.axis control.motor_check physics.content".split()
+    "control.identification control.helm control.compiled control.axis control.joystick control.motor_check".split()
 )
 HEAVY = {  # library -> the only modules that may import it
     "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")} | {"warp.on_mujoco"},
