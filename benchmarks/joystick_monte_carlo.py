@@ -71,7 +71,7 @@ def main(arguments: list[str] | None = None) -> int:
     print("\n".join(f"  {line}" for line in lost) or "  nothing")
     for why, count in done.failures.items():
         print(f"{count} runs failed: {why}")
-    if given.plot:
+    if given.plot and done.complete:
         given.plot.write_text(_picture(done), encoding="utf-8")
     print(f"written to {given.out}: sweep.parquet, report.html")
     return 0 if done.complete else 130
