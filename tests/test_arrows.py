@@ -26,6 +26,7 @@ HEAVY = {  # library -> the only modules that may import it
     "rosbags": {"recordings.logs.rosbag"},
     "pyulog": {"recordings.logs.ulog"},
     "pynmea2": {"recordings.logs.nmea"},
+    "websockets": {"drive.server"},
 }
 BY_ANY_NAME = {"physics.content", "physics.cache"}  # what files name, and programs composed on the spot
 CONTROLLERS = sorted((HOME / "controllers").glob("*.py"))

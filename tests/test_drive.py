@@ -3,6 +3,7 @@
 import asyncio
 import json
 import re
+import socket
 import subprocess
 import sys
 import threading
@@ -177,9 +178,12 @@ def test_what_can_not_be_driven_is_one_line(tmp_path: Path, given_: list[str], s
 # Off, on time, beside -------------------------------------------------------------------------------------------------
 
 
-def test_while_a_goal_is_off_commands_are_neutral_and_the_controller_begins_anew() -> None:
+@pytest.mark.parametrize("engine", ["mujoco", "twin"])
+def test_while_a_goal_is_off_commands_are_neutral_and_the_controller_begins_anew(engine: str) -> None:
     goals = [{"yaw_radps": 0.1, "sway_mps": 0.05}, {"from": 4.0, "off": True}, {"from": 8.0, "yaw_radps": 0.0}]
-    made = scenario.load("joystick_boat/berth", {"duration": 12.0, "goal": goals})
+    rows = 0.0 if engine == "mujoco" else 0.5  # [s] between them: the other may leap in between
+    over = {"duration": 12.0, "goal": goals, "tank": None, "engine": engine, "log": rows}
+    made = scenario.load("joystick_boat/berth", over)
     log = Runner(made).run().recording
     off = (log.t >= 4.0 + made.controller.period) & (log.t < 7.99)
     for name, channel in made.vessel.commands.items():
@@ -347,6 +351,16 @@ def test_goals_too_many_for_a_file_are_left_out_of_it_and_what_they_are_of_stays
     many = [(0.02 * i, {"surge_mps": 0.01 * (i % 50), "sway_mps": 0.0, "yaw_radps": 0.0}) for i in range(40_000)]
     assert task.toml(many, 800.0) is None
     assert "l1_joystick" in str(task.toml([], 800.0)) and "from" not in str(task.toml([], 800.0))
+
+
+def test_a_port_that_is_taken_is_one_line(tmp_path: Path) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        done = boatsim("drive", "otter", "--port", port, "--out", tmp_path / "out")
+    assert done.exit_code == 2 and done.stderr.count("\n") == 1
+    assert f"port {port}: " in done.stderr and "without --port" in done.stderr
 
 
 def test_nobody_waits_for_ever_where_the_package_is_missing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -66,6 +66,8 @@ class Fleet:
         self.seeds = np.arange(file.seed, file.seed + count) if seeds is None else np.asarray(seeds, dtype=int)
         if len(self.seeds) != count:
             raise BadInput(f"{len(self.seeds)} seeds for {count} boats; allowed is one for each")
+        if scenario.lets_go:
+            raise BadInput(f"{scenario.name}: a goal says off; boats of a fleet are steered all the time")
         self.scenario = scenario
         self.batch = Batch(boats, count, file.step, threads=threads, seeds=self.seeds.tolist())
         given = scenario.controller if controller is None else controller
