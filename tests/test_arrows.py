@@ -16,6 +16,8 @@ HEAVY = {  # library -> the only modules that may import it
     "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")},
     "dm_control": {"simulate.env"},
     "dm_env": {"simulate.env"},
+    "gymnasium": {f"learn.{name}" for name in ("registration", "single", "spaces", "vector")},
+    "stable_baselines3": {"learn.sb3"},
     "rerun": {"view.rerun_log", "view.blueprint", "view.stream", "recordings.readers.rrd"},
     "jinja2": {"diagnose.report.page"},
     "pymavlink": {"recordings.logs.ardupilot"},
