@@ -16,7 +16,7 @@ POTENTIAL, HELD = 0, 1  # what is remembered
 PAID, LOST = 10.0, 5.0  # for lying at the berth; off by touching the quay or leaving the harbour
 HASTE = 0.02  # off for each length that full speed would have gone
 TURN = 0.5  # lengths that a radian of heading counts for
-STAY = 2.0  # for each second of lying at the berth, off again on leaving it
+CLOSE = 0.2  # a second at the berth, less the further from it
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,10 @@ class Berth(Task):
     `heading` and the speed of bow and stern below `speed` for `hold` seconds. Over as well, and failed, when a corner
     of the hull touches the quay or the boat is `reach` away.
 
-    The reward is progress: how much smaller the distance [L] + 0.5 |heading error| [rad] got, and 2 for each second
-    that it lies at the berth, off again when it does no longer. Off go 0.02 for the time that full speed takes for a
-    length, 5 for touching or leaving; 10 come on top when it is done.
+    The reward is progress: how much smaller the distance [L] + 0.5 |heading error| [rad] got, and 0.2 a
+    second times exp(-e / 2), e the sum of squares of distance, heading error and speed over their tolerances, 0.1 L, 5
+    degrees and 0.03 L/s unless told. Off go 0.02 for the time that full speed takes for a length, 5 for touching or
+    leaving; 10 come on top when it is done.
     """
 
     words: ClassVar[str] = "from a few lengths off alongside a quay, and lie there"
@@ -59,6 +60,9 @@ class Berth(Task):
             Signal("u_mps", 0.5 * scale.speed, "surge velocity over ground"),
             Signal("v_mps", 0.5 * scale.speed, "sway velocity over ground"),
             Signal("r_radps", scale.speed / scale.length, "yaw rate"),
+            Signal("u_near_mps", 0.1 * scale.speed, "surge velocity, with a bound for the last of the way"),
+            Signal("v_near_mps", 0.1 * scale.speed, "the same of sway"),
+            Signal("r_near_radps", 0.2 * scale.speed / scale.length, "the same of yaw"),
             Signal("quay_m", scale.length, "between the quay and the nearest corner of the hull"),
         )
 
@@ -85,7 +89,7 @@ class Berth(Task):
         distance = np.sqrt(m.x * m.x + m.y * m.y) / scale.length
         aside = np.abs(m.v) + 0.5 * scale.length * np.abs(m.r)
         speed = np.sqrt(m.u * m.u + aside * aside) / scale.length
-        seen = (ahead, starboard, ahead, starboard, s, c, off, m.u, m.v, m.r, room)
+        seen = (ahead, starboard, ahead, starboard, s, c, off, m.u, m.v, m.r, m.u, m.v, m.r, room)
         return (*seen, distance, off, speed)
 
     def start(self, seen: tuple[Array, ...], scale: Scale) -> Array:
@@ -99,11 +103,12 @@ class Berth(Task):
         turned = np.abs(off)
         left = distance + TURN * turned
         there = (distance < self.place) & (turned < self.heading) & (speed < self.speed)
-        stayed = np.where(there, period, -memory[:, HELD])
-        memory[:, HELD] += stayed
+        memory[:, HELD] = (memory[:, HELD] + period) * there
+        off_by = (distance / self.place) ** 2 + (turned / self.heading) ** 2 + (speed / self.speed) ** 2
         done = memory[:, HELD] >= self.hold - 1e-9
         lost = ~((room > 0.0) & (distance < self.reach))
-        reward = memory[:, POTENTIAL] - left - HASTE * period * scale.speed / scale.length + PAID * done + STAY * stayed
+        reward = memory[:, POTENTIAL] - left - HASTE * period * scale.speed / scale.length + PAID * done
+        reward += CLOSE * period * np.exp(-0.5 * off_by)
         memory[:, POTENTIAL] = left
         return Judged(np.where(lost, -LOST, reward), done | lost)
 
