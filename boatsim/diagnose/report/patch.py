@@ -62,8 +62,8 @@ def patched(
             document["effect"].append(table)
     _hold(document, problem, vessel, found)
     document.pop("spread", None)  # that of an earlier diagnosis
-    if (table := uncertain.spread(problem, found, events)) is not None:
-        document["spread"] = table
+    if (spread := uncertain.spread(problem, found, events)) is not None:
+        document["spread"] = spread
     return str(tomlkit.dumps(document))
 
 

@@ -28,9 +28,9 @@ def spread(problem: Problem, found: Fit, gone: Collection[str] = ()) -> Table | 
     table = tomlkit.table()
     table.comment("how far off the fitted numbers may be, one standard deviation")
     covariance = found.covariance[np.ix_(kept, kept)]
-    sd = np.sqrt(np.diag(covariance))
+    sds = np.sqrt(np.diag(covariance))
     table["correlation"] = tomlkit.array()
-    for row in covariance / np.outer(sd, sd):
+    for row in covariance / np.outer(sds, sds):
         table["correlation"].add_line([_rounded(x) for x in row])
     table["correlation"].add_line()
     table["of"] = tomlkit.aot()
