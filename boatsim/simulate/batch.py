@@ -54,6 +54,7 @@ class Batch:
         self.program = self.programs[0]
         self.code = self.program.module
         self._check_alike()
+        self._values = [p.values() for p in self.programs]
         self._on, self._none = self.program.switches(), np.zeros(self.code.NQ)
         self._seeds = np.zeros(self.n, dtype=int) if seeds is None else np.asarray(seeds, dtype=int)
         self.t = np.zeros(self.n)  # [s]
@@ -150,7 +151,7 @@ class Batch:
         numbers = np.broadcast_to(np.asarray(vessel, dtype=int), chosen.shape)
         for number in np.unique(numbers):
             program, some = self.programs[number], chosen[numbers == number]
-            self._p[some], self._body[some] = program.values(), program.body
+            self._p[some], self._body[some] = self._values[number], program.body
             self._draw(program, some)
         self._weigh(chosen)
 
