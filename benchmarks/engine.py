@@ -1,10 +1,13 @@
 """Speed of the physics, of a whole scenario and of a fresh process: `python -m benchmarks.engine`, about two minutes.
 
+`--scenarios` times every scenario of the repository instead, sensors, controller and log included.
+
 RK4 steps/s are medians of five rounds in which the variants take turns, so that a busy machine slows all of them: the
 joystick boat with all its effects and four more, in a tank so large that it touches nothing, collision on; the Otter is
 the vessel that is free in all six ways.
 """
 
+import argparse
 import os
 import subprocess
 import sys
@@ -15,11 +18,12 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 from boatsim.physics import vessel
-from boatsim.simulate import scenario
+from boatsim.simulate import cases, scenario
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.run import run
 from boatsim.simulate.twin import Twin
@@ -37,6 +41,7 @@ EXTRA = (
     {"use": "shallow_water", "factor": 1.3},
 )
 SCENARIO = "joystick_boat/sway_1"
+FAST = 100.0  # times real time that each scenario is to reach
 OPEN = {"until": {}, "tank": {"length": 1e4, "width": 1e4}}  # so that the boat sails on and touches nothing
 CLI = [sys.executable, "-c", "from boatsim.cli import main; main()"]
 
@@ -165,9 +170,33 @@ def an_hour(folder: Path) -> Path:
     return path
 
 
+def every_scenario(console: Console) -> None:
+    """Real-time factor of each, after imports and compilation; slowest first."""
+    found = []
+    for name in cases.meant("*"):
+        whole = scenario.load(name)
+        brief = max(3.0 * whole.controller.period, whole.file.log)
+        run(scenario.load(name, {"duration": min(brief, whole.file.duration), "check": []}))  # compiles
+        start = perf_counter()
+        done = run(scenario.load(name))
+        took, lasted = perf_counter() - start, float(np.ptp(done.recording.t))
+        found.append((lasted / took, name, lasted, whole.file.step, whole.controller.period, whole.file.engine))
+    table = Table("scenario", "x real time", "lasts s", "step s", "period s", "engine")
+    for speed, name, lasted, step, period, engine in sorted(found):
+        table.add_row(name, f"{speed:,.0f}", f"{lasted:g}", f"{step:g}", f"{period:g}", engine)
+    console.print(table)
+    below = [name for speed, name, *_ in found if speed < FAST]
+    console.print(f"{len(found)} scenarios, {len(below)} below {FAST:g} x real time: {', '.join(below) or 'none'}")
+
+
 def main() -> None:
     """Measure and print."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.engine", description="Speed of the physics.")
+    parser.add_argument("--scenarios", action="store_true", help="every scenario of the repository instead")
     console = Console()
+    if parser.parse_args().scenarios:
+        every_scenario(console)
+        return
     table = Table("", "measured", "to reach", "reached")
     for name, part in (
         ("steps/s of engine and twin", stepping),

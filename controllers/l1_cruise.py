@@ -1,24 +1,46 @@
 """L1 adaptive cruise control of a water-jet craft: the throttle that holds a speed, whatever slows the craft."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from math import exp, isnan, nan
-from typing import ClassVar
+from math import exp, nan
+from typing import Any, ClassVar
 
 from boatsim.control.adaptive import LinearSystem, l1_norm, unfiltered
-from boatsim.control.adaptive_loop import AdaptiveLoop
-from boatsim.control.allocation import JetThrottle
-from boatsim.control.base import Controller, Estimate, Sense, clip
+from boatsim.control.adaptive_loop import act_loop, begin_loop, designed, loop_memory, observe_loop
+from boatsim.control.allocation import power_of, throttle_of, within
+from boatsim.control.base import Estimate
+from boatsim.control.compiled import CompiledController, Records, record, unlocked, with_parts
 from boatsim.physics.base import param
 
 THETA, SIGMA, OMEGA = (0.2025, 1.7716), (-23.17, 23.17), (0.1, 2.0)  # section 4.1; 1/s, m/s^2, 1
 SLOWEST = 0.5  # [m/s] thrust is power / speed down to here
 IDLE, FULL = 1.0, 7.0  # throttle
 LINEAR, QUADRATIC = 0.1926, 0.0035  # [1/s], [1/m] drag per mass, Table 3: only where the filter starts
+NO_LIMIT = 1e9  # [m/s^3] of the thrust's rate
+
+
+@unlocked
+def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
+    """Throttle for the next period."""
+    for b in boats:
+        q, m, s, wanted = settings[b], memory[b], sense[b], goal[b].u_mps
+        u = max(s.u, SLOWEST)
+        low, high = power_of(IDLE, q.q2) / u, power_of(FULL, q.q2) / u  # [m/s^2] thrust per mass at this speed
+        m.loop.after[0] = s.u
+        if m.started == 0.0:
+            m.model, m.throttle, m.started = s.u, IDLE, 1.0
+            begin_loop(m.loop, q.loop, within((LINEAR + QUADRATIC * u) * u, low, high))
+        else:
+            mean = max(0.5 * (m.speed + s.u), SLOWEST)
+            observe_loop(m.loop, q.loop, power_of(m.throttle, q.q2) / mean)
+            m.model += (1.0 - exp(-q.pole * q.period)) * (m.goal - m.model)
+        gain = 1.0 / q.pole if q.gain_as_published != 0.0 else q.pole
+        thrust = act_loop(m.loop, q.loop, gain * wanted, low, high, NO_LIMIT)
+        m.speed, m.goal, m.throttle = s.u, wanted, throttle_of(thrust * u, q.q2)
+        sent[b].throttle, sent[b].jet_rad = m.throttle, goal[b].jet_rad
 
 
 @dataclass
-class L1Cruise(Controller):
+class L1Cruise(CompiledController):
     """Speed u' = -pole u + omega tau + theta u + sigma with the thrust tau per mass found by adaptation; eqs. 17-24.
 
     The thrust is limited to what the throttle can give at this speed, and the predictor gets the limited one. Goals:
@@ -28,6 +50,9 @@ class L1Cruise(Controller):
     words: ClassVar[str] = "L1 adaptive speed of a water-jet craft on its throttle"
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
     goals: ClassVar[tuple[str, ...]] = ("u_mps", "jet_rad")
+    unsaid: ClassVar = {"jet_rad": 0.0}
+    law: ClassVar = law
+    remembers: ClassVar = record("started", "goal", "model", "speed", "throttle", loop=loop_memory(1))
 
     period: float = param(0.002, low=0.0001, high=0.1, unit="s", words="time between two control steps")
     substep: float = param(1e-4, low=1e-6, high=0.1, unit="s", words="of predictor, adaptation and filter")
@@ -37,46 +62,25 @@ class L1Cruise(Controller):
     q2: float = param(154.9, low=0.0, high=1e3, unit="m^2/s^3", words="of the power curve; printed 164.5")
     gain_as_published: float = param(0.0, low=0.0, high=1.0, unit="", words="1: k_g = 1/pole, which is wrong")
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.reset()
-
-    def reset(self) -> None:
-        """Nothing learnt."""
+    def settings(self, count: int = 1) -> Records:
+        """Its parameters, and how its loop is laid out."""
         low, high = zip(THETA, SIGMA, OMEGA, strict=True)
-        self._loop = AdaptiveLoop(
+        loop = designed(
             [[-self.pole]], low, high, (1.0, 0.0, 1.0), gain=self.adaptation, bandwidth=self.bandwidth,
             period=self.period, step=self.substep,
         )  # fmt: skip
-        self._jet = JetThrottle(self.q2)
-        self._model = self._speed = self._goal = nan
-        self._throttle = IDLE
-        self._decay = exp(-self.pole * self.period)
-
-    def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Throttle for the next period."""
-        wanted, u = goal["u_mps"], max(sense.u, SLOWEST)
-        if isnan(self._model):
-            self._model = sense.u
-            self._loop.start((sense.u,), clip((LINEAR + QUADRATIC * u) * u, *self._range(u)))
-        else:
-            mean = max(0.5 * (self._speed + sense.u), SLOWEST)
-            self._loop.observe((sense.u,), self._jet.power(self._throttle) / mean)
-            self._model += (1.0 - self._decay) * (self._goal - self._model)
-        gain = 1.0 / self.pole if self.gain_as_published else self.pole
-        thrust = self._loop.act(gain * wanted, *self._range(u))
-        self._speed, self._goal, self._throttle = sense.u, wanted, self._jet.throttle(thrust * u)
-        return {"throttle": self._throttle, "jet_rad": goal.get("jet_rad", 0.0)}
+        return with_parts(super().settings(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:
         """Theta, sigma and omega with their bounds, and the speed asked for."""
-        theta, sigma, omega = self._loop.estimates.tolist()
+        m = self.remembered
+        theta, sigma, omega = m["loop"]["estimates"].tolist()
         return {
             "theta_1ps": Estimate(theta, *THETA),
             "sigma_mps2": Estimate(sigma, *SIGMA),
             "omega": Estimate(omega, *OMEGA),
-            "reference_goal_mps": Estimate(self._goal, nan, nan),
-            "reference_u_mps": Estimate(self._model, nan, nan),
+            "reference_goal_mps": Estimate(float(m["goal"]), nan, nan),
+            "reference_u_mps": Estimate(float(m["model"]), nan, nan),
         }
 
     def filtered_uncertainty(self) -> LinearSystem:
@@ -86,7 +90,3 @@ class L1Cruise(Controller):
     def l1_condition(self) -> float:
         """L1 norm times the largest slope of the uncertainty: below 1 the loop stays bounded (Fig. 8)."""
         return l1_norm(self.filtered_uncertainty()) * THETA[1]
-
-    def _range(self, u: float) -> tuple[float, float]:
-        """Least and most thrust per mass [m/s^2] at a speed."""
-        return self._jet.power(IDLE) / u, self._jet.power(FULL) / u

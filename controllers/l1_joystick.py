@@ -4,38 +4,63 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import isnan, nan
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from boatsim.control.adaptive import LoopChannel, PiecewiseConstant
-from boatsim.control.allocation import STICK, Heading, Outboards, Push, Stick
-from boatsim.control.base import Controller, Estimate, LowPass, Sense, clip
+from boatsim.control.adaptive import LoopChannel
+from boatsim.control.allocation import (
+    HEADING,
+    STICK,
+    Outboards,
+    keep_heading,
+    set_outboards,
+    sway_difference,
+    within,
+)
+from boatsim.control.axis import AXIS, missing
+from boatsim.control.base import Estimate
+from boatsim.control.compiled import CompiledController, merged, record, unlocked
 from boatsim.physics.base import param
 
 SERVO_LAG = 0.06  # [s] "about one time step" in the thesis; used for the printed margins only
+REMEMBERS = record("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)  # X [N], N [N m] applied last
+
+
+@merged
+def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
+    """Yaw moment [N m] for a yaw rate wanted [rad/s]: the stick's, corrected for the heading error and bounded."""
+    if m.acted != 0.0:
+        keep_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
+    bound = q.hold_rate + (q.turn_rate - q.hold_rate) * abs(wanted) / q.rated_yaw
+    reference = within(wanted + q.heading_gain * (m.heading.wanted - m.heading.own), -bound, bound)
+    acted = m.acted != 0.0
+    felt = missing(m.yaw, s.r, m.N, acted, reference, q.pole, q.inertia, q.yaw_bandwidth, q.period)
+    return q.inertia * q.pole * reference - felt
+
+
+@merged
+def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
+    """Surge force [N] for a speed wanted [m/s]; without a speed sensor only a guess of what the stick asks for."""
+    if isnan(s.u):
+        return q.blind_surge * wanted
+    acted = m.acted != 0.0
+    felt = missing(m.surge, s.u, m.X, acted, wanted, q.pole, q.mass, q.surge_bandwidth, q.period)
+    return q.mass * q.pole * wanted - felt
+
+
+@unlocked
+def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
+    """Commands for the next period from the gyro, the surge speed if there is one, and the stick."""
+    for b in boats:
+        q, m, s, g = settings[b], memory[b], sense[b], goal[b]
+        moment = yaw_moment(q, m, s, g.yaw_radps)
+        surge = surge_force(q, m, s, g.surge_mps)
+        room = q.pole * q.mass * abs(g.surge_mps)
+        m.X, _, m.N = set_outboards(q, surge, sway_difference(q, g.sway_mps), moment, room, sent[b])
+        m.acted = 1.0
 
 
 @dataclass
-class Axis:
-    """One adaptive channel: predictor, adaptation and low-pass of what the predictor does not know."""
-
-    block: PiecewiseConstant
-    low_pass: LowPass
-    model: float = 0.0  # the motion asked for: x' = -pole (x - x_ref)
-
-    def missing(self, measured: float, applied: float | None, reference: float) -> float:
-        """Force or moment the boat feels beside the applied one, low-passed; `applied` is None at the first step.
-
-        A lasting disturbance shows in `sig` with the factor e^{-aT} only, so it is divided out.
-        """
-        block = self.block
-        if applied is not None:
-            block.predict(applied)
-        self.model += (1.0 - block.decay) * (reference - self.model)
-        return self.low_pass.step(block.adapt(measured) / block.decay, block.period)
-
-
-@dataclass
-class L1Joystick(Outboards, Controller):
+class L1Joystick(Outboards, CompiledController):
     """L1 adaptive control of yaw rate and, where a sensor gives it, surge speed; sway is thrust in open loop.
 
     Each channel asks for x' = -pole (x - x_ref) of an assumed inertia. Whatever else moves the boat (unknown motor
@@ -46,6 +71,9 @@ class L1Joystick(Outboards, Controller):
     words: ClassVar[str] = "L1 adaptive joystick, corrected: surge, sway and yaw commands at once"
     commands: ClassVar[tuple[str, ...]] = ("pwm_port", "pwm_starboard", "steer_port_rad", "steer_starboard_rad")
     goals: ClassVar[tuple[str, ...]] = STICK
+    unsaid: ClassVar = dict.fromkeys(STICK, 0.0)
+    law: ClassVar = law
+    remembers: ClassVar = REMEMBERS
 
     pole: float = param(1.4, low=0.1, high=10.0, unit="1/s", words="pole of the motion asked for")
     inertia: float = param(2.0, low=0.1, high=50.0, unit="kg m^2", words="assumed yaw inertia, added mass included")
@@ -58,35 +86,19 @@ class L1Joystick(Outboards, Controller):
     rated_yaw: float = param(0.1396, low=0.01, high=2.0, unit="rad/s", words="the rated turn, 8 deg/s")
     blind_surge: float = param(1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor")
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.reset()
-
-    def reset(self) -> None:
-        """At rest on the start heading, with nothing learnt."""
-        self._yaw = Axis(PiecewiseConstant(self.pole, 1.0 / self.inertia, self.period), LowPass(self.yaw_bandwidth))
-        self._surge = Axis(PiecewiseConstant(self.pole, 1.0 / self.mass, self.period), LowPass(self.surge_bandwidth))
-        self._heading = Heading()
-        self._applied: Push | None = None
-
-    def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Commands for the next period from the gyro, the surge speed if there is one, and the stick."""
-        stick = Stick.read(goal)
-        moment = self._moment(sense, stick.yaw)
-        surge = self._surge_force(sense.u, stick.surge)
-        room = self.pole * self.mass * abs(stick.surge)
-        setting = self.setting(self.allocate(surge, self.sway_difference(stick.sway), moment, room))
-        self._applied = self.applied(setting)
-        return setting.commands()
-
     def estimates(self) -> dict[str, Estimate]:
         """What each channel takes for missing force and moment, and the motion asked for."""
+        yaw, surge = self.remembered["yaw"], self.remembered["surge"]
         return {
-            "sigma_yaw_Nm": Estimate(self._yaw.block.sig, nan, nan),
-            "sigma_surge_N": Estimate(self._surge.block.sig, nan, nan),
-            "reference_u_mps": Estimate(self._surge.model, nan, nan),
-            "reference_r_radps": Estimate(self._yaw.model, nan, nan),
+            "sigma_yaw_Nm": Estimate(float(yaw["sigma"]), nan, nan),
+            "sigma_surge_N": Estimate(float(surge["sigma"]), nan, nan),
+            "reference_u_mps": Estimate(float(surge["model"]), nan, nan),
+            "reference_r_radps": Estimate(float(yaw["model"]), nan, nan),
         }
+
+    def largest_goals(self) -> Mapping[str, float]:
+        """With the rated turn [rad/s]."""
+        return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
         """The feedback loops, for margins; the input gain spans the boats of the Monte Carlo study."""
@@ -97,23 +109,3 @@ class L1Joystick(Outboards, Controller):
             delayed("yaw", bandwidth=self.yaw_bandwidth, heading_gain=self.heading_gain),
             delayed("surge", bandwidth=self.surge_bandwidth),
         )
-
-    def _moment(self, sense: Sense, wanted: float) -> float:
-        """Yaw moment [N m]."""
-        if self._applied is not None:
-            self._heading.step(sense.r, sense.psi, wanted, self.period, self.compass_trust)
-        reference = self._rate_reference(wanted)
-        missing = self._yaw.missing(sense.r, self._applied.N if self._applied else None, reference)
-        return self.inertia * self.pole * reference - missing
-
-    def _rate_reference(self, wanted: float) -> float:
-        """Yaw rate asked for: the stick's, corrected for the heading error and bounded."""
-        bound = self.hold_rate + (self.turn_rate - self.hold_rate) * abs(wanted) / self.rated_yaw
-        return clip(wanted + self.heading_gain * self._heading.error(), -bound, bound)
-
-    def _surge_force(self, speed: float, wanted: float) -> float:
-        """Surge force [N]; without a speed sensor only a guess of what the stick asks for."""
-        if isnan(speed):
-            return self.blind_surge * wanted
-        missing = self._surge.missing(speed, self._applied.X if self._applied else None, wanted)
-        return self.mass * self.pole * wanted - missing

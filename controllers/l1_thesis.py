@@ -1,42 +1,84 @@
 """The L1 controller of Bayless' simulations: gradient adaptation with projection, steering behind a low-pass."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import nan, pi, radians, sin
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from boatsim.control.adaptive import Gradient, lyapunov
-from boatsim.control.base import Controller, Estimate, Sense, clip
+from boatsim.control.adaptive import lyapunov
+from boatsim.control.adaptive_loop import projected
+from boatsim.control.allocation import within
+from boatsim.control.base import Estimate
+from boatsim.control.compiled import CompiledController, merged, record, unlocked
 from boatsim.physics.base import param
 
 MODEL = ((0.0, -1.0), (1.0, -1.4))  # [1/s] A_m of sway velocity and yaw rate, T8; b = I
+((P_VV, P_VR), (_, P_RR)) = lyapunov(MODEL).tolist()
 ROOM = pi / 4  # [rad] both motors turn inward as far as this, T9
 MODULATED_AT = radians(23.6)  # steering angle at which modulated power is the nominal one, Fig 24
+FILTER_ZERO, FILTER_POLE = 17.7, 50.0  # [rad/s] of the low-pass, AppH
+# Bounds are assumptions, wide enough for the plants of T10 to T14 and the disturbance of T12.
+OMEGA, OTHERS = (0.5, 2.0), (-2.0, 2.0)
+# What is unknown of one state, xh' = A_m xh + omega input + theta'x + sigma, and the input in force
+ROW = record("omega", "theta_v", "theta_r", "sigma", "given")
+BOUNDS = {"omega": OMEGA, "theta_v": OTHERS, "theta_r": OTHERS, "sigma": OTHERS}
+
+
+@merged
+def known(row: Any, v: float, r: float) -> float:
+    """Acceleration that the input and the states are taken to cause."""
+    return row.omega * row.given + row.theta_v * v + row.theta_r * r + row.sigma
+
+
+@merged
+def stepped(value: float, regressor: float, error: float, low: float, high: float, gain: float, dt: float) -> float:
+    """An estimate after dt [s] of the gradient law with projection, cut at its bounds."""
+    rate = gain * projected(value, -regressor * error, low, high)
+    return within(value + dt * rate, low, high)
+
+
+@merged
+def adapt(row: Any, error: float, v: float, r: float, gain: float, dt: float) -> None:
+    """E34 to E36: each estimate against its regressor; error is the row's entry of (xh - x)' P."""
+    row.omega = stepped(row.omega, row.given, error, OMEGA[0], OMEGA[1], gain, dt)
+    row.theta_v = stepped(row.theta_v, v, error, OTHERS[0], OTHERS[1], gain, dt)
+    row.theta_r = stepped(row.theta_r, r, error, OTHERS[0], OTHERS[1], gain, dt)
+    row.sigma = stepped(row.sigma, 1.0, error, OTHERS[0], OTHERS[1], gain, dt)
+
+
+@merged
+def steer(q: Any, m: Any, v: float, r: float) -> float:
+    """Set the angle by the filtered law and return the power for it [N]."""
+    wanted = 0.0 if q.feed_forward_as_published != 0.0 else -MODEL[1][0] * v
+    drive = -1.07 * q.filter_gain * (known(m.yaw, v, r) - wanted) * q.period
+    m.slow += FILTER_ZERO / FILTER_POLE * drive
+    m.fast += (FILTER_POLE - FILTER_ZERO) / FILTER_POLE * drive - FILTER_POLE * q.period * m.fast
+    per_angle = q.slope * q.power / q.inertia  # [1/s^2]
+    m.angle = within(q.neutral - (m.slow + m.fast) / per_angle, 0.0, ROOM)
+    m.reached += (m.angle - m.reached) * q.period / max(q.servo_lag, q.period)
+    thrust = q.power * (sin(m.reached) / sin(MODULATED_AT) if q.modulated != 0.0 else 1.0)
+    m.sway.given, m.yaw.given = thrust * sin(m.angle) / q.mass, per_angle * (q.neutral - m.angle)
+    return thrust
+
+
+@unlocked
+def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
+    """Thrusts and angles from the measured sway velocity and yaw rate."""
+    for b in boats:
+        q, m, v, r = settings[b], memory[b], sense[b].v, sense[b].r
+        if m.started == 0.0:
+            m.started = m.sway.omega = m.yaw.omega = 1.0
+        vh, rh = m.vh, m.rh
+        adapt(m.sway, P_VV * (vh - v) + P_VR * (rh - r), v, r, q.adaptation, q.period)
+        adapt(m.yaw, P_VR * (vh - v) + P_RR * (rh - r), v, r, q.adaptation, q.period)
+        thrust = steer(q, m, v, r)
+        m.vh += q.period * (MODEL[0][0] * vh + MODEL[0][1] * rh + known(m.sway, v, r))  # E37
+        m.rh += q.period * (MODEL[1][0] * vh + MODEL[1][1] * rh + known(m.yaw, v, r))
+        sent[b].thrust_port_N, sent[b].thrust_starboard_N = 0.5 * thrust, -0.5 * thrust
+        sent[b].steer_port_rad, sent[b].steer_starboard_rad = m.angle, -m.angle
 
 
 @dataclass
-class Row:
-    """What is unknown of one state: xh' = A_m xh + omega input + theta'x + sigma."""
-
-    omega: Gradient
-    theta_v: Gradient
-    theta_r: Gradient
-    sigma: Gradient
-
-    def known(self, given: float, v: float, r: float) -> float:
-        """Acceleration that the input and the states are taken to cause."""
-        return self.omega.value * given + self.theta_v.value * v + self.theta_r.value * r + self.sigma.value
-
-    def adapt(self, error: float, given: float, v: float, r: float, dt: float) -> None:
-        """E34 to E36: each estimate against its regressor; error is its entry of (xh - x)' P."""
-        self.omega.step(given, error, dt)
-        self.theta_v.step(v, error, dt)
-        self.theta_r.step(r, error, dt)
-        self.sigma.step(1.0, error, dt)
-
-
-@dataclass
-class L1Thesis(Controller):
+class L1Thesis(CompiledController):
     """Sways with constant nominal power while the steering keeps the yaw rate at zero, its neutral angle unknown.
 
     E37 with a plus sign throughout. Sway is open loop, so the sway speed there is counts as the one asked for, and the
@@ -47,6 +89,9 @@ class L1Thesis(Controller):
     commands: ClassVar[tuple[str, ...]] = (
         "thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad",
     )  # fmt: skip
+    law: ClassVar = law
+    # predicted states; both poles of the low-pass [rad/s^2]; angle commanded, and where the servo is taken to be
+    remembers: ClassVar = record("started", "vh", "rh", "slow", "fast", "angle", "reached", sway=ROW, yaw=ROW)
 
     period: float = param(5e-4, low=5e-4, high=0.01, unit="s", words="time between two control steps")
     power: float = param(0.5, low=0.01, high=8.0, unit="N", words="nominal power F0: both thrusts together")
@@ -60,67 +105,13 @@ class L1Thesis(Controller):
     filter_gain: float = param(4.5, low=0.01, high=100.0, unit="", words="times 1.07 (s + 17.7)/(s (s + 50)), AppH")
     feed_forward_as_published: bool = False
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        (self._p_vv, self._p_vr), (_, self._p_rr) = lyapunov(MODEL).tolist()
-        self.reset()
-
-    def reset(self) -> None:
-        """Nothing learnt, motors straight ahead."""
-        self._sway, self._yaw = self._row(), self._row()
-        self._predicted = (0.0, 0.0)
-        self._given = (0.0, 0.0)  # [m/s^2], [rad/s^2] inputs in force
-        self._slow = self._fast = 0.0  # [rad/s^2] both poles of the low-pass
-        self._angle = self._reached = 0.0  # [rad] commanded, and where the servo is taken to be
-
-    def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Thrusts and angles from the measured sway velocity and yaw rate."""
-        v, r = sense.v, sense.r
-        vh, rh = self._predicted
-        error_v, error_r = vh - v, rh - r
-        given_v, given_r = self._given
-        self._sway.adapt(self._p_vv * error_v + self._p_vr * error_r, given_v, v, r, self.period)
-        self._yaw.adapt(self._p_vr * error_v + self._p_rr * error_r, given_r, v, r, self.period)
-        thrust = self._steer(v, r)
-        self._predict(vh, rh, v, r)
-        angle = self._angle
-        return {
-            "thrust_port_N": 0.5 * thrust, "thrust_starboard_N": -0.5 * thrust,
-            "steer_port_rad": angle, "steer_starboard_rad": -angle,
-        }  # fmt: skip
-
     def estimates(self) -> dict[str, Estimate]:
         """All estimates with their bounds, and the predicted states."""
+        m = self.remembered
         found = {
-            f"{name}_{axis}": Estimate(g.value, g.low, g.high)
-            for axis, row in (("sway", self._sway), ("yaw", self._yaw))
-            for name, g in vars(row).items()
+            f"{name}_{axis}": Estimate(float(m[axis][name]), *bounds)
+            for axis in ("sway", "yaw")
+            for name, bounds in BOUNDS.items()
         }
-        vh, rh = self._predicted
-        return found | {"reference_v_mps": Estimate(vh, nan, nan), "reference_r_radps": Estimate(rh, nan, nan)}
-
-    def _row(self) -> Row:
-        """Bounds are assumptions, wide enough for the plants of T10 to T14 and the disturbance of T12."""
-        gain = self.adaptation
-        theta_v, theta_r, sigma = (Gradient(0.0, -2.0, 2.0, gain) for _ in range(3))
-        return Row(Gradient(1.0, 0.5, 2.0, gain), theta_v, theta_r, sigma)
-
-    def _steer(self, v: float, r: float) -> float:
-        """Set the angle by the filtered law and return the power for it [N]."""
-        wanted = 0.0 if self.feed_forward_as_published else -MODEL[1][0] * v
-        over = self._yaw.known(self._given[1], v, r) - wanted
-        drive = -1.07 * self.filter_gain * over * self.period
-        self._slow += 17.7 / 50.0 * drive
-        self._fast += (50.0 - 17.7) / 50.0 * drive - 50.0 * self.period * self._fast
-        per_angle = self.slope * self.power / self.inertia  # [1/s^2]
-        self._angle = clip(self.neutral - (self._slow + self._fast) / per_angle, 0.0, ROOM)
-        self._reached += (self._angle - self._reached) * self.period / max(self.servo_lag, self.period)
-        thrust = self.power * (sin(self._reached) / sin(MODULATED_AT) if self.modulated else 1.0)
-        self._given = (thrust * sin(self._angle) / self.mass, per_angle * (self.neutral - self._angle))
-        return thrust
-
-    def _predict(self, vh: float, rh: float, v: float, r: float) -> None:
-        """E37 over one period."""
-        dv = MODEL[0][0] * vh + MODEL[0][1] * rh + self._sway.known(self._given[0], v, r)
-        dr = MODEL[1][0] * vh + MODEL[1][1] * rh + self._yaw.known(self._given[1], v, r)
-        self._predicted = (vh + self.period * dv, rh + self.period * dr)
+        predicted = {"reference_v_mps": float(m["vh"]), "reference_r_radps": float(m["rh"])}
+        return found | {name: Estimate(value, nan, nan) for name, value in predicted.items()}

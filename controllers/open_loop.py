@@ -12,6 +12,7 @@ class OpenLoop(Controller):
     """Each goal of the moment is the command of the channel of its name; nothing is measured."""
 
     words: ClassVar[str] = "plays the commands given as goals, channel by channel"
+    passes_on: ClassVar[bool] = True
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """The goal itself."""

@@ -10,10 +10,12 @@ from benchmarks.arrows import HOME, OURS, counts, imported, level, main, on_shel
 
 FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "errors physics.base control.base control.adaptive control.adaptive_loop control.allocation "
-    "control.identification control.helm".split()
+    "control.identification control.helm control.compiled control.axis".split()
 )
 HEAVY = {  # library -> the only modules that may import it
-    "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")},
+    "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")} | {"warp.on_mujoco"},
+    "mujoco_warp": {"warp.on_mujoco"},
+    "warp": {"warp.library"},
     "dm_control": {"simulate.env"},
     "dm_env": {"simulate.env"},
     "gymnasium": {f"learn.{name}" for name in ("registration", "single", "spaces", "vector")},

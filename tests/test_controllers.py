@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from boatsim.control.adaptive import Predictor
 from boatsim.control.base import Sense
 from boatsim.control.margins import table
 from boatsim.errors import BadInput
@@ -314,11 +315,12 @@ def test_compass_corrects_the_heading_only_where_it_is_trusted(controller: Any) 
 def test_predictor_is_told_the_saturated_command() -> None:
     """A boat that does exactly what the outboards can give leaves nothing to explain, however much was asked for."""
     controller, rate = L1Joystick(), 0.0
+    assumed = Predictor(controller.pole, 1.0 / controller.inertia, controller.period)
     for _ in range(40):
         commands = controller.step(replace(STILL, r=rate), {"yaw_radps": 0.5})
         assert controller.estimates()["sigma_yaw_Nm"].value == pytest.approx(0.0, abs=1e-12)
         port, astern = commands["pwm_port"] / 150 * 0.5, commands["pwm_starboard"] / 150 * 0.5 * 0.67
-        rate = controller._yaw.block.decay * rate + controller._yaw.block.gain * 0.235 * (port - astern)
+        rate = assumed.decay * rate + assumed.gain * 0.235 * (port - astern)
     assert abs(commands["pwm_starboard"]) > 150
 
 
@@ -326,7 +328,7 @@ def test_lasting_moment_is_answered_in_full() -> None:
     boat = Turntable(push=0.03, damping=2.8)  # the predictor's own pole: nothing else is unknown
     controller = L1Joystick()
     boat.run(controller, {"sway_mps": 0.07}, 40.0)
-    assert controller._applied.N == pytest.approx(-0.03, abs=0.006)  # a servo step of 1 deg is 0.006 N m
+    assert controller.remembered["N"] == pytest.approx(-0.03, abs=0.006)  # a servo step of 1 deg is 0.006 N m
     assert controller.estimates()["sigma_yaw_Nm"].value == pytest.approx(0.03, abs=0.008)
 
 

@@ -8,8 +8,17 @@ import pytest
 from jet_craft import STEERING, Craft, power, solved
 
 from boatsim.control.adaptive import l1_norm, project_interval, unfiltered
-from boatsim.control.adaptive_loop import AdaptiveLoop, adapt, filtered, projected
-from boatsim.control.allocation import JetThrottle
+from boatsim.control.adaptive_loop import (
+    act_loop,
+    adapt,
+    begin_loop,
+    designed,
+    filtered,
+    loop_memory,
+    observe_loop,
+    projected,
+)
+from boatsim.control.allocation import JET_Q2, power_of, throttle_of
 from boatsim.physics import vessel
 from boatsim.physics.base import Course, Force, Wrench, mean_of, motion
 from boatsim.physics.content import load_class, names
@@ -42,11 +51,12 @@ def test_power_curve_has_the_published_corners(throttle: float, wanted: float) -
 
 
 def test_power_rises_with_the_throttle_and_its_inverse_gives_the_throttle_back() -> None:
-    curve, throttles = JetThrottle(), np.linspace(1.0, 7.0, 601).tolist()
-    assert all(a < b for a, b in pairwise(curve.power(h) for h in throttles))
-    assert [curve.throttle(curve.power(h)) for h in throttles] == pytest.approx(throttles)
-    assert [curve.power(h) for h in throttles] == pytest.approx([power(h) for h in throttles])
-    assert (curve.throttle(-5.0), curve.throttle(1e3)) == (1.0, 7.0)
+    throttles = np.linspace(1.0, 7.0, 601).tolist()
+    powers = [power_of(h, JET_Q2) for h in throttles]
+    assert all(a < b for a, b in pairwise(powers))
+    assert [throttle_of(x, JET_Q2) for x in powers] == pytest.approx(throttles)
+    assert powers == pytest.approx([power(h) for h in throttles])
+    assert (throttle_of(-5.0, JET_Q2), throttle_of(1e3, JET_Q2)) == (1.0, 7.0)
 
 
 def test_printed_q2_makes_the_power_jump_at_4() -> None:
@@ -150,18 +160,20 @@ def test_compiled_projection_is_the_textbook_one() -> None:
 def test_adaptive_loop_equals_the_textbook_example_with_a_known_reference_system() -> None:
     """theta (4, -4.5) unknown, C = 160/(s + 160), a step of 25: the known reference system gives y(1), y(2), y(5)."""
     am = [[0.0, 1.0], [-1.0, -1.4]]
-    loop = AdaptiveLoop(
+    design = designed(
         am, (-10, -10, -1e-9, 1 - 1e-9), (10, 10, 1e-9, 1 + 1e-9), (0, 0, 0, 1), gain=1e4, bandwidth=160.0,
         period=2e-4, step=2e-5,
     )  # fmt: skip
+    loop, of = np.zeros(1, loop_memory(2)).view(np.recarray)[0], design.view(np.recarray)[0]
     x, a, seen, u = np.zeros(2), np.array([[0.0, 1.0], [3.0, -5.9]]), {}, 0.0
-    loop.start(x, 0.0)
+    begin_loop(loop, of, 0.0)
     for i in range(25001):
         if i in (5000, 10000, 25000):
             seen[i // 5000] = x[0] / 25.0
         if i:
-            loop.observe(x, u)
-        u = loop.act(25.0, -1e6, 1e6)
+            loop.after[:] = x
+            observe_loop(loop, of, u)
+        u = act_loop(loop, of, 25.0, -1e6, 1e6, 1e9)
         for _ in range(4):
             half = x + 2.5e-5 * (a @ x + [0.0, u])
             x = x + 5e-5 * (a @ half + [0.0, u])
@@ -181,7 +193,7 @@ def test_predictor_told_the_truth_learns_nothing() -> None:
     x1 = 1.0 + 0.01 * (-1.4 + 0.5 + 0.2 + 2.0 * 0.3)  # one sub-step: exact
     adapt(
         predicted, estimates, np.full(3, -9.0), np.full(3, 9.0), 1e4, np.array([[-1.4]]), np.array([0.357]),
-        np.zeros(1), np.arange(3), np.array([1.0]), np.array([x1]), 0.3, 0.01, 1,
+        np.zeros(1), np.arange(3), np.array([1.0]), np.array([x1]), 0.3, 0.01, 1, np.zeros(3), np.zeros(1),
     )  # fmt: skip
     assert estimates.tolist() == pytest.approx([0.5, 0.2, 2.0], abs=1e-9)
 

@@ -1,13 +1,19 @@
 """The lines of docs/security.md, each by the number it has there."""
 
+import json
 import os
 import re
+import socket
 import stat
 import subprocess
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
+from urllib.error import HTTPError
+from urllib.request import Request, urlopen
 
 import boats
 import numpy as np
@@ -21,6 +27,9 @@ from boatsim.cli.batch import plan
 from boatsim.cli.exits import LONGEST, complain, words
 from boatsim.diagnose.analysis import vessel_for
 from boatsim.diagnose.tried import library_for
+from boatsim.drive.hands import PATIENCE, Hands, Sticks
+from boatsim.drive.server import LARGEST as MESSAGE
+from boatsim.drive.server import STRANGE, TAKEN, Server
 from boatsim.errors import BadInput, BoatsimError, shown
 from boatsim.files import DEEPEST, LARGEST, read_toml
 from boatsim.physics import cache, content, trust, vessel
@@ -453,10 +462,131 @@ def test_19_what_does_not_fit_the_memory_is_refused(tmp_path: Path, monkeypatch:
     assert len(read(TRIAL))
 
 
+# What listens while a boat is driven --------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def server() -> Iterator[Server]:
+    pytest.importorskip("websockets")
+    with Server(Hands()) as made:
+        yield made
+
+
+def answer(url: str, **headers: str) -> int:
+    try:
+        with urlopen(Request(url, headers=headers), timeout=5) as found:
+            return int(found.status)
+    except HTTPError as error:
+        return error.code
+
+
+def dialled(server: Server, **more: Any) -> Any:
+    """A socket as the page opens it."""
+    from websockets.sync.client import connect
+
+    own = f"http://127.0.0.1:{server.port}"
+    more = {"origin": own, **more}
+    return connect(server.address.replace("http", "ws") + "socket", **more)
+
+
+def test_20_a_wrong_token_gets_neither_page_nor_socket(server: Server) -> None:
+    from websockets.sync.client import connect
+
+    own = f"http://127.0.0.1:{server.port}"
+    assert answer(server.address) == 200
+    for wrong in ("/", "/x/", f"/{server.address.split('/')[3][:-1]}/", "/socket"):
+        assert answer(own + wrong) == 403
+        with pytest.raises(Exception, match="403"):
+            connect(own.replace("http", "ws") + wrong + "socket", origin=own)
+
+
+def test_20_another_name_of_the_host_is_refused(server: Server) -> None:
+    for host in ("evil.example", f"evil.example:{server.port}", f"127.0.0.1.evil.example:{server.port}"):
+        assert answer(server.address, Host=host) == 421
+
+
+def test_20_a_socket_of_another_page_is_refused(server: Server) -> None:
+    for origin in ("http://evil.example", f"http://localhost:{server.port}", None, "null"):
+        with pytest.raises(Exception, match="403"):
+            dialled(server, origin=origin)
+
+
+def test_20_only_this_machine_can_reach_it(server: Server) -> None:
+    listening = Path("/proc/net/tcp").read_text().splitlines()[1:]
+    own = [line.split()[1] for line in listening if line.split()[1].endswith(f":{server.port:04X}")]
+    assert own and all(address.startswith("0100007F:") for address in own if address)
+    there = {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)}
+    for other in (ip for ip in there if not ip.startswith("127.")):
+        with socket.socket() as tried:
+            tried.settimeout(2.0)
+            assert tried.connect_ex((other, server.port)) != 0
+
+
+def test_21_one_drives_and_a_second_page_is_told_so(server: Server) -> None:
+    with dialled(server) as first:
+        first.send(json.dumps({"sticks": [0, 0, 0], "moved": 1.0}))
+        with dialled(server) as second, pytest.raises(Exception, match=str(TAKEN)):
+            second.recv(5)
+        first.send(json.dumps({"sticks": [0.5, 0, 0], "moved": 2.0}))
+        until(lambda: server.hands.sticks() not in (None, Sticks()))
+    until(lambda: server.hands.away == "page closed")
+    with dialled(server) as third:
+        third.send(json.dumps({"sticks": [0, 0, 0], "moved": 3.0}))
+        until(lambda: not server.hands.away)
+
+
+@pytest.mark.parametrize(
+    "message",
+    ["", "[", "{}", '{"sticks": [2, 0, 0], "moved": 0}', '{"sticks": [NaN, 0, 0], "moved": 0}', "[" * 900,
+     '{"sticks": [0, 0], "moved": 0}', '{"sticks": "abc", "moved": 0}', b"\xff\xfe", "x" * 5000],
+)  # fmt: skip
+def test_22_what_is_no_message_of_the_page_ends_the_socket_and_moves_nothing(server: Server, message: str) -> None:
+    with dialled(server) as page:
+        page.send(message)
+        with pytest.raises(Exception, match=f"{STRANGE}|1009|1007"):
+            page.recv(5)
+    until(lambda: server._driver is None)
+    assert server.hands.sticks() is None
+
+
+def until(true: Callable[[], bool], seconds: float = 10.0) -> None:
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+class Resources(HTMLParser):
+    """Every address that a page names, and every script or style that stands in a tag."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found += [f"{name}={value}" for name, value in attrs if name in ("src", "href", "style", "action")]
+        self.found += [name for name, _ in attrs if name.startswith("on")]
+
+
+def test_22_the_page_fetches_nothing_and_may_run_its_own_script_alone(server: Server) -> None:
+    with urlopen(server.address, timeout=5) as found:
+        page, headers = found.read().decode(), found.headers
+    policy = headers["Content-Security-Policy"]
+    assert (
+        "default-src 'none'" in policy
+        and "unsafe" not in policy
+        and f"connect-src ws://127.0.0.1:{server.port};" in policy
+    )
+    assert headers["Cache-Control"] == "no-store" and headers["Referrer-Policy"] == "no-referrer"
+    reader = Resources()
+    reader.feed(page)
+    assert reader.found == ["href=data:,"]
+
+
 def test_every_line_of_the_page_has_its_test() -> None:
     lines = {int(n) for n in re.findall(r"^(\d+)\. ", PAGE, re.MULTILINE)}
     tests = {int(n) for n in re.findall(r"^def test_(\d+)_", HERE.read_text(encoding="utf-8"), re.MULTILINE)}
-    assert lines == tests == set(range(1, 20))
+    assert lines == tests == set(range(1, 23))
 
 
 def test_the_page_states_the_limits_that_are() -> None:
@@ -464,4 +594,5 @@ def test_the_page_states_the_limits_that_are() -> None:
     assert f"at most {limits.MOST_COLUMNS} columns" in said and f"{limits.MOST_CELLS // 10**6} million cells" in said
     assert f"{limits.LARGEST_FILE >> 30} GiB" in said and f"{limits.BYTES_PER_CELL} bytes for each cell" in said
     assert f"{LARGEST >> 20} MiB, {DEEPEST} tables" in said and f"at most {LONGEST} characters" in said
+    assert f"at most {MESSAGE} bytes" in said and f"silent for {PATIENCE:g} s" in said
     assert limits.GROWS == 12 and limits.LONGEST_HEADER == 1 << 20

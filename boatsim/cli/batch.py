@@ -85,7 +85,7 @@ def run_all(
     if watched and jobs > 1:
         raise BadInput("--live and --serve show one run at a time; leave --jobs away")
     with ExitStack() as until_done:
-        to = until_done.enter_context(_watching(watched)) if watched else None
+        to = until_done.enter_context(watching(watched.serve)) if watched else None
         report = until_done.enter_context(progress.running([(t.name, t.duration) for t in tasks]))
         speed = watched.speed if watched and to else 0.0
         outcomes = _in_processes(tasks, jobs, report) if jobs > 1 else _in_turn(tasks, report, to, speed)
@@ -106,11 +106,11 @@ def run_all(
 
 
 @contextmanager
-def _watching(watched: Watched) -> Iterator[str | None]:
+def watching(serve: bool) -> Iterator[str | None]:
     """Address of a viewer for the block; where there is none it is said at once, and what there is instead."""
     from boatsim.view.viewer import HERE, PAGE, shown
 
-    with shown(watched.serve) as viewer:
+    with shown(serve) as viewer:
         if viewer is None:
             complain(
                 "no viewer can be shown (is there a display?), and the run goes on unseen; with --serve, not --live, "

@@ -180,6 +180,40 @@ def run(
 
 @app.command()
 @guarded
+def drive(
+    vessel: Annotated[str, typer.Argument(metavar="VESSEL", help="A name, a folder or a file.")],
+    controller: Annotated[
+        str | None,
+        typer.Option(metavar="NAME|FILE", help="Between sticks and thrusters [default: the scenario's, or none]."),
+    ] = None,
+    scenario: Annotated[
+        str | None, typer.Option(metavar="NAME|FILE", help="Its water, wind, load and start [default: open water].")
+    ] = None,
+    load: Load = None,
+    seconds: Annotated[
+        float, typer.Option(min=0.1, max=86400.0, metavar="S", help="The run ends after so long [s].")
+    ] = 3600.0,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder [default: out/VESSEL/drive-TIME].")
+    ] = None,
+    open_: Annotated[
+        bool | None,
+        typer.Option("--open/--no-open", help="Open the page in a browser [default: with a screen]."),
+    ] = None,
+    live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer too.")] = False,
+    serve: Annotated[bool, typer.Option("--serve", help="Show it in rerun's web viewer too.")] = False,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Drive a boat in real time, by gamepad, keyboard or mouse, on a page in the browser; recorded as any run."""
+    from boatsim.cli.driving import drive as driven
+
+    with asking(content, trust, [vessel, controller, scenario]):
+        return driven(vessel, scenario, controller, _loads(load), seconds, out, open_, live or serve, serve)
+
+
+@app.command()
+@guarded
 def test(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", parser=_folder, help="With scenarios in it.")],
     pin: Annotated[bool, typer.Option("--pin", help="Write FOLDER/pins.toml: the norms as they are now.")] = False,

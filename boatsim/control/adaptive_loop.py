@@ -4,19 +4,19 @@ The form is that of Hovakimyan and Cao, L1 Adaptive Control Theory (SIAM 2010): 
 the state's coefficients and a disturbance unknown, projected gradient laws, and an input that a low-pass follows.
 """
 
-from math import isnan, nan
+from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 
 from boatsim.control.adaptive import lyapunov
+from boatsim.control.compiled import Records, lean, merged
 from boatsim.physics.base import Array
 
 TOLERANCE = 0.1  # of the projection: it begins to brake at 1 / sqrt(1 + tolerance) of the way to a bound
 
 
-@njit(cache=True)
+@lean
 def projected(value: float, rate: float, low: float, high: float) -> float:
     """`boatsim.control.adaptive.project_interval`, compiled."""
     off, radius = value - 0.5 * (low + high), 0.5 * (high - low)
@@ -26,19 +26,19 @@ def projected(value: float, rate: float, low: float, high: float) -> float:
     return rate * (1.0 - excess)
 
 
-@njit(cache=True)
+@lean
 def adapt(
     predicted: Array, estimates: Array, low: Array, high: Array, gain: float, am: Array, pb: Array, drift: Array,
-    by: Array, before: Array, after: Array, applied: float, period: float, steps: int,
+    by: Array, before: Array, after: Array, applied: float, period: float, steps: int, regressors: Array, slope: Array,
 ) -> None:  # fmt: skip
     """Predictor and estimates over one period in which the measured state went from `before` to `after`, in place.
 
     The input acts on the last state. Estimates belong to the regressors (x1 ... xn, 1, input); `by` says whose
-    regressor drives each of them. The predictor steps first, then the estimates (semi-implicit).
+    regressor drives each of them. The predictor steps first, then the estimates (semi-implicit). `regressors` (n + 2,)
+    and `slope` (n,) are there to be worked in.
     """
     n, dt = len(predicted), period / steps
-    regressors, slope = np.ones(n + 2), np.zeros(n)
-    regressors[n + 1] = applied
+    regressors[n], regressors[n + 1] = 1.0, applied
     for i in range(steps):
         for j in range(n):
             regressors[j] = before[j] + (after[j] - before[j]) * i / steps
@@ -60,7 +60,7 @@ def adapt(
             estimates[j] = min(max(estimates[j] + dt * rate, low[j]), high[j])
 
 
-@njit(cache=True)
+@lean
 def filtered(
     value: float, known: float, gain: float, bandwidth: float, low: float, high: float, rate: float, period: float,
     steps: int,
@@ -75,59 +75,76 @@ def filtered(
     return total / steps, value
 
 
-class AdaptiveLoop:
-    """x' = Am x + b (omega input + theta'x + sigma), b = (0 ... 0, 1), all but Am unknown: one input is found for it.
+def loop_memory(n: int) -> np.dtype[np.void]:
+    """Record of what a loop over n states remembers."""
+    states, all_ = (n,), (n + 2,)
+    return np.dtype(
+        [
+            ("estimates", "f8", all_), ("predicted", "f8", states), ("before", "f8", states), ("after", "f8", states),
+            ("drift", "f8", states), ("regressors", "f8", all_), ("slope", "f8", states), ("value", "f8"),
+        ]
+    )  # fmt: skip
 
-    The controller calls `observe` with what was measured and applied, then `act`; both work through one period.
-    """
 
-    def __init__(
-        self, am: ArrayLike, low: ArrayLike, high: ArrayLike, start: ArrayLike, *, gain: float, bandwidth: float,
-        period: float, step: float,
-    ) -> None:  # fmt: skip
-        """Am (n, n) [1/s]; bounds and start (n + 2,) of theta, sigma, omega; bandwidth k of the filter; times [s]."""
-        self.am = np.asarray(am, dtype=float)
-        self.low, self.high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
-        self.estimates: Array = np.array(start, dtype=float)
-        self.gain, self.bandwidth, self.period, self.steps = gain, bandwidth, period, max(1, round(period / step))
-        n = len(self.am)
-        self.pb = np.ascontiguousarray(lyapunov(self.am)[:, -1])
-        self.by = np.arange(n + 2)
-        self.value = nan  # of the input's filter; not yet started
-        self.predicted: Array = np.full(n, nan)
-        self.drift: Array = np.zeros(n)
-        self._before: Array = np.zeros(n)
-        self._after: Array = np.zeros(n)
+def loop_design(n: int) -> np.dtype[np.void]:
+    """Record of how a loop over n states is laid out."""
+    states, all_ = (n,), (n + 2,)
+    return np.dtype(
+        [
+            ("am", "f8", (n, n)), ("pb", "f8", states), ("low", "f8", all_), ("high", "f8", all_),
+            ("first", "f8", all_), ("by", "i8", all_), ("gain", "f8"), ("bandwidth", "f8"), ("period", "f8"),
+            ("steps", "i8"),
+        ]
+    )  # fmt: skip
 
-    @property
-    def started(self) -> bool:
-        """Whether it has observed anything yet."""
-        return not isnan(self.predicted[0])
 
-    def start(self, measured: ArrayLike, value: float) -> None:
-        """Begin at a measured state (n,) with the input settled at a value."""
-        self.predicted[:] = self._before[:] = measured
-        self.value = value
+def designed(
+    am: ArrayLike, low: ArrayLike, high: ArrayLike, first: ArrayLike, *, gain: float, bandwidth: float, period: float,
+    step: float,
+) -> Records:  # fmt: skip
+    """A `loop_design` (1,) from what `AdaptiveLoop` takes; each estimate is driven by its own regressor."""
+    a = np.asarray(am, dtype=float)
+    d = np.zeros(1, loop_design(len(a)))
+    d["am"], d["pb"], d["low"], d["high"], d["first"] = a, lyapunov(a)[:, -1], low, high, first
+    d["by"], d["gain"], d["bandwidth"] = np.arange(len(a) + 2), gain, bandwidth
+    d["period"], d["steps"] = period, max(1, round(period / step))
+    return d
 
-    def observe(self, measured: ArrayLike, applied: float) -> None:
-        """Adapt over the period that ends with this measured state (n,), through which the input was `applied`."""
-        self._after[:] = measured
-        adapt(
-            self.predicted, self.estimates, self.low, self.high, self.gain, self.am, self.pb, self.drift, self.by,
-            self._before, self._after, applied, self.period, self.steps,
-        )  # fmt: skip
-        self._before[:] = self._after
 
-    def shift(self, jump: float, known: float = 1.0) -> None:
-        """The first state jumps as what it is measured against does; the prediction too as far as that is `known`."""
-        self.predicted[0] += known * jump
-        self._before[0] += jump
+@merged
+def begin_loop(a: Any, d: Any, value: float) -> None:
+    """Begin at the state in `a.after` with the input settled at a value."""
+    for i in range(len(d.first)):
+        a.estimates[i] = d.first[i]
+    for i in range(len(d.pb)):
+        a.predicted[i] = a.before[i] = a.after[i]
+    a.value = value
 
-    def act(self, wanted: float, low: float, high: float, rate: float = 1e9) -> float:
-        """Mean input of the next period; `wanted` is what theta'x + sigma + omega input is to be."""
-        n = len(self.am)
-        known = float(self.estimates[:n] @ self._before) + float(self.estimates[n]) - wanted
-        mean, self.value = filtered(
-            self.value, known, float(self.estimates[n + 1]), self.bandwidth, low, high, rate, self.period, self.steps
-        )
-        return float(mean)
+
+@merged
+def observe_loop(a: Any, d: Any, applied: float) -> None:
+    """Adapt over the period that ends with the state in `a.after`, through which the input was `applied`."""
+    adapt(
+        a.predicted, a.estimates, d.low, d.high, d.gain, d.am, d.pb, a.drift, d.by, a.before, a.after, applied,
+        d.period, d.steps, a.regressors, a.slope,
+    )  # fmt: skip
+    for i in range(len(d.pb)):
+        a.before[i] = a.after[i]
+
+
+@merged
+def shift_loop(a: Any, jump: float, known: float) -> None:
+    """The first state jumps as what it is measured against does; the prediction too as far as that is `known`."""
+    a.predicted[0] += known * jump
+    a.before[0] += jump
+
+
+@merged
+def act_loop(a: Any, d: Any, wanted: float, low: float, high: float, rate: float) -> float:
+    """Mean input of the next period; `wanted` is what theta'x + sigma + omega input is to be."""
+    n = len(d.pb)
+    known = a.estimates[n] - wanted
+    for i in range(n):
+        known += a.estimates[i] * a.before[i]
+    mean, a.value = filtered(a.value, known, a.estimates[n + 1], d.bandwidth, low, high, rate, d.period, d.steps)
+    return mean

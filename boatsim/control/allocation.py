@@ -11,14 +11,18 @@ boat really has enters a control loop as a disturbance.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import asin, atan2, copysign, cos, degrees, exp, hypot, radians, sin, sqrt
-from typing import NamedTuple
+from math import asin, atan2, copysign, cos, degrees, exp, hypot, pi, radians, sin, sqrt
+from typing import Any, NamedTuple
 
-from boatsim.control.base import clip, wrap
+import numpy as np
+
+from boatsim.control.base import wrap
+from boatsim.control.compiled import record
 from boatsim.physics.base import Checked, param
+from boatsim.physics.kernel.compiling import lean, merged
 
 PWM_RATED = 150.0  # thrusts are quoted at this PWM value (Bayless 2017, appendix H: nominalpower)
-PWM_MAX = 255  # eight bits
+PWM_MAX = 255.0  # eight bits
 ANGLE_MAX = radians(45.0)  # [rad] inward range of the steering (Bayless 2017, Fig. 8)
 HOLD_SHARE = 0.45  # surge correction over differential thrust while the motors give sway (bayless.md section 9)
 TURN_SHARE = 0.8  # the same while they only turn the boat
@@ -60,6 +64,22 @@ class Heading:
         return self.wanted - self.own
 
 
+HEADING = record("own", "wanted")  # [rad] integrated gyro, integrated stick, both from the start heading
+
+
+@merged
+def keep_heading(h: Any, rate: float, compass: float, stick: float, dt: float, trust: float) -> None:
+    """One period of dt [s] of a `HEADING`; `trust` [1/s] is the rate at which the compass takes the gyro's drift out.
+
+    Whole turns count.
+    """
+    h.own += dt * rate
+    h.wanted += dt * stick
+    if trust > 0.0:
+        off = compass - h.own
+        h.own += (1.0 - exp(-trust * dt)) * ((off + pi) % (2.0 * pi) - pi)
+
+
 class Drive(NamedTuple):
     """Thrust of each motor, astern negative, and the angle by which both turn inward."""
 
@@ -94,6 +114,126 @@ class Setting(NamedTuple):
         }
 
 
+class Nominal(NamedTuple):
+    """What the laws below take of two outboards; a record with fields of these names serves as well."""
+
+    half_spacing: float  # [m]
+    arm: float  # [m]
+    rated_thrust: float  # [N]
+    reverse_ratio: float
+    dead_pwm: float
+    thrust_power: float
+    largest_difference: float  # [N]
+    rated_sway: float  # [m/s]
+    sway_thrust: float  # [N]
+    sway_dead_zone: float  # [m/s]
+
+
+@merged
+def within(value: float, low: float, high: float) -> float:
+    """Nearest value inside [low, high]."""
+    return low if value < low else high if value > high else value
+
+
+@lean
+def sway_difference(q: Any, sway: float) -> float:
+    """Thrust difference D [N] for a sway command [m/s]."""
+    if abs(sway) < q.sway_dead_zone:
+        return 0.0
+    return within(q.sway_thrust * sway / q.rated_sway, -q.largest_difference, q.largest_difference)
+
+
+@lean
+def lever(q: Any, angle: float) -> float:
+    """Moment over thrust difference [m] with both motors turned inward by `angle` [rad]."""
+    return q.half_spacing * cos(angle) - q.arm * sin(angle)
+
+
+@lean
+def thrust_at(q: Any, pwm: float) -> float:
+    """Nominal thrust [N] at a signed PWM value."""
+    share = max(abs(pwm) - q.dead_pwm, 0.0) / (PWM_RATED - q.dead_pwm)
+    ahead = q.rated_thrust * share**q.thrust_power
+    return ahead if pwm >= 0.0 else -q.reverse_ratio * ahead
+
+
+@lean
+def pwm(q: Any, thrust: float) -> float:
+    """Signed whole PWM value whose nominal thrust is nearest to `thrust` [N]."""
+    ahead = abs(thrust) if thrust > 0.0 else abs(thrust) / q.reverse_ratio
+    if ahead == 0.0:
+        return 0.0
+    value = q.dead_pwm + (PWM_RATED - q.dead_pwm) * (ahead / q.rated_thrust) ** (1.0 / q.thrust_power)
+    return np.rint(copysign(min(value, PWM_MAX), thrust))
+
+
+@lean
+def allocate(q: Any, surge: float, difference: float, moment: float, room: float) -> tuple[float, float, float]:
+    """Thrusts and angle of a `Drive` for a surge force [N], a sway thrust difference [N] and a moment [N m].
+
+    Yaw comes first, then sway, then surge. `room` [N] widens the bound on the surge thrust beyond its share of D. The
+    motors swap direction only where `difference` changes sign or, where it is zero, where `moment` does; elsewhere the
+    drive is continuous.
+    """
+    if difference == 0.0:
+        d, spread, share = 0.0, moment / q.half_spacing, TURN_SHARE
+    else:
+        d, spread = steered(q, difference, moment)
+        share = HOLD_SHARE
+    spread = within(spread, -q.largest_difference, q.largest_difference)
+    port, starboard = powered(q, surge / cos(d), spread, share * abs(spread) + room)
+    return port, starboard, d
+
+
+@lean
+def steered(q: Any, difference: float, moment: float) -> tuple[float, float]:
+    """Angle and D for sway: D as asked or, if no angle then gives the moment, as large as the moment needs."""
+    helps = moment * difference > 0.0
+    needed = moment / lever(q, 0.0 if helps else ANGLE_MAX)
+    spread = copysign(max(abs(difference), abs(needed)), difference)
+    sine = moment / (spread * hypot(q.half_spacing, q.arm))
+    return within(atan2(q.half_spacing, q.arm) - asin(within(sine, -1.0, 1.0)), 0.0, ANGLE_MAX), spread
+
+
+@lean
+def powered(q: Any, total: float, spread: float, bound: float) -> tuple[float, float]:
+    """Both thrusts from S and D; where a motor would exceed its bound S yields, all but its reserve, then D."""
+    ahead, astern = thrust_at(q, PWM_MAX), -thrust_at(q, -PWM_MAX)
+    total = within(total, -bound, bound)
+    kept = within(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
+    spread = copysign(min(abs(spread), 2.0 * astern + kept, 2.0 * ahead - kept), spread)
+    total = within(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
+    return 0.5 * (total + spread), 0.5 * (total - spread)
+
+
+@lean
+def set_outboards(
+    q: Any, surge: float, difference: float, moment: float, room: float, sent: Any
+) -> tuple[float, float, float]:
+    """Allocate and send; nominal force and moment of what was sent, which is what a predictor should be told."""
+    port, starboard, angle = allocate(q, surge, difference, moment, room)
+    send_outboards(q, port, starboard, angle, sent)
+    return push(q, thrust_at(q, sent.pwm_port), thrust_at(q, sent.pwm_starboard), sent.steer_port_rad)
+
+
+@lean
+def send_outboards(q: Any, port: float, starboard: float, angle: float, sent: Any) -> None:
+    """A drive as servos and motor controllers take it, whole PWM steps and whole degrees, to a record of commands.
+
+    Its fields are `pwm_port`, `pwm_starboard`, `steer_port_rad` and, its mirror image, `steer_starboard_rad`.
+    """
+    sent.pwm_port, sent.pwm_starboard = pwm(q, port), pwm(q, starboard)
+    turned = radians(np.rint(degrees(angle)))
+    sent.steer_port_rad, sent.steer_starboard_rad = turned, -turned
+
+
+@lean
+def push(q: Any, port: float, starboard: float, angle: float) -> tuple[float, float, float]:
+    """Nominal force X, Y [N] and moment N [N m] of thrusts [N] at an inward angle [rad]."""
+    spread, total = port - starboard, port + starboard
+    return total * cos(angle), spread * sin(angle), spread * lever(q, angle)
+
+
 @dataclass
 class Outboards(Checked):
     """What a controller believes of its two outboards, and the allocation built on it."""
@@ -112,64 +252,38 @@ class Outboards(Checked):
         0.0, low=0.0, high=5.0, unit="1/s", words="rate at which the compass corrects the gyro"
     )
 
+    @property
+    def nominal(self) -> Nominal:
+        """Its numbers, as the compiled laws take them."""
+        return Nominal(*(getattr(self, name) for name in Nominal._fields))
+
     def sway_difference(self, sway: float) -> float:
         """Thrust difference D [N] for a sway command [m/s]; sway is open loop, so D is all there is to choose."""
-        if abs(sway) < self.sway_dead_zone:
-            return 0.0
-        return clip(self.sway_thrust * sway / self.rated_sway, -self.largest_difference, self.largest_difference)
+        return sway_difference(self.nominal, sway)
+
+    def largest_goals(self) -> Mapping[str, float]:
+        """The sway command [m/s] that takes the largest thrust difference."""
+        return {"sway_mps": self.rated_sway * self.largest_difference / self.sway_thrust}
 
     def lever(self, angle: float) -> float:
         """Moment over thrust difference [m] with both motors turned inward by `angle` [rad]."""
-        return self.half_spacing * cos(angle) - self.arm * sin(angle)
+        return lever(self.nominal, angle)
 
     def neutral_angle(self) -> float:
         """Inward angle [rad] at which the motors give sway without a moment."""
         return atan2(self.half_spacing, self.arm)
 
     def allocate(self, surge: float, difference: float, moment: float, room: float = 0.0) -> Drive:
-        """Drive for a surge force [N], a sway thrust difference [N] and a moment [N m]; yaw first, then sway, surge.
-
-        `room` [N] widens the bound on the surge thrust beyond its share of D. The motors swap direction only where
-        `difference` changes sign or, where it is zero, where `moment` does; elsewhere the drive is continuous.
-        """
-        if difference == 0.0:
-            d, spread = 0.0, moment / self.half_spacing
-        else:
-            d, spread = self._steered(difference, moment)
-        spread = clip(spread, -self.largest_difference, self.largest_difference)
-        share = TURN_SHARE if difference == 0.0 else HOLD_SHARE
-        return self._powered(surge / cos(d), spread, share * abs(spread) + room, d)
-
-    def _steered(self, difference: float, moment: float) -> tuple[float, float]:
-        """Angle and D for sway: D as asked or, if no angle then gives the moment, as large as the moment needs."""
-        helps = moment * difference > 0.0
-        needed = moment / self.lever(0.0 if helps else ANGLE_MAX)
-        spread = copysign(max(abs(difference), abs(needed)), difference)
-        sine = moment / (spread * hypot(self.half_spacing, self.arm))
-        return clip(self.neutral_angle() - asin(clip(sine, -1.0, 1.0)), 0.0, ANGLE_MAX), spread
-
-    def _powered(self, total: float, spread: float, bound: float, angle: float) -> Drive:
-        """Both thrusts from S and D; where a motor would exceed its bound S yields, all but its reserve, then D."""
-        ahead, astern = self.thrust(PWM_MAX), -self.thrust(-PWM_MAX)
-        total = clip(total, -bound, bound)
-        kept = clip(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
-        spread = copysign(min(abs(spread), 2.0 * astern + kept, 2.0 * ahead - kept), spread)
-        total = clip(total, abs(spread) - 2.0 * astern, 2.0 * ahead - abs(spread))
-        return Drive(0.5 * (total + spread), 0.5 * (total - spread), angle)
+        """Drive for a surge force [N], a sway thrust difference [N] and a moment [N m]; see `allocate`."""
+        return Drive(*allocate(self.nominal, surge, difference, moment, room))
 
     def pwm(self, thrust: float) -> int:
         """Signed whole PWM value whose nominal thrust is nearest to `thrust` [N]."""
-        ahead = abs(thrust) if thrust > 0.0 else abs(thrust) / self.reverse_ratio
-        if ahead == 0.0:
-            return 0
-        value = self.dead_pwm + (PWM_RATED - self.dead_pwm) * (ahead / self.rated_thrust) ** (1.0 / self.thrust_power)
-        return round(copysign(min(value, PWM_MAX), thrust))
+        return round(pwm(self.nominal, thrust))
 
     def thrust(self, pwm: float) -> float:
         """Nominal thrust [N] at a signed PWM value."""
-        share = max(abs(pwm) - self.dead_pwm, 0.0) / (PWM_RATED - self.dead_pwm)
-        ahead: float = self.rated_thrust * share**self.thrust_power
-        return ahead if pwm >= 0.0 else -self.reverse_ratio * ahead
+        return thrust_at(self.nominal, pwm)
 
     def setting(self, drive: Drive) -> Setting:
         """The drive rounded and capped to what motors and servos accept."""
@@ -177,9 +291,7 @@ class Outboards(Checked):
 
     def push(self, drive: Drive) -> Push:
         """Nominal force and moment of a drive."""
-        spread = drive.port - drive.starboard
-        total = drive.port + drive.starboard
-        return Push(total * cos(drive.angle), spread * sin(drive.angle), spread * self.lever(drive.angle))
+        return Push(*push(self.nominal, drive.port, drive.starboard, drive.angle))
 
     def applied(self, setting: Setting) -> Push:
         """Nominal force and moment of a rounded and capped setting: what a predictor should be told."""
@@ -187,27 +299,27 @@ class Outboards(Checked):
         return self.push(Drive(self.thrust(setting.pwm_port), self.thrust(setting.pwm_starboard), angle))
 
 
-@dataclass(frozen=True)
-class JetThrottle:
-    """Throttle of a water jet, 1 idle to 7 full, and its shaft power per mass [m^2/s^3]; thrust is power / speed.
+JET_Q2 = 154.9  # [m^2/s^3] printed 164.5, with which the power jumps at throttle 4
+
+
+@lean
+def power_of(throttle: float, q2: float) -> float:
+    """Shaft power per mass [m^2/s^3] of a water jet at a throttle, 1 idle to 7 full; thrust is power / speed.
 
     Svendsen et al., IFAC MCMC 2012, eq. 10 and Table 2, with the printed s_i taken as the coefficients of throttle^i.
     """
+    if throttle < 2.0:
+        return 12.10 * throttle - 11.30
+    if throttle < 4.0:
+        return -21.1 - 20.0 * throttle + 18.5 * throttle * throttle
+    return 10.00 * throttle + q2
 
-    q2: float = 154.9  # printed 164.5, with which the power jumps at throttle 4
 
-    def power(self, throttle: float) -> float:
-        """Power of a throttle."""
-        if throttle < 2.0:
-            return 12.10 * throttle - 11.30
-        if throttle < 4.0:
-            return -21.1 - 20.0 * throttle + 18.5 * throttle * throttle
-        return 10.00 * throttle + self.q2
-
-    def throttle(self, power: float) -> float:
-        """Throttle of a power, within idle and full."""
-        if power < 12.90:  # at 2
-            return max((power + 11.30) / 12.10, 1.0)
-        if power < 194.9:  # at 4
-            return (20.0 + sqrt(400.0 + 74.0 * (power + 21.1))) / 37.0
-        return clip(0.1 * (power - self.q2), 4.0, 7.0)
+@lean
+def throttle_of(power: float, q2: float) -> float:
+    """Throttle of a power, within idle and full."""
+    if power < 12.90:  # at 2
+        return max((power + 11.30) / 12.10, 1.0)
+    if power < 194.9:  # at 4
+        return (20.0 + sqrt(400.0 + 74.0 * (power + 21.1))) / 37.0
+    return within(0.1 * (power - q2), 4.0, 7.0)

@@ -44,6 +44,7 @@ class Controller(Checked):
     words: ClassVar[str] = ""  # one line for `boatsim list`
     commands: ClassVar[tuple[str, ...]] = ()  # command channels it sets; empty: any
     goals: ClassVar[tuple[str, ...]] = ()  # keys a [[goal]] may have; empty: the vessel's command channels
+    passes_on: ClassVar[bool] = False  # its goals are the commands, whatever is sensed
 
     period: float = param(0.08, low=0.001, high=10.0, unit="s", words="time between two control steps")
 
@@ -64,6 +65,10 @@ class Controller(Checked):
 
     def estimates(self) -> dict[str, Estimate]:
         """Adaptive estimates with their bounds, and the reference model's states where there is one, for the log."""
+        return {}
+
+    def largest_goals(self) -> Mapping[str, float]:
+        """The largest goals that it is made for, by key: a joystick's full way. Others follow from the vessel."""
         return {}
 
     @property

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -179,6 +179,15 @@ def write_csv(recording: Recording, path: Path | str) -> None:
         file.write(csv_header(recording))
         for start in range(0, len(recording), 10_000):  # an hour of rows is not formatted in one piece of memory
             file.write(csv_rows(recording, start, start + 10_000))
+
+
+def joined(pieces: Sequence[Recording]) -> Recording:
+    """Pieces of one log, whose rows follow each other, as one."""
+    first = pieces[0]
+    if len(pieces) == 1:
+        return first
+    signals = {name: np.concatenate([piece[name] for piece in pieces]) for name in first.signals}
+    return replace(first, t=np.concatenate([piece.t for piece in pieces]), signals=signals)
 
 
 def csv_header(recording: Recording) -> str:

@@ -111,7 +111,7 @@ class Batch:
         self._y[chosen] = 0.0 if states is None else self.program.joint_rates(self._rows(states, chosen))
         self._commands[chosen] = self._taken(commands if commands is not None else {}, chosen)
         self.t[chosen] = 0.0
-        self._shared(
+        self.shared(
             lambda some: self.code.settle_boats(
                 some, self._commands, self._memory, self._p, self._on, self._act
             ), chosen,
@@ -126,7 +126,7 @@ class Batch:
         everyone = np.arange(self.n)
         if commands is not None:
             self._commands[:] = self._taken(commands, everyone)
-        self._shared(lambda some: self._stepped(some, steps), everyone)
+        self.shared(lambda some: self._stepped(some, steps))
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
         """Give boats other values, one or (k,), of "effect.parameter"; what a vessel file derives from it stays.
@@ -172,15 +172,24 @@ class Batch:
     def _weigh(self, boats: Boats) -> None:
         self.code.weigh_boats(boats, self._body, self._p, self._on, self._k)
 
-    def _shared(self, work: Callable[[Boats], None], boats: Boats) -> None:
-        """Work on boats, by turns of some, on all threads."""
-        turns = [boats[i : i + TURN] for i in range(0, len(boats), TURN)]
+    def shared(self, work: Callable[[Boats], None], boats: Boats | None = None) -> None:
+        """Work on boats (all), by turns of some, on all threads."""
+        chosen = np.arange(self.n) if boats is None else boats
+        turns = [chosen[i : i + TURN] for i in range(0, len(chosen), TURN)]
         if self.threads == 1 or len(turns) == 1:
             for some in turns:
                 work(some)
             return
         for _ in pool(self.threads, os.getpid()).map(work, turns):
             pass
+
+    def feel(self, felt: Array) -> None:
+        """What instruments without noise would say, a row (11,) a boat, in the order of `control.compiled.FELT`."""
+        self.shared(
+            lambda some: self.code.feel_boats(
+                some, self.t, self._y, self._act, self._p, self._on, self._k, self._none, felt
+            )
+        )
 
     def _chosen(self, boats: ArrayLike | None) -> Boats:
         """Numbers of the boats that are meant. Raises BadInput."""

@@ -1,37 +1,71 @@
 """How well a boat follows its goals: every goal that is a signal of the motion is judged, asked for or not."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from math import degrees, pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.physics.signals import follower
 from boatsim.recordings.notes import unit_of
-from boatsim.recordings.table import Recording
+from boatsim.recordings.table import Recording, joined
 
 GOAL = "goal_"  # in front of a goal's key: its column in the log
 ENDINGS = ("rms", "largest", "integral")  # of a norm's name
 
 
-def errors(log: Recording) -> dict[str, float]:
-    """Norms of the error e between goal and signal while the goal says something, in the units of `units`.
+class Tally:
+    """Norms of the error e between goal and signal while the goal says something, of a log that comes in pieces.
 
     rms is sqrt(mean e^2), largest max|e|, integral that of |e| over time, which does not depend on the log's step.
     """
-    found: dict[str, float] = {}
-    for key, signal, norms in _followed(n.removeprefix(GOAL) for n in log.signals if n.startswith(GOAL)):
-        if signal not in log.signals:
-            continue
-        off = _off(signal, log[f"{GOAL}{key}"], log[signal])
-        lasts = np.append(np.diff(log.t), 0.0)  # [s] a row stands for
-        known = np.isfinite(off) & (lasts > 0.0)
-        e, dt = np.abs(off[known]), lasts[known]
-        if not len(e):
-            continue
-        values = sqrt(float((e**2 * dt).sum() / dt.sum())), float(e.max()), float((e * dt).sum())
-        found |= dict(zip(norms, values, strict=True))
-    return found
+
+    def __init__(self) -> None:
+        self._sums: dict[str, Sums] = {}  # by the goal's key
+        self._last: Recording | None = None  # row, which stands for the time until the next one
+
+    def add(self, log: Recording) -> None:
+        """The rows that follow."""
+        log = joined([self._last, log]) if self._last else log
+        for key, signal, _ in _followed(n.removeprefix(GOAL) for n in log.signals if n.startswith(GOAL)):
+            if signal in log.signals:
+                off = _off(signal, log[f"{GOAL}{key}"], log[signal])
+                self._sums[key] = self._sums.get(key, Sums()).with_rows(np.abs(off), np.append(np.diff(log.t), 0.0))
+        self._last = replace(log, t=log.t[-1:], signals={n: x[-1:] for n, x in log.signals.items()})
+
+    def norms(self) -> dict[str, float]:
+        """By name, in the units of `units`."""
+        found: dict[str, float] = {}
+        for key, _, names in _followed(self._sums):
+            if (of := self._sums[key]).time:
+                found |= dict(zip(names, (sqrt(of.squares / of.time), of.largest, of.integral), strict=True))
+        return found
+
+
+class Sums(NamedTuple):
+    """Of the error |e| of one goal."""
+
+    squares: float = 0.0  # integral of its square over time
+    time: float = 0.0  # [s] while the goal said something
+    largest: float = 0.0
+    integral: float = 0.0
+
+    def with_rows(self, e: Array, lasts: Array) -> "Sums":
+        """With |e| (N,) of rows that last so long (N,) [s]."""
+        known = np.isfinite(e) & (lasts > 0.0)
+        e, dt = e[known], lasts[known]
+        squares, time, integral = float((e**2 * dt).sum()), float(dt.sum()), float((e * dt).sum())
+        return Sums(self.squares + squares, self.time + time, max(self.largest, e.max(initial=0.0)),
+                    self.integral + integral)  # fmt: skip
+
+
+def errors(log: Recording) -> dict[str, float]:
+    """The norms of a whole log."""
+    tally = Tally()
+    tally.add(log)
+    return tally.norms()
 
 
 def units(goals: Iterable[str]) -> dict[str, str]:

@@ -6,7 +6,7 @@ channels: half of the largest thrust ahead, everything that turns as helm, or mo
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import cos, degrees, inf, log10, pi, radians
+from math import cos, degrees, inf, log10, pi, radians, sin
 from pathlib import Path
 
 import numpy as np
@@ -92,7 +92,7 @@ def handled(vessel: Vessel) -> ManoeuvringTable:
     given, taken = vessel.manoeuvring, vessel.commands
     if wrong := [n for n in (*given.ahead, *given.astern, *given.steer) if n not in taken]:
         raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.no_command(wrong[0])}")
-    thrusters = [n for n in vessel.actuators if vessel.roles[n] == "thrust" and n not in _athwart(vessel)]
+    thrusters = [n for n in vessel.actuators if vessel.roles[n] == "thrust" and n not in athwart(vessel)]
     ahead = given.ahead or {n: 0.5 * taken[n].high for n in thrusters}
     astern = given.astern or {n: max(taken[n].low, -value) for n, value in ahead.items() if taken[n].low < 0.0 < value}
     steer = given.steer or {n: 1.0 for n in vessel.actuators if vessel.roles[n] == "angle"}
@@ -104,11 +104,14 @@ def handled(vessel: Vessel) -> ManoeuvringTable:
     return table if given.steer else _to_starboard(replace(vessel, manoeuvring=table))
 
 
-def _athwart(vessel: Vessel) -> set[object]:
-    """Thrusts of what is held at an angle, such as a tunnel across the bow, at which it drives nothing ahead."""
+def athwart(vessel: Vessel) -> dict[str, float]:
+    """Thrusts of what is held at an angle, such as a tunnel across the bow, at which it drives nothing ahead.
+
+    Each with the share of it that pushes to starboard.
+    """
     bound = [vessel.bound(e) for e in vessel.effects if "angle" in type(e).roles]
     held = [(b.get("thrust"), b.get("angle")) for b in bound]
-    return {thrust for thrust, angle in held if isinstance(angle, int | float) and cos(angle) < AHEAD}
+    return {str(thrust): sin(angle) for thrust, angle in held if isinstance(angle, int | float) and cos(angle) < AHEAD}
 
 
 def helm_of(vessel: Vessel) -> float:

@@ -20,10 +20,14 @@ class Pace:
         self.speed, self._clock, self._sleep = speed, clock, sleep
         self._begin: float | None = None  # when the simulated time 0 was
 
+    def behind(self, t: float) -> float:
+        """How long ago the simulated time `t` [s] was due [s]; 0 before the clock begins."""
+        return 0.0 if self._begin is None else self._clock() - self._begin - t / self.speed
+
     def wait(self, t: float, stop: Callable[[], bool] = bool) -> None:
         """Return when the simulated time `t` [s] is due, or at once if it is over or somebody wants to `stop`."""
         due = t / self.speed
-        if self._begin is None or self._clock() - self._begin - due > BEHIND:
+        if self._begin is None or self.behind(t) > BEHIND:
             self._begin = self._clock() - due
         while (ahead := self._begin + due - self._clock()) > 0.0 and not stop():
             self._sleep(min(ahead, NAP))

@@ -16,14 +16,16 @@ import numpy as np
 from boatsim.control.base import Controller, Sense
 from boatsim.errors import BadInput, BoatsimError, unknown_name
 from boatsim.physics.base import Force, motion
-from boatsim.physics.commands import beyond, sent_row
 from boatsim.physics.signals import AXES, COMPONENTS, signals_of
+from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import NoSignal, Notes, Recording
 from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.leap import Leap
 from boatsim.simulate.log import FiledLog, Log
+from boatsim.simulate.open_water import OpenWater
 from boatsim.simulate.pace import Pace
-from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.scenario import OFF, Scenario
 from boatsim.simulate.sensing import sensed
 from boatsim.simulate.world import Tank
 
@@ -64,14 +66,17 @@ class Runner:
         self.watch: Listener | None = None
         self.folder: Path | None = None
         self.pace: Pace | None = None  # somebody watches: then the listeners get rows more often
+        self.often = LIVE  # [s] how often, then
+        self.goal_at: Callable[[float], Mapping[str, float]] = scenario.goal_at  # or what somebody's hands ask for
+        self.enough: Callable[[], bool] = bool  # whether they have had enough: the run is over, and whole
         self.seed = file.seed if seed is None else seed
-        tank = Tank(**file.tank.model_dump()) if file.tank else None
         vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
-        self.engine = Engine(vessel, tank, file.step)
+        self.engine = stepper(scenario, vessel)
         self._marks = [f"camera_{mark}_{axis}_m" for mark in scenario.camera.marks for axis in "xy"]
         seeds = np.random.SeedSequence(self.seed).spawn(2 + len(scenario.aboard))
         self._imu, self._shaking, *self._noise = (np.random.default_rng(s) for s in seeds)
         self._signals = signals_of(vessel.freedoms)
+        self._axes = [axis in vessel.freedoms for axis in AXES]
         self._read = {name: column for sensor in scenario.aboard for name, column in type(sensor).columns.items()}
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
         self._actuators = vessel.actuators
@@ -96,16 +101,19 @@ class Runner:
 
         `progress` gets the time reached [s].
         """
-        complete = False
+        complete, told = False, 0
         self._start()  # an interruption in here has nothing to keep
         self._check_measured()
         try:
             while not (complete := self._finished()) and not stop():
+                if self.pace:  # before the step: what is sensed and asked for at its end is that of its time
+                    self.pace.wait(self._state.t + self.engine.step, stop)
+                elif self._leaping:
+                    self._leap(self._leaping)
                 self._advance()
-                if self.pace:
-                    self.pace.wait(self._state.t, stop)
-                if progress and self._steps % 100 == 0:
+                if progress and self._steps >= told + 100:
                     progress(self._state.t)
+                    told = self._steps
         except KeyboardInterrupt:
             pass
         self._show(over=True)
@@ -125,6 +133,7 @@ class Runner:
         with self._asked() as controller:
             controller.reset()
             self._send({**controller.initial_commands(), **start.commands}, lambda sent: self.engine.reset(state, sent))
+        self._leaping = Leap.possible(self.scenario, self.engine, self._imu)
         # the log's columns are known once the controller has stepped: which estimates it has
         self._control()
         with self._asked() as controller:
@@ -208,6 +217,22 @@ class Runner:
         if self._state.t >= self._row_due - 1e-9 or self._finished():
             self._write_row()
 
+    def _leap(self, leap: Leap) -> None:
+        """On to the last step before a row, a frame or the end, if a period has just begun."""
+        t = self._state.t
+        due = min(self._row_due, self._frame / self.scenario.camera.rate, self.scenario.file.duration)
+        periods = leap.periods(t, due)
+        if not periods or abs(self._due - t - leap.period) > 1e-9:
+            return
+        with self._asked():
+            done = leap.leap(t, periods, self.goal_at)
+        self._steps += done.steps
+        self._saturated.update(done.saturated)
+        self._average.append(([done.mean[n] for n in self._sent_channels], done.seconds))
+        self._state = self.engine.state
+        self._due += done.seconds
+        self._note_sent()
+
     def _move(self, seconds: float) -> None:
         """Physics alone, for so long."""
         self._average.append((self._in_force(), seconds))
@@ -228,16 +253,24 @@ class Runner:
             (state.phi, state.p),
         )  # fmt: skip
         sense = self._sense = sensed(usual, self.scenario.aboard, self.engine, self._noise)
+        goal = self.goal_at(state.t)
         with self._asked() as controller:
-            self._send(controller.step(sense, self.scenario.goal_at(state.t)), self.engine.command)
+            if goal.get(OFF):
+                controller.reset()
+                self._send({}, self.engine.command)
+                self._early = inf
+                return
+            self._send(controller.step(sense, goal), self.engine.command)
             self._early = state.t + controller.early(sense)
 
     def _send(self, commands: dict[str, float], to: Callable[[dict[str, float]], None]) -> None:
         """Commands on their way; kept as they are sent, for the log."""
         to(commands)
-        vessel = self.scenario.vessel
-        row = sent_row(vessel, commands)
-        self._sent, self._beyond = dict(zip(vessel.commands, row.tolist(), strict=False)), beyond(vessel, row)
+        self._note_sent()
+
+    def _note_sent(self) -> None:
+        self._sent = dict(zip(self.scenario.vessel.commands, self.engine.sent, strict=False))
+        self._beyond = self.engine.beyond
 
     @contextmanager
     def _asked(self) -> Iterator[Controller]:
@@ -284,8 +317,7 @@ class Runner:
         assert sense is not None
         with self._asked() as controller:
             estimates = controller.estimates()
-        goal = self.scenario.goal_at(s.t)
-        axes = [axis in self.scenario.vessel.freedoms for axis in AXES]
+        goal = self.goal_at(s.t)
         self.log.add(
             [
                 s.t,
@@ -297,8 +329,8 @@ class Runner:
                 *(getattr(sense, f) for f in FIELDS),
                 *(sense.more[n] for n in self._read),
                 *((*frames[-1].marks, *frames[-1][1:4]) if frames else [nan] * (len(self._marks) + len(SEEN))),
-                *(f for f, there in zip(engine.wrench(), axes, strict=True) if there),
-                *(f for f, there in zip(self._wind(s), axes, strict=True) if there and self._winds),
+                *(f for f, there in zip(engine.wrench(), self._axes, strict=True) if there),
+                *((f for f, there in zip(self._wind(s), self._axes, strict=True) if there) if self._winds else ()),
                 engine.contacts,
                 *(value for name in self._adaptive() for value in estimates[name]),
                 *(estimates[n].value for n in self._estimates if n.startswith("reference_")),
@@ -326,8 +358,8 @@ class Runner:
 
     def _show(self, over: bool = False) -> None:
         """New rows to the listeners, if there are enough or it is time; a frame once its commands are known."""
-        now = monotonic()
-        if not over and self.log.count - self._shown < CHUNK and now - self._told < (LIVE if self.pace else OFTEN):
+        now, often = monotonic(), self.often if self.pace else OFTEN
+        if not over and self.log.count - self._shown < CHUNK and now - self._told < often:
             return
         self._told = now
         if self.listen and self.log.count > self._shown:
@@ -339,7 +371,7 @@ class Runner:
 
     def _finished(self) -> bool:
         file, s = self.scenario.file, self._state
-        if s.t >= file.duration - 1e-9 or self.scenario.controller.done:
+        if s.t >= file.duration - 1e-9 or self.scenario.controller.done or self.enough():
             return True
         if file.until.starboard is None and file.until.turned is None:
             return False
@@ -352,6 +384,14 @@ class Runner:
         """What a diagnosis of this run may know: vessel, load, values set, noise of the camera."""
         file, noise = self.scenario.file, self.scenario.camera.noise()
         return Notes(vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise)
+
+
+def stepper(scenario: Scenario, vessel: Vessel) -> Engine | OpenWater:
+    """What steps the vessel of a scenario, as its `engine` says."""
+    file = scenario.file
+    if file.engine == "twin":
+        return OpenWater(vessel, file.step)
+    return Engine(vessel, Tank(**file.tank.model_dump()) if file.tank else None, file.step)
 
 
 def run(

@@ -26,6 +26,8 @@ from boatsim.simulate.sensing import Sensor, Sensors
 
 T = TypeVar("T")
 M = TypeVar("M", Controller, Measure, Sensor)
+OFF = "off"  # key of a goal while which nothing is steered: commands are neutral, the controller begins anew after it
+BESIDE = ("from", OFF)  # keys of a goal that name no goal
 End = Annotated[float, Field(allow_inf_nan=True)]  # of a band; it may be open
 
 
@@ -114,6 +116,7 @@ class ScenarioFile(Table):
     duration: float = Field(gt=0, le=86400)  # [s]
     step: float = Field(default=0.02, gt=1e-4, le=1.0)  # [s]
     seed: int = Field(default=0, ge=0)
+    engine: Literal["mujoco", "twin"] = "mujoco"  # twin: compiled code alone, in open water; the same to rounding
     tank: TankTable | None = None
     start: StartTable = StartTable()
     until: UntilTable = UntilTable()
@@ -162,7 +165,7 @@ class Scenario:
     @property
     def goal_keys(self) -> list[str]:
         """All that its goals speak of, in the order of the file."""
-        return list(dict.fromkeys(key for goal in self.file.goal for key in goal if key != "from"))
+        return list(dict.fromkeys(key for goal in self.file.goal for key in goal if key not in BESIDE))
 
     def goal_at(self, t: float) -> Mapping[str, float]:
         """Goals in force at time t [s]: the last [[goal]] that has begun."""
@@ -251,8 +254,8 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
     allowed = type(controller).goals or tuple(vessel.commands)
     for goal in file.goal:
         for key in goal:
-            if key != "from" and key not in allowed:
-                raise BadInput(unknown_name("[[goal]] key", key, ["from", *allowed]))
+            if key not in BESIDE and key not in allowed:
+                raise BadInput(unknown_name("[[goal]] key", key, [*BESIDE, *allowed]))
             channel, value = vessel.commands.get(key), goal[key]
             if channel and isinstance(value, float) and not channel.low <= value <= channel.high:
                 raise BadInput(f"[[goal]] {key} = {value:g}; allowed {channel.low:g} to {channel.high:g}")
@@ -267,6 +270,8 @@ def _check_shape(file: ScenarioFile, controller: Controller) -> None:
     """The boat starts inside its tank, and the controller's period holds at least one step."""
     if controller.period < file.step - 1e-12:
         raise BadInput(f"step = {file.step:g} s; allowed is at most the controller's period, {controller.period:g} s")
+    if file.tank and file.engine == "twin":
+        raise BadInput('engine = "twin" with a [tank]; allowed is open water: its walls are MuJoCo\'s')
     if file.tank:
         dx, dy = file.start.x - file.tank.centre[0], file.start.y - file.tank.centre[1]
         if abs(dx) > file.tank.length / 2 or abs(dy) > file.tank.width / 2:
@@ -284,4 +289,4 @@ def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) ->
         measure.check(camera)
 
 
-__all__ = ["CheckTable", "NormTable", "Scenario", "ScenarioFile", "from_table", "load"]
+__all__ = ["CheckTable", "NormTable", "Scenario", "ScenarioFile", "UntilTable", "from_table", "load"]

@@ -5,14 +5,39 @@ Any further sensor is a file of `boatsim/simulate/sensors/`.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from math import nan
 from typing import ClassVar
 
 import numpy as np
 
 from boatsim.control.base import Sense
-from boatsim.physics.base import Checked, param
-from boatsim.simulate.engine import Engine
+from boatsim.physics.base import Array, Checked, param
+from boatsim.physics.kernel.compiling import lean
+from boatsim.simulate.stepper import Stepper
+
+NOISES = 7  # normal numbers that a sample takes
+
+
+@lean
+def disturb(felt: Array, sensors: Array, noise: Array) -> None:
+    """Make what is true (t, psi, r, ax, ay, u, v, x, y, phi, p) what the unit says, in place.
+
+    `sensors` are the numbers of `Sensors`, whether they are ideal first; noise (7,) is standard normal.
+    """
+    if sensors[0] != 0.0:
+        return
+    heading_sd, gyro_sd, gyro_bias = sensors[1], sensors[2], sensors[3]
+    acceleration_sd, acceleration_bias, speed_sd, position_sd = sensors[4], sensors[5], sensors[6], sensors[7]
+    felt[1] += heading_sd * noise[0]
+    felt[2] = felt[2] + gyro_bias + gyro_sd * noise[1]
+    felt[3] = felt[3] + acceleration_bias + acceleration_sd * noise[2]
+    felt[4] = felt[4] + acceleration_bias + acceleration_sd * noise[3]
+    felt[5] = felt[5] + speed_sd * noise[4] if speed_sd >= 0.0 else nan
+    felt[6] = nan
+    felt[7] = felt[7] + position_sd * noise[5] if position_sd >= 0.0 else nan
+    felt[8] = felt[8] + position_sd * noise[6] if position_sd >= 0.0 else nan
+    felt[9] = felt[10] = nan
 
 
 @dataclass(frozen=True)
@@ -36,21 +61,17 @@ class Sensors(Checked):
         acceleration: tuple[float, float], rng: np.random.Generator, roll: tuple[float, float] = (nan, nan),
     ) -> Sense:  # fmt: skip
         """One sample at a true pose (x, y, psi), body velocity (u, v, r), body acceleration (ax, ay), roll (phi, p)."""
+        felt = (t, pose[2], velocity[2], *acceleration, velocity[0], velocity[1], pose[0], pose[1], *roll)
         if self.ideal:
-            return Sense(t, pose[2], velocity[2], *acceleration, velocity[0], velocity[1], pose[0], pose[1], *roll)
-        n = rng.standard_normal(7).tolist()
-        log, fix = self.speed_sd >= 0.0, self.position_sd >= 0.0
-        return Sense(
-            t=t,
-            psi=pose[2] + self.heading_sd * n[0],
-            r=velocity[2] + self.gyro_bias + self.gyro_sd * n[1],
-            ax=acceleration[0] + self.acceleration_bias + self.acceleration_sd * n[2],
-            ay=acceleration[1] + self.acceleration_bias + self.acceleration_sd * n[3],
-            u=velocity[0] + self.speed_sd * n[4] if log else nan,
-            v=nan,
-            x=pose[0] + self.position_sd * n[5] if fix else nan,
-            y=pose[1] + self.position_sd * n[6] if fix else nan,
-        )
+            return Sense(*felt)
+        row = np.array(felt)
+        disturb(row, self.numbers, rng.standard_normal(NOISES))
+        return Sense(*row.tolist())
+
+    @cached_property
+    def numbers(self) -> Array:
+        """What `disturb` takes of it."""
+        return np.array([float(self.ideal), *(float(getattr(self, name)) for name in type(self).params())])
 
 
 @dataclass(frozen=True)
@@ -63,17 +84,17 @@ class Sensor(Checked):
     words: ClassVar[str] = ""  # one line for `boatsim list`
     columns: ClassVar[Mapping[str, str]] = {}  # what it reads -> its column in the log, with the unit, after `sensed_`
 
-    def read(self, engine: Engine, rng: np.random.Generator) -> Mapping[str, float]:
+    def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
         """One sample of everything in `columns` from the boat as it is."""
         raise NotImplementedError
 
 
-def sensed(base: Sense, aboard: Sequence[Sensor], engine: Engine, rngs: Sequence[np.random.Generator]) -> Sense:
+def sensed(base: Sense, aboard: Sequence[Sensor], engine: Stepper, rngs: Sequence[np.random.Generator]) -> Sense:
     """What the usual sensors say, with what the further ones read; each has randomness of its own."""
+    if not aboard:
+        return base
     usual = {f.name for f in fields(Sense)} - {"more"}
     read: dict[str, float] = {}
     for sensor, rng in zip(aboard, rngs, strict=True):
         read |= sensor.read(engine, rng)
-    if not read:
-        return base
     return replace(base, **{n: x for n, x in read.items() if n in usual}, more=read)

@@ -51,6 +51,11 @@ class Tank:
                 raise BadInput(f"tank.{name} = {value:g} m; allowed is {SMALLEST:g} to {LARGEST:g} m")
 
 
+def open_water(vessel: Vessel) -> Tank:
+    """Water without walls, drawn as far as ten lengths."""
+    return Tank(10.0 * vessel.length, 10.0 * vessel.length, vessel.length, walls=False)
+
+
 def build(
     vessel: Vessel,
     tank: Tank | None = None,
@@ -67,7 +72,7 @@ def build(
     `show=False` leaves out everything that is only looked at, for speed. `wall_solref` is MuJoCo's contact solref,
     (-stiffness, -damping) or (time constant [s], damping ratio). Raises BadPhysics if the mass matrix is not full.
     """
-    tank = tank or Tank(10.0 * vessel.length, 10.0 * vessel.length, vessel.length, walls=False)  # open water
+    tank = tank or open_water(vessel)
     spec = mujoco.MjSpec.from_file(str(root() / "models" / "tank.xml"))
     spec.option.timestep = step
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4

@@ -8,10 +8,10 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Protocol, Self
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
@@ -24,7 +24,7 @@ from boatsim.recordings.table import Notes, Recording, csv_header, csv_rows
 from boatsim.simulate import norms as judged
 from boatsim.simulate.norms import RunEntry
 from boatsim.simulate.pace import Pace
-from boatsim.simulate.run import Runner
+from boatsim.simulate.run import Listener, Runner
 from boatsim.simulate.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -37,6 +37,22 @@ SELDOM = 1.0  # [s] at least between two writings of the norms so far
 SHARE = 0.03  # of the time of a run that these may take
 
 
+class Steering(Protocol):
+    """Somebody who steers a run while it goes, in place of its scenario's goals."""
+
+    def take(self, runner: Runner, stop: Callable[[], bool]) -> None:
+        """Take a run over that is about to start, or give up where somebody wants to `stop`."""
+
+    def beside(self, listen: Listener) -> AbstractContextManager[Listener]:
+        """A listener for the time of the run that looks at the rows and hands them on."""
+
+    def facts(self) -> Mapping[str, object]:
+        """What recording.toml is to say of it."""
+
+    def files(self) -> Mapping[str, str]:
+        """Further files of the run, name -> text, as they are by now."""
+
+
 def run_into(
     folder: Path,
     scenario: Scenario,
@@ -44,10 +60,12 @@ def run_into(
     viewer: str | None = None,
     progress: Callable[[float], None] | None = None,
     pace: Pace | None = None,
+    steering: Steering | None = None,
 ) -> RunEntry:
     """Run a scenario, writing its log as it goes, and put its files into `folder`; returns what norms.json says.
 
-    `viewer` is the address of one that shows it meanwhile, and `pace` holds it back for that.
+    `viewer` is the address of one that shows it meanwhile, and `pace` holds it back for that. Under `steering` files
+    are written beside the run, in a thread, and norms.json at its end alone: neither may hold it up.
 
     An interruption ends the run, and what was logged is kept with its norms so far. Raises BadInput, BadPhysics or
     OSError, and then `folder` is as it was; of a disk that is full the line says where the whole part of the log lies.
@@ -56,33 +74,43 @@ def run_into(
     runner.pace = pace
     with noted() as stop, filling(folder, keep="recording.csv") as new:
         runner.folder = new
-        (new / "recording.toml").write_text(notes_toml(runner.scenario, runner.notes(), runner.seed, False), "utf-8")
+        _describe(new, runner, runner.notes(), False, steering)
+        if steering:
+            steering.take(runner, stop)
         with ExitStack() as open_files:
             logs = [open_files.enter_context(_log(new / "run.rrd", runner))]
             if viewer:  # apart from the file, which many small pieces would make ten times as large
                 logs.append(open_files.enter_context(_log(None, runner, viewer)))
             table = open_files.enter_context(CsvFile(new / "recording.csv"))
-            so_far = NormsSoFar(new / NORMS, runner)
+            so_far = None if steering else NormsSoFar(new / NORMS, runner)
 
             def listen(rows: Recording) -> None:
                 table.add(rows)
                 for log in logs:
                     log.chunk(rows)
-                so_far.look()
+                if so_far:
+                    so_far.look()
 
-            runner.listen = listen
             if "yaw" in scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
                 runner.watch = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv")).add
-            run = runner.run(progress, stop)
+            with steering.beside(listen) if steering else nullcontext(listen) as runner.listen:
+                run = runner.run(progress, stop)
             stop.over = True  # nothing that comes now may cost the files
             found = judged.all_norms(run)
             for log in logs:
                 log.finish({name: norm.to_json() for name, norm in found.items()})
         content = judged.to_json(run, found)
-        text = notes_toml(scenario, run.recording.notes, run.seed, run.complete)
-        (new / "recording.toml").write_text(text, "utf-8")
+        _describe(new, runner, run.recording.notes, run.complete, steering)
         write_norms(new / NORMS, content)
     return content
+
+
+def _describe(folder: Path, runner: Runner, notes: Notes, complete: bool, steering: Steering | None) -> None:
+    """recording.toml, and what somebody who steers adds to it."""
+    more = steering.facts() if steering else {}
+    text = notes_toml(runner.scenario, notes, runner.seed, complete, more)
+    for name, content in {"recording.toml": text, **(steering.files() if steering else {})}.items():
+        (folder / name).write_text(content, "utf-8")
 
 
 def write_norms(path: Path, content: RunEntry) -> None:
@@ -130,14 +158,16 @@ class CsvFile:
         self._file.close()
 
 
-def notes_toml(scenario: Scenario, notes: Notes, seed: int, complete: bool) -> str:
+def notes_toml(
+    scenario: Scenario, notes: Notes, seed: int, complete: bool, more: Mapping[str, object] | None = None
+) -> str:
     """recording.toml: what a diagnosis of the run may know. Effects the scenario adds are what it has to find."""
     lines = [f"vessel = {_value(vessel_address(scenario.vessel.file))}", f"load = {_value(list(notes.load))}"]
     for effect, values in notes.settings.items():
         lines += _table(f"set.{_key(effect)}", values)
     lines += _table(f"runs.{CAMERA}.noise", notes.noise)  # recording.csv has none: it is the truth
     facts = {"scenario": scenario.address or scenario.name, "seed": seed, "complete": complete}
-    return "\n".join(lines + _table("facts", facts)) + "\n"
+    return "\n".join(lines + _table("facts", {**facts, **(more or {})})) + "\n"
 
 
 def _table(name: str, values: Mapping[str, object]) -> list[str]:

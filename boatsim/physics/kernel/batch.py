@@ -6,11 +6,14 @@ number of a boat depends on another's, nor on who steps it.
 
 from typing import Any
 
+import numpy as np
+
 from boatsim.physics.kernel.compiling import shared, unlocked
 from boatsim.physics.signals import Array
 
 from .inertia import constants
-from .motion import step_in_place
+from .laws import HELD
+from .motion import NQ, feels, step_in_place
 from .run import ENOUGH, SHORTEST, actuate_in_place, least_after, settle, until_bend
 
 # As in `rollout`, but in one piece: what the parts of a step have in common is computed once.
@@ -50,3 +53,16 @@ def advance_boats(
                 stepped(now, y[b], part, act[b], p[b], on, k[b], extra)
                 now, left = now + part, left - part
         t[b] = begin + steps * dt
+
+
+@unlocked
+def feel_boats(
+    boats: Any, t: Array, y: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, felt: Array
+) -> None:
+    """Time and what `feels` says of boats, without noise, to rows of felt (n, 11)."""
+    last = np.int64(2 * HELD)  # the actuators at the end of the last step
+    for b in boats:
+        felt[b, 0] = t[b]
+        found = feels(t[b], y[b, : 2 * NQ], act[b], last, p[b], on, k[b], extra)
+        for i in range(len(found)):
+            felt[b, 1 + i] = found[i]

@@ -273,6 +273,22 @@ class Writer:
         lines.say(f"return Shown({', '.join(values)})")
         return lines.text
 
+    def feels(self) -> list[str]:
+        """Body of `feels`: heading, yaw rate, acceleration over ground along x and y, surge, sway, place, roll."""
+        lines = Lines()
+        self.unpack(lines)
+        frame = self.frame(lines, current=False)
+        lines.say("a = accelerations(t, s, act, at, p, on, k, extra)")
+        ahead, aside = (
+            total(frame.J[row][i] * name(f"a[{b}]") for b, i in enumerate(self.free) if i in LINEAR) for row in (0, 1)
+        )
+        u, v, _, rolling, _, turning = frame.nu
+        x, y, _, roll, _, heading = (self.coordinate(i) for i in range(6))
+        return [
+            *lines.text,
+            f"return {self.tuple([str(n) for n in (heading, turning, ahead, aside, u, v, x, y, roll, rolling)])}",
+        ]
+
     def jacobian(self) -> list[str]:
         """Body of `jacobian`."""
         lines = Lines()

@@ -36,6 +36,11 @@ def force_slopes(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) 
     """Derivatives of the joint accelerations by a body force over the freedoms, to A[row:, column:]."""
 
 
+def feels(t: float, s: Any, act: Array, at: Any, p: Array, on: Any, k: Array, extra: Any) -> tuple[float, ...]:
+    """What instruments aboard would feel: psi, r, acceleration over ground along x and y, u, v, x, y, phi, p."""
+    raise NotImplementedError
+
+
 def moved(s: Any) -> Shown:
     """What instruments that show the truth would show of a state."""
     raise NotImplementedError

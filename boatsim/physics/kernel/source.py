@@ -124,6 +124,11 @@ def written(freedoms: tuple[str, ...], centred: bool) -> str:
             w.force_slopes(), "inlined" if w.closed else "lean",
         ),
         function("moved(s)", "What instruments that show the truth would show of a state.", w.moved(), "inlined"),
+        function(
+            "feels(t, s, act, at, p, on, k, extra)",
+            "What instruments aboard would feel: psi, r, acceleration over ground along x and y, u, v, x, y, phi, p.",
+            w.feels(), "inlined",
+        ),
         function("jacobian(s, J)", "Body rates per joint rate, to J (6, NQ) of zeros.", w.jacobian(), "inlined"),
         function(
             "observe_level(s, code, row)",

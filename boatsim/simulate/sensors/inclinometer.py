@@ -7,8 +7,8 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.physics.base import param
-from boatsim.simulate.engine import Engine
 from boatsim.simulate.sensing import Sensor
+from boatsim.simulate.stepper import Stepper
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Inclinometer(Sensor):
     roll_sd: float = param(0.002, low=0.0, high=0.5, unit="rad", words="noise of the angle")
     rate_sd: float = param(0.00175, low=0.0, high=0.5, unit="rad/s", words="noise of the rate, 0.1 deg/s")
 
-    def read(self, engine: Engine, rng: np.random.Generator) -> Mapping[str, float]:
+    def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
         """The boat's roll, off by the noise."""
         s, n = engine.state, rng.standard_normal(2).tolist()
         return {"phi": s.phi + self.roll_sd * n[0], "p": s.p + self.rate_sd * n[1]}

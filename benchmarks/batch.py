@@ -1,0 +1,93 @@
+"""Speed of many boats at once: `python -m benchmarks.batch`, about a minute; `--boats` says how many (10,000).
+
+Boat-steps/s of Runge-Kutta steps on all cores, medians of three rounds: the joystick boat with all its effects and four
+more, in open loop under commands that stay and under ones that all change every control period; and in a closed loop
+with sensors and their noise.
+"""
+
+import argparse
+import os
+from collections.abc import Callable
+from statistics import median
+from time import perf_counter
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from benchmarks.engine import COMMANDS, EXTRA, OPEN, STEP, Figure
+from boatsim.physics import vessel
+from boatsim.simulate import scenario
+from boatsim.simulate.batch import Batch
+from boatsim.simulate.fleet import Fleet
+
+ROUNDS = 3
+PERIOD = 4  # [steps]
+BESIDE = 25  # periods of a round in open loop
+SECONDS = 60.0  # of the closed loop
+CASE = "joystick_boat/sway_1_wind"
+
+
+def rate(steps: int, advance: Callable[[], object]) -> float:
+    """Median of steps per second."""
+    found = []
+    for _ in range(ROUNDS):
+        start = perf_counter()
+        advance()
+        found.append(steps / (perf_counter() - start))
+    return median(found)
+
+
+def open_loop(boats: int) -> list[Figure]:
+    """Commands held, and commands of all boats that jump every period."""
+    batch = Batch(vessel.load("joystick_boat", extra=EXTRA), boats, STEP)
+    row = batch.program.command_array(COMMANDS)
+    jumps = np.random.default_rng(0).uniform(-1.0, 1.0, (BESIDE, boats, len(row))) * np.abs(row) * 0.2
+
+    def changing() -> None:
+        for jump in jumps:
+            batch.advance(row + jump, PERIOD)
+
+    batch.reset(commands=row)
+    batch.advance(steps=PERIOD)  # compiles
+    steps = boats * BESIDE * PERIOD
+    held = rate(steps, lambda: batch.advance(row, BESIDE * PERIOD))
+    return [
+        Figure(f"open loop, {boats:,} boats, commands held", held / 1e6, "M boat-steps/s", 8.0),
+        Figure("open loop, all commands jump every 80 ms", rate(steps, changing) / 1e6, "M boat-steps/s", 0.0),
+        Figure("memory of a boat", batch.bytes_per_boat, "bytes", 0.0),
+    ]
+
+
+def closed_loop(boats: int) -> list[Figure]:
+    """A minute of all boats with a compiled controller, noise and wind."""
+    found = []
+    for use in ("l1_joystick", "pid_autopilot"):
+        fleet = Fleet(scenario.load(CASE, OPEN | {"controller": {"use": use}}), boats)
+        fleet.run(1.0)
+        fleet.reset()
+        start = perf_counter()
+        fleet.run(SECONDS)
+        took = perf_counter() - start
+        steps = boats * round(SECONDS / STEP)
+        goal = (3.0, 15.0) if use == "l1_joystick" else (0.0, float("inf"))
+        found += [
+            Figure(f"{use} compiled, {boats:,} boats", steps / took / 1e6, "M boat-steps/s", goal[0]),
+            Figure(f"{use} compiled, {SECONDS:g} s of them", took, "s", goal[1], at_least=False),
+        ]
+    return found
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.batch", description="Speed of many boats at once.")
+    parser.add_argument("--boats", type=int, default=10_000)
+    boats = parser.parse_args().boats
+    table = Table("", "measured", "to reach", "reached", title=f"{len(os.sched_getaffinity(0))} cores")
+    for figure in (*open_loop(boats), *closed_loop(boats)):
+        table.add_row(*figure.row())
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,112 @@
+"""How long a stick takes to the log, and whether control keeps time: `python -m benchmarks.driving [--seconds 60]`.
+
+A real Chromium without a window drives `joystick_boat` under `l1_joystick`; a gamepad is simulated in its page. A stick
+is pushed at random times; the page's clock and the log's are this machine's. Log: the first row whose goal is another
+one. Commands: the first row in which something else is sent, which waits for the controller's period. Picture: the page
+has the state that shows the goal. `--picture FILE.png` draws the page instead, with a fan on.
+"""
+
+import argparse
+import random
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from boatsim.physics.base import Array
+from boatsim.recordings.table import Recording, read
+from tests.chrome import Page, chromium
+
+SHOWN = Path(__file__).parents[1] / "examples" / "swing.toml"
+GOAL, SENT = "goal_surge_mps", "sent_pwm_port"
+PUSH = """new Promise(done => {
+  const before = frame.goals[0][0], at = push(0, %g, 0, 0);
+  const look = () => frame.goals[0][0] !== before ? done([at, (performance.timeOrigin + performance.now()) / 1000])
+    : setTimeout(look, 1);
+  look();
+})"""  # when the stick was pushed and when the page saw the goal change [s since 1970]
+
+
+def pushes(page: Page, seconds: float) -> Array:
+    """(N, 2) when a stick was pushed and when the page showed it, until so long [s] of the run."""
+    rng, found = random.Random(0), []
+    page.until("frame && frame.t > 1 && !frame.away")
+    while page.run("frame.t") < seconds - 1.5:
+        found.append(page.run(PUSH % (0.0 if len(found) % 2 else rng.choice([-0.2, -0.4, -0.6]))))
+        time.sleep(rng.uniform(0.2, 0.6))
+    return np.array(found, dtype=float)
+
+
+def after(log: Recording, column: str, begin: float, at: Array) -> Array:
+    """How long [s] after each of these times [s since 1970] a column first changed, by the log's own time."""
+    changed = begin + log.t[1:][np.diff(log[column]) != 0.0]
+    return np.array([changed[changed > when - 0.001][0] - when for when in at])
+
+
+def line(name: str, seconds: Array) -> str:
+    """A row of the table, in ms."""
+    ms = 1e3 * seconds
+    return f"{name:20}{np.median(ms):8.0f}{np.percentile(ms, 95):8.0f}{ms.max():8.0f}"
+
+
+@contextmanager
+def driven(folder: Path, seconds: float, *more: str) -> Iterator[Page]:
+    """The page of a run under way; at the end of the block it is awaited."""
+    command = [sys.executable, "-m", "boatsim", "drive", "joystick_boat", "--no-open", *more]
+    command += ["--seconds", f"{seconds:g}", "--out", str(folder)]
+    running = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    assert running.stderr
+    found = re.search(r"http://\S+", running.stderr.readline())
+    assert found
+    with chromium() as opened:
+        yield opened(found[0])
+        running.communicate(timeout=60)
+
+
+def picture(folder: Path, path: Path) -> None:
+    """The page as it is after some seconds of turning."""
+    with driven(folder, 21.0, "--scenario", str(SHOWN)) as page:
+        page.until("frame && frame.t > 1 && !frame.away")
+        for until, push in ((8, "0.0, -0.6, 0.6, 0"), (14, "0.0, -0.5, -0.9, 0"), (19, "0.8, -0.1, 0.4, 0")):
+            page.run(f"push({push})")
+            page.until(f"frame.t > {until}")
+        page.picture(path, 1120, 770)
+
+
+def measured(folder: Path, seconds: float) -> None:
+    """One run, and what it shows."""
+    with driven(folder, seconds, "--controller", "l1_joystick") as page:
+        moved = pushes(page, seconds)
+    log = read(folder / "recording.csv")
+    facts = log.notes.facts
+    begin = float(str(facts["began_unix_s"]))
+    print(f"{len(moved)} pushes in {log.t[-1]:.0f} s, [ms]")
+    print(f"{'from stick to':20}{'median':>8}{'95 %':>8}{'most':>8}")
+    print(line("log", after(log, GOAL, begin, moved[:, 0])))
+    print(line("commands", after(log, SENT, begin, moved[:, 0])))
+    print(line("picture", moved[:, 1] - moved[:, 0]))
+    late, worst = facts["late_periods"], facts["latest_ms"]
+    print(f"{facts['periods']} control periods, {late} begun late; the latest {worst} ms behind time")
+
+
+def main(given: Sequence[str] | None = None) -> None:
+    """As the command says."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--picture", type=Path)
+    asked = parser.parse_args(given)
+    with TemporaryDirectory() as folder:
+        if asked.picture:
+            picture(Path(folder) / "out", asked.picture)
+        else:
+            measured(Path(folder) / "out", asked.seconds)
+
+
+if __name__ == "__main__":
+    main()
