@@ -167,12 +167,21 @@ def test_a_boat_is_berthed_once_it_has_lain_there_and_lost_once_it_touches() -> 
 
 def test_what_varies_differs_from_boat_to_boat_and_stays_within_what_is_said() -> None:
     vary = {"load": ["light, narrow", "heavy, wide"], "weak_reverse.astern_factor": "uniform(0.5, 0.9)"}
-    sea = game("berth", 400, vary={**vary, "current.north": "normal(0.0, 0.02)", "fan_wind.speed": 0.5})
+    sea = game(
+        "berth",
+        400,
+        vary={
+            **vary,
+            "current.north": "normal(0.0, 0.02)",
+            "fan_wind.speed": 0.5,
+            "body.yaw_inertia": "uniform(1.0, 1.2)",
+        },
+    )
     sea.begin(np.arange(400, dtype=np.uint64), np.arange(400))
     factor, north = sea.world.get("weak_reverse.astern_factor"), sea.world.get("current.north")
     assert 0.5 <= factor.min() < 0.52 and 0.88 < factor.max() <= 0.9
     assert north.std() == pytest.approx(0.02, rel=0.15)
-    assert (sea.world.get("fan_wind.speed") == 0.5).all()
+    assert (sea.world.get("fan_wind.speed") == 0.5).all() and np.ptp(sea.world.get("body.yaw_inertia")) > 0.19
     assert set(np.round(sea.world.get("port.y"), 3)) == {-0.19, -0.28}
     assert abs(np.corrcoef(factor, north)[0, 1]) < 0.15
 

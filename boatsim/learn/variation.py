@@ -14,6 +14,7 @@ from boatsim.physics.param import Param
 from boatsim.physics.signals import Array
 from boatsim.physics.spread import Spread
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate.batch import BODY
 
 Vary = Mapping[str, str | float | Sequence[str]]
 LOAD = "load"
@@ -83,13 +84,16 @@ def _lacking(
 ) -> list[str]:
     """Effects that are to vary and that the vessel does not have."""
     own = vessels.load(vessel, list(load), extra=list(effects))
-    ideas = dict.fromkeys(key.partition(".")[0] for key in said)
+    ideas = dict.fromkeys(key.partition(".")[0] for key in said if key not in BODY)
     return [idea for idea in ideas if own.effect(idea) is None]
 
 
 def _having(boat: Vessel, held: Mapping[str, float]) -> Vessel:
     """The vessel with other numbers."""
     for key, x in held.items():
+        if key in BODY:
+            boat = replace(boat, body=boat.body.model_copy(update={key.partition(".")[2]: x}))
+            continue
         owner, name = _owner(boat, key)
         effects = [e.having({name: x}) if e is owner else e for e in boat.effects]
         boat = replace(boat, effects=tuple(effects))
@@ -108,5 +112,7 @@ def _owner(boat: Vessel, key: str) -> tuple[Effect, str]:
 
 
 def _about(boat: Vessel, key: str) -> Param:
+    if key in BODY:
+        return BODY[key][1]
     effect, name = _owner(boat, key)
     return type(effect).params()[name]

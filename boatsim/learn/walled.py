@@ -56,6 +56,10 @@ class Walled:
         """Give it another value of "effect.parameter"; what its file derives from it stays."""
         owner, _, name = parameter.partition(".")
         value = float(np.asarray(values).reshape(-1)[0])
+        if owner == "body":
+            body = self.vessel.body.model_copy(update={name: value})
+            self.vessel, self._engine = replace(self.vessel, body=body), None
+            return
         had = self.vessel.effect(owner)
         effects = [e.having({name: value}) if e is had else e for e in self.vessel.effects]
         self.vessel, self._engine = replace(self.vessel, effects=tuple(effects)), None
@@ -63,7 +67,7 @@ class Walled:
     def get(self, parameter: str) -> Array:
         """(1,) its value."""
         owner, _, name = parameter.partition(".")
-        return np.array([float(getattr(self.vessel.effect(owner), name))])
+        return np.array([float(getattr(self.vessel.body if owner == "body" else self.vessel.effect(owner), name))])
 
 
 def in_tank(vessels: Sequence[Vessel], n: int, step: float, tank: Tank) -> Walled:
