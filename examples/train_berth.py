@@ -146,7 +146,7 @@ def main() -> None:
     seeds = chance.episode(np.arange(UNSEEN, UNSEEN + told.draws, dtype=np.uint64), np.zeros(told.draws, np.uint64))
     found = {
         "policy": of_policy(model, play(n=told.draws, **says), seeds),
-        "L1 joystick": piloted(play(n=told.draws, **{**says, "period": 0.08, "step": 0.04}), seeds, Berthing),
+        "L1 joystick": piloted(play(n=told.draws, **{**says, "period": 0.08, "step": 0.08}), seeds, Berthing),
     }
     print(f"\n{told.draws} boats, none of which was trained on\n")
     print("| steered by | berthed | touched the quay | median time [s] | slowest tenth [s] |")

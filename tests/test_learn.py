@@ -12,12 +12,16 @@ gymnasium = pytest.importorskip("gymnasium")
 
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 
+from boatsim.control.approach import Approach  # noqa: E402
+from boatsim.control.base import Sense  # noqa: E402
 from boatsim.errors import BadInput  # noqa: E402
 from boatsim.learn import chance, registration  # noqa: E402
 from boatsim.learn.actions import controls  # noqa: E402
 from boatsim.learn.game import play  # noqa: E402
+from boatsim.learn.pilot import piloted  # noqa: E402
 from boatsim.learn.play import Play  # noqa: E402
 from boatsim.physics import vessel  # noqa: E402
+from boatsim.physics.content import load_class  # noqa: E402
 
 IDS = registration.ids()
 STILL = {"vary": {}, "vessel": "joystick_boat"}  # one boat, no wind
@@ -89,7 +93,7 @@ def test_observations_are_the_same_over_their_bounds_and_in_their_units() -> Non
 
 
 def test_mujoco_and_the_batch_play_the_same_episode() -> None:
-    both = [single(IDS[0], simulator=name) for name in ("batch", "mujoco")]
+    both = [single(IDS[0], simulator=name, step=0.05) for name in ("batch", "mujoco")]
     for env in both:
         env.reset(seed=11)
     actions = np.random.default_rng(2).uniform(-0.5, 0.5, (40, 3))
@@ -163,6 +167,21 @@ def test_a_boat_is_berthed_once_it_has_lain_there_and_lost_once_it_touches() -> 
     assert done[0].ended.tolist() == [False, True, False]
     assert done[-1].ended[0] and done[-1].reward[0] > 5.0 and done[-1].norms["is_success"][0]
     assert not any(step.ended[2] for step in done)
+
+
+def test_a_joystick_controller_with_its_outer_loop_berths_in_calm_water() -> None:
+    class Berthing:
+        def __init__(self) -> None:
+            self.inner, self.outer = load_class("controller", "l1_joystick")(), Approach()
+
+        def step(self, sense: Sense) -> dict[str, float]:
+            stick = self.outer.step((sense.x, sense.y, sense.psi), sense.v, self.inner.period)
+            goal = {"surge_mps": stick.surge, "sway_mps": stick.sway, "yaw_radps": stick.yaw}
+            return dict(self.inner.step(sense, goal))
+
+    sea = game("berth", 8, period=0.08, step=0.04, duration=90.0)
+    norms = piloted(sea, np.arange(8, dtype=np.uint64), Berthing)
+    assert norms["is_success"].all() and (norms["distance_L"] < 0.1).all() and (norms["time_s"] < 90.0).all()
 
 
 def test_what_varies_differs_from_boat_to_boat_and_stays_within_what_is_said() -> None:

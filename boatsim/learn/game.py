@@ -40,7 +40,7 @@ def play(task: str, n: int, world: Made | None = None, **told: Unpack[Told]) -> 
     try:
         rules = TASKS[task].from_settings(told.get("settings", {}))
         varied, tank = _boats(told)
-        times = (told.get("period", 0.2), told.get("step", 0.05), told.get("duration", 60.0))
+        times = (told.get("period", 0.2), told.get("step", 0.1), told.get("duration", 60.0))
         return Play(rules, varied, n, *times, world or open_water(), tank)
     except BadInput as error:
         raise BadInput(f"{task}: {error}") from None

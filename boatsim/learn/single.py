@@ -15,6 +15,7 @@ from boatsim.learn.spaces import boxes
 from boatsim.learn.walled import in_tank
 
 ME = np.zeros(1, dtype=np.int64)
+WALL_STEP = 0.02  # [s] a wall wants finer steps than water
 SIMULATORS = ("batch", "mujoco")
 
 
@@ -42,6 +43,8 @@ class BoatEnv(gymnasium.Env[Seen, NDArray[np.float32]]):
             raise BadInput(f"simulator = {simulator!r}; allowed is {' or '.join(SIMULATORS)}")
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise BadInput(f"render_mode = {render_mode!r}; allowed is rgb_array or none")
+        if simulator == "mujoco":
+            told.setdefault("step", WALL_STEP)
         self.play = play(task, 1, in_tank if simulator == "mujoco" else open_water(threads=1), **told)
         self.signals, self.controls = self.play.signals, self.play.controls
         self.render_mode, self.normalised = render_mode, normalised
