@@ -7,8 +7,8 @@ from typing import ClassVar
 import numpy as np
 
 from boatsim.physics.base import param
-from boatsim.simulate.stepper import Stepper
 from boatsim.simulate.sensing import Sensor
+from boatsim.simulate.stepper import Stepper
 
 
 @dataclass(frozen=True)
