@@ -1,5 +1,8 @@
 """Many boats of a scenario: each as `boatsim run` sails it with its seed, whoever else is there."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -98,3 +101,13 @@ def test_a_scenario_that_lets_go_of_the_boat_is_refused() -> None:
     )
     with pytest.raises(BadInput, match="says off"):
         Fleet(let_go, 2)
+
+
+def test_the_examples_of_the_page_print_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (Path(__file__).parents[1] / "docs" / "batches.md").read_text()
+    shown = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL)
+    assert len(shown) == 2
+    names: dict[str, object] = {}
+    for code, output in shown:
+        exec(code, names)
+        assert capsys.readouterr().out == output

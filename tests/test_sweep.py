@@ -124,6 +124,10 @@ def test_a_goal_is_the_only_one_that_says_the_key_or_one_by_its_number(short: st
     assert changed(short, "goal.1.surge_mps", 0.1).file.goal[0]["surge_mps"] == 0.1
 
 
+def test_a_table_can_be_left_out() -> None:
+    assert changed("joystick_boat/sway_1", "tank", "none").file.tank is None
+
+
 @pytest.mark.parametrize(
     ("key", "value", "said"),
     [

@@ -1,7 +1,7 @@
 """Controllers whose law is compiled: one text for a single run, a batch of boats and loops faster than Python is.
 
 The law works on records (NumPy's structured arrays), a row a boat: `q.pole` and `m.yaw.sigma` read as they would on
-objects. `boatsim/control/joystick.py` shows one.
+objects. `controllers/l1_joystick.py` shows one.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -90,14 +90,14 @@ class CompiledController(Controller):
         return dict(zip(type(self).commands, self._sent[0].item(), strict=True))
 
     @property
-    def is_its_law(self) -> bool:
-        """Whether it does what its law says; one with a `step` of its own does more."""
-        return type(self).step is CompiledController.step
-
-    @property
     def memory(self) -> Records:
         """What it remembers, a record of one: whoever steps the law instead of it goes on from there."""
         return self._memory
+
+    @property
+    def is_its_law(self) -> bool:
+        """Whether it does what its law says; one with a `step` of its own does more."""
+        return type(self).step is CompiledController.step
 
     @property
     def remembered(self) -> Any:

@@ -39,8 +39,9 @@ class Journal:
 
     def add(self, number: int, entry: Entry) -> None:
         """A run that is over; on the disk when this returns, whatever becomes of this process. Raises OSError."""
-        self.done[number] = {"run": number, **entry}
-        self._growing.add(_line(self.done[number]))
+        line = _line({"run": number, **entry})
+        self._growing.add(line)
+        self.done[number] = json.loads(line)  # as whoever goes on finds it
 
     def __enter__(self) -> Self:
         return self

@@ -23,6 +23,7 @@ Steps: TypeAlias = "tuple[str | int, ...]"  # from the top of a scenario to one 
 How = Literal["", "+", "*"]  # in place of what is stated, on top of it, times it
 
 OF_VESSEL = ("body", "geometry")  # tables of a vessel's file, which [set.body] changes
+NONE = "none"  # the value of a table that is left out
 NOT_VARIED = ("about", "norms", "noise_widens_guards", "check")
 
 
@@ -77,6 +78,8 @@ def laid(said: Said, place: Place, at: Sequence[Slot], how: How, value: Value) -
             said = {**said, "load": _loads(said, place, str(value))}
         elif steps == ("controller", "use"):
             said = {**said, "controller": _controller(said, str(value))}
+        elif value == NONE and len(steps) == 1:
+            said = {key: rest for key, rest in said.items() if key != steps[0]}
         else:
             said = _with(said, steps, new)
     return said
