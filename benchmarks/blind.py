@@ -3,7 +3,8 @@
 Boats of the Monte Carlo study on the thesis' tests: thrust 0.2 to 0.8 N at PWM 150 with an exponent of 1 to 1.6, drag
 coefficient 0.7 to 2.5, thrust astern 0.55 to 0.85 of that ahead, motors shifted by 0.08 m, each steering off by 3 deg,
 yaw inertia 0.5 to 2 kg m2, wind to 0.5 m/s from anywhere. Each boat tries its motors in a run of its own; then it
-starts from rest with what it found, and once more knowing nothing. The other table: all tests, six seeds, as shipped.
+starts from rest with what it found, and once more knowing nothing. Then: all tests, six seeds, as shipped; and what
+the noise of the speed logs does to the motors while the boat sways.
 """
 
 import argparse
@@ -78,6 +79,13 @@ def study(test: str, boats: int) -> list[str]:
     return lines
 
 
+def unrest(test: str, controller: dict[str, Any], settled: float = 6.0) -> str:
+    """Standard deviation of both PWM of 255 from `settled` [s] on."""
+    log = run(scenario.load(f"joystick_boat/{test}", {"controller": controller}), 0).recording
+    port, starboard = (float(np.std(log[f"pwm_{side}"][log.t > settled])) for side in ("port", "starboard"))
+    return f"{port:8.1f}{starboard:8.1f}"
+
+
 def main() -> None:
     """Print both tables."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -96,6 +104,11 @@ def main() -> None:
             x = np.array([row[norm].value for row in rows], dtype=float)
             cells.append(f"{norm} {x.mean():.3f} ({np.abs(x).max():.3f})")
         print(f"{test:8}" + ", ".join(cells), flush=True)
+    print("\nrestlessness of the motors ahead and astern [PWM of 255]")
+    for bandwidth in (0.5, 2.0):
+        law = {"use": "l1_joystick", "surge_bandwidth": bandwidth}
+        print(f"l1_joystick, surge low-pass {bandwidth:g} rad/s" + unrest("sway_1", law))
+    print("l1_joystick_sway" + unrest("sway_1_closed", {"use": "l1_joystick_sway"}))
 
 
 if __name__ == "__main__":

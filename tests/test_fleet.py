@@ -89,6 +89,12 @@ def test_a_controller_that_is_not_compiled_and_a_channel_that_is_not_there_are_r
         Fleet(SWAY, 2, controller=[SWAY.controller, RIVAL.controller])
 
 
+def test_a_controller_that_does_more_than_its_law_is_refused() -> None:
+    one = scenario.load("joystick_boat/sway_1_blind")
+    with pytest.raises(BadInput, match="L1JoystickBlind is not compiled"):
+        Fleet(one, 2)
+
+
 def test_a_scenario_that_lets_go_of_the_boat_is_refused() -> None:
     let_go = scenario.load(
         "joystick_boat/berth", {"tank": None, "goal": [{"yaw_radps": 0.1}, {"from": 5.0, "off": True}]}
