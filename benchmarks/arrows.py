@@ -26,10 +26,11 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "physics",
     "recordings control",
     "simulate",
-    "measures",
+    "measures warp",
     "view",
     "drive",
     "diagnose",
+    "sweep",
     "newboat",
     "api",
     "cli __main__ __init__",
@@ -40,9 +41,11 @@ ABOUT = {  # what the picture says of each folder
     "control": "blocks of controllers",
     "simulate": "what a run is",
     "measures": "norms of a run",
+    "warp": "boats on a GPU",
     "view": "runs in rerun",
     "drive": "hands on the sticks",
     "diagnose": "what was left out",
+    "sweep": "many runs",
     "newboat": "from particulars",
     "cli": "commands",
 }
@@ -121,10 +124,12 @@ COLOURS = (
     "#1c8a7a",
     "#c04d4d",
     "#648729",
-    "#648729",
+    "#7074dc",
     "#b4632c",
     "#b0588f",
+    "#1f7f9c",
     "#768290",
+    "#a3722f",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"

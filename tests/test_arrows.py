@@ -13,11 +13,14 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "control.identification control.helm control.compiled control.axis".split()
 )
 HEAVY = {  # library -> the only modules that may import it
-    "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")},
+    "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")} | {"warp.on_mujoco"},
+    "mujoco_warp": {"warp.on_mujoco"},
+    "warp": {"warp.library"},
     "dm_control": {"simulate.env"},
     "dm_env": {"simulate.env"},
     "rerun": {"view.rerun_log", "view.blueprint", "view.stream", "recordings.readers.rrd"},
-    "jinja2": {"diagnose.report.page"},
+    "jinja2": {"diagnose.report.sheet"},
+    "ray": {"sweep.workers.cluster"},
     "pymavlink": {"recordings.logs.ardupilot"},
     "mcap": {"recordings.logs.mcap"},
     "rosbags": {"recordings.logs.rosbag"},

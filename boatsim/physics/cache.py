@@ -56,7 +56,11 @@ def module(written: dict[str, str], classes: Iterable[type[Effect]]) -> ModuleTy
     """The program whose generated files are `written`, compiled before if the same one was composed before."""
     files = {p.name: p.read_text(encoding="utf-8") for p in sorted(KERNEL.glob("*.py")) if p.name not in LEFT_OUT}
     files |= written | {"__init__.py": EXPORTS}
-    stamp = stamp_of(files, classes)
+    return package(files, stamp_of(files, classes))
+
+
+def package(files: dict[str, str], stamp: str) -> ModuleType:
+    """The package of these files, kept on disk under a name that tells all it depends on."""
     folder = cache_folder()
     path = folder / f"program_{stamp}"
     if not _whole(files, path):

@@ -1,0 +1,9 @@
+"""`python -m boatsim.warp VESSEL` prints a vessel's program as Warp has it."""
+
+import sys
+
+from boatsim.physics import vessel
+from boatsim.physics.program import Program
+from boatsim.warp.program import text_of
+
+print(text_of(Program(vessel.load(sys.argv[1])), "float32"))

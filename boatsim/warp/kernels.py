@@ -1,0 +1,137 @@
+"""Kernels of a batch: one thread a boat. `boatsim.warp.program` writes a vessel's own functions before them.
+
+The text below is Warp's: it is read, not imported.
+"""
+
+HEAD = '''"""A vessel's program for Warp, translated by boatsim; not meant to be edited."""
+
+import warp as wp
+
+wp.set_module_options({"enable_backward": False, "max_unroll": 1, "fast_math": False})
+T = wp.{real}
+
+
+@wp.func
+def hypotenuse_(a: T, b: T):
+    return wp.sqrt(a * a + b * b)
+
+
+@wp.func
+def with_sign_(size: T, of: T):
+    return wp.abs(size) if of >= T(0.0) else -wp.abs(size)
+
+
+@wp.func
+def sign_of_(x: T):
+    return wp.where(x > T(0.0), T(1.0), wp.where(x < T(0.0), T(-1.0), T(0.0)))
+
+
+@wp.func
+def remainder_(a: int, b: int):
+    return ((a % b) + b) % b
+
+
+@wp.func
+def quotient_(a: int, b: int):
+    return (a - remainder_(a, b)) / b
+
+
+@wp.func
+def power_2_(x: T):
+    return x * x
+
+
+@wp.func
+def power_3_(x: T):
+    return x * x * x
+
+
+@wp.func
+def power_4_(x: T):
+    return (x * x) * (x * x)
+
+
+@wp.func
+def bits_(a: int, b: int, c: int, d: int):
+    return ((wp.uint64(a) * wp.uint64(65536) + wp.uint64(b)) * wp.uint64(65536) + wp.uint64(c)) * wp.uint64(
+        65536
+    ) + wp.uint64(d)
+'''
+
+FORCES = '''
+@wp.kernel
+def add_forces(
+    t: wp.array(dtype=wp.float64), part: wp.array(dtype=T), share: T, at: int, q: wp.array2d(dtype=T),
+    qd: wp.array2d(dtype=T), act: wp.array2d(dtype=T), p: wp.array2d(dtype=T), k: wp.array2d(dtype=T),
+    force: wp.array2d(dtype=T), M: wp.array2d(dtype=T),
+):
+    """What the passive callback does: forces, and the mass of the water, at one stage of a Runge-Kutta step."""
+    i = wp.tid()
+    motion_add_to_mujoco(
+        T(t[i]) + share * part[i], q[i], qd[i], act[i], at, p[i % p.shape[0]], k[i % k.shape[0]], force[i], M[i]
+    )
+'''
+
+PARTS = '''
+@wp.kernel
+def begin_part(
+    commands: wp.array2d(dtype=T), dt: T, p: wp.array2d(dtype=T), t: wp.array(dtype=wp.float64),
+    part: wp.array(dtype=T), ahead: wp.array(dtype=int), left: wp.array(dtype=T), least: wp.array(dtype=T),
+    before: wp.array(dtype=T), memory: wp.array2d(dtype=T), act: wp.array2d(dtype=T),
+):
+    """The next part of each boat's own step: it ends where a signal jumps or bends. One that is done stands still."""
+    i = wp.tid()
+    t[i] = t[i] + wp.float64(part[i])
+    part[i] = T(0.0)
+    if left[i] <= T({enough}) and ahead[i] > 0:
+        ahead[i] = ahead[i] - 1
+        left[i] = dt
+        least[i] = T({shortest})
+        before[i] = T(0.0)
+    own = i % p.shape[0]
+    if left[i] > T({enough}):
+        length = run_until_bend(commands[i], memory[i], left[i], least[i], p[own])
+        least[i] = run_least_after(length, before[i], least[i])
+        before[i] = length
+        run_actuate_in_place(commands[i], memory[i], length, p[own], act[i])
+        left[i] = left[i] - length
+        part[i] = length
+
+
+@wp.kernel
+def rest(part: wp.array(dtype=T)):
+    """Nothing of what was stepped is left over for the clock."""
+    part[wp.tid()] = T(0.0)
+
+
+@wp.kernel
+def look(ahead: wp.array(dtype=int), left: wp.array(dtype=T), unfinished: wp.array(dtype=int)):
+    """Whether any boat is still on its way."""
+    i = wp.tid()
+    if left[i] > T({enough}) or ahead[i] > 0:
+        unfinished[0] = 1
+'''
+
+ALONE = '''
+@wp.kernel
+def run_on(
+    commands: wp.array2d(dtype=T), step: wp.float64, steps: int, p: wp.array2d(dtype=T), k: wp.array2d(dtype=T),
+    none: wp.array(dtype=T), t: wp.array(dtype=wp.float64), y: wp.array2d(dtype=T), memory: wp.array2d(dtype=T),
+    act: wp.array2d(dtype=T),
+):
+    """Many steps without MuJoCo, as the twin goes."""
+    i = wp.tid()
+    own, mass = i % p.shape[0], i % k.shape[0]
+    for j in range(steps):
+        now = t[i] + wp.float64(j) * step
+        dt = T(step)
+        left, least, before = T(dt), T({shortest}), T(0.0)
+        while left > T({enough}):
+            part = run_until_bend(commands[i], memory[i], left, least, p[own])
+            least = run_least_after(part, before, least)
+            before = T(part)
+            run_actuate_in_place(commands[i], memory[i], part, p[own], act[i])
+            motion_step_in_place(T(now), y[i], part, act[i], p[own], k[mass], none)
+            now = now + wp.float64(part)
+            left = left - part
+'''
