@@ -18,6 +18,8 @@ HEAVY = {  # library -> the only modules that may import it
     "warp": {"warp.library"},
     "dm_control": {"simulate.env"},
     "dm_env": {"simulate.env"},
+    "gymnasium": {f"learn.{name}" for name in ("registration", "single", "spaces", "vector")},
+    "stable_baselines3": {"learn.sb3"},
     "rerun": {"view.rerun_log", "view.blueprint", "view.stream", "recordings.readers.rrd"},
     "jinja2": {"diagnose.report.sheet"},
     "ray": {"sweep.workers.cluster"},
