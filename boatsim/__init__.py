@@ -1,7 +1,7 @@
 """boatsim: small-boat motion and control on MuJoCo, and what a simulation of a real boat has left out.
 
 `load_vessel`, `run`, `sweep`, `read`, `diagnose` and `replay` are what the command line does, for Python: see
-`boatsim.api`.
+`boatsim.api`. `Batch` and `Fleet` step many boats at once.
 """
 
 import sys
@@ -10,11 +10,24 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # all is imported when somebody asks: the first thing the program imports should be quick
-    from boatsim.api import Diagnosis, Parameter, Run, Sweep, diagnose, load_vessel, read, replay, run, sweep
+    from boatsim.api import (
+        Batch,
+        Diagnosis,
+        Fleet,
+        Parameter,
+        Run,
+        Sweep,
+        diagnose,
+        load_vessel,
+        read,
+        replay,
+        run,
+        sweep,
+    )
 
 __all__ = [
-    "Diagnosis", "Parameter", "Run", "Sweep", "__version__", "diagnose", "load_vessel", "read", "replay", "run",
-    "sweep",
+    "Batch", "Diagnosis", "Fleet", "Parameter", "Run", "Sweep", "__version__", "diagnose", "load_vessel", "read",
+    "replay", "run", "sweep",
 ]  # fmt: skip
 FOLDERS = ("diagnose", "sweep")  # functions that a folder of ours is called like
 

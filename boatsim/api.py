@@ -20,7 +20,9 @@ from boatsim.progress import Report, silent
 from boatsim.recordings import table
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording
+from boatsim.simulate.batch import Batch as Batch
 from boatsim.simulate.controllers import steered
+from boatsim.simulate.fleet import Fleet as Fleet
 from boatsim.simulate.norms import Norm, NormEntry, all_norms
 from boatsim.simulate.run import run as simulate
 from boatsim.sweep.axes import axis_of

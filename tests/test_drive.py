@@ -160,6 +160,7 @@ def boatsim(*arguments: object):
     [
         (["joystik_boat"], "did you mean 'joystick_boat'?"),
         (["joystick_boat", "--controller", "zigzag"], "steers by itself"),
+        (["joystick_boat", "--controller", "l1_thesis"], "steers by itself"),
         (["joystick_boat", "--controller", "pd_heading"], "sets throttle"),
         (["joystick_boat", "--scenario", "brth"], "did you mean 'joystick_boat/berth'?"),
         (["joystick_boat", "--scenario", "otter/turn"], "is of otter, not of joystick_boat"),
@@ -426,6 +427,32 @@ def test_a_hidden_page_lets_go_and_takes_over_again_with_the_sticks_in_the_middl
         page.close()
     facts = read(tmp_path / "out" / "recording.csv").notes.facts
     assert [line.partition(": ")[2] for line in facts["sticks_let_go"]] == ["page hidden"]
+
+
+def test_a_run_that_goes_wrong_is_told_to_the_page(opened, tmp_path: Path) -> None:
+    wild = tmp_path / "wild.py"
+    wild.write_text(WILD)
+    with driving(tmp_path / "out", "otter", "--controller", wild) as (running, address):
+        page = opened(address)
+        page.until("over.startsWith('The run has ended: controller') && over.includes('out of hand')")
+        assert running.wait(30) == 2
+        page.close()
+    assert not (tmp_path / "out").exists()
+
+
+WILD = """
+from dataclasses import dataclass
+from boatsim.control.base import Controller
+
+@dataclass
+class Wild(Controller):
+    passes_on = True
+
+    def step(self, sense, goal):
+        if sense.t > 0.5:
+            raise RuntimeError("out of hand")
+        return {}
+"""
 
 
 def test_keys_drive_too(opened, tmp_path: Path) -> None:

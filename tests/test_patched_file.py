@@ -146,7 +146,8 @@ def test_a_release_is_written_as_the_coefficients_it_found_to_be_off(name: str, 
     found = recalibrated(problem, 0.5 * OFF)
     free = problem.parameters(tuple(RELEASED[name]))
     off = [x for values in RELEASED[name].values() for x in values]
-    found = replace(found, suspects=tuple(RELEASED[name]), free=free, theta=np.append(found.theta, off))
+    covariance = 1e-4 * np.eye(len(free))
+    found = Fit(tuple(RELEASED[name]), free, np.append(found.theta, off), covariance, found.levels, found.evidence)
     assert len(free) == len(found.theta)
     fitted = free_run(problem, problem.values(problem.tracks[0], free, found.theta), found.suspects)
     patch.write(problem, boat, found, tmp_path / "patched.toml")
@@ -156,6 +157,27 @@ def test_a_release_is_written_as_the_coefficients_it_found_to_be_off(name: str, 
     np.testing.assert_allclose(free_run(again, again.tracks[0].values, ()), fitted, rtol=1e-7, atol=1e-7)
     text = (tmp_path / "patched.toml").read_text()
     assert all(f"{entry}, " in text for entry in RELEASED[name])
+
+
+def test_a_patched_file_says_how_far_off_its_numbers_may_be_and_the_next_one_says_it_anew(tmp_path: Path) -> None:
+    boat = vessel.load("trial_boat")
+    problem = problem_of(boat)
+    free = problem.parameters(("thrust_gain_error",))
+    theta = np.array([1.05] * len(free))
+    sd = 0.01 * np.arange(1.0, len(free) + 1.0)
+    covariance = np.outer(sd, sd) * np.where(np.eye(len(free)), 1.0, 0.3)
+    found = Fit(("thrust_gain_error",), free, theta, covariance, problem.ambient, 0.0)
+    patch.write(problem, boat, found, tmp_path / "patched.toml")
+    told = vessel.load(str(tmp_path / "patched.toml")).spread
+    assert told is not None and boat.spread is None
+    by_name = {one.fitted: one for one in told.of}
+    surge, gain = by_name["linear_damping.surge"], by_name["thrust_gain_error.factor"]
+    assert surge.scales == ["linear_damping.surge"] and surge.sd == pytest.approx(0.01 / 1.05, rel=1e-5)
+    assert gain.scales == ["port.gain", "starboard.gain"]
+    assert told.root @ told.root.T == pytest.approx(np.where(np.eye(len(free)), 1.0, 0.3), abs=1e-5)
+    again = vessel.load(str(tmp_path / "patched.toml"))
+    patch.write(problem_of(again), again, problem_of(again).nominal(), tmp_path / "again.toml")
+    assert vessel.load(str(tmp_path / "again.toml")).spread is None  # nothing of it was fitted there
 
 
 def test_a_release_costs_nothing_to_compile_and_acts_in_a_file() -> None:

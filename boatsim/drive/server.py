@@ -58,7 +58,9 @@ class Server:
             ) from None
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        if error is not None:
+            self.farewell({"wrong": str(error) if isinstance(error, BoatsimError) else "the terminal says why"})
         self._loop.call_soon_threadsafe(self._over.set)
         self._thread.join(FAREWELL + 1.0)
 

@@ -20,6 +20,7 @@ from boatsim.physics.kinds.channel import Channel
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import Change, Release
 from boatsim.physics.signals import COMPONENTS, POSE, RATES
+from boatsim.physics.spread import Spread, SpreadTable
 
 SMALLEST, LARGEST = 1e-4, 1e4  # [m] of a hull
 Freedom = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]  # AXES, as a type checker reads it
@@ -110,6 +111,7 @@ class VesselFile(Table):
     source: str
     based_on: str = ""  # vessel whose folder holds the hull and own effects; set in a patched file
     found: list[str] = []  # names of those effects that a diagnosis found; set in a patched file
+    spread: SpreadTable = SpreadTable()  # how far off what was fitted may be; set in a patched file
     hull: str = "hull.xml"
     freedoms: list[Freedom]
     length: float = Field(ge=SMALLEST, le=LARGEST)  # [m]
@@ -157,6 +159,7 @@ class Vessel:
     marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # [m] ahead and to starboard of the CG
     found: tuple[str, ...] = ()  # names of those effects that a diagnosis found
     measured: Mapping[str, MeasuredChannel] = field(default_factory=dict)  # of the surroundings: taken, not commanded
+    spread: Spread | None = field(default=None, compare=False)  # how far off what was fitted may be, where one was
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -337,7 +340,7 @@ def load(
         called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
         file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
         file.scale, file.scales, file.columns, file.manoeuvring, file.marks, tuple(file.found),
-        file.measured,
+        file.measured, Spread.read(file.spread),
     )  # fmt: skip
     whole = with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
     check_bindings(whole, label)

@@ -21,6 +21,12 @@ from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 
 Boats: TypeAlias = NDArray[np.int64]  # numbers of boats
+BODY = {  # numbers of the rigid body, and where they stand in `Program.body`
+    f"body.{name}": (place, Param(1e-9, 1e18, unit, f"{name.replace('_', ' ')} of the rigid body"))
+    for place, name, unit in (
+        (0, "mass", "kg"), (3, "roll_inertia", "kg m^2"), (4, "pitch_inertia", "kg m^2"), (5, "yaw_inertia", "kg m^2"),
+    )
+}  # fmt: skip
 TURN = 256  # boats that a thread steps in one go: what they need then stays in its core's cache
 
 
@@ -54,6 +60,7 @@ class Batch:
         self.program = self.programs[0]
         self.code = self.program.module
         self._check_alike()
+        self._values = [p.values() for p in self.programs]
         self._on, self._none = self.program.switches(), np.zeros(self.code.NQ)
         self._seeds = np.zeros(self.n, dtype=int) if seeds is None else np.asarray(seeds, dtype=int)
         self.t = np.zeros(self.n)  # [s]
@@ -128,21 +135,22 @@ class Batch:
         self.shared(lambda some: self._stepped(some, steps))
 
     def set(self, parameter: str, values: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Give boats other values, one or (k,), of "effect.parameter"; what a vessel file derives from it stays.
+        """Give boats other values, one or (k,), of "effect.parameter" or "body.mass"; what a file derives stays.
 
         Raises BadInput for a name that is unknown and a value out of bounds.
         """
-        chosen, (place, about) = self._chosen(boats), self._known(parameter)
+        chosen, (rows, place, about) = self._chosen(boats), self._known(parameter)
         given = np.broadcast_to(np.asarray(values, dtype=float), chosen.shape)
         if not ((given >= about.low) & (given <= about.high)).all():
             wrong = given[~((given >= about.low) & (given <= about.high))][0]
             raise BadInput(f"{parameter} = {wrong:g}; allowed {about.low:g} to {about.high:g} {about.unit}".rstrip())
-        self._p[chosen, place] = given
+        rows[chosen, place] = given
         self._weigh(chosen)
 
     def get(self, parameter: str) -> Array:
         """(n,) values of "effect.parameter"."""
-        return self._p[:, self._known(parameter)[0]].copy()
+        rows, place, _ = self._known(parameter)
+        return rows[:, place].copy()
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
         """Make boats the vessel of that number, one or (k,), with all parameters as its file has them."""
@@ -150,7 +158,7 @@ class Batch:
         numbers = np.broadcast_to(np.asarray(vessel, dtype=int), chosen.shape)
         for number in np.unique(numbers):
             program, some = self.programs[number], chosen[numbers == number]
-            self._p[some], self._body[some] = program.values(), program.body
+            self._p[some], self._body[some] = self._values[number], program.body
             self._draw(program, some)
         self._weigh(chosen)
 
@@ -229,10 +237,14 @@ class Batch:
             for i, (name, about) in enumerate(type(effect).params().items())
         }
 
-    def _known(self, parameter: str) -> tuple[int, Param]:
+    def _known(self, parameter: str) -> tuple[Array, int, Param]:
+        """Rows of all boats in which a number stands, where, and what is known of it."""
+        if parameter in BODY:
+            return (self._body, *BODY[parameter])
         if parameter not in self._parameters:
-            raise BadInput(unknown_name(f"{self.vessels[0].name}: parameter", parameter, self._parameters))
-        return self._parameters[parameter]
+            names = [*self._parameters, *BODY]
+            raise BadInput(unknown_name(f"{self.vessels[0].name}: parameter", parameter, names))
+        return (self._p, *self._parameters[parameter])
 
     def _check_alike(self) -> None:
         """Raises BadInput for vessels of which one program does not serve all."""

@@ -177,7 +177,7 @@ def film_values(run: Run, measure: FilmMeasure, rate: float) -> dict[str, float]
     """Norms of a measure on the frames of a run at a rate [Hz], which the camera's own rate is a multiple of."""
     start = run.scenario.file.start
     every = round(run.scenario.camera.rate / rate)
-    return measure.of_film(film(run.camera, run.recording, (start.x, start.y, start.psi), every))
+    return measure.of_film(film(run.camera, run.recording, (start.x, start.y, start.psi), every, measure.begin))
 
 
 def signal_norm(t: Array, x: Array, kind: str) -> float:

@@ -176,16 +176,22 @@ def _words(best: Fit, effect: Effect) -> str:
     return words
 
 
+def told_sd(best: Fit, effect: Effect, name: str) -> float:
+    """Standard deviation of a fitted parameter, with what a law that is only nearly right may shift it by."""
+    kind, (value, sd) = type(effect), best.value(effect.name, name)
+    about = kind.params()[name]
+    if name in (kind.strength or kind.params()):
+        strength = min(abs(value - about.absent), abs(value) or np.inf)  # some laws are absent at "very fast"
+        return float(np.hypot(sd, SHAPE * strength))
+    return float(np.hypot(sd, SHAPE)) if about.unit == "rad" else sd
+
+
 def _parameter(best: Fit, effect: Effect, name: str) -> ParameterEntry:
     """Value, sd and unit of a fitted parameter; angles within half a turn."""
     kind = type(effect)
     about = kind.params()[name]
-    value, sd = best.value(effect.name, name)
-    if name in (kind.strength or kind.params()):
-        strength = min(abs(value - about.absent), abs(value) or np.inf)  # some laws are absent at "very fast"
-        sd = float(np.hypot(sd, SHAPE * strength))
-    elif about.unit == "rad":
-        sd = float(np.hypot(sd, SHAPE))
+    value, _ = best.value(effect.name, name)
+    sd = told_sd(best, effect, name)
     shown = wrap(value) if about.unit == "rad" else value
     entry: ParameterEntry = {"value": shown, "sd": sd, "unit": about.unit}
     bounds = next((f.low, f.high) for f in best.free if f.effect == effect.name and f.name == name)

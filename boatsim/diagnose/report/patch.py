@@ -9,6 +9,7 @@ import tomlkit
 from tomlkit.items import InlineTable, Table
 
 from boatsim.diagnose.problem import Fit, Problem
+from boatsim.diagnose.report import uncertain
 from boatsim.files import replacing
 from boatsim.physics.base import Change, Channel, Effect, Release
 from boatsim.physics.content import address, find, vessel_address
@@ -60,6 +61,9 @@ def patched(
             table.add(tomlkit.nl())
             document["effect"].append(table)
     _hold(document, problem, vessel, found)
+    document.pop("spread", None)  # that of an earlier diagnosis
+    if (spread := uncertain.spread(problem, found, events)) is not None:
+        document["spread"] = spread
     return str(tomlkit.dumps(document))
 
 

@@ -1,0 +1,21 @@
+"""What the registered environments take and show: python -m boatsim.learn."""
+
+from boatsim.learn import registration
+from boatsim.learn.game import TASKS, play
+
+
+def main() -> None:
+    """Print actions and observations of each id."""
+    for name in registration.ids():
+        told = registration.says(name)
+        game = play(n=1, **told)
+        print(f"{name}: {TASKS[told['task']].words}, with {told['vessel']}")
+        for action, words in zip(game.controls.names, game.controls.words, strict=True):
+            print(f"  action {action:21s} -1 to 1    {words}")
+        for signal in game.signals:
+            print(f"  sees {signal.name:23s} +- {signal.bound:<7.3g} {signal.words}")
+        print()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,35 @@
+"""Tells Gymnasium of our environments."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+
+from boatsim.files import read_toml
+
+IDS = Path(__file__).with_name("ids.toml")
+VARY = "vary"  # of all ids
+
+
+def ids() -> list[str]:
+    """All that are registered."""
+    return [name for name in read_toml(IDS) if name != VARY]
+
+
+def says(name: str) -> dict[str, Any]:
+    """Arguments of an id."""
+    said: dict[str, Mapping[str, Any]] = {k: v for k, v in read_toml(IDS).items() if isinstance(v, Mapping)}
+    return {VARY: dict(said[VARY]), **said[name]}
+
+
+def register() -> None:
+    """Every id of ids.toml, unless it is known already."""
+    for name in ids():
+        if name not in gymnasium.registry:
+            gymnasium.register(
+                name,
+                entry_point="boatsim.learn.single:BoatEnv",
+                vector_entry_point="boatsim.learn.vector:BoatVectorEnv",
+                kwargs=says(name),
+            )
