@@ -27,6 +27,7 @@ from boatsim.sweep.carry_out import swept
 from boatsim.sweep.designs import shares
 from boatsim.sweep.draws import draw
 from boatsim.sweep.indices import bootstrap, sobol
+from boatsim.sweep.journal import Journal
 from boatsim.sweep.keys import laid, slots, target
 from boatsim.sweep.plan import plan
 from boatsim.sweep.workers.processes import Processes
@@ -359,6 +360,37 @@ def test_an_interruption_keeps_what_there_is_and_the_same_command_goes_on(short:
     said = running.communicate()[1]
     assert running.returncode == 130 and "the same command goes on" in said
     assert 5 <= len(columns(tmp_path / "out")["run"]) < 1000
+
+
+def test_a_folder_that_somebody_is_at_work_in_is_refused(tmp_path: Path) -> None:
+    with Journal(tmp_path, {"of": "one"}) as journal:
+        journal.add(3, {"failure": None})
+        with pytest.raises(BadInput, match="another command is at work"):
+            Journal(tmp_path, {"of": "one"})
+    with Journal(tmp_path, {"of": "one"}) as again:
+        assert again.done == {3: {"run": 3, "failure": None}}
+
+
+@pytest.mark.parametrize(
+    "end", [b'{"run": 4', b'{"run": 4, "failure": null}', b"\0\0\0\n", b'{"run": 4, "fa\n{"run": 5}\n']
+)
+def test_what_is_no_whole_line_of_a_journal_is_written_over(tmp_path: Path, end: bytes) -> None:
+    with Journal(tmp_path, {"of": "one"}) as journal:
+        journal.add(3, {"failure": None})
+    with (tmp_path / "journal.jsonl").open("ab") as file:
+        file.write(end)
+    with Journal(tmp_path, {"of": "one"}) as again:
+        assert list(again.done) == [3]
+        again.add(4, {"failure": "why"})
+    lines = (tmp_path / "journal.jsonl").read_bytes().splitlines()
+    assert [json.loads(line).get("run") for line in lines] == [None, 3, 4]
+
+
+def test_a_journal_of_something_else_is_refused_and_stays(tmp_path: Path) -> None:
+    (tmp_path / "journal.jsonl").write_text("not ours\n")
+    with pytest.raises(BadInput, match="is not a journal of boatsim"):
+        Journal(tmp_path, {"of": "one"})
+    assert (tmp_path / "journal.jsonl").read_text() == "not ours\n"
 
 
 def test_a_folder_of_another_sweep_is_refused_in_a_line(short: str, tmp_path: Path) -> None:

@@ -5,9 +5,11 @@ not count and is written over.
 """
 
 import json
+import os
 from collections.abc import Mapping
+from fcntl import LOCK_EX, LOCK_NB, flock
 from pathlib import Path
-from typing import Any, Self
+from typing import IO, Any, Self
 
 from boatsim.errors import BadInput
 from boatsim.files import Growing
@@ -20,20 +22,22 @@ class Journal:
     """Of one folder; `done` is what became of each run so far, by its number."""
 
     def __init__(self, folder: Path, about: Mapping[str, Any]) -> None:
-        """Raises BadInput where the folder has the journal of something else."""
+        """Raises BadInput where the folder has the journal of something else, or somebody is at work in it."""
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / NAME
+        file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT, 0o666), "r+b", buffering=0)
         self.done: dict[int, Entry] = {}
-        whole = _lines(path)
-        if whole:
-            _check(folder, whole[0], about)
-            for line in whole[1:]:
-                entry = json.loads(line)
-                self.done[entry["run"]] = entry
-        file = path.open("r+b" if whole else "wb", buffering=0)
-        kept = sum(len(line) for line in whole)
-        file.truncate(kept)
-        self._growing = Growing(file, path, kept)
+        try:
+            _take(file, folder)
+            first, entries, whole = _read(file)
+            if whole:
+                _check(folder, first, about)
+        except BaseException:
+            file.close()
+            raise
+        self.done = {entry["run"]: entry for entry in entries}
+        file.truncate(whole)
+        self._growing = Growing(file, path, whole)
         if not whole:
             self._growing.add(_line(about))
 
@@ -54,12 +58,26 @@ def _line(content: Mapping[str, Any]) -> bytes:
     return (json.dumps(content, ensure_ascii=False, allow_nan=False) + "\n").encode()
 
 
-def _lines(path: Path) -> list[bytes]:
-    """The whole lines of a journal, none where there is none."""
-    if not path.is_file():
-        return []
-    text = path.read_bytes()
-    return text[: text.rfind(b"\n") + 1].splitlines(keepends=True)
+def _take(file: IO[bytes], folder: Path) -> None:
+    """Nobody else writes to it while this process lives. Raises BadInput where somebody does."""
+    try:
+        flock(file, LOCK_EX | LOCK_NB)
+    except BlockingIOError:
+        raise BadInput(f"{folder}: another command is at work in this folder; choose another --out") from None
+
+
+def _read(file: IO[bytes]) -> tuple[bytes, list[Entry], int]:
+    """First line, entries, and how many bytes are whole lines that say something."""
+    first, entries, whole = b"", list[Entry](), 0
+    for line in file.read().splitlines(keepends=True):
+        if not line.endswith(b"\n"):
+            break
+        try:
+            entries += [json.loads(line)] if whole else []
+        except ValueError:  # of a machine that lost its power
+            break
+        first, whole = first or line, whole + len(line)
+    return first, entries, whole
 
 
 def _check(folder: Path, first: bytes, about: Mapping[str, Any]) -> None:

@@ -1,6 +1,7 @@
 """One run of a sweep: from what its scenario says to its norms, or the reason why there are none."""
 
 from collections.abc import Mapping
+from math import isfinite
 from typing import Any, NamedTuple
 
 from boatsim.errors import BoatsimError
@@ -37,8 +38,12 @@ def carried_out(told: Told) -> Entry:
     return {
         "failure": None,
         "met": all(judged) if judged else None,
-        "norms": {name: [norm.value, norm.unit] for name, norm in norms.items()},
+        "norms": {name: [_finite(norm.value), norm.unit] for name, norm in norms.items()},
     }
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and isfinite(value) else None
 
 
 def _ended(t: float) -> None:
