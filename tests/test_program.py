@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.physics import cache, content, vessel
+from boatsim.physics import content, reach, vessel
 from boatsim.physics.base import AXES, Array, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.current import Current
@@ -268,12 +268,20 @@ def test_a_program_has_another_name_when_anything_its_laws_reach_is_edited(
 
 def test_what_a_file_imports_by_dots_is_reached_too(copied: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     physics = copied / "boatsim" / "physics"
-    monkeypatch.setattr(cache, "PACKAGE", copied / "boatsim")
+    monkeypatch.setattr(reach, "PACKAGE", copied / "boatsim")
     effect = physics / "effects" / "by_dots.py"
     effect.write_text("from .thruster import at_mount\nfrom ..chance import drawn\nfrom .. import particulars\n")
-    reached = cache.reach(effect)
+    reached = reach.reach(effect)
     assert {physics / n for n in ("effects/thruster.py", "chance.py", "particulars.py", "signals.py")} <= reached
     assert physics / "effects" / "tether.py" not in reached
+
+
+def test_a_controllers_compiled_law_is_known_by_all_that_it_reaches() -> None:
+    law = content.root() / "controllers" / "pid_autopilot.py"
+    home = content.root() / "boatsim"
+    needed = ("control/allocation.py", "control/compiled.py", "physics/kernel/compiling.py")
+    assert {law, *(home / n for n in needed)} <= reach.reach(law)
+    assert content.load_class("controller", "pid_autopilot").law._cache._cache_file._source_stamp == reach.stamp(law)
 
 
 def test_an_edited_constant_gives_its_new_force(tmp_path: Path, copied: Path) -> None:

@@ -4,11 +4,13 @@ The law works on records (NumPy's structured arrays), a row a boat: `q.pole` and
 objects. `controllers/l1_joystick.py` shows one.
 """
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from typing import Any, ClassVar
 
 import numpy as np
+from numba.core.errors import NumbaExperimentalFeatureWarning
 from numpy.typing import NDArray
 
 from boatsim.control.base import Controller, Sense
@@ -20,6 +22,8 @@ __all__ = [
     "with_parts",
 ]  # fmt: skip
 
+# A controller built on another has its settings and more: to numba that is a subtype, with fields where they were.
+warnings.filterwarnings("ignore", ".*has been considered a subtype of.*", NumbaExperimentalFeatureWarning)
 FELT = tuple(f.name for f in fields(Sense) if f.name != "more")
 Records = NDArray[np.void]
 ONE = np.zeros(1, dtype=np.int64)  # the only boat of a single run

@@ -7,7 +7,6 @@ the kernel's files, under a name made from their content and from the content of
 watches each file's own content only; a law, a constant or a kernel edited since has another name.
 """
 
-import ast
 import atexit
 import hashlib
 import importlib.util
@@ -28,8 +27,8 @@ import numba
 
 from boatsim.errors import BadInput
 from boatsim.physics.kinds.effect import Effect
+from boatsim.physics.reach import PACKAGE, content, reach
 
-PACKAGE = Path(__file__).parents[1]
 KERNEL = PACKAGE / "physics" / "kernel"
 WRITTEN = ("laws.py", "motion.py")  # generated in place of the kernel's files of these names
 SHARED = (
@@ -84,51 +83,6 @@ def stamp_of(files: dict[str, str], classes: Iterable[type[Effect]]) -> str:
         digest.update(content(path))
     digest.update(f"{numba.__version__} {sys.version}".encode())
     return digest.hexdigest()[:16]
-
-
-@cache
-def content(path: Path) -> bytes:
-    """What a file held when it was first asked for: what is imported does not change with the file."""
-    return path.read_bytes()
-
-
-@cache
-def reach(path: Path) -> frozenset[Path]:
-    """A file and all of ours that it imports, by whatever way."""
-    found, ahead = {path}, [path]
-    while ahead:
-        for file in _imports(ahead.pop()) - found:
-            found.add(file)
-            ahead.append(file)
-    return frozenset(found)
-
-
-@cache
-def _imports(path: Path) -> frozenset[Path]:
-    """Files of ours that a file imports."""
-    found = set()
-    for node in ast.walk(ast.parse(content(path))):
-        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        if isinstance(node, ast.ImportFrom):
-            module = ".".join([*_above(path, node.level), *([node.module] if node.module else [])])
-            names = [module, *(f"{module}.{alias.name}" for alias in node.names)]
-        for name in names:
-            if name.partition(".")[0] == "boatsim" and (file := _file_of(name)) is not None:
-                found.add(file)
-    return frozenset(found)
-
-
-def _above(path: Path, level: int) -> tuple[str, ...]:
-    """The package that a relative import of so many dots starts from; nothing for an absolute one, or a user's file."""
-    if not level or not path.is_relative_to(PACKAGE):
-        return ()
-    return path.parents[level - 1].relative_to(PACKAGE.parent).parts
-
-
-def _file_of(name: str) -> Path | None:
-    """File of one of our modules; None for what is a name inside one."""
-    below = PACKAGE.joinpath(*name.split(".")[1:])
-    return next((p for p in (below.with_suffix(".py"), below / "__init__.py") if p.is_file()), None)
 
 
 def cache_folder() -> Path:

@@ -11,11 +11,24 @@ from typing import Any
 from numba import njit
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
+from boatsim.physics.reach import stamp
+
 SEAL = sha256().digest_size  # bytes in front of what is kept
 
 
 class Sealed(IndexDataCacheFile):
-    """What numba keeps of a function on disk, by its digest: what is damaged there is as if it were not there."""
+    """What numba keeps of a function on disk, by its digest: what is damaged there is as if it were not there.
+
+    Numba itself looks at a function's own file alone; here what that imports of ours counts too.
+    """
+
+    source: Path
+
+    @property
+    def _source_stamp(self) -> str:
+        if self.source.parent.name.startswith("program_"):
+            return ""  # composed programs lie in folders that are named by their content
+        return stamp(self.source)
 
     def load(self, key: Any) -> Any:
         """The kept code, or None."""
@@ -48,6 +61,7 @@ def on_disk(compiled: Any, function: Callable[..., Any]) -> Any:
     """What numba makes of a function, kept on disk under a seal."""
     compiled._cache = FunctionCache(function)
     compiled._cache._cache_file.__class__ = Sealed
+    compiled._cache._cache_file.source = Path(function.__code__.co_filename)
     return compiled
 
 
