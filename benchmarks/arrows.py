@@ -31,6 +31,7 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "view",
     "drive",
     "diagnose",
+    "sweep",
     "newboat",
     "api",
     "cli __main__ __init__",
@@ -46,6 +47,7 @@ ABOUT = {  # what the picture says of each folder
     "view": "runs in rerun",
     "drive": "hands on the sticks",
     "diagnose": "what was left out",
+    "sweep": "many runs",
     "newboat": "from particulars",
     "cli": "commands",
 }
@@ -125,11 +127,12 @@ COLOURS = (
     "#c04d4d",
     "#4d6bc0",
     "#648729",
-    "#648729",
+    "#7074dc",
     "#b4632c",
     "#b0588f",
     "#1f7f9c",
     "#768290",
+    "#a3722f",
 )  # of a folder
 STYLE = (
     "text{font-family:system-ui,Helvetica,Arial,sans-serif;text-anchor:middle;fill:#fff}"

@@ -1,4 +1,4 @@
-"""boatsim for Python: load a vessel, run a scenario, read a recording, diagnose it, replay it.
+"""boatsim for Python: load a vessel, run a scenario or many, read a recording, diagnose it, replay it.
 
 `import boatsim` offers these functions and imports what they need when they are called. SI units, radians and SNAME
 axes throughout, as in files. What can not be used raises `boatsim.errors.BadInput`, one line that says what is right.
@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from math import inf
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from boatsim.diagnose import analysis
 from boatsim.diagnose.replaying import joined, replayed
@@ -16,12 +16,24 @@ from boatsim.diagnose.report import files
 from boatsim.diagnose.report.entries import Answer
 from boatsim.physics import vessel as vessels
 from boatsim.physics.vessel import Vessel
+from boatsim.progress import Report, silent
 from boatsim.recordings import table
 from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording
+from boatsim.simulate.batch import Batch as Batch
 from boatsim.simulate.controllers import steered
+from boatsim.simulate.fleet import Fleet as Fleet
 from boatsim.simulate.norms import Norm, NormEntry, all_norms
 from boatsim.simulate.run import run as simulate
+from boatsim.sweep.axes import axis_of
+from boatsim.sweep.carry_out import swept
+from boatsim.sweep.designs import Kind as Design
+from boatsim.sweep.draws import draw_of
+from boatsim.sweep.indices import Index, indices
+from boatsim.sweep.keys import Value
+from boatsim.sweep.plan import plan
+from boatsim.sweep.results import Results
+from boatsim.sweep.summary import Pair, Spread, pairs, spreads
 
 Name = str | Path  # of something shipped, of a file, or of a folder
 Names = Name | Sequence[Name]  # one or several
@@ -100,6 +112,40 @@ class Diagnosis:
     def write(self, folder: Name) -> None:
         """All files of `boatsim diagnose`: report.html, report.md, diagnosis.json, patched.toml, diagnosis.rrd."""
         files.write(self.found, Path(folder))
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Many runs; `found` is all of them, with their plan."""
+
+    found: Results
+    complete: bool  # whether all runs of the plan are done
+    folder: Path  # of sweep.parquet and report.html
+
+    @property
+    def columns(self) -> dict[str, Sequence[Any]]:
+        """Columns of sweep.parquet, a row each run: what was varied and drawn, norms, None where there is none."""
+        return self.found.columns()
+
+    @property
+    def spreads(self) -> list[Spread]:
+        """Mean and quantiles of each norm at each point of the grid."""
+        return spreads(self.found)
+
+    @property
+    def pairs(self) -> list[Pair]:
+        """Controllers on the same draws, where `controller.use` was varied."""
+        return pairs(self.found)
+
+    @property
+    def indices(self) -> list[Index]:
+        """Sobol indices, where the design was "sobol"."""
+        return indices(self.found)
+
+    @property
+    def failures(self) -> dict[str, int]:
+        """Why runs failed, and how many of each."""
+        return self.found.reasons
 
 
 def load_vessel(name: Name, load: Names = ()) -> Vessel:
@@ -215,6 +261,44 @@ def replay(recording: Name, vessel: Name | None = None, load: Names = (), horizo
     """
     opened, boat = analysis.open_recording(Path(recording), None if vessel is None else str(vessel), _names(load))
     return joined(replayed(opened, boat, horizon))
+
+
+def sweep(
+    scenarios: Names,
+    vary: Mapping[str, str | Sequence[Value]] | None = None,
+    draw: Mapping[str, str] | None = None,
+    runs: int = 1,
+    design: Design = "random",
+    seed: int = 0,
+    out: Name = "out/sweep",
+    jobs: int | None = None,
+    ray: str | None = None,
+    norms: Names = (),
+    report: Report = silent,
+) -> Sweep:
+    """Run scenarios at every point of a grid, with the same draws at each; goes on where one was left in `out`.
+
+    `vary` is a key and its values, or "LOW:HIGH:COUNT", `draw` a key and a distribution; `norms` are those told and
+    drawn, all if there are none. A script that has more than one of the `jobs` needs `if __name__ == "__main__":`.
+    Raises BadInput.
+
+    >>> import boatsim
+    >>> done = boatsim.sweep(
+    ...     "joystick_boat/sway_1",
+    ...     vary={"controller.use": ["pid_autopilot", "l1_joystick"]},
+    ...     draw={"weak_reverse.astern_factor": "normal(0.7, 0.05)"},
+    ...     runs=4, out="out/sweep", jobs=1, norms="heading_at_end",
+    ... )
+    >>> len(done.columns["heading_at_end"]), done.failures
+    (8, {})
+    >>> (pair,) = done.pairs
+    >>> pair.norm, pair.second, pair.pairs
+    ('|heading_at_end|', 'l1_joystick', 4)
+    """
+    axes = [axis_of(key, values if isinstance(values, str) else list(values)) for key, values in (vary or {}).items()]
+    draws = [draw_of(key, law) for key, law in (draw or {}).items()]
+    made = plan(_names(scenarios), axes, draws, runs, seed, design)
+    return Sweep(*swept(made, Path(out), jobs, ray, _names(norms), report), Path(out))
 
 
 def _paths(given: Names) -> list[Path]:

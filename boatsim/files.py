@@ -109,9 +109,9 @@ def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
 class Growing:
     """A file that grows by whole pieces: of one that can not be written, such as on a full disk, nothing stays."""
 
-    def __init__(self, file: IO[bytes], path: Path) -> None:
-        """`file` is open for writing and not buffered, `path` its name for whoever reads the error."""
-        self._file, self._path, self._whole = file, path, 0
+    def __init__(self, file: IO[bytes], path: Path, whole: int = 0) -> None:
+        """`file` is open for writing and not buffered, its first `whole` bytes stay; errors name it by its `path`."""
+        self._file, self._path, self._whole = file, path, whole
 
     def add(self, data: bytes) -> None:
         """One more piece. Raises OSError that names the file."""

@@ -14,7 +14,7 @@ from boatsim import api
 from boatsim.cli import diagnosis
 from boatsim.errors import BadInput
 
-OFFERED = ("diagnose", "load_vessel", "read", "replay", "run")
+OFFERED = ("diagnose", "load_vessel", "read", "replay", "run", "sweep")
 ROOT = Path(__file__).parents[1]
 USER = """
 from typing import reveal_type

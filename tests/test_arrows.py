@@ -10,7 +10,7 @@ from benchmarks.arrows import HOME, OURS, counts, imported, level, main, on_shel
 
 FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "errors physics.base control.base control.adaptive control.adaptive_loop control.allocation "
-    "control.identification control.helm control.compiled control.axis".split()
+    "control.identification control.helm control.compiled control.axis control.joystick control.motor_check".split()
 )
 HEAVY = {  # library -> the only modules that may import it
     "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")} | {"warp.on_mujoco"},
@@ -21,12 +21,14 @@ HEAVY = {  # library -> the only modules that may import it
     "gymnasium": {f"learn.{name}" for name in ("registration", "single", "spaces", "vector")},
     "stable_baselines3": {"learn.sb3"},
     "rerun": {"view.rerun_log", "view.blueprint", "view.stream", "recordings.readers.rrd"},
-    "jinja2": {"diagnose.report.page"},
+    "jinja2": {"diagnose.report.sheet"},
+    "ray": {"sweep.workers.cluster"},
     "pymavlink": {"recordings.logs.ardupilot"},
     "mcap": {"recordings.logs.mcap"},
     "rosbags": {"recordings.logs.rosbag"},
     "pyulog": {"recordings.logs.ulog"},
     "pynmea2": {"recordings.logs.nmea"},
+    "websockets": {"drive.server"},
 }
 BY_ANY_NAME = {"physics.content", "physics.cache"}  # what files name, and programs composed on the spot
 CONTROLLERS = sorted((HOME / "controllers").glob("*.py"))

@@ -350,6 +350,53 @@ def test_loops_bear_two_more_periods_of_delay(controller: Any) -> None:
     assert all(row.stable and row.delay_s > 0.16 for row in rows)
 
 
+@pytest.mark.parametrize(
+    ("name", "channels"),
+    [("l1_joystick", {"yaw", "surge"}), ("l1_joystick_sway", {"yaw", "surge", "sway"}), ("l1_joystick_blind", {"yaw"})],
+)
+def test_every_channel_meets_the_l1_condition_for_every_input_gain(name: str, channels: set[str]) -> None:
+    rows = table(load_class("controller", name)())
+    assert {row.channel for row in rows} == channels
+    assert all(row.norm * row.needed < 1.0 and row.stable and row.delay_s > 0.16 for row in rows)
+
+
+def test_sway_is_held_at_the_speed_asked_for_where_it_is_measured() -> None:
+    """A hull that drifts of itself: without the sensor thrust alone decides how fast it is."""
+    speeds = {}
+    for measured in (True, False):
+        controller, v = load_class("controller", "l1_joystick_sway")(), 0.0
+        for _ in range(600):
+            commands = controller.step(replace(STILL, v=v if measured else nan), {"sway_mps": 0.07})
+            angle = commands["steer_port_rad"]
+            thrust = sum(0.004 * abs(commands[f"pwm_{side}"]) for side in ("port", "starboard"))
+            v += 0.08 * (thrust * sin(angle) - 3.0 * v) / 11.0
+        speeds[measured] = v
+    assert speeds[True] == pytest.approx(0.07, rel=0.03)
+    assert speeds[False] != pytest.approx(0.07, rel=0.2)
+
+
+def test_a_blind_boat_whose_motors_are_known_is_not_tried_again() -> None:
+    """Its commands are the parent's, astern by the factor and both motors turned by the angle."""
+    knows = load_class("controller", "l1_joystick_blind")(known_astern=1.2, known_angle=0.03)
+    usual = L1Joystick()
+    one = played(knows, [STILL] * 20, {"sway_mps": 0.07})[0]
+    other = played(usual, [replace(STILL, u=0.0)] * 20, {"sway_mps": 0.07})[0]
+    assert one["pwm_port"] == other["pwm_port"] > 0.0 > other["pwm_starboard"]
+    assert one["pwm_starboard"] == round(1.2 * other["pwm_starboard"])
+    assert one["steer_port_rad"] == pytest.approx(other["steer_port_rad"] - 0.03)
+
+
+def test_a_blind_boat_hears_no_stick_while_its_motors_are_tried() -> None:
+    controller = load_class("controller", "l1_joystick_blind")()
+    assert all(c["pwm_port"] == c["pwm_starboard"] for c in played(controller, [STILL] * 40, {"sway_mps": 0.07}))
+    assert controller.found is None
+
+
+def test_a_blind_boat_that_is_tied_up_says_so() -> None:
+    with pytest.raises(BadInput, match="is it free to move"):
+        played(load_class("controller", "l1_joystick_blind")(), [STILL] * 80)
+
+
 def test_open_loop_plays_its_goal() -> None:
     goal = {"thrust_port_N": 0.3, "pwm_starboard": -120.0}
     controller = OpenLoop()

@@ -3,6 +3,7 @@
 import asyncio
 import json
 import re
+import socket
 import subprocess
 import sys
 import threading
@@ -159,6 +160,7 @@ def boatsim(*arguments: object):
     [
         (["joystik_boat"], "did you mean 'joystick_boat'?"),
         (["joystick_boat", "--controller", "zigzag"], "steers by itself"),
+        (["joystick_boat", "--controller", "l1_thesis"], "steers by itself"),
         (["joystick_boat", "--controller", "pd_heading"], "sets throttle"),
         (["joystick_boat", "--scenario", "brth"], "did you mean 'joystick_boat/berth'?"),
         (["joystick_boat", "--scenario", "otter/turn"], "is of otter, not of joystick_boat"),
@@ -177,9 +179,12 @@ def test_what_can_not_be_driven_is_one_line(tmp_path: Path, given_: list[str], s
 # Off, on time, beside -------------------------------------------------------------------------------------------------
 
 
-def test_while_a_goal_is_off_commands_are_neutral_and_the_controller_begins_anew() -> None:
+@pytest.mark.parametrize("engine", ["mujoco", "twin"])
+def test_while_a_goal_is_off_commands_are_neutral_and_the_controller_begins_anew(engine: str) -> None:
     goals = [{"yaw_radps": 0.1, "sway_mps": 0.05}, {"from": 4.0, "off": True}, {"from": 8.0, "yaw_radps": 0.0}]
-    made = scenario.load("joystick_boat/berth", {"duration": 12.0, "goal": goals})
+    rows = 0.0 if engine == "mujoco" else 0.5  # [s] between them: the other may leap in between
+    over = {"duration": 12.0, "goal": goals, "tank": None, "engine": engine, "log": rows}
+    made = scenario.load("joystick_boat/berth", over)
     log = Runner(made).run().recording
     off = (log.t >= 4.0 + made.controller.period) & (log.t < 7.99)
     for name, channel in made.vessel.commands.items():
@@ -349,6 +354,16 @@ def test_goals_too_many_for_a_file_are_left_out_of_it_and_what_they_are_of_stays
     assert "l1_joystick" in str(task.toml([], 800.0)) and "from" not in str(task.toml([], 800.0))
 
 
+def test_a_port_that_is_taken_is_one_line(tmp_path: Path) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        done = boatsim("drive", "otter", "--port", port, "--out", tmp_path / "out")
+    assert done.exit_code == 2 and done.stderr.count("\n") == 1
+    assert f"port {port}: " in done.stderr and "without --port" in done.stderr
+
+
 def test_nobody_waits_for_ever_where_the_package_is_missing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for name in [n for n in sys.modules if n.partition(".")[0] == "websockets"]:
         monkeypatch.delitem(sys.modules, name)
@@ -412,6 +427,32 @@ def test_a_hidden_page_lets_go_and_takes_over_again_with_the_sticks_in_the_middl
         page.close()
     facts = read(tmp_path / "out" / "recording.csv").notes.facts
     assert [line.partition(": ")[2] for line in facts["sticks_let_go"]] == ["page hidden"]
+
+
+def test_a_run_that_goes_wrong_is_told_to_the_page(opened, tmp_path: Path) -> None:
+    wild = tmp_path / "wild.py"
+    wild.write_text(WILD)
+    with driving(tmp_path / "out", "otter", "--controller", wild) as (running, address):
+        page = opened(address)
+        page.until("over.startsWith('The run has ended: controller') && over.includes('out of hand')")
+        assert running.wait(30) == 2
+        page.close()
+    assert not (tmp_path / "out").exists()
+
+
+WILD = """
+from dataclasses import dataclass
+from boatsim.control.base import Controller
+
+@dataclass
+class Wild(Controller):
+    passes_on = True
+
+    def step(self, sense, goal):
+        if sense.t > 0.5:
+            raise RuntimeError("out of hand")
+        return {}
+"""
 
 
 def test_keys_drive_too(opened, tmp_path: Path) -> None:

@@ -1,5 +1,8 @@
 """Many boats of a scenario: each as `boatsim run` sails it with its seed, whoever else is there."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -84,3 +87,27 @@ def test_a_controller_that_is_not_compiled_and_a_channel_that_is_not_there_are_r
         Fleet(SWAY, 2, seeds=[1])
     with pytest.raises(BadInput, match="several kinds"):
         Fleet(SWAY, 2, controller=[SWAY.controller, RIVAL.controller])
+
+
+def test_a_controller_that_does_more_than_its_law_is_refused() -> None:
+    one = scenario.load("joystick_boat/sway_1_blind")
+    with pytest.raises(BadInput, match="L1JoystickBlind is not compiled"):
+        Fleet(one, 2)
+
+
+def test_a_scenario_that_lets_go_of_the_boat_is_refused() -> None:
+    let_go = scenario.load(
+        "joystick_boat/berth", {"tank": None, "goal": [{"yaw_radps": 0.1}, {"from": 5.0, "off": True}]}
+    )
+    with pytest.raises(BadInput, match="says off"):
+        Fleet(let_go, 2)
+
+
+def test_the_examples_of_the_page_print_what_it_shows(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (Path(__file__).parents[1] / "docs" / "batches.md").read_text()
+    shown = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL)
+    assert len(shown) == 2
+    names: dict[str, object] = {}
+    for code, output in shown:
+        exec(code, names)
+        assert capsys.readouterr().out == output

@@ -152,6 +152,15 @@ def test_energy_and_momentum_last(run: Runner) -> None:
     assert earth == pytest.approx(np.tile([6.6, 0.9], (len(found), 1)), rel=1e-6)  # [N s]
 
 
+def test_an_hour_loses_a_day_s_share_of_energy_at_most(tmp_path: Path) -> None:
+    """A day at 10 ms is to lose less than a millionth; the integrator loses as much every hour."""
+    twin, mass = Twin(boats.planar(tmp_path, boats.WITHOUT_DRAG), STEP), np.diag(rigid_mass() + ADDED)
+    state = twin.coast(P3.start, {}, round(3600.0 / STEP))
+    assert 0.5 * np.sum(mass * state[3:] ** 2) == pytest.approx(3.361, rel=1e-6 / 24)  # [J]
+    momentum = turned(state[2])[:2, :2] @ (mass * state[3:])[:2]
+    assert momentum == pytest.approx([6.6, 0.9], abs=1e-6 / 24 * 6.6)  # [N s]
+
+
 @pytest.mark.parametrize(
     ("effect", "law"),
     [

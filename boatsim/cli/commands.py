@@ -82,6 +82,12 @@ Content = Annotated[
     list[Path] | None,
     typer.Option("--content", metavar="DIR", help="A folder of your own content, trusted to run; may be repeated."),
 ]
+Jobs = Annotated[
+    int | None, typer.Option(min=1, metavar="N", help="At the same time [default: one for each processor].")
+]
+Ray = Annotated[
+    str | None, typer.Option("--ray", metavar="auto|ADDRESS", help="On this Ray cluster instead; needs boatsim[ray].")
+]
 Trusted = Annotated[
     bool, typer.Option("--trust", help="Let the Python files run that lie beside the files named here.")
 ]
@@ -200,6 +206,7 @@ def drive(
         bool | None,
         typer.Option("--open/--no-open", help="Open the page in a browser [default: with a screen]."),
     ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, metavar="N", help="Of the page; 0: any that is free.")] = 0,
     live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer too.")] = False,
     serve: Annotated[bool, typer.Option("--serve", help="Show it in rerun's web viewer too.")] = False,
     content: Content = None,
@@ -209,7 +216,44 @@ def drive(
     from boatsim.cli.driving import drive as driven
 
     with asking(content, trust, [vessel, controller, scenario]):
-        return driven(vessel, scenario, controller, _loads(load), seconds, out, open_, live or serve, serve)
+        return driven(vessel, scenario, controller, _loads(load), seconds, out, open_, port, live or serve, serve)
+
+
+@app.command()
+@guarded
+def sweep(
+    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=A:B:N|KEY=X,Y,...", help="A direction of the grid; may be repeated."),
+    ] = None,
+    draw: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=LAW(...)", help="Drawn anew for each run: normal(mean,sd), ...; may be repeated."),
+    ] = None,
+    runs: Annotated[int, typer.Option(min=1, metavar="N", help="Draws, the same at every point of the grid.")] = 1,
+    latin: Annotated[bool, typer.Option("--latin", help="Draws as a Latin hypercube.")] = False,
+    sobol: Annotated[
+        bool, typer.Option("--sobol", help="Saltelli's design and Sobol indices: N (D + 2) runs a point.")
+    ] = False,
+    seed: Annotated[int, typer.Option(min=0, metavar="N", help="Of all that is drawn, noise too.")] = 0,
+    norm: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Print and draw this one, not all; may be repeated.")
+    ] = None,
+    out: Annotated[Path, typer.Option(metavar="DIR", parser=_folder, help="Folder of the sweep.")] = Path("out/sweep"),
+    jobs: Jobs = None,
+    ray: Ray = None,
+    content: Content = None,
+    trust: Trusted = False,
+) -> int:
+    """Run scenarios over a grid and over draws: sweep.parquet, report.html; the same command goes on where it ended."""
+    from boatsim.cli.sweeping import sweep as carry_out
+
+    if latin and sobol:
+        raise BadInput("--latin and --sobol are two designs; choose one")
+    with asking(content, trust, scenarios):
+        kind: Literal["random", "latin", "sobol"] = "sobol" if sobol else "latin" if latin else "random"
+        return carry_out(scenarios, vary or [], draw or [], runs, kind, seed, out, jobs, ray, norm or [])
 
 
 @app.command()
@@ -377,6 +421,11 @@ def diagnose(
     horizon: Annotated[
         float | None, typer.Option(min=0.1, metavar="S", help="Length of each free run [s], if not the usual one.")
     ] = None,
+    each: Annotated[
+        bool, typer.Option("--each", help="Each recording by itself, folders for those in them: diagnoses.parquet.")
+    ] = False,
+    jobs: Jobs = None,
+    ray: Ray = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
@@ -384,7 +433,15 @@ def diagnose(
     from boatsim.cli import diagnosis as commands
 
     held, own, left_out = hold_out or [], library or [], without or []
+    if not each and (jobs is not None or ray is not None):
+        raise BadInput("--jobs and --ray are for many recordings, each diagnosed by itself; give --each too")
     with asking(content, trust, [*runs, *held, vessel]):
+        if each:
+            from boatsim.cli.sweeping import diagnose_each
+            from boatsim.sweep.diagnoses import Asked
+
+            names = tuple(map(str, held)), vessel, tuple(_loads(load)), tuple(own), tuple(left_out)
+            return diagnose_each(runs, Asked(*names, horizon), out, jobs, ray)
         return commands.diagnose(runs, held, vessel, _loads(load), out, own, left_out, horizon)
 
 

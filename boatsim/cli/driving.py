@@ -19,13 +19,13 @@ from boatsim.view.viewer import display
 
 def drive(
     vessel: str, scenario: str | None, controller: str | None, load: list[str], seconds: float, out: Path | None,
-    browser: bool | None, watched: bool, served: bool,
+    browser: bool | None, port: int, watched: bool, served: bool,
 ) -> int:  # fmt: skip
     """Drive until somebody ends it, print the norms and how well it kept time, return the exit code."""
     task = Task(vessel, scenario, controller, load, seconds)
     folder = out or folder_name(task.vessel.name, time.time())
     with ExitStack() as until_done:
-        server = until_done.enter_context(Server(Hands()))
+        server = until_done.enter_context(Server(Hands(), port))
         to = until_done.enter_context(watching(served)) if watched else None
         session = Session(task, server, remark, to is not None)
         remark(f"drive in a browser, on this machine: {server.address}")

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from time import monotonic
 from typing import TYPE_CHECKING
 
 from boatsim.errors import shown
@@ -11,6 +12,7 @@ from boatsim.progress import Report
 if TYPE_CHECKING:
     from rich.progress import Progress
 
+SELDOM = 10.0  # [s] between two lines of many tasks
 Reached = Callable[[int, float], None]  # told of runs: which of them, and the simulated time it has reached [s]
 
 
@@ -36,6 +38,25 @@ def _lines() -> Report:
             say(line)
 
     return report
+
+
+@contextmanager
+def counting() -> Iterator[Report]:
+    """Shows how far many tasks are within the block: the bar on a terminal, elsewhere a line now and then."""
+    if sys.stderr.isatty():
+        with _bar() as bar:
+            yield bar
+        return
+    begun, told = monotonic(), monotonic() - SELDOM
+
+    def report(stage: str, share: float = 0.0, detail: str = "") -> None:
+        nonlocal told
+        if monotonic() - told >= SELDOM or share >= 1.0:
+            told = monotonic()
+            left = time_left(told - begun, share) if share < 1.0 else ""
+            say(f"{detail or stage}{f', {left}' if left else ''}")
+
+    yield report
 
 
 def say(line: str) -> None:

@@ -13,6 +13,8 @@ from boatsim.simulate import cases
 if TYPE_CHECKING:
     from boatsim.simulate.norms import NormEntry, RunEntry
 
+UNCUT = 10_000  # [columns] wider than any table
+
 
 def norms(found: "RunEntry", folder: Path) -> None:
     """Table of norms from the content of norms.json, below it what their names mean and why some were not reached."""
@@ -118,6 +120,25 @@ def listing(only: str | None, like: str | None = None) -> list[str]:
         there = [n for kind in kinds for n in content.known(kind.removesuffix("s"))]
         raise BadInput(unknown_name(only.removesuffix("s") if only else "name", like, there))
     return lines
+
+
+def printed(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], left: int) -> None:
+    """A table, its first `left` columns to the left; in a file nothing of it is cut."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=Text(shown(title)), pad_edge=False)
+    for number, heading in enumerate(head):
+        side: Literal["left", "right"] = "left" if number < left else "right"
+        table.add_column(Text(shown(heading)), justify=side, no_wrap=True)
+    for row in rows:
+        table.add_row(*(Text(shown(cell)) for cell in row))
+    console = Console()
+    if not console.is_terminal:
+        wide = console.options.update(max_width=UNCUT)
+        console = Console(width=max(console.width, console.measure(table, options=wide).maximum))
+    console.print(table)
 
 
 def alike(name: str, like: str) -> bool:

@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from boatsim.control.base import wrap
 from boatsim.control.compiled import record
 from boatsim.physics.base import Checked, param
 from boatsim.physics.kernel.compiling import lean, merged
@@ -43,25 +42,6 @@ class Stick(NamedTuple):
 
 
 STICK = ("surge_mps", "sway_mps", "yaw_radps")
-
-
-@dataclass
-class Heading:
-    """Heading of the boat and heading asked for, both counted from the start heading."""
-
-    own: float = 0.0  # [rad] integrated gyro, drawn slowly towards the compass if that is wanted
-    wanted: float = 0.0  # [rad] integrated stick
-
-    def step(self, rate: float, compass: float, stick: float, dt: float, trust: float = 0.0) -> None:
-        """One period of dt [s]; `trust` [1/s] is the rate at which the compass takes the gyro's drift out."""
-        self.own += dt * rate
-        self.wanted += dt * stick
-        if trust > 0.0:
-            self.own += (1.0 - exp(-trust * dt)) * wrap(compass - self.own)
-
-    def error(self) -> float:
-        """Wanted minus own heading [rad]; whole turns count."""
-        return self.wanted - self.own
 
 
 HEADING = record("own", "wanted")  # [rad] integrated gyro, integrated stick, both from the start heading

@@ -95,6 +95,11 @@ class CompiledController(Controller):
         return self._memory
 
     @property
+    def is_its_law(self) -> bool:
+        """Whether it does what its law says; one with a `step` of its own does more."""
+        return type(self).step is CompiledController.step
+
+    @property
     def remembered(self) -> Any:
         """The record."""
         return self._memory[0]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from math import pi, sqrt
 from typing import NamedTuple
 
-from boatsim.control.base import Controller, Steered, clip, wrap
+from boatsim.control.base import Controller, clip, wrap
 from boatsim.drive.hands import Sticks
 from boatsim.errors import BadInput
 from boatsim.physics.signals import STATE, follower
@@ -66,7 +66,7 @@ class Dials:
 def dials_of(vessel: Vessel, controller: Controller, name: str) -> Dials:
     """The dials of a vessel under a controller of this name. Raises BadInput for one that no stick can steer."""
     goals = type(controller).goals
-    if isinstance(controller, Steered):
+    if not goals and not type(controller).passes_on:
         raise BadInput(f"controller {name} steers by itself; it leaves nothing to the sticks")
     if not vessel.commands:
         raise BadInput(f"{vessel.name} takes no commands; there is nothing to drive")

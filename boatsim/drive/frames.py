@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from math import isfinite
 
+from boatsim.control.base import wrap
 from boatsim.drive.clock import Clock
-from boatsim.drive.dials import Dials
+from boatsim.drive.dials import HEADING, Dials
 from boatsim.drive.hands import Hands
 from boatsim.physics.signals import follower
 from boatsim.recordings.notes import unit_of
@@ -50,7 +51,7 @@ class Painter:
         channel = key in self._scenario.vessel.commands
         low, high = self._dials.limits.get(key, (min(ends), max(ends)))
         return {"key": key, "low": low, "high": high, "unit": unit_of(key), "channel": channel,
-                "turning": follows == "psi_rad", "sticks": sorted({d.stick for d in mine})}  # fmt: skip
+                "turning": follows == HEADING, "sticks": sorted({d.stick for d in mine})}  # fmt: skip
 
     def frame(
         self, rows: Recording, norms: Mapping[str, float], clock: Clock, hands: Hands, latency: float | None
@@ -77,4 +78,6 @@ class Painter:
         channel = key in self._scenario.vessel.commands
         asked = now.get(f"sent_{key}" if channel else f"goal_{key}")
         reached = now.get(key) if channel else now.get(follower(key) or "")
+        if reached is not None and follower(key) == HEADING:
+            reached = wrap(reached)
         return [x if x is not None and isfinite(x) else None for x in (asked, reached)]

@@ -3,6 +3,7 @@
 import asyncio
 import hmac
 import json
+import os
 import secrets
 import threading
 from base64 import b64encode
@@ -28,14 +29,17 @@ NEEDED = 'driving needs the package websockets: pip install "boatsim[drive]"'
 class Server:
     """Serves the page for the block; what it hears goes to `hands`."""
 
-    def __init__(self, hands: Hands) -> None:
-        """Raises BoatsimError where the package is missing that it is made of."""
+    def __init__(self, hands: Hands, port: int = 0) -> None:
+        """At a port of this machine, 0: any that is free; its block raises BoatsimError for one that can not be had.
+
+        Raises BoatsimError where the package is missing that it is made of.
+        """
         try:
             import websockets.asyncio.server as sockets
         except ImportError:
             raise BoatsimError(NEEDED) from None
         self.hands, self.ended = hands, False
-        self._sockets = sockets
+        self._sockets, self._wanted = sockets, port
         self._token = secrets.token_urlsafe(24)
         self._page = files("boatsim.drive").joinpath("page.html").read_text("utf-8")
         self._hello = self._frame = self._last = ""
@@ -46,10 +50,17 @@ class Server:
 
     def __enter__(self) -> "Server":
         self._thread.start()
-        self.port = self._up.result()
+        try:
+            self.port = self._up.result()
+        except OSError as error:
+            raise BoatsimError(
+                f"port {self._wanted}: {os.strerror(error.errno or 0)}; without --port one is found"
+            ) from None
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        if error is not None:
+            self.farewell({"wrong": str(error) if isinstance(error, BoatsimError) else "the terminal says why"})
         self._loop.call_soon_threadsafe(self._over.set)
         self._thread.join(FAREWELL + 1.0)
 
@@ -92,8 +103,8 @@ class Server:
     async def _serve(self) -> None:
         self._over, self._news = asyncio.Event(), asyncio.Event()
         async with self._sockets.serve(
-            self._drive, HERE, 0, process_request=self._asked, max_size=LARGEST, compression=None, server_header=None,
-            ping_interval=1.0, ping_timeout=2.0, close_timeout=1.0,
+            self._drive, HERE, self._wanted, process_request=self._asked, max_size=LARGEST, compression=None,
+            server_header=None, ping_interval=1.0, ping_timeout=2.0, close_timeout=1.0,
         ) as server:  # fmt: skip
             self._up.set_result(next(iter(server.sockets)).getsockname()[1])
             await self._over.wait()

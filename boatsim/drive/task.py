@@ -65,8 +65,8 @@ def _around(vessel: str, scenario: str | None, load: Sequence[str]) -> tuple[dic
     """What is said of boat and water: by a scenario, of which the task is left out, or open water."""
     path = find("vessel", vessel)
     if scenario is None:
-        aboard: dict[str, Value] = {"speed_sd": 0.01, "position_sd": 0.01}  # [m/s, m] what a goal is held against
-        return {"vessel": _vessel(vessel, path), "load": list(load), "sensors": aboard}, Place(Path("drive"))
+        aboard: dict[str, Value] = {"vessel": _vessel(vessel, path), "load": list(load), "sensors": {"ideal": True}}
+        return aboard, Place(Path("drive"))
     said, place = content(_meant(vessel, scenario))
     given = said.get("vessel")
     if not isinstance(given, str) or find("vessel", given, place.path.parent).resolve() != path.resolve():

@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import combinations
 from math import inf
 from pathlib import Path
 from typing import Literal, Self
@@ -475,16 +476,29 @@ def effect_from(table: Mapping[str, object], file: str, folder: Path) -> Effect:
         raise BadInput(f"{file}: {error}") from None
 
 
+def with_loads(name: str, loads: Sequence[str], more: Sequence[str], beside: Path | None = None) -> list[str]:
+    """Load conditions with `more` on top of them: those that exclude one of these give way. Raises BadInput."""
+    path = find("vessel", name, beside)
+    label = f"{path.parent.name}/{path.name}"
+    known = checked(VesselFile, read_toml(path), label).loads
+    for one in more:
+        if one not in known:
+            raise BadInput(unknown_name(f"{label}: load", one, known))
+    kept = [one for one in loads if one in known and not any(_clash(known[one], known[new]) for new in more)]
+    return list(dict.fromkeys((*kept, *more)))
+
+
 def _check_apart(loads: Sequence[str], known: Mapping[str, Mapping[str, object]], label: str) -> None:
     """Two loads that change the same value contradict each other: which one counts must not depend on their order."""
-    changed: dict[str, tuple[str, object]] = {}
-    for one in dict.fromkeys(loads):
-        for key, value in _flat(known[one]).items():
-            other, before = changed.setdefault(key, (one, value))
-            if before != value:
-                raise BadInput(
-                    f"{label}: loads {other} ({key} = {before}) and {one} ({key} = {value}) exclude each other"
-                )
+    for first, second in combinations(dict.fromkeys(loads), 2):
+        for key, (one, other) in _clash(known[first], known[second]).items():
+            raise BadInput(f"{label}: loads {first} ({key} = {one}) and {second} ({key} = {other}) exclude each other")
+
+
+def _clash(one: Mapping[str, object], other: Mapping[str, object]) -> dict[str, tuple[object, object]]:
+    """What two loads set to different values."""
+    mine, theirs = _flat(one), _flat(other)
+    return {key: (mine[key], theirs[key]) for key in mine if key in theirs and mine[key] != theirs[key]}
 
 
 def _flat(table: Mapping[str, object]) -> dict[str, object]:

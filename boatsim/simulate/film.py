@@ -34,10 +34,14 @@ class Film:
 
 @dataclass(frozen=True)
 class FilmMeasure(Measure):
-    """Base of measures on camera frames, at the rate that is scored and at another that is reported beside it."""
+    """Base of measures on camera frames, at the rate that is scored and at another that is reported beside it.
+
+    What goes before `begin`, preparations say, is left out: times and places count from there.
+    """
 
     scored: float = param(5.0, low=0.1, high=240.0, unit="Hz", words="frame rate at which the norms are judged")
     reported: float = param(10.0, low=0.1, high=240.0, unit="Hz", words="frame rate whose norms stand beside them")
+    begin: float = param(0.0, low=0.0, high=1e6, unit="s", words="when what is measured begins")
 
     def check(self, camera: Camera) -> None:
         """Raises BadInput for a camera that does not take the frames, or does not see what they are measured by."""
@@ -66,8 +70,12 @@ class FilmMeasure(Measure):
         return {name: float(np.abs(value).mean()) for name, value in self.of_noise(frames, camera).items()}
 
 
-def film(camera: Recording, truth: Recording, start: Pose, every: int) -> Film:
-    """Every so many frames of what a camera recorded, beside the log of the run."""
+def film(camera: Recording, truth: Recording, start: Pose, every: int, begin: float = 0.0) -> Film:
+    """Every so many frames of what a camera recorded from `begin` [s] on, beside the log of the run."""
+    if begin > 0.0:
+        camera = camera.between(begin, np.inf)
+        x, y, psi = (float(np.interp(begin, truth.t, truth[name])) for name in ("x_m", "y_m", "psi_rad"))
+        start = (x, y, psi)
     t = camera.t[::every]
     c, s = np.cos(start[2]), np.sin(start[2])
 
@@ -81,8 +89,8 @@ def film(camera: Recording, truth: Recording, start: Pose, every: int) -> Film:
         for n in names
         if not n.endswith("_y_m")
     }
-    x, y, psi = (np.interp(t, truth.t, truth[name]) for name in ("x_m", "y_m", "psi_rad"))
-    return Film(t, camera["psi_rad"][::every] - start[2], marks, ahead(x, y), psi - start[2])
+    north, east, heading = (np.interp(t, truth.t, truth[name]) for name in ("x_m", "y_m", "psi_rad"))
+    return Film(t - begin, camera["psi_rad"][::every] - start[2], marks, ahead(north, east), heading - start[2])
 
 
 def noise(frames: int, camera: Camera) -> Array:

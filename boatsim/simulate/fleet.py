@@ -66,6 +66,8 @@ class Fleet:
         self.seeds = np.arange(file.seed, file.seed + count) if seeds is None else np.asarray(seeds, dtype=int)
         if len(self.seeds) != count:
             raise BadInput(f"{len(self.seeds)} seeds for {count} boats; allowed is one for each")
+        if scenario.lets_go:
+            raise BadInput(f"{scenario.name}: a goal says off; boats of a fleet are steered all the time")
         self.scenario = scenario
         self.batch = Batch(boats, count, file.step, threads=threads, seeds=self.seeds.tolist())
         given = scenario.controller if controller is None else controller
@@ -126,7 +128,7 @@ class Fleet:
         first = self._each[0]
         if not isinstance(first, Controller):
             return ByFunction(self._aboard, first)
-        laws = [c for c in self._each if isinstance(c, CompiledController)]
+        laws = [c for c in self._each if isinstance(c, CompiledController) and c.is_its_law]
         if len(laws) == len(self._each):
             return ByLaw(self._aboard, laws)
         if len(self._each) > 1 or not type(first).passes_on:

@@ -57,7 +57,7 @@ class Sums(NamedTuple):
         known = np.isfinite(e) & (lasts > 0.0)
         e, dt = e[known], lasts[known]
         squares, time, integral = float((e**2 * dt).sum()), float(dt.sum()), float((e * dt).sum())
-        return Sums(self.squares + squares, self.time + time, max(self.largest, e.max(initial=0.0)),
+        return Sums(self.squares + squares, self.time + time, max(self.largest, float(e.max(initial=0.0))),
                     self.integral + integral)  # fmt: skip
 
 

@@ -38,9 +38,11 @@ class Leap:
 
     @classmethod
     def possible(cls, scenario: Scenario, engine: Stepper, imu: np.random.Generator) -> "Leap | None":
-        """For a compiled law in open water which nothing but time ends, with the usual sensors; else None."""
+        """For a compiled law at work all along, in open water which nothing but time ends, with the usual sensors."""
         law = scenario.controller
-        if not isinstance(law, CompiledController) or not isinstance(engine, OpenWater) or scenario.aboard:
+        if not isinstance(law, CompiledController) or not isinstance(engine, OpenWater):
+            return None
+        if scenario.aboard or scenario.lets_go or not law.is_its_law:
             return None
         kind, each = type(law), law.period / engine.step
         acts_between = kind.early is not Controller.early or kind.done is not Controller.done

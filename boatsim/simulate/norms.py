@@ -15,7 +15,7 @@ from boatsim.simulate import following
 from boatsim.simulate.film import FilmMeasure, film
 from boatsim.simulate.measure import KINDS, Measure, TooShort
 from boatsim.simulate.run import Run
-from boatsim.simulate.scenario import CheckTable, NormTable
+from boatsim.simulate.scenario import CheckTable, NormTable, Scenario
 
 SHORT, NOT_REACHED = "too short", "not reached"  # a log that ends too soon; what a whole run never did
 PIECE = 100_000  # rows of a log looked at together
@@ -125,6 +125,13 @@ def all_norms(run: Run) -> dict[str, Norm]:
     return asked | {name: norm for name, norm in beside.items() if name not in asked}
 
 
+def names(scenario: Scenario) -> set[str]:
+    """Norms that a run of a scenario can have."""
+    measured = type(scenario.measure).units if scenario.measure else {}
+    checks = (f"{check.signal}_{check.norm}" for check in scenario.file.check)
+    return {*measured, *checks, *following.units(scenario.goal_keys)}
+
+
 def _measured(run: Run, measure: Measure) -> dict[str, Norm]:
     """Norms of a measure, on the log or on the camera's frames."""
     units = type(measure).units
@@ -170,7 +177,7 @@ def film_values(run: Run, measure: FilmMeasure, rate: float) -> dict[str, float]
     """Norms of a measure on the frames of a run at a rate [Hz], which the camera's own rate is a multiple of."""
     start = run.scenario.file.start
     every = round(run.scenario.camera.rate / rate)
-    return measure.of_film(film(run.camera, run.recording, (start.x, start.y, start.psi), every))
+    return measure.of_film(film(run.camera, run.recording, (start.x, start.y, start.psi), every, measure.begin))
 
 
 def signal_norm(t: Array, x: Array, kind: str) -> float:

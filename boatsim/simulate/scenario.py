@@ -167,6 +167,11 @@ class Scenario:
         """All that its goals speak of, in the order of the file."""
         return list(dict.fromkeys(key for goal in self.file.goal for key in goal if key not in BESIDE))
 
+    @property
+    def lets_go(self) -> bool:
+        """Whether nobody steers for some of the time."""
+        return any(goal.get(OFF) for goal in self.file.goal)
+
     def goal_at(self, t: float) -> Mapping[str, float]:
         """Goals in force at time t [s]: the last [[goal]] that has begun."""
         at = bisect_right(self._begins, t + 1e-9) - 1

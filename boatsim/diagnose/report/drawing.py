@@ -18,6 +18,7 @@ from boatsim.physics.base import Array
 
 GRID = 2000  # units of the drawing along each edge; whole ones are finer than a pixel
 POINTS = 500  # of a line; more are not seen
+DOTS = 250  # points without a line
 PIECES = 100  # stretches of a curve that are drawn each by itself; more are not told apart
 FEWEST = 6  # points that a stretch keeps
 TIMES, SQUARE = 3.2, 1.25  # width of a curve over time and of a map by its height
@@ -35,6 +36,16 @@ class Line:
 
 
 @dataclass(frozen=True)
+class Box:
+    """How values are spread at one place: 5, 25, 50, 75 and 95 % lie below."""
+
+    look: str
+    x: float
+    width: float
+    below: tuple[float, float, float, float, float]
+
+
+@dataclass(frozen=True)
 class Panel:
     """One set of axes."""
 
@@ -47,6 +58,9 @@ class Panel:
     flags: tuple[tuple[float, float], ...] = ()  # stretches of x to shade
     shape: float = TIMES
     about: str = ""  # what a reader who can not see it is told
+    dots: tuple[Line, ...] = ()  # points that no line joins
+    boxes: tuple[Box, ...] = ()
+    names: tuple[str, ...] = ()  # of x = 0, 1, 2, ..., which are then no numbers
 
 
 def legend(looks: Mapping[str, str]) -> str:
@@ -73,7 +87,8 @@ def stacked(panels: Sequence[Panel]) -> str:
 
 def _panel(p: Panel, numbered: bool) -> str:
     """Title, drawing, and the numbers at their share of its width and height."""
-    places = [(v, (v - p.x[0]) / (p.x[1] - p.x[0])) for v in ticks(*p.x, 6)]
+    shown = [float(i) for i in range(len(p.names))] or ticks(*p.x, 6)
+    places = [(v, (v - p.x[0]) / (p.x[1] - p.x[0])) for v in shown]
     heights = [(v, (v - p.y[0]) / (p.y[1] - p.y[0])) for v in ticks(*p.y, 5)]
     drawn = [f'<path class="flag" d="{_box(p, a, b)}"/>' for a, b in p.flags]
     grid = "".join(f"M0 {GRID * (1 - s):.0f}H{GRID}" for _, s in heights)
@@ -83,13 +98,14 @@ def _panel(p: Panel, numbered: bool) -> str:
         drawn.append(f'<path class="zero" d="M0 {GRID * p.y[1] / (p.y[1] - p.y[0]):.0f}H{GRID}"/>')
     if p.band:
         drawn.append(f'<path class="band" d="{_area(p, *p.band)}"/>')
+    drawn += [_dots(p, dots) for dots in p.dots] + [_boxed(p, box) for box in p.boxes]
     for look in dict.fromkeys(line.look for line in p.lines):
         pieces = _pieces([line for line in p.lines if line.look == look])
         most = POINTS if len(pieces) == 1 else max(FEWEST, 2 * POINTS // len(pieces))
         drawn += [_curve(p, line, most) for line in pieces]
     marks = "".join(f'<span class="y" style="bottom:{100 * s:.1f}%">{_tick(v)}</span>' for v, s in heights)
     if numbered:
-        marks += "".join(f'<span class="x" style="left:{100 * s:.1f}%">{_tick(v)}</span>' for v, s in places)
+        marks += "".join(f'<span class="x" style="left:{100 * s:.1f}%">{_named(p, v)}</span>' for v, s in places)
     below = f'<p class="along">{escape(p.x_label)}</p>' if numbered else ""
     look = "plot numbered" if numbered else "plot"
     return (
@@ -128,6 +144,26 @@ def _curve(p: Panel, line: Line, most: int) -> str:
     if line.t is not None:
         told += f' data-t="{" ".join(f"{t:.6g}" for t in line.t[seen][rows])}"'
     return f'<path class="line {line.look}" d="{d}"{told}/>'
+
+
+def _dots(p: Panel, dots: Line) -> str:
+    seen = np.isfinite(dots.x) & np.isfinite(dots.y)
+    x, y = dots.x[seen], dots.y[seen]
+    rows = every(len(y), DOTS)
+    return f'<path class="dots {dots.look}" d="{"".join(f"M{a} {b}h0" for a, b in _place(p, x[rows], y[rows]))}"/>'
+
+
+def _boxed(p: Panel, box: Box) -> str:
+    """A box for the middle half, a stroke for the median, whiskers."""
+    sides = np.array([box.x - box.width / 2, box.x, box.x + box.width / 2])
+    places = _place(p, sides[[0, 1, 2, 0, 0]], np.array(box.below))
+    (left, low), (middle, lower), (right, half), (_, upper), (_, high) = places
+    d = f"M{middle} {low}V{lower}M{middle} {upper}V{high}M{left} {lower}H{right}V{upper}H{left}ZM{left} {half}H{right}"
+    return f'<path class="box {box.look}" d="{d}"/>'
+
+
+def _named(p: Panel, value: float) -> str:
+    return escape(p.names[int(value)]) if p.names else _tick(value)
 
 
 def _area(p: Panel, x: Array, low: Array, high: Array) -> str:

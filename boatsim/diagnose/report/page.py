@@ -1,8 +1,6 @@
 """The report of a diagnosis for people: one page and the same as plain text, made from one list of sections."""
 
-from base64 import b64encode
 from collections.abc import Sequence
-from hashlib import sha256
 from pathlib import Path
 
 from boatsim.diagnose.log.finding import PROBABLY
@@ -11,12 +9,12 @@ from boatsim.diagnose.report.blocks import Section, as_text, safe
 from boatsim.diagnose.report.findings import Findings
 from boatsim.diagnose.report.replay import replay
 from boatsim.diagnose.report.sections import proof, sections_of
+from boatsim.diagnose.report.sheet import TEMPLATES, rendered
 from boatsim.diagnose.report.words import capital, listed, plain, sentence, tried
 from boatsim.files import replacing
 
 __all__ = ["sentence", "write"]
 
-TEMPLATES = Path(__file__).parent / "templates"
 VERDICTS = {
     "named": "Named",
     "ambiguous": "Named, with look-alikes",
@@ -42,30 +40,11 @@ def write(findings: Findings, folder: Path) -> None:
 
 def page(findings: Findings, sections: Sequence[Section]) -> str:
     """The page, complete in itself."""
-    from jinja2 import Environment, StrictUndefined
-
-    template, script = ((TEMPLATES / name).read_text(encoding="utf-8") for name in ("report.html.j2", "report.js"))
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters["held"] = _held
-    answer = findings.answer
-    return environment.from_string(template).render(
-        f=findings, verdict=_verdict(findings), answer=answer, headline=_headline(findings),
-        sentence=_sentence(findings), sections=sections, proof=proof(findings), facts=_facts(findings),
-        stays=stays.in_words(answer, findings.patched), replay=replay(findings), script=script, policy=_policy(script),
+    return rendered(
+        TEMPLATES / "report.html.j2", f=findings, verdict=_verdict(findings), answer=findings.answer,
+        headline=_headline(findings), sentence=_sentence(findings), sections=sections, proof=proof(findings),
+        facts=_facts(findings), stays=stays.in_words(findings.answer, findings.patched), replay=replay(findings),
     )  # fmt: skip
-
-
-def _policy(script: str) -> str:
-    """What a browser may do with the page: run this script and no other, fetch nothing."""
-    own = b64encode(sha256(script.encode()).digest()).decode()
-    return (
-        f"default-src 'none'; script-src 'sha256-{own}'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
-    )
-
-
-def _held(words: str) -> str:
-    """No line ends within a value."""
-    return words.replace(" ± ", "\u00a0±\u00a0").replace(" %", "\u00a0%")
 
 
 def markdown(findings: Findings, sections: Sequence[Section]) -> str:

@@ -1,0 +1,84 @@
+"""How cost grows: `python -m benchmarks.curves`, with the exponent of a power law fitted to each column.
+
+Time of the twin against simulated length (a minute to a day), of a batch against their number (1 to 100,000), and
+of the twin against the entries of the library at work on one boat. An exponent of 1 is proportional; below it, what
+every call costs counts.
+"""
+
+import argparse
+from collections.abc import Callable, Sequence
+from statistics import median
+from time import perf_counter
+
+import numpy as np
+
+from boatsim.physics import vessel
+from boatsim.simulate.batch import Batch
+from boatsim.simulate.twin import Twin
+
+STEP, ROUNDS = 0.02, 5  # [s] of integration
+MINUTES = (1, 10, 60, 360, 1440)
+BOATS = (1, 10, 100, 1_000, 10_000, 100_000)
+ENTRIES = (0, 2, 4, 8, 16)  # beside those of the vessel's own file
+STEPS = {"boats": 100, "entries": 200_000}
+COMMANDS = {"pwm_port": 120.0, "pwm_starboard": -90.0, "steer_port_rad": 0.4, "steer_starboard_rad": -0.3}
+
+
+def took(work: Callable[[], object]) -> float:
+    """Median wall time [s], the first call not counted."""
+    work()
+    seconds = []
+    for _ in range(ROUNDS):
+        begin = perf_counter()
+        work()
+        seconds.append(perf_counter() - begin)
+    return median(seconds)
+
+
+def column(what: str, sizes: Sequence[int], seconds: Sequence[float], steps: Sequence[int]) -> str:
+    """A column of the table, with the exponents of its whole and of its second half."""
+    lines = [f"{what:>12}{'[s]':>12}{'million steps/s':>18}"]
+    lines += [f"{n:12,}{s:12.3g}{k / s / 1e6:18.3g}" for n, s, k in zip(sizes, seconds, steps, strict=True)]
+    x, y, half = np.log(np.maximum(sizes, 1)), np.log(seconds), len(sizes) // 2
+    whole, later = (np.polyfit(x[since:], y[since:], 1)[0] for since in (0, half))
+    return "\n".join([*lines, f"    exponent {whole:.2f}; from {sizes[half]:,} on {later:.2f}", ""])
+
+
+def lengths() -> str:
+    """Simulated length."""
+    twin = Twin(vessel.load("joystick_boat"), STEP)
+    steps = [round(60 * m / STEP) for m in MINUTES]
+    return column("minutes", MINUTES, [took(lambda n=n: twin.coast([0.0] * 6, COMMANDS, n)) for n in steps], steps)
+
+
+def boats() -> str:
+    """Number of boats, on all cores."""
+    made, seconds = vessel.load("joystick_boat"), []
+    for n in BOATS:
+        batch = Batch(made, n, STEP)
+        seconds.append(took(lambda batch=batch: batch.advance(COMMANDS, STEPS["boats"])))
+    return column("boats", BOATS, seconds, [n * STEPS["boats"] for n in BOATS])
+
+
+def entries() -> str:
+    """Entries of the library at work; each further boat is compiled first, which is not counted."""
+    own, sizes, seconds = len(vessel.load("joystick_boat").effects), [], []
+    for extra in ENTRIES:
+        effects = [
+            {"use": "fan_wind", "name": f"wind_{i}", "speed": 0.1 * (i + 1), "toward": 0.1 * i} for i in range(extra)
+        ]
+        twin = Twin(vessel.load("joystick_boat", extra=effects), STEP)
+        sizes.append(own + extra)
+        seconds.append(took(lambda twin=twin: twin.coast([0.0] * 6, COMMANDS, STEPS["entries"])))
+    return column("entries", sizes, seconds, [STEPS["entries"]] * len(sizes))
+
+
+def main() -> None:
+    """Print the table."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    for part in (lengths, boats, entries):
+        print(part(), flush=True)
+
+
+if __name__ == "__main__":
+    main()

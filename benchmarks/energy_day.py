@@ -1,0 +1,131 @@
+"""A day without losing energy: `python -m benchmarks.energy_day [--hours 24] [--step 0.01]`.
+
+A boat of 6 kg that nothing brakes or drives (case P3 of the reference cases: added mass of 0.6, 3 and 0.3 in surge,
+sway and yaw, 1 m/s ahead, 0.1 m/s abeam, 0.2 rad/s), on MuJoCo and on the twin. Two things must last whatever the added
+mass: energy, and momentum in earth axes. What is lost of them is the integrator's, what memory grows is the program's.
+"""
+
+import argparse
+import resource
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.vessel import Vessel
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.twin import Twin
+
+HOUR = 3600.0  # [s]
+START = (0.0, 0.0, 0.0, 1.0, 0.1, 0.2)  # x, y, psi, u, v, r
+MASS = np.array([6.6, 9.0, 0.8])  # [kg], [kg], [kg m^2] with that of the water
+HULL = """<mujoco model="free_boat">
+  <custom><numeric name="drawn_for" data="1 0.4 0.1"/></custom>
+  <worldbody>
+    <body name="hull"><geom name="collision" type="box" size="0.5 0.2 0.1" contype="0" conaffinity="0"/></body>
+  </worldbody>
+</mujoco>
+"""
+BOAT = """
+about = "a boat that nothing brakes"
+source = "reference case P3"
+freedoms = ["surge", "sway", "yaw"]
+length = 1.0
+beam = 0.4
+draught = 0.1
+body = { mass = 6.0, roll_inertia = 0.1, yaw_inertia = 0.5 }
+
+[channels]
+thrust_N = { low = -1.0, high = 1.0 }
+
+[[effect]]
+use = "added_mass"
+surge = 0.6
+sway = 3.0
+yaw = 0.3
+
+[[effect]]
+use = "thruster"
+on = { thrust = "thrust_N", angle = 0.0 }
+"""
+Advance = Callable[[int], Array]  # so many steps -> x, y, psi, u, v, r
+
+
+def boat(folder: Path) -> Vessel:
+    """The vessel, written into that folder."""
+    (folder / "hull.xml").write_text(HULL, encoding="utf-8")
+    (folder / "vessel.toml").write_text(BOAT, encoding="utf-8")
+    return vessel.load(str(folder / "vessel.toml"))
+
+
+def kept(state: Array) -> Array:
+    """Energy [J] and momentum north and east [N s]."""
+    psi, nu = state[2], state[3:]
+    p = MASS * nu
+    return np.array([0.5 * p @ nu, p[0] * np.cos(psi) - p[1] * np.sin(psi), p[0] * np.sin(psi) + p[1] * np.cos(psi)])
+
+
+def of_engine(made: Vessel, step: float) -> Advance:
+    """MuJoCo."""
+    engine = Engine(made, step=step, show=False)
+    x, y, psi, u, v, r = START
+    engine.reset(State(x=x, y=y, psi=psi, u=u, v=v, r=r), {})
+
+    def advance(steps: int) -> Array:
+        engine.coast(steps)
+        s = engine.state
+        return np.array([s.x, s.y, s.psi, s.u, s.v, s.r])
+
+    return advance
+
+
+def of_twin(made: Vessel, step: float) -> Advance:
+    """The same laws without it."""
+    twin, state = Twin(made, step), np.array(START)
+
+    def advance(steps: int) -> Array:
+        nonlocal state
+        state = twin.coast(state.tolist(), {}, steps)
+        return state
+
+    return advance
+
+
+def memory() -> float:
+    """Largest memory of this process so far [MB]."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1e6 if sys.platform == "darwin" else 1e6 / 1024)
+
+
+def lost(advance: Advance, hours: float, step: float) -> str:
+    """A row of the table: after every hour the constants are looked at, and their largest change is kept."""
+    first, worst = kept(np.array(START)), np.zeros(3)
+    advance(0)
+    before, begin = memory(), time.perf_counter()
+    for _ in range(round(hours)):
+        worst = np.maximum(worst, np.abs(kept(advance(round(HOUR / step))) - first))
+    took, grown = time.perf_counter() - begin, memory() - before
+    total = np.hypot(*first[1:])
+    energy, momentum = worst[0] / first[0], np.max(worst[1:]) / total
+    return f"{hours * HOUR / step:12.3g}{took:10.1f}{energy:16.1e}{momentum:18.1e}{grown:14.1f}"
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--hours", type=float, default=24.0, help="simulated")
+    parser.add_argument("--step", type=float, default=0.01, help="[s] of integration")
+    given = parser.parse_args()
+    print(f"{'':10}{'steps':>12}{'took [s]':>10}{'energy lost':>16}{'momentum lost':>18}{'grown [MB]':>14}")
+    with TemporaryDirectory() as folder:
+        made = boat(Path(folder))
+        for name, start in (("twin", of_twin), ("engine", of_engine)):
+            print(f"{name:10}" + lost(start(made, given.step), given.hours, given.step), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,202 @@
+"""Side by side with neighbours: `python -m benchmarks.peers [--rounds 5]`.
+
+The same manoeuvre for the same simulated time, in one process and taking turns, so that a busy machine slows both;
+medians of the rounds, and the median of the rounds' ratios. Where a neighbour is not installed its row says so.
+`pip install "boatsim[peers]"` brings those that PyPI has, the Python vehicle simulator comes from its repository.
+"""
+
+import argparse
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import radians
+from statistics import median
+from time import perf_counter
+
+import numpy as np
+
+from boatsim.physics import vessel
+from boatsim.simulate.engine import Engine, State
+from boatsim.simulate.env import load as load_env
+from boatsim.simulate.twin import Twin
+
+STEP = 0.02  # [s]
+SHAFTS = {"n_port_radps": 80.0, "n_starboard_radps": 60.0}  # [rad/s]
+RUDDER = {"delta_rad": radians(-35.0), "n_rps": 11.8516}
+PWM = {"pwm_port": 120.0, "pwm_starboard": -90.0, "steer_port_rad": 0.4, "steer_starboard_rad": -0.3}
+ELLIPSOID = """<mujoco>
+  <option timestep="{step}" gravity="0 0 0" density="1000" viscosity="0.001" integrator="RK4"/>
+  <worldbody><body>
+    <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/><joint type="hinge" axis="0 0 1"/>
+    <inertial pos="0 0 0" mass="4.6" diaginertia="0.3 1 1.05"/>
+    <geom type="ellipsoid" size="0.6 0.15 0.06" fluidshape="ellipsoid" contype="0" conaffinity="0"/>
+    <site name="hull" pos="-0.5 0 0"/>
+  </body></worldbody>
+  <actuator><motor site="hull" gear="1 0.1 0 0 0 0.02"/></actuator>
+</mujoco>"""
+Work = Callable[[], object]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A manoeuvre for some simulated time: theirs, and ours by one or two of our ways."""
+
+    name: str
+    theirs: Work
+    ours: dict[str, Work]
+
+
+def otter() -> Pair:
+    """Fossen's simulator: the Otter from rest with two constant shaft speeds, Euler steps as in its own loop."""
+    from python_vehicle_simulator.lib.gnc import attitudeEuler  # type: ignore[import-not-found]
+    from python_vehicle_simulator.vehicles import otter as make  # type: ignore[import-not-found]
+
+    seconds = 60.0
+    steps = round(seconds / STEP)
+
+    def theirs() -> None:
+        boat = make()
+        eta, nu, n = np.zeros(6), np.zeros(6), np.zeros(2)
+        for _ in range(steps):
+            nu, n = boat.dynamics(eta, nu, n, np.array([80.0, 60.0]), STEP)
+            eta = attitudeEuler(eta, nu, STEP)
+
+    made = vessel.load("otter")
+    return Pair("Python vehicle simulator, Otter, 60 s", theirs, of_us("otter", made, SHAFTS, [0.0] * 12, steps))
+
+
+def tanker() -> Pair:
+    """ShipMMG: turning circle of the KVLCC2 model; theirs by scipy's own steps, ours of 0.1 s."""
+    from shipmmg.mmg_3dof import (  # type: ignore[import-not-found]
+        Mmg3DofBasicParams,
+        Mmg3DofManeuveringParams,
+        simulate_mmg_3dof,
+    )
+
+    length, draught, mass, rho, seconds = 7.0, 0.46, 3270.0, 1000.0, 200.0
+    unit = 0.5 * rho * length**2 * draught  # [kg]
+    hull = Mmg3DofBasicParams(
+        L_pp=length, B=1.27, d=draught, x_G=0.25, D_p=0.216, m=mass, I_zG=mass * (0.25 * length) ** 2, A_R=0.0539,
+        η=0.216 / 0.345, m_x=0.022 * unit, m_y=0.223 * unit, J_z=0.011 * unit * length**2, f_α=2.747, ε=1.09,
+        t_R=0.387, x_R=-0.5 * length, a_H=0.312, x_H=-0.464 * length, γ_R_minus=0.395, γ_R_plus=0.640, l_R=-0.71,
+        κ=0.50, t_P=0.22, w_P0=0.40, x_P=-0.48,
+    )  # fmt: skip
+    polynomials = Mmg3DofManeuveringParams(
+        k_0=0.2931, k_1=-0.2753, k_2=-0.1385, R_0_dash=0.022, X_vv_dash=-0.040, X_vr_dash=0.002, X_rr_dash=0.011,
+        X_vvvv_dash=0.771, Y_v_dash=-0.315, Y_r_dash=0.083, Y_vvv_dash=-1.607, Y_vvr_dash=0.379, Y_vrr_dash=-0.391,
+        Y_rrr_dash=0.008, N_v_dash=-0.137, N_r_dash=-0.049, N_vvv_dash=-0.030, N_vvr_dash=-0.294, N_vrr_dash=0.055,
+        N_rrr_dash=-0.013,
+    )  # fmt: skip
+    times = np.linspace(0.0, seconds, 2001)
+    rudder, propeller = np.full(len(times), RUDDER["delta_rad"]), np.full(len(times), RUDDER["n_rps"])
+
+    def theirs() -> None:
+        simulate_mmg_3dof(hull, polynomials, times, rudder, propeller, u0=1.179, ρ=rho)
+
+    made, start = vessel.load("kvlcc2_mmg"), [0.0, 0.0, 0.0, 1.179, 0.0, 0.0]
+    ours = of_us("kvlcc2_mmg", made, RUDDER, start, round(seconds / 0.1), 0.1)
+    return Pair("ShipMMG, KVLCC2 turning circle, 200 s", theirs, ours)
+
+
+def fluid() -> Pair:
+    """MuJoCo's own ellipsoid in fluid of the joystick boat's size: no added mass in its inertia, no outboards."""
+    import mujoco
+
+    model = mujoco.MjModel.from_xml_string(ELLIPSOID.format(step=STEP))
+    data = mujoco.MjData(model)
+    steps = 20_000
+
+    def theirs() -> None:
+        mujoco.mj_resetData(model, data)
+        data.ctrl[0] = 0.3
+        mujoco.mj_step(model, data, nstep=steps)
+
+    ours = of_us("joystick_boat", vessel.load("joystick_boat"), PWM, [0.0] * 6, steps)
+    return Pair("MuJoCo's ellipsoid in fluid, RK4, 400 s", theirs, ours)
+
+
+def gym_boat() -> Pair:
+    """A motor boat of Gymnasium, one Euler step a control step, against ours through dm_env, four of Runge-Kutta."""
+    import gym_sailing  # type: ignore[import-not-found] # noqa: F401
+    import gymnasium
+
+    steps = 1000
+    env = gymnasium.make("Motorboat-v0").unwrapped
+    action = env.action_space.sample() * 0
+    own = load_env("joystick_boat/sway_1")
+    held = np.zeros(own.action_spec().shape)
+
+    def theirs() -> None:
+        env.reset(seed=0)
+        for _ in range(steps):
+            env.step(action)
+
+    def ours() -> None:
+        own.reset()
+        for _ in range(steps):
+            if own.step(held).last():
+                own.reset()
+
+    return Pair(f"gym-sailing, motor boat, {steps} control steps", theirs, {"dm_env": ours})
+
+
+def of_us(
+    name: str, made: vessel.Vessel, commands: dict[str, float], start: list[float], steps: int, step: float = STEP
+) -> dict[str, Work]:
+    """Twin and MuJoCo engine on so many steps of Runge-Kutta under constant commands."""
+    twin, engine = Twin(made, step), Engine(made, step=step, show=False)
+    moving = State(u=start[len(start) // 2])
+
+    def on_mujoco() -> None:
+        engine.reset(moving, commands)
+        engine.coast(steps)
+
+    return {"twin": lambda: twin.coast(start, commands, steps), "engine": on_mujoco}
+
+
+PEERS: dict[str, Callable[[], Pair]] = {
+    "Python vehicle simulator": otter,
+    "ShipMMG": tanker,
+    "MuJoCo's ellipsoid in fluid": fluid,
+    "gym-sailing": gym_boat,
+}
+
+
+def took(work: Work) -> float:
+    """Wall time [s]."""
+    begin = perf_counter()
+    work()
+    return perf_counter() - begin
+
+
+def rows(pair: Pair, rounds: int) -> Iterator[str]:
+    """Lines of the table: theirs, and each of ours with how many times as fast it is."""
+    works = {"theirs": pair.theirs, **pair.ours}
+    for work in works.values():
+        work()  # imports, compiles
+    seconds = {name: [took(work)] for name, work in works.items()}
+    for _ in range(rounds - 1):
+        for name, work in works.items():
+            seconds[name].append(took(work))
+    yield f"{pair.name:44}{1e3 * median(seconds['theirs']):12.3g}"
+    for name in pair.ours:
+        ratio = median(a / b for a, b in zip(seconds["theirs"], seconds[name], strict=True))
+        yield f"{'  boatsim, ' + name:44}{1e3 * median(seconds[name]):12.3g}{ratio:12.3g}"
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=5)
+    given = parser.parse_args()
+    print(f"{'':44}{'[ms]':>12}{'times as':>12}\n{'':44}{'':12}{'fast':>12}")
+    for name, made in PEERS.items():
+        try:
+            pair = made()
+        except ImportError as missing:
+            print(f"{name:44}not installed ({missing})")
+            continue
+        print("\n".join(rows(pair, given.rounds)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,110 @@
+"""L1 adaptive control of two outboards by a joystick: the base of controllers that differ in what the boat measures."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from math import isnan, nan
+from typing import Any, ClassVar
+
+from boatsim.control.adaptive import LoopChannel
+from boatsim.control.allocation import (
+    HEADING,
+    STICK,
+    Outboards,
+    keep_heading,
+    set_outboards,
+    sway_difference,
+    within,
+)
+from boatsim.control.axis import AXIS, missing
+from boatsim.control.base import Estimate
+from boatsim.control.compiled import CompiledController, merged, record, unlocked
+from boatsim.physics.base import param
+
+SERVO_LAG = 0.06  # [s] "about one time step" in the thesis; used for the printed margins only
+REMEMBERS = record("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)  # X [N], N [N m] applied last
+
+
+@merged
+def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
+    """Yaw moment [N m] for a yaw rate wanted [rad/s]: the stick's, corrected for the heading error and bounded."""
+    if m.acted != 0.0:
+        keep_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
+    bound = q.hold_rate + (q.turn_rate - q.hold_rate) * abs(wanted) / q.rated_yaw
+    reference = within(wanted + q.heading_gain * (m.heading.wanted - m.heading.own), -bound, bound)
+    acted = m.acted != 0.0
+    felt = missing(m.yaw, s.r, m.N, acted, reference, q.pole, q.inertia, q.yaw_bandwidth, q.period)
+    return q.inertia * q.pole * reference - felt
+
+
+@merged
+def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
+    """Surge force [N] for a speed wanted [m/s]; without a speed sensor only a guess of what the stick asks for."""
+    if isnan(s.u):
+        return q.blind_surge * wanted
+    acted = m.acted != 0.0
+    felt = missing(m.surge, s.u, m.X, acted, wanted, q.pole, q.mass, q.surge_bandwidth, q.period)
+    return q.mass * q.pole * wanted - felt
+
+
+@unlocked
+def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
+    """Commands for the next period from the gyro, the surge speed if there is one, and the stick."""
+    for b in boats:
+        q, m, s, g = settings[b], memory[b], sense[b], goal[b]
+        moment = yaw_moment(q, m, s, g.yaw_radps)
+        surge = surge_force(q, m, s, g.surge_mps)
+        room = q.pole * q.mass * abs(g.surge_mps)
+        m.X, _, m.N = set_outboards(q, surge, sway_difference(q, g.sway_mps), moment, room, sent[b])
+        m.acted = 1.0
+
+
+@dataclass
+class AdaptiveJoystick(Outboards, CompiledController):
+    """L1 adaptive control of yaw rate and, where a sensor gives it, surge speed; sway is thrust in open loop.
+
+    Each channel asks for x' = -pole (x - x_ref) of an assumed inertia. Whatever else moves the boat (unknown motor
+    spacing, arm, reverse thrust, wind, drag) shows as a prediction error, is expressed as a force or moment `sig`
+    and, low-passed, subtracted. Goals: `surge_mps`, `sway_mps`, `yaw_radps`.
+    """
+
+    commands: ClassVar[tuple[str, ...]] = ("pwm_port", "pwm_starboard", "steer_port_rad", "steer_starboard_rad")
+    goals: ClassVar[tuple[str, ...]] = STICK
+    unsaid: ClassVar = dict.fromkeys(STICK, 0.0)
+    law: ClassVar = law
+    remembers: ClassVar = REMEMBERS
+
+    pole: float = param(1.4, low=0.1, high=10.0, unit="1/s", words="pole of the motion asked for")
+    inertia: float = param(2.0, low=0.1, high=50.0, unit="kg m^2", words="assumed yaw inertia, added mass included")
+    mass: float = param(5.0, low=0.5, high=500.0, unit="kg", words="assumed surge mass")
+    yaw_bandwidth: float = param(2.0, low=0.1, high=20.0, unit="rad/s", words="low-pass of the yaw estimate")
+    surge_bandwidth: float = param(2.0, low=0.05, high=20.0, unit="rad/s", words="low-pass of the surge estimate")
+    heading_gain: float = param(0.2, low=0.0, high=5.0, unit="1/s", words="yaw rate asked for per heading error")
+    hold_rate: float = param(0.1, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate without a yaw command")
+    turn_rate: float = param(0.25, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate in a rated turn")
+    rated_yaw: float = param(0.1396, low=0.01, high=2.0, unit="rad/s", words="the rated turn, 8 deg/s")
+    blind_surge: float = param(1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor")
+
+    def estimates(self) -> dict[str, Estimate]:
+        """What each channel takes for missing force and moment, and the motion asked for."""
+        yaw, surge = self.remembered["yaw"], self.remembered["surge"]
+        return {
+            "sigma_yaw_Nm": Estimate(float(yaw["sigma"]), nan, nan),
+            "sigma_surge_N": Estimate(float(surge["sigma"]), nan, nan),
+            "reference_u_mps": Estimate(float(surge["model"]), nan, nan),
+            "reference_r_radps": Estimate(float(yaw["model"]), nan, nan),
+        }
+
+    def largest_goals(self) -> Mapping[str, float]:
+        """With the rated turn [rad/s]."""
+        return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
+
+    def loop_channels(self) -> tuple[LoopChannel, ...]:
+        """The feedback loops, for margins; the input gain spans the boats of the Monte Carlo study."""
+        delayed = partial(
+            LoopChannel, pole=self.pole, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
+        )
+        return (
+            delayed("yaw", bandwidth=self.yaw_bandwidth, heading_gain=self.heading_gain),
+            delayed("surge", bandwidth=self.surge_bandwidth),
+        )

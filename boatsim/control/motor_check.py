@@ -1,0 +1,201 @@
+"""Pulses from rest by which gyro and accelerometer tell how two outboards differ from what is believed of them.
+
+One motor is turned inward, the other is straight. Both push ahead, twice astern, and ahead again, and the boat
+ends where it was, at rest. Whatever her inertia and the levers, the two yaw accelerations are as the two thrusts, so
+that what the motors lack astern is known. Then the other motor is turned inward: where both steerings are off by the
+same angle, one side turns the boat more than the other.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from math import exp, log
+from typing import NamedTuple
+
+import numpy as np
+
+from boatsim.control.base import LowPass, clip
+from boatsim.errors import BadInput
+from boatsim.physics.base import Array
+
+PORT, STARBOARD, NEITHER = 0, 1, 2  # which motor is turned inward
+POWERS = (0.8, 2.0)  # exponents of thrust over setting that are believed
+FAR = 0.15  # logarithm of two settings' ratio from which on they tell the exponent
+WILDEST = 3.0  # thrust astern over ahead, or its inverse, beyond which a reading is not believed
+
+
+class Pulse(NamedTuple):
+    """What the motors are to do in a period."""
+
+    sense: int  # both motors 1 ahead, -1 astern, 0 off
+    inward: int  # PORT, STARBOARD or NEITHER
+
+
+class Drift(NamedTuple):
+    """What sideways drift does to a boat that is turned by pushes on one side, by the square of her yaw rate.
+
+    Both go the same way whether she is pushed ahead or astern, so they would pass for a difference of the motors.
+    """
+
+    yaw: float  # [1] acceleration towards the side that ahead turns to
+    surge: float  # [m] deceleration
+
+
+class Found(NamedTuple):
+    """What one train of pulses told."""
+
+    turn: float  # [rad/s^2] while both motors push ahead
+    reverse: float  # thrust astern over thrust ahead, of the settings that were played
+    variance: float  # of that ratio
+    push: float  # [m/s^2] ahead
+    slowed: float  # [m/s] by drift
+
+
+@dataclass
+class Train:
+    """One train of pulses and what was felt under it.
+
+    The motors stand still between pulses and all are as long, so that it is no matter how their thrust comes and goes.
+    """
+
+    pulse: int  # [periods]
+    rest: int  # [periods] before, between and behind
+    rates: list[float] = field(default_factory=list)  # [rad/s] one a period, the first before the train
+    felt: list[float] = field(default_factory=list)  # [m/s^2] ahead, at the same times
+
+    def __post_init__(self) -> None:
+        still = [0] * self.rest
+        self.senses = still + [s for sense in (1, -1, -1, 1) for s in [sense] * self.pulse + still]
+
+    def feel(self, rate: float, felt: float) -> None:
+        """Readings at the beginning of a period, and at the end of the last."""
+        self.rates.append(rate)
+        self.felt.append(felt)
+
+    def found(self, period: float, lag: float, drift: Drift, aside: int) -> Found:
+        """By least squares; `aside` is the sign of the yaw rate under thrust ahead."""
+        on = np.column_stack([_lagged(self.senses, sense, period, lag) for sense in (1, -1)])
+        gained = np.vstack([np.zeros(2), period * np.cumsum(0.5 * (on[1:] + on[:-1]), axis=0)])
+        square = np.cumsum(np.square(self.rates)) * period
+        turns, spread = _fitted(gained, np.array(self.rates) - aside * drift.yaw * square)
+        pushes, _ = _fitted(on, np.array(self.felt))
+        if pushes[0] <= 0.0 or turns[0] == 0.0:
+            raise BadInput(
+                f"the motors were tried and pushed the boat ahead by {pushes[0]:.3g} m/s^2; is it free to move?"
+            )
+        reverse = clip(float(-turns[1] / turns[0]), 1.0 / WILDEST, WILDEST)
+        variance = float(spread[0] * reverse**2 + spread[1]) / float(turns[0]) ** 2
+        return Found(float(turns[0]), reverse, variance, float(pushes[0]), drift.surge * float(square[-1]))
+
+
+def _lagged(senses: list[int], sense: int, period: float, lag: float) -> Array:
+    """Share of thrust in one sense (N + 1,) at each reading, behind its command by the lag [s]."""
+    low_pass = LowPass(1.0 / lag)
+    return np.array([0.0, *(low_pass.step(float(s == sense), period) for s in senses)])
+
+
+def _fitted(columns: Array, values: Array) -> tuple[Array, Array]:
+    """Factors of the columns beside a constant, and their variances."""
+    a = np.column_stack([columns, np.ones(len(values))])
+    inverse = np.linalg.inv(a.T @ a)
+    factors = inverse @ (a.T @ values)
+    noise = float(np.sum((values - a @ factors) ** 2)) / (len(values) - a.shape[1])
+    return factors[:2], np.diag(inverse)[:2] * max(noise, 1e-12)
+
+
+@dataclass
+class MotorCheck:
+    """Pairs of trains, one for either side, until the reverse is known well enough.
+
+    A moment that lasts, of wind, adds to one side what it takes from the other. After each pair the astern setting is
+    mended, and the speed that it left is taken out by pulses straight ahead or astern.
+    """
+
+    period: float  # [s]
+    rest: float  # [s] between pulses
+    reach: float  # [m/s] that a pulse is to give
+    shortest: float  # [s] of a pulse
+    longest: float  # [s]
+    lag: float  # [s] of thrust behind its command
+    drift: Drift
+    power: float  # guess of the exponent of thrust over setting
+    enough: float  # standard deviation of the reverse at which it ends
+    most: int  # pairs
+    straight: float  # acceleration with both motors straight over that with one turned inward
+
+    def __post_init__(self) -> None:
+        self.astern = 1.0  # factor on settings astern that gives as much thrust as ahead
+        self.speed = 0.0  # [m/s] that the boat is left with
+        self.done = False
+        self._found: list[Found] = []
+        self._read: list[tuple[float, float]] = []  # logarithms of setting and reverse, by pair
+        self._reading = (0.0, 0.0)
+        self._program: Iterator[Pulse] | None = None
+
+    @property
+    def push(self) -> float:
+        """Acceleration [m/s^2] of both motors ahead, one of them turned inward."""
+        return float(np.mean([f.push for f in self._found]))
+
+    @property
+    def unevenness(self) -> float:
+        """(a - b)/(a + b) of the yaw accelerations with the port (a) and the starboard (b) motor inward."""
+        a, b = (abs(float(np.mean([f.turn for f in self._found[side::2]]))) for side in (PORT, STARBOARD))
+        return (a - b) / (a + b)
+
+    def step(self, rate: float, felt: float) -> Pulse:
+        """Take in yaw rate [rad/s] and acceleration ahead [m/s^2] each period; returns what the motors do next.
+
+        Once it is `done` they are off.
+        """
+        self._reading = rate, felt
+        self._program = self._program or self._play()
+        pulse = next(self._program, None)
+        self.done = pulse is None
+        return pulse or Pulse(0, NEITHER)
+
+    def _play(self) -> Iterator[Pulse]:
+        """Pair after pair; a reading is that at the beginning of the pulse asked for next."""
+        length = self.shortest
+        for pair in range(self.most):
+            for side in (PORT, STARBOARD):
+                train = Train(round(length / self.period), round(self.rest / self.period))
+                for sense in train.senses:
+                    train.feel(*self._reading)
+                    yield Pulse(sense, side)
+                train.feel(*self._reading)
+                self._found.append(train.found(self.period, self.lag, self.drift, 1 if side == STARBOARD else -1))
+            self._learn(train.senses)
+            for sense in self._amends():
+                yield Pulse(sense, NEITHER)
+            if pair and self._spread() < self.enough:
+                return
+            length = clip(self.reach / self.push, self.shortest, self.longest)
+
+    def _learn(self, senses: list[int]) -> None:
+        """Reckon what the last pair left of speed, and mend the astern setting by it."""
+        pair = self._found[-2:]
+        reverse = (pair[PORT].reverse * pair[STARBOARD].reverse) ** 0.5
+        self.speed += 2.0 * self.push * self.period * (senses.count(1) - reverse * senses.count(-1))
+        self.speed -= sum(found.slowed for found in pair)
+        self._read.append((log(self.astern), log(reverse)))
+        self.astern = exp(self._balanced())
+
+    def _balanced(self) -> float:
+        """Logarithm of the setting that gives as much thrust as ahead: the mean of what all pairs but the first say."""
+        power = self.power
+        if len(self._read) > 1:
+            (s0, r0), (s1, r1) = self._read[:2]
+            power = clip((r1 - r0) / (s1 - s0), *POWERS) if abs(s1 - s0) > FAR else power
+        return float(np.mean([s - r / power for s, r in self._read[1:] or self._read]))
+
+    def _amends(self) -> list[int]:
+        """Senses that take out the speed; astern as mended, as strong as ahead."""
+        sense, gain = -1 if self.speed > 0.0 else 1, self.push * self.straight * self.period
+        count = round(abs(self.speed) / gain)
+        self.speed += sense * count * gain
+        return [sense] * count + [0] * round(self.rest / self.period) if count else []
+
+    def _spread(self) -> float:
+        """Standard deviation of the mean of all pairs but the first."""
+        later = self._found[2:]
+        return float(np.sqrt(sum(f.variance for f in later))) / len(later)

@@ -1,0 +1,1 @@
+"""Who carries out the tasks of a campaign, one way a file."""
