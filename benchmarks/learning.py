@@ -1,7 +1,8 @@
 """How many control steps a second the environments for learning make: python -m benchmarks.learning.
 
 One boat on one core, by `gymnasium.make`, then many on all cores, by `gymnasium.make_vec`; observations, rewards, ends
-and new episodes with their draws included, actions held. The best of 25 short stretches counts: others use the machine too.
+and new episodes with their draws included, actions held. The best of 25 short stretches
+counts: others may use the machine too.
 """
 
 import os
