@@ -1,7 +1,8 @@
 """How many control steps a second the environments for learning make: python -m benchmarks.learning.
 
 One boat on one core, by `gymnasium.make`, then many on all cores, by `gymnasium.make_vec`; observations, rewards, ends
-and new episodes with their draws included, actions held. The best of five stretches counts: others use the machine too.
+and new episodes with their draws included, actions held. The best of 25 short stretches
+counts: others may use the machine too.
 """
 
 import os
@@ -15,8 +16,8 @@ from boatsim.learn import registration
 from boatsim.learn.game import play
 from boatsim.simulate import env
 
-BEST_OF = 5
-ALONE, MANY = 4000, 4096  # control steps of a stretch; boats
+BEST_OF = 25
+ALONE, MANY = 1000, 4096  # control steps of a stretch; boats
 
 
 def alone(name: str, period: float, step: float) -> float:
@@ -49,9 +50,9 @@ def crowd(name: str, period: float, step: float) -> float:
     actions, found = boats.action_space.sample(), 0.0
     for _ in range(BEST_OF):
         begun = perf_counter()
-        for _ in range(50):
+        for _ in range(25):
             boats.step(actions)
-        found = max(found, 50 * MANY / (perf_counter() - begun))
+        found = max(found, 25 * MANY / (perf_counter() - begun))
     return found
 
 

@@ -48,10 +48,9 @@ class Controls:
 
     def commands(self, actions: Array) -> Array:
         """(n, C), in the order of the vessel's commands."""
-        share = actions @ self.pattern
-        return self.neutral + np.minimum(np.maximum(share, 0.0), 1.0) * self.up + (
-            np.maximum(np.minimum(share, 0.0), -1.0) * self.down
-        )  # fmt: skip
+        share = np.minimum(np.maximum(actions @ self.pattern, -1.0), 1.0)
+        ahead = np.maximum(share, 0.0)
+        return np.asarray(self.neutral + ahead * self.up + (share - ahead) * self.down, dtype=float)
 
 
 def controls(vessel: Vessel, use: Use) -> Controls:
