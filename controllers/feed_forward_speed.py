@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from math import exp, nan
 from typing import Any, ClassVar
 
-from boatsim.control.allocation import JET_Q2, throttle_of
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import CompiledController, record, unlocked
+from boatsim.control.jet import JET_Q2, throttle_of
 from boatsim.physics.base import param
 
 

@@ -6,9 +6,10 @@ from typing import Any, ClassVar
 
 from boatsim.control.adaptive import LinearSystem, l1_norm, unfiltered
 from boatsim.control.adaptive_loop import act_loop, begin_loop, designed, loop_memory, observe_loop
-from boatsim.control.allocation import power_of, throttle_of, within
+from boatsim.control.allocation import within
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import CompiledController, Records, record, unlocked, with_parts
+from boatsim.control.jet import power_of, throttle_of
 from boatsim.physics.base import param
 
 THETA, SIGMA, OMEGA = (0.2025, 1.7716), (-23.17, 23.17), (0.1, 2.0)  # section 4.1; 1/s, m/s^2, 1

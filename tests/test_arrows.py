@@ -9,7 +9,7 @@ import pytest
 from benchmarks.arrows import HOME, OURS, counts, imported, level, main, on_shelf, own, picture
 
 FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
-    "errors physics.base control.base control.adaptive control.adaptive_loop control.allocation "
+    "errors physics.base control.base control.adaptive control.adaptive_loop control.allocation control.jet "
     "control.identification control.helm control.compiled control.axis control.joystick control.motor_check".split()
 )
 HEAVY = {  # library -> the only modules that may import it

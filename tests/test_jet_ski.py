@@ -18,7 +18,7 @@ from boatsim.control.adaptive_loop import (
     observe_loop,
     projected,
 )
-from boatsim.control.allocation import JET_Q2, power_of, throttle_of
+from boatsim.control.jet import JET_Q2, power_of, throttle_of
 from boatsim.physics import vessel
 from boatsim.physics.base import Course, Force, Wrench, mean_of, motion
 from boatsim.physics.content import load_class, names

@@ -102,7 +102,11 @@ def designed(
     am: ArrayLike, low: ArrayLike, high: ArrayLike, first: ArrayLike, *, gain: float, bandwidth: float, period: float,
     step: float,
 ) -> Records:  # fmt: skip
-    """A `loop_design` (1,) from what `AdaptiveLoop` takes; each estimate is driven by its own regressor."""
+    """A `loop_design` (1,) for a loop of such poles, bounds and first estimates, each driven by its own regressor.
+
+    `am` (n, n) [1/s] is the predictor's, `low`, `high`, `first` (n + 2,) belong to x1 ... xn, the disturbance and the
+    input's gain; `bandwidth` [rad/s] of the low-pass, `period` and inner `step` in s.
+    """
     a = np.asarray(am, dtype=float)
     d = np.zeros(1, loop_design(len(a)))
     d["am"], d["pb"], d["low"], d["high"], d["first"] = a, lyapunov(a)[:, -1], low, high, first

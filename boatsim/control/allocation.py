@@ -11,7 +11,7 @@ boat really has enters a control loop as a disturbance.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import asin, atan2, copysign, cos, degrees, exp, hypot, pi, radians, sin, sqrt
+from math import asin, atan2, copysign, cos, degrees, exp, hypot, pi, radians, sin
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,7 +23,7 @@ from boatsim.physics.kernel.compiling import lean, merged
 PWM_RATED = 150.0  # thrusts are quoted at this PWM value (Bayless 2017, appendix H: nominalpower)
 PWM_MAX = 255.0  # eight bits
 ANGLE_MAX = radians(45.0)  # [rad] inward range of the steering (Bayless 2017, Fig. 8)
-HOLD_SHARE = 0.45  # surge correction over differential thrust while the motors give sway (bayless.md section 9)
+HOLD_SHARE = 0.45  # surge correction over differential thrust while the motors give sway
 TURN_SHARE = 0.8  # the same while they only turn the boat
 SURGE_RESERVE = 0.3  # part of that share which a turn at the motors' limits leaves to surge, or the boat drifts ahead
 
@@ -277,29 +277,3 @@ class Outboards(Checked):
         """Nominal force and moment of a rounded and capped setting: what a predictor should be told."""
         angle = radians(setting.degrees)
         return self.push(Drive(self.thrust(setting.pwm_port), self.thrust(setting.pwm_starboard), angle))
-
-
-JET_Q2 = 154.9  # [m^2/s^3] printed 164.5, with which the power jumps at throttle 4
-
-
-@lean
-def power_of(throttle: float, q2: float) -> float:
-    """Shaft power per mass [m^2/s^3] of a water jet at a throttle, 1 idle to 7 full; thrust is power / speed.
-
-    Svendsen et al., IFAC MCMC 2012, eq. 10 and Table 2, with the printed s_i taken as the coefficients of throttle^i.
-    """
-    if throttle < 2.0:
-        return 12.10 * throttle - 11.30
-    if throttle < 4.0:
-        return -21.1 - 20.0 * throttle + 18.5 * throttle * throttle
-    return 10.00 * throttle + q2
-
-
-@lean
-def throttle_of(power: float, q2: float) -> float:
-    """Throttle of a power, within idle and full."""
-    if power < 12.90:  # at 2
-        return max((power + 11.30) / 12.10, 1.0)
-    if power < 194.9:  # at 4
-        return (20.0 + sqrt(400.0 + 74.0 * (power + 21.1))) / 37.0
-    return within(0.1 * (power - q2), 4.0, 7.0)

@@ -21,7 +21,7 @@ from boatsim.control.base import Estimate
 from boatsim.control.compiled import CompiledController, merged, record, unlocked
 from boatsim.physics.base import param
 
-SERVO_LAG = 0.06  # [s] "about one time step" in the thesis; used for the printed margins only
+SERVO_LAG = 0.06  # [s] of steering servos; no law uses it, only the margins that are printed
 REMEMBERS = record("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)  # X [N], N [N m] applied last
 
 
@@ -100,7 +100,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
         return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """The feedback loops, for margins; the input gain spans the boats of the Monte Carlo study."""
+        """The feedback loops, for margins: at true thrust over inertia from half to 1.8 times what is assumed."""
         delayed = partial(
             LoopChannel, pole=self.pole, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
         )
