@@ -51,7 +51,7 @@ class Session:
             raise KeyboardInterrupt
 
     def enough(self) -> bool:
-        """Whether somebody has pressed the button that ends it."""
+        """Whether somebody wants it to end."""
         return self.server.ended
 
     def goal_at(self, t: float) -> Mapping[str, float]:
