@@ -4,7 +4,7 @@ A boat in it does the same from the same seed, whatever it is played beside.
 """
 
 from collections.abc import Callable, Sequence
-from math import isfinite
+from math import inf, isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -55,10 +55,13 @@ class Play:
         `tank` takes the place of the task's own basin.
         """
         self.task, self.variation, self.n = task, variation, n
-        self.period, self.duration, self.substeps = period, duration, round(period / step)
-        if not step > 0.0 or self.substeps < 1 or abs(self.substeps * step - period) > 1e-9 * period:
+        if not 0.0 < period < inf:
+            raise BadInput(f"period = {period:g} s; allowed is more than 0")
+        self.period, self.duration = period, duration
+        self.substeps = round(period / step) if 0.0 < step < inf else 0
+        if self.substeps < 1 or abs(self.substeps * step - period) > 1e-9 * period:
             raise BadInput(f"step = {step:g} s; allowed are whole parts of the period, {period:g} s")
-        if not duration >= period:
+        if not period <= duration < inf:
             raise BadInput(f"duration = {duration:g} s; allowed is at least a period, {period:g} s")
         self.vessel = variation.boats[0]
         self.controls: Controls = controls(self.vessel, type(task).use)

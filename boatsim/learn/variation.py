@@ -92,6 +92,9 @@ def _having(boat: Vessel, held: Mapping[str, float]) -> Vessel:
     """The vessel with other numbers."""
     for key, x in held.items():
         if key in BODY:
+            about = BODY[key][1]
+            if not about.low <= x <= about.high:
+                raise BadInput(f"vary {key} = {x:g}; allowed {about.low:g} to {about.high:g} {about.unit}")
             boat = replace(boat, body=boat.body.model_copy(update={key.partition(".")[2]: x}))
             continue
         owner, name = _owner(boat, key)

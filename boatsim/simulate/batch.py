@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -63,6 +63,8 @@ class Batch:
         self._values = [p.values() for p in self.programs]
         self._on, self._none = self.program.switches(), np.zeros(self.code.NQ)
         self._seeds = np.zeros(self.n, dtype=int) if seeds is None else np.asarray(seeds, dtype=int)
+        if self._seeds.shape != (self.n,):
+            raise BadInput(f"{self._seeds.size} seeds for {self.n} boats; allowed is one for each")
         self.t = np.zeros(self.n)  # [s]
         self._y = np.zeros((self.n, 2 * self.code.NQ))
         self._commands = np.tile(taken_row(self.vessels[0], {}), (self.n, 1))
@@ -140,7 +142,7 @@ class Batch:
         Raises BadInput for a name that is unknown and a value out of bounds.
         """
         chosen, (rows, place, about) = self._chosen(boats), self._known(parameter)
-        given = np.broadcast_to(np.asarray(values, dtype=float), chosen.shape)
+        given = self._each(parameter, np.asarray(values, dtype=float), chosen)
         if not ((given >= about.low) & (given <= about.high)).all():
             wrong = given[~((given >= about.low) & (given <= about.high))][0]
             raise BadInput(f"{parameter} = {wrong:g}; allowed {about.low:g} to {about.high:g} {about.unit}".rstrip())
@@ -153,9 +155,14 @@ class Batch:
         return rows[:, place].copy()
 
     def assign(self, vessel: ArrayLike, boats: ArrayLike | None = None) -> None:
-        """Make boats the vessel of that number, one or (k,), with all parameters as its file has them."""
+        """Make boats the vessel of that number, one or (k,), with all parameters as its file has them.
+
+        Raises BadInput for a number that none has.
+        """
         chosen = self._chosen(boats)
-        numbers = np.broadcast_to(np.asarray(vessel, dtype=int), chosen.shape)
+        numbers = self._each("vessel", np.asarray(vessel, dtype=int), chosen)
+        if strange := [number for number in np.unique(numbers) if not 0 <= number < len(self.vessels)]:
+            raise BadInput(f"vessel {strange[0]}; allowed 0 to {len(self.vessels) - 1}")
         for number in np.unique(numbers):
             program, some = self.programs[number], chosen[numbers == number]
             self._p[some], self._body[some] = self._values[number], program.body
@@ -208,6 +215,15 @@ class Batch:
             raise BadInput(f"boat {chosen.max() if chosen.min() >= 0 else chosen.min()}; allowed 0 to {self.n - 1}")
         return chosen
 
+    @staticmethod
+    def _each(what: str, given: NDArray[Any], boats: Boats) -> NDArray[Any]:
+        """A value a boat. Raises BadInput."""
+        if given.shape not in ((), (1,), boats.shape):
+            raise BadInput(
+                f"{what}: values of shape {given.shape}; allowed are one, or one for each of {len(boats)} boats"
+            )
+        return np.broadcast_to(given, boats.shape)
+
     def _rows(self, states: ArrayLike, boats: Boats) -> Array:
         """A state a boat. Raises BadInput."""
         given = np.asarray(states, dtype=float)
@@ -221,7 +237,8 @@ class Batch:
         if isinstance(commands, Mapping):
             return taken_row(boat, commands)
         given, width = np.asarray(commands, dtype=float), len(boat.commands)
-        if given.ndim not in (1, 2) or given.shape[-1] not in (width, len(boat.inputs)):
+        fits = given.shape[:-1] in ((), (1,), boats.shape)
+        if not (given.ndim and fits and given.shape[-1] in (width, len(boat.inputs))):
             raise BadInput(f"commands of shape {given.shape}; allowed are {width} a boat: {', '.join(boat.commands)}")
         rows = self._commands[boats]
         rows[:, : given.shape[-1]] = given
