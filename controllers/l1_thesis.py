@@ -107,11 +107,10 @@ class L1Thesis(CompiledController):
 
     def estimates(self) -> dict[str, Estimate]:
         """All estimates with their bounds, and the predicted states."""
-        m = self.remembered
+        _, vh, rh, *_, sway, yaw = self.remembered.item()
         found = {
-            f"{name}_{axis}": Estimate(float(m[axis][name]), *bounds)
-            for axis in ("sway", "yaw")
-            for name, bounds in BOUNDS.items()
+            f"{name}_{axis}": Estimate(value, *bounds)
+            for axis, row in (("sway", sway), ("yaw", yaw))
+            for (name, bounds), value in zip(BOUNDS.items(), row, strict=False)
         }
-        predicted = {"reference_v_mps": float(m["vh"]), "reference_r_radps": float(m["rh"])}
-        return found | {name: Estimate(value, nan, nan) for name, value in predicted.items()}
+        return found | {"reference_v_mps": Estimate(vh, nan, nan), "reference_r_radps": Estimate(rh, nan, nan)}

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from inspect import getsourcefile
 from math import inf, nan
+from operator import attrgetter
 from pathlib import Path
 from time import monotonic
 from warnings import catch_warnings, simplefilter
@@ -30,7 +31,7 @@ from boatsim.simulate.sensing import sensed
 from boatsim.simulate.world import Tank
 
 SENSED = ("psi_rad", "r_radps", "ax_mps2", "ay_mps2", "u_mps", "x_m", "y_m")
-FIELDS = ("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
+FELT_OF = attrgetter("psi", "r", "ax", "ay", "u", "x", "y")  # of Sense, in the same order
 SEEN = ("x_m", "y_m", "psi_rad")  # the pose that a camera frame gives
 SHORTEST = 1e-6  # [s] of a part of a step
 CHUNK = 500  # [rows] handed to a listener at a time
@@ -77,8 +78,10 @@ class Runner:
         self._imu, self._shaking, *self._noise = (np.random.default_rng(s) for s in seeds)
         self._signals = signals_of(vessel.freedoms)
         self._axes = [axis in vessel.freedoms for axis in AXES]
+        self._motion_of = attrgetter(*(signal.symbol for signal in self._signals))
         self._read = {name: column for sensor in scenario.aboard for name, column in type(sensor).columns.items()}
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
+        self._sent_places = [list(vessel.commands).index(name) for name in self._sent_channels]
         self._actuators = vessel.actuators
         self._goals = [key for key in scenario.goal_keys if key not in vessel.commands]  # those are in `sent_` columns
         self._around = {n: m.neutral for n, m in vessel.measured.items()}
@@ -321,12 +324,12 @@ class Runner:
         self.log.add(
             [
                 s.t,
-                *(getattr(s, signal.symbol) for signal in self._signals),
+                *self._motion_of(s),
                 *self._in_force(),
                 *self._around.values(),
                 *(self._sent[n] for n in self._sent_channels),
                 *engine.actuators.values(),
-                *(getattr(sense, f) for f in FIELDS),
+                *FELT_OF(sense),
                 *(sense.more[n] for n in self._read),
                 *((*frames[-1].marks, *frames[-1][1:4]) if frames else [nan] * (len(self._marks) + len(SEEN))),
                 *(f for f, there in zip(engine.wrench(), self._axes, strict=True) if there),
@@ -341,8 +344,8 @@ class Runner:
 
     def _in_force(self) -> list[float]:
         """Commands that act, of the channels the controller sets."""
-        commands = self.engine.commands
-        return [commands[n] for n in self._sent_channels]
+        commands = self.engine.in_force()
+        return [commands[i] for i in self._sent_places]
 
     def _wind(self, s: State) -> list[float]:
         """Force of the air (X, Y, Z, K, M, N) in body axes [N, N m]."""

@@ -117,6 +117,10 @@ class Stepper(ABC):
         """Commands in force."""
         return dict(zip(self.vessel.commands, self._commands.tolist(), strict=False))  # what is measured comes behind
 
+    def in_force(self) -> list[float]:
+        """The same, without the names: in the order of the vessel's inputs."""
+        return self._commands.tolist()
+
     def advance(self, steps: int = 1, length: float | None = None) -> None:
         """Steps of `length` s (default: `step`) with the commands held. Raises BadPhysics if the motion diverges."""
         for _ in range(steps):
