@@ -50,7 +50,9 @@ class Curve(BaseCallback):
         self.rows.append((self.num_timesteps / 1e6, float(np.mean(berthed)), float(np.mean(times or [np.nan]))))
         self._over.clear()
         if len(self.rows) % 5 == 0:
-            print("{:5.1f} million control steps: {:6.1%} berthed, in {:4.1f} s".format(*self.rows[-1]), flush=True)
+            steps, share, seconds = self.rows[-1]
+            told = f", in {seconds:.1f} s" if times else ""
+            print(f"{steps:5.1f} million control steps: {share:6.1%} berthed{told}", flush=True)
 
 
 def trained(steps: int, boats: int) -> tuple[PPO, Curve]:
