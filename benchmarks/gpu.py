@@ -24,7 +24,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.twin import Twin
 from boatsim.warp import Batch
-from boatsim.warp.library import device as known
+from boatsim.warp.runtime import device as known
 
 STEP, SECOND = 0.02, 50  # [s], steps in a second
 ROUNDS = 3

@@ -15,7 +15,7 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
 HEAVY = {  # library -> the only modules that may import it
     "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")} | {"warp.on_mujoco"},
     "mujoco_warp": {"warp.on_mujoco"},
-    "warp": {"warp.library"},
+    "warp": {"warp.runtime"},
     "dm_control": {"simulate.env"},
     "dm_env": {"simulate.env"},
     "gymnasium": {f"learn.{name}" for name in ("registration", "single", "spaces", "vector")},

@@ -23,9 +23,9 @@ from boatsim.simulate import batch as cores
 from boatsim.simulate.twin import Twin
 from boatsim.warp import Batch
 from boatsim.warp.kernels import HEAD
-from boatsim.warp.library import warp
 from boatsim.warp.on_mujoco import OnMujoco
 from boatsim.warp.program import kept, module
+from boatsim.warp.runtime import warp
 from boatsim.warp.translate import Translation
 from boatsim.warp.values import REAL, ROW, WHOLE
 

@@ -8,7 +8,7 @@ import numpy as np
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
 from boatsim.warp import program as programs
-from boatsim.warp.library import device, warp
+from boatsim.warp.runtime import device, warp
 
 
 class Boats:
