@@ -1,7 +1,7 @@
 """A scenario with many boats at once: its controller, sensors, goals and seeds for each, on all cores.
 
-As `boatsim run` without MuJoCo: nothing touches a wall, and no camera films. The noise of a boat's sensors is that of
-`boatsim run` with its seed.
+As `boatsim run` without MuJoCo: nothing touches a wall, no camera films, and what ends a run early (`[until]`) ends no
+fleet. The noise of a boat's sensors is that of `boatsim run` with its seed.
 """
 
 from collections.abc import Sequence
@@ -62,7 +62,7 @@ class Fleet:
         """
         file = scenario.file
         boats = scenario.vessel if vessels is None else vessels
-        count = n or (1 if isinstance(boats, Vessel) else len(boats))
+        count = n if n is not None else 1 if isinstance(boats, Vessel) else len(boats)
         self.seeds = np.arange(file.seed, file.seed + count) if seeds is None else np.asarray(seeds, dtype=int)
         if len(self.seeds) != count:
             raise BadInput(f"{len(self.seeds)} seeds for {count} boats; allowed is one for each")
