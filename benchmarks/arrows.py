@@ -27,11 +27,11 @@ LAYERS = (  # a module may import from its own folder and from those in the line
     "recordings control",
     "simulate",
     "learn",
-    "measures warp",
+    "metrics warp",
     "view",
     "drive",
-    "diagnose",
-    "sweep",
+    "diagnosis",
+    "sweeps",
     "newboat",
     "api",
     "cli __main__ __init__",
@@ -42,18 +42,27 @@ ABOUT = {  # what the picture says of each folder
     "control": "blocks of controllers",
     "simulate": "what a run is",
     "learn": "tasks for learners",
-    "measures": "norms of a run",
+    "metrics": "metrics of a run",
     "warp": "boats on a GPU",
     "view": "runs in rerun",
     "drive": "hands on the sticks",
-    "diagnose": "what was left out",
-    "sweep": "many runs",
+    "diagnosis": "what was left out",
+    "sweeps": "many runs",
     "newboat": "from particulars",
     "cli": "commands",
 }
-DYNAMIC = ("import_module", "__import__", "spec_from_file_location", "exec_module", "run_path", "run_module")
+DYNAMIC = (
+    "import_module",
+    "__import__",
+    "spec_from_file_location",
+    "exec_module",
+    "run_path",
+    "run_module",
+)
 OURS = {  # "physics.effects.fan_wind" -> its file; "physics.effects" is the package itself
-    ".".join(path.relative_to(HOME / "boatsim").with_suffix("").parts).removesuffix(".__init__"): path
+    ".".join(path.relative_to(HOME / "boatsim").with_suffix("").parts).removesuffix(
+        ".__init__"
+    ): path
     for path in sorted((HOME / "boatsim").rglob("*.py"))
 }
 
@@ -69,8 +78,13 @@ def imported(path: Path) -> frozenset[str]:
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level:
             if path.parent != KERNEL:
-                raise ValueError(f"{path}:{node.lineno}: write the full name, so that it can be seen where it points")
-            names.add("boatsim.physics.kernel" + ("" if f"{node.module}.py" in WRITTEN else f".{node.module}"))
+                raise ValueError(
+                    f"{path}:{node.lineno}: write the full name, so that it can be seen where it points"
+                )
+            names.add(
+                "boatsim.physics.kernel"
+                + ("" if f"{node.module}.py" in WRITTEN else f".{node.module}")
+            )
         elif isinstance(node, ast.ImportFrom):
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
         elif (name := _by_name(node)) is not None:
@@ -90,7 +104,10 @@ def own(path: Path) -> set[str]:
     """Our modules among them: boatsim.physics.effects.fan_wind.law is `physics.effects.fan_wind`."""
     names = [name.split(".")[1:] for name in imported(path) if name.split(".")[0] == "boatsim"]
     parts = [[".".join(name[:n]) for n in range(len(name), 0, -1)] for name in names]
-    return {next((part for part in longest_first if part in OURS), "__init__") for longest_first in parts}
+    return {
+        next((part for part in longest_first if part in OURS), "__init__")
+        for longest_first in parts
+    }
 
 
 def level(name: str) -> int:
@@ -98,7 +115,9 @@ def level(name: str) -> int:
     first = name.split(".")[0]
     found = next((i for i, names in enumerate(LAYERS) if first in names.split()), None)
     if found is None:
-        raise ValueError(f"boatsim/{first} stands in no layer: add it to LAYERS in benchmarks/arrows.py")
+        raise ValueError(
+            f"boatsim/{first} stands in no layer: add it to LAYERS in benchmarks/arrows.py"
+        )
     return found
 
 
@@ -109,7 +128,9 @@ def on_shelf(name: str) -> str:
 
 def counts() -> Counter[tuple[str, str]]:
     """Imports from folder to folder (importer, imported)."""
-    modules = {(on_shelf(name), on_shelf(other)) for name, path in OURS.items() for other in own(path)}
+    modules = {
+        (on_shelf(name), on_shelf(other)) for name, path in OURS.items() for other in own(path)
+    }
     pairs = ((a.partition(".")[0], b.partition(".")[0]) for a, b in modules)
     return Counter((a, b) for a, b in pairs if a != b)
 
@@ -153,7 +174,11 @@ def picture(found: Mapping[tuple[str, str], int]) -> str:
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">',
             "<title>Imports between the folders of boatsim</title>",
             f"<style>{STYLE}</style>",
-            *(line for depth, lane in enumerate(lanes) for line in _lane(lane, depth, lanes, folders, found)),
+            *(
+                line
+                for depth, lane in enumerate(lanes)
+                for line in _lane(lane, depth, lanes, folders, found)
+            ),
             *(line for i, name in enumerate(folders) for line in _box(name, i)),
             *_notes(found, height),
             "</svg>",
@@ -176,13 +201,19 @@ def _box(name: str, i: int) -> Iterator[str]:
 
 
 def _lane(
-    lane: str, depth: int, lanes: list[str], folders: list[str], found: Mapping[tuple[str, str], int]
+    lane: str,
+    depth: int,
+    lanes: list[str],
+    folders: list[str],
+    found: Mapping[tuple[str, str], int],
 ) -> Iterator[str]:
     """The way of all imports of one folder: from each importer down, left, and up to it."""
     place, bottom = folders.index(lane), EDGE + HIGH
     y, x, colour = bottom + FIRST + depth * LANE, _left(place) + 20, COLOURS[place]
     taps = [
-        (_left(i) + _tap(a, depth, lanes, found), found[a, lane]) for i, a in enumerate(folders) if (a, lane) in found
+        (_left(i) + _tap(a, depth, lanes, found), found[a, lane])
+        for i, a in enumerate(folders)
+        if (a, lane) in found
     ]
     far = max(at for at, _ in taps)
     yield f'<path stroke="{colour}" d="M{far} {y}H{x}V{bottom + 7}"/>'
@@ -210,13 +241,21 @@ def _notes(found: Mapping[tuple[str, str], int], height: int) -> Iterator[str]:
 
 def main(arguments: list[str] | None = None) -> int:
     """0 drawn or up to date, 1 out of date."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.arrows", description="A picture of our imports.")
-    parser.add_argument("--check", action="store_true", help="only say whether docs/arrows.svg is up to date")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.arrows", description="A picture of our imports."
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="only say whether docs/arrows.svg is up to date"
+    )
     text = picture(counts())
     if not parser.parse_args(arguments).check:
         OUT.write_text(text, encoding="utf-8")
     same = OUT.is_file() and OUT.read_text(encoding="utf-8") == text
-    print("docs/arrows.svg is up to date" if same else "docs/arrows.svg is out of date: python -m benchmarks.arrows")
+    print(
+        "docs/arrows.svg is up to date"
+        if same
+        else "docs/arrows.svg is out of date: python -m benchmarks.arrows"
+    )
     return int(not same)
 
 

@@ -42,7 +42,9 @@ def open_loop(boats: int) -> list[Figure]:
     """Commands held, and commands of all boats that jump every period."""
     batch = Batch(vessel.load("joystick_boat", extra=EXTRA), boats, STEP)
     row = batch.program.command_array(COMMANDS)
-    jumps = np.random.default_rng(0).uniform(-1.0, 1.0, (BESIDE, boats, len(row))) * np.abs(row) * 0.2
+    jumps = (
+        np.random.default_rng(0).uniform(-1.0, 1.0, (BESIDE, boats, len(row))) * np.abs(row) * 0.2
+    )
 
     def changing() -> None:
         for jump in jumps:
@@ -54,7 +56,12 @@ def open_loop(boats: int) -> list[Figure]:
     held = rate(steps, lambda: batch.advance(row, BESIDE * PERIOD))
     return [
         Figure(f"open loop, {boats:,} boats, commands held", held / 1e6, "M boat-steps/s", 8.0),
-        Figure("open loop, all commands jump every 80 ms", rate(steps, changing) / 1e6, "M boat-steps/s", 0.0),
+        Figure(
+            "open loop, all commands jump every 80 ms",
+            rate(steps, changing) / 1e6,
+            "M boat-steps/s",
+            0.0,
+        ),
         Figure("memory of a boat", batch.bytes_per_boat, "bytes", 0.0),
     ]
 
@@ -72,7 +79,9 @@ def closed_loop(boats: int) -> list[Figure]:
         steps = boats * round(SECONDS / STEP)
         goal = (3.0, 15.0) if use == "l1_joystick" else (0.0, float("inf"))
         found += [
-            Figure(f"{use} compiled, {boats:,} boats", steps / took / 1e6, "M boat-steps/s", goal[0]),
+            Figure(
+                f"{use} compiled, {boats:,} boats", steps / took / 1e6, "M boat-steps/s", goal[0]
+            ),
             Figure(f"{use} compiled, {SECONDS:g} s of them", took, "s", goal[1], at_least=False),
         ]
     return found
@@ -80,10 +89,14 @@ def closed_loop(boats: int) -> list[Figure]:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.batch", description="Speed of many boats at once.")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.batch", description="Speed of many boats at once."
+    )
     parser.add_argument("--boats", type=int, default=10_000)
     boats = parser.parse_args().boats
-    table = Table("", "measured", "to reach", "reached", title=f"{len(os.sched_getaffinity(0))} cores")
+    table = Table(
+        "", "measured", "to reach", "reached", title=f"{len(os.sched_getaffinity(0))} cores"
+    )
     for figure in (*open_loop(boats), *closed_loop(boats)):
         table.add_row(*figure.row())
     Console().print(table)

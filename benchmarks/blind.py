@@ -14,13 +14,16 @@ from typing import Any
 import numpy as np
 
 from boatsim.simulate import scenario
-from boatsim.simulate.norms import norms
+from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import Runner, run
 
 TESTS = [f"{kind}_{n}" for kind in ("sway", "yaw") for n in (1, 2, 3, 4)]
 BELIEFS = {"rated_thrust": 0.35, "sway_thrust": 0.55}  # [N]
 LONGEST = 90.0  # [s] of a check
-ASKED = {"sway": (("surge_offset", 0.15), ("heading_at_end", 10.0)), "yaw": (("moved", 1.2), ("excursion", 1.2))}
+ASKED = {
+    "sway": (("surge_offset", 0.15), ("heading_at_end", 10.0)),
+    "yaw": (("moved", 1.2), ("excursion", 1.2)),
+}
 
 
 def boat(test: str, rng: np.random.Generator) -> dict[str, Any]:
@@ -52,7 +55,9 @@ def boat(test: str, rng: np.random.Generator) -> dict[str, Any]:
 def known(test: str, settings: dict[str, Any], seed: int) -> dict[str, Any]:
     """Controller that has tried the motors of this boat, in a run of its own."""
     blind = {"use": "l1_joystick_blind", "check_pwm": 118.0, **BELIEFS}
-    checked = scenario.load(f"joystick_boat/{test}_gyro", {**settings, "controller": blind, "until": {}, "goal": [{}]})
+    checked = scenario.load(
+        f"joystick_boat/{test}_gyro", {**settings, "controller": blind, "until": {}, "goal": [{}]}
+    )
     runner, controller = Runner(checked, 1000 + seed), checked.controller
     runner.run(stop=lambda: runner._state.t > LONGEST or controller.found is not None)
     astern, angle, scale = controller.found
@@ -66,8 +71,12 @@ def study(test: str, boats: int) -> list[str]:
     for seed in range(boats):
         settings = boat(test, rng)
         for controller in ({"use": "l1_joystick", **BELIEFS}, known(test, settings, seed)):
-            made = scenario.load(f"joystick_boat/{test}_gyro", {**settings, "controller": controller})
-            found[controller["use"]].append({n: abs(x.value or np.nan) for n, x in norms(run(made, seed)).items()})
+            made = scenario.load(
+                f"joystick_boat/{test}_gyro", {**settings, "controller": controller}
+            )
+            found[controller["use"]].append(
+                {n: abs(x.value or np.nan) for n, x in norms(run(made, seed)).items()}
+            )
     lines = []
     for name, rows in found.items():
         cells = []
@@ -82,7 +91,9 @@ def study(test: str, boats: int) -> list[str]:
 def unrest(test: str, controller: dict[str, Any], settled: float = 6.0) -> str:
     """Standard deviation of both PWM of 255 from `settled` [s] on."""
     log = run(scenario.load(f"joystick_boat/{test}", {"controller": controller}), 0).recording
-    port, starboard = (float(np.std(log[f"pwm_{side}"][log.t > settled])) for side in ("port", "starboard"))
+    port, starboard = (
+        float(np.std(log[f"pwm_{side}"][log.t > settled])) for side in ("port", "starboard")
+    )
     return f"{port:8.1f}{starboard:8.1f}"
 
 
@@ -93,7 +104,9 @@ def main() -> None:
     parser.add_argument("--test", choices=TESTS, action="append")
     given = parser.parse_args()
     print("boats by chance: median, 95 %, largest, share within the requirement")
-    print("  sway: surge offset [m] (0.15), heading [deg] (10); yaw: light moved [m], mass centre away [m] (both 1.2)")
+    print(
+        "  sway: surge offset [m] (0.15), heading [deg] (10); yaw: light moved [m], mass centre away [m] (both 1.2)"
+    )
     for test in given.test or TESTS:
         print("\n".join(study(test, given.boats)), flush=True)
     print("\nas shipped, seeds 0 to 5: mean (largest)")

@@ -20,12 +20,21 @@ import numpy as np
 
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording, read, write_csv
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
-BOAT, HELD, STEP = "trial_boat", 5 / 6, 1 / 60  # vessel, [s] between joystick steps, [s] of integration
+BOAT, HELD, STEP = (
+    "trial_boat",
+    5 / 6,
+    1 / 60,
+)  # vessel, [s] between joystick steps, [s] of integration
 NOISE = (0.003, 0.003, 0.012)  # [m, m, rad] of camera and compass
 TRIAL = (80.0, 6.0)  # [s], [Hz] of a practice trial
-COLUMNS = {"cpu": "CPU [s]", "wall": "analysis [s]", "peak": "peak RAM [MB]", "written": "files [MB]"}
+COLUMNS = {
+    "cpu": "CPU [s]",
+    "wall": "analysis [s]",
+    "peak": "peak RAM [MB]",
+    "written": "files [MB]",
+}
 
 
 def simulated(seconds: float, rate: float, seed: int) -> Recording:
@@ -35,7 +44,9 @@ def simulated(seconds: float, rate: float, seed: int) -> Recording:
     steps = rng.uniform(-1.0, 1.0, (int(seconds / HELD) + 1, 4)) * (0.9, 0.9, 0.6, 0.6)
     t = np.arange(0.0, seconds, 1.0 / rate)
     commands = steps[(t / HELD + 1e-9).astype(int)]
-    states = Twin(boat, STEP if rate < 10 else 1.0 / rate).rollout([0.0] * 6, commands, 1.0 / rate)[:-1]
+    states = Twin(boat, STEP if rate < 10 else 1.0 / rate).rollout([0.0] * 6, commands, 1.0 / rate)[
+        :-1
+    ]
     pose = states[:, :3] + rng.standard_normal((len(t), 3)) * NOISE
     signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True))
     return Recording(f"{seed}", t, signals | dict(zip(boat.commands, commands.T, strict=True)))
@@ -58,7 +69,14 @@ def cost(run: Recording, folder: Path, cache: Path | None = None) -> dict[str, f
     """CPU [s], peak memory and files [MB] of one command."""
     write_csv(run, folder / "run.csv")
     environment = os.environ | ({"BOATSIM_CACHE": str(cache)} if cache else {})
-    command = [sys.executable, "-m", "benchmarks.cost", "--one", str(folder / "run.csv"), str(folder / "out")]
+    command = [
+        sys.executable,
+        "-m",
+        "benchmarks.cost",
+        "--one",
+        str(folder / "run.csv"),
+        str(folder / "out"),
+    ]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
     answer = json.loads((folder / "out" / "diagnosis.json").read_text(encoding="utf-8"))
@@ -73,7 +91,9 @@ def show(name: str, found: dict[str, float]) -> None:
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="the shortest runs only, and no cold start")
+    parser.add_argument(
+        "--quick", action="store_true", help="the shortest runs only, and no cold start"
+    )
     parser.add_argument("--one", nargs=2, metavar=("RUN", "OUT"), help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.one:
@@ -87,7 +107,10 @@ def main() -> None:
         begin = time.process_time()
         read(folder / "long.csv", vessel.load(BOAT).limits())
         took = time.process_time() - begin
-        print(f"reading {len(run)} rows of {len(run.signals) + 1} columns: {took:.2f} s CPU", flush=True)
+        print(
+            f"reading {len(run)} rows of {len(run.signals) + 1} columns: {took:.2f} s CPU",
+            flush=True,
+        )
         for rate in (6.0, 20.0):
             for minutes in (1,) if given.quick else (1, 2, 5, 10):
                 run = simulated(60.0 * minutes, rate, minutes)

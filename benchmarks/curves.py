@@ -14,14 +14,19 @@ import numpy as np
 
 from boatsim.physics import vessel
 from boatsim.simulate.batch import Batch
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 STEP, ROUNDS = 0.02, 5  # [s] of integration
 MINUTES = (1, 10, 60, 360, 1440)
 BOATS = (1, 10, 100, 1_000, 10_000, 100_000)
 ENTRIES = (0, 2, 4, 8, 16)  # beside those of the vessel's own file
 STEPS = {"boats": 100, "entries": 200_000}
-COMMANDS = {"pwm_port": 120.0, "pwm_starboard": -90.0, "steer_port_rad": 0.4, "steer_starboard_rad": -0.3}
+COMMANDS = {
+    "pwm_port": 120.0,
+    "pwm_starboard": -90.0,
+    "steer_port_rad": 0.4,
+    "steer_starboard_rad": -0.3,
+}
 
 
 def took(work: Callable[[], object]) -> float:
@@ -38,7 +43,10 @@ def took(work: Callable[[], object]) -> float:
 def column(what: str, sizes: Sequence[int], seconds: Sequence[float], steps: Sequence[int]) -> str:
     """A column of the table, with the exponents of its whole and of its second half."""
     lines = [f"{what:>12}{'[s]':>12}{'million steps/s':>18}"]
-    lines += [f"{n:12,}{s:12.3g}{k / s / 1e6:18.3g}" for n, s, k in zip(sizes, seconds, steps, strict=True)]
+    lines += [
+        f"{n:12,}{s:12.3g}{k / s / 1e6:18.3g}"
+        for n, s, k in zip(sizes, seconds, steps, strict=True)
+    ]
     x, y, half = np.log(np.maximum(sizes, 1)), np.log(seconds), len(sizes) // 2
     whole, later = (np.polyfit(x[since:], y[since:], 1)[0] for since in (0, half))
     return "\n".join([*lines, f"    exponent {whole:.2f}; from {sizes[half]:,} on {later:.2f}", ""])
@@ -48,7 +56,12 @@ def lengths() -> str:
     """Simulated length."""
     twin = Twin(vessel.load("joystick_boat"), STEP)
     steps = [round(60 * m / STEP) for m in MINUTES]
-    return column("minutes", MINUTES, [took(lambda n=n: twin.coast([0.0] * 6, COMMANDS, n)) for n in steps], steps)
+    return column(
+        "minutes",
+        MINUTES,
+        [took(lambda n=n: twin.coast([0.0] * 6, COMMANDS, n)) for n in steps],
+        steps,
+    )
 
 
 def boats() -> str:
@@ -65,7 +78,8 @@ def entries() -> str:
     own, sizes, seconds = len(vessel.load("joystick_boat").effects), [], []
     for extra in ENTRIES:
         effects = [
-            {"use": "fan_wind", "name": f"wind_{i}", "speed": 0.1 * (i + 1), "toward": 0.1 * i} for i in range(extra)
+            {"use": "fan_wind", "name": f"wind_{i}", "speed": 0.1 * (i + 1), "toward": 0.1 * i}
+            for i in range(extra)
         ]
         twin = Twin(vessel.load("joystick_boat", extra=effects), STEP)
         sizes.append(own + extra)

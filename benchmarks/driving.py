@@ -60,7 +60,9 @@ def driven(folder: Path, seconds: float, *more: str) -> Iterator[Page]:
     """The page of a run under way; at the end of the block it is awaited."""
     command = [sys.executable, "-m", "boatsim", "drive", "joystick_boat", "--no-open", *more]
     command += ["--seconds", f"{seconds:g}", "--out", str(folder)]
-    running = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    running = subprocess.Popen(
+        command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
+    )
     assert running.stderr
     found = re.search(r"http://\S+", running.stderr.readline())
     assert found
@@ -73,7 +75,11 @@ def picture(folder: Path, path: Path) -> None:
     """The page as it is after some seconds of turning."""
     with driven(folder, 21.0, "--scenario", str(SHOWN)) as page:
         page.until("frame && frame.t > 1 && !frame.away")
-        for until, push in ((8, "0.0, -0.6, 0.6, 0"), (14, "0.0, -0.5, -0.9, 0"), (19, "0.8, -0.1, 0.4, 0")):
+        for until, push in (
+            (8, "0.0, -0.6, 0.6, 0"),
+            (14, "0.0, -0.5, -0.9, 0"),
+            (19, "0.8, -0.1, 0.4, 0"),
+        ):
             page.run(f"push({push})")
             page.until(f"frame.t > {until}")
         page.picture(path, 1120, 770)
@@ -92,7 +98,9 @@ def measured(folder: Path, seconds: float) -> None:
     print(line("commands", after(log, SENT, begin, moved[:, 0])))
     print(line("picture", moved[:, 1] - moved[:, 0]))
     late, worst = facts["late_periods"], facts["latest_ms"]
-    print(f"{facts['periods']} control periods, {late} begun late; the latest {worst} ms behind time")
+    print(
+        f"{facts['periods']} control periods, {late} begun late; the latest {worst} ms behind time"
+    )
 
 
 def main(given: Sequence[str] | None = None) -> None:

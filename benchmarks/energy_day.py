@@ -18,8 +18,8 @@ import numpy as np
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.twin import Twin
 
 HOUR = 3600.0  # [s]
 START = (0.0, 0.0, 0.0, 1.0, 0.1, 0.2)  # x, y, psi, u, v, r
@@ -67,7 +67,13 @@ def kept(state: Array) -> Array:
     """Energy [J] and momentum north and east [N s]."""
     psi, nu = state[2], state[3:]
     p = MASS * nu
-    return np.array([0.5 * p @ nu, p[0] * np.cos(psi) - p[1] * np.sin(psi), p[0] * np.sin(psi) + p[1] * np.cos(psi)])
+    return np.array(
+        [
+            0.5 * p @ nu,
+            p[0] * np.cos(psi) - p[1] * np.sin(psi),
+            p[0] * np.sin(psi) + p[1] * np.cos(psi),
+        ]
+    )
 
 
 def of_engine(made: Vessel, step: float) -> Advance:
@@ -98,7 +104,9 @@ def of_twin(made: Vessel, step: float) -> Advance:
 
 def memory() -> float:
     """Largest memory of this process so far [MB]."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1e6 if sys.platform == "darwin" else 1e6 / 1024)
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (
+        1e6 if sys.platform == "darwin" else 1e6 / 1024
+    )
 
 
 def lost(advance: Advance, hours: float, step: float) -> str:
@@ -120,7 +128,9 @@ def main() -> None:
     parser.add_argument("--hours", type=float, default=24.0, help="simulated")
     parser.add_argument("--step", type=float, default=0.01, help="[s] of integration")
     given = parser.parse_args()
-    print(f"{'':10}{'steps':>12}{'took [s]':>10}{'energy lost':>16}{'momentum lost':>18}{'grown [MB]':>14}")
+    print(
+        f"{'':10}{'steps':>12}{'took [s]':>10}{'energy lost':>16}{'momentum lost':>18}{'grown [MB]':>14}"
+    )
     with TemporaryDirectory() as folder:
         made = boat(Path(folder))
         for name, start in (("twin", of_twin), ("engine", of_engine)):

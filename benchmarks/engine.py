@@ -24,15 +24,20 @@ from rich.table import Table
 
 from boatsim.physics import vessel
 from boatsim.simulate import cases, scenario
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.run import run
-from boatsim.simulate.twin import Twin
 from boatsim.simulate.world import Tank
 
 ROUNDS = 5
 STEP = 0.02  # [s]
 START = State(psi=0.3, u=0.2, v=0.05, r=0.1)
-COMMANDS = {"pwm_port": 120.0, "pwm_starboard": -90.0, "steer_port_rad": 0.4, "steer_starboard_rad": -0.3}
+COMMANDS = {
+    "pwm_port": 120.0,
+    "pwm_starboard": -90.0,
+    "steer_port_rad": 0.4,
+    "steer_starboard_rad": -0.3,
+}
 SHAFTS = {"n_port_radps": 80.0, "n_starboard_radps": 60.0}  # [rad/s]
 EXTRA = (
     {"use": "weak_reverse", "astern_factor": 0.694},
@@ -42,7 +47,10 @@ EXTRA = (
 )
 SCENARIO = "joystick_boat/sway_1"
 FAST = 100.0  # times real time that each scenario is to reach
-OPEN = {"until": {}, "tank": {"length": 1e4, "width": 1e4}}  # so that the boat sails on and touches nothing
+OPEN = {
+    "until": {},
+    "tank": {"length": 1e4, "width": 1e4},
+}  # so that the boat sails on and touches nothing
 CLI = [sys.executable, "-c", "from boatsim.cli import main; main()"]
 
 
@@ -76,15 +84,24 @@ class Figure:
         """Cells of the printed table."""
         reached = self.value >= self.target if self.at_least else self.value <= self.target
         sign = ">=" if self.at_least else "<="
-        target = f"{sign} {self.target:,.10g} {self.unit}" if 0.0 < self.target < float("inf") else ""
-        return self.name, f"{self.value:,.4g} {self.unit}", target, "" if not target else "yes" if reached else "NO"
+        target = (
+            f"{sign} {self.target:,.10g} {self.unit}" if 0.0 < self.target < float("inf") else ""
+        )
+        return (
+            self.name,
+            f"{self.value:,.4g} {self.unit}",
+            target,
+            "" if not target else "yes" if reached else "NO",
+        )
 
 
 def stepping() -> list[Figure]:
     """RK4 steps/s of engine, floor and twin."""
     boat = vessel.load("joystick_boat", extra=EXTRA)
     tank = Tank(1e4, 1e4, 1.0)
-    engines = {name: Engine(boat, tank, STEP, callback=name, show=False) for name in ("native", "python")}
+    engines = {
+        name: Engine(boat, tank, STEP, callback=name, show=False) for name in ("native", "python")
+    }
     engines["floor"] = Engine(boat, tank, STEP, show=False)
     engines["floor"].callback = None
     twin, six = Twin(boat, STEP), Twin(vessel.load("otter"), STEP)
@@ -127,7 +144,9 @@ def scenario_speed() -> Figure:
         start = perf_counter()
         run(minute)
         seconds.append(perf_counter() - start)
-    return Figure("60 s scenario with controller, sensors, log", 60.0 / median(seconds), "x real time", 100)
+    return Figure(
+        "60 s scenario with controller, sensors, log", 60.0 / median(seconds), "x real time", 100
+    )
 
 
 def process(arguments: list[str], **environment: str) -> tuple[float, float]:
@@ -150,8 +169,12 @@ def processes() -> list[Figure]:
     with tempfile.TemporaryDirectory() as folder:
         out, cache = f"{folder}/out", f"{folder}/cache"
         cold, _ = process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)
-        warm = median(process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)[0] for _ in range(3))
-        hour, peak = process([*CLI, "run", str(an_hour(Path(folder))), "--out", out], BOATSIM_CACHE=cache)
+        warm = median(
+            process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)[0] for _ in range(3)
+        )
+        hour, peak = process(
+            [*CLI, "run", str(an_hour(Path(folder))), "--out", out], BOATSIM_CACHE=cache
+        )
     return [
         Figure(f"boatsim run {SCENARIO}, first time", cold, "s", 20, at_least=False),
         Figure(f"boatsim run {SCENARIO}, later", warm, "s", 3, at_least=False),
@@ -181,19 +204,34 @@ def every_scenario(console: Console) -> None:
             done = run(whole)
             took.append(perf_counter() - start)
         lasted = float(np.ptp(done.recording.t))
-        found.append((lasted / min(took), name, lasted, whole.file.step, whole.controller.period, whole.file.engine))
+        found.append(
+            (
+                lasted / min(took),
+                name,
+                lasted,
+                whole.file.step,
+                whole.controller.period,
+                whole.file.engine,
+            )
+        )
     table = Table("scenario", "x real time", "lasts s", "step s", "period s", "engine")
     for speed, name, lasted, step, period, engine in sorted(found):
         table.add_row(name, f"{speed:,.0f}", f"{lasted:g}", f"{step:g}", f"{period:g}", engine)
     console.print(table)
     below = [name for speed, name, *_ in found if speed < FAST]
-    console.print(f"{len(found)} scenarios, {len(below)} below {FAST:g} x real time: {', '.join(below) or 'none'}")
+    console.print(
+        f"{len(found)} scenarios, {len(below)} below {FAST:g} x real time: {', '.join(below) or 'none'}"
+    )
 
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.engine", description="Speed of the physics.")
-    parser.add_argument("--scenarios", action="store_true", help="every scenario of the repository instead")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.engine", description="Speed of the physics."
+    )
+    parser.add_argument(
+        "--scenarios", action="store_true", help="every scenario of the repository instead"
+    )
     console = Console()
     if parser.parse_args().scenarios:
         every_scenario(console)

@@ -12,7 +12,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-VESSEL, HORIZON, LENGTH = "trial_boat", 6.0, 1.2  # where none is named; [s] of free runs at this length [m]
+VESSEL, HORIZON, LENGTH = (
+    "trial_boat",
+    6.0,
+    1.2,
+)  # where none is named; [s] of free runs at this length [m]
 OPTIONAL: Mapping[str, Any] = {"verdict": "", "described": [], "candidates": [], "fit": {}}
 SPAN = 0.05  # of the horizon that a free run may be shorter or longer
 COVERED = 0.95  # of the rows that free runs must reach
@@ -48,19 +52,26 @@ def answers_in(results: Path, trials: list[str]) -> dict[str, dict[str, Any]]:
 def read_answer(file: Path) -> dict[str, Any]:
     """One answer, what need not be there filled in. Raises BadEntry."""
     if not file.is_file():
-        raise BadEntry(f"{file}: there is no such file; every trial needs an answer, be it that nothing is missing")
+        raise BadEntry(
+            f"{file}: there is no such file; every trial needs an answer, be it that nothing is missing"
+        )
     try:
         found = json.loads(file.read_text(encoding="utf-8"))
     except ValueError as error:
         raise BadEntry(f"{file}: not JSON: {error}") from None
     if not isinstance(found, dict):
         raise BadEntry(f"{file}: a table is needed, with effects and unknown")
-    effects, unknown = _needed(found, "effects", list, file, ""), _needed(found, "unknown", dict, file, "")
+    effects, unknown = (
+        _needed(found, "effects", list, file, ""),
+        _needed(found, "unknown", dict, file, ""),
+    )
     _needed(unknown, "flag", bool, file, "unknown.")
     for i, effect in enumerate(effects):
         where = f"effects[{i}]."
         if not isinstance(effect, dict):
-            raise BadEntry(f"{file}: effects[{i}] = {effect!r}; allowed is a table with name and parameters")
+            raise BadEntry(
+                f"{file}: effects[{i}] = {effect!r}; allowed is a table with name and parameters"
+            )
         _needed(effect, "name", str, file, where)
         effect.setdefault("tied_with", [])
         _needed(effect, "tied_with", list, file, where)
@@ -70,7 +81,9 @@ def read_answer(file: Path) -> dict[str, Any]:
     for key, empty in OPTIONAL.items():
         found.setdefault(key, empty)
     laws = _needed(found, "described", list, file, "")
-    found["described"] = [d for d in laws if isinstance(d, dict) and {"axis", "terms", "carries_over"} <= set(d)]
+    found["described"] = [
+        d for d in laws if isinstance(d, dict) and {"axis", "terms", "carries_over"} <= set(d)
+    ]
     return found
 
 
@@ -88,8 +101,16 @@ def _check_number(found: object, where: str, file: Path) -> None:
     """A parameter has a finite value and an sd. Raises BadEntry."""
     for key in ("value", "sd"):
         x = found.get(key) if isinstance(found, dict) else None
-        if isinstance(x, bool) or not isinstance(x, int | float) or not math.isfinite(x) or (key == "sd" and x <= 0.0):
-            raise BadEntry(f"{file}: {where}.{key} = {x!r}; allowed is a finite number" + " above 0" * (key == "sd"))
+        if (
+            isinstance(x, bool)
+            or not isinstance(x, int | float)
+            or not math.isfinite(x)
+            or (key == "sd" and x <= 0.0)
+        ):
+            raise BadEntry(
+                f"{file}: {where}.{key} = {x!r}; allowed is a finite number"
+                + " above 0" * (key == "sd")
+            )
 
 
 def replay_errors(trial: Path, file: Path, horizon: float) -> float | None:
@@ -103,14 +124,22 @@ def replay_errors(trial: Path, file: Path, horizon: float) -> float | None:
         with file.open() as opened:
             for row in csv.DictReader(opened):
                 runs.setdefault(row["segment"], []).append((round(float(row["t_s"]), 3), row))
-        whole = {k: rows for k, rows in runs.items() if abs(rows[-1][0] - rows[0][0] - horizon) <= SPAN * horizon}
+        whole = {
+            k: rows
+            for k, rows in runs.items()
+            if abs(rows[-1][0] - rows[0][0] - horizon) <= SPAN * horizon
+        }
         pairs = [(row, recorded[t]) for rows in whole.values() for t, row in rows]
         squares = [(float(a[c]) - float(b[c])) ** 2 for a, b in pairs for c in ("x_m", "y_m")]
     except (KeyError, ValueError, TypeError) as error:
-        raise BadEntry(f"{file}: {error!r}; needed are t_s of run_3.csv, segment, x_m, y_m") from None
+        raise BadEntry(
+            f"{file}: {error!r}; needed are t_s of run_3.csv, segment, x_m, y_m"
+        ) from None
     begin, end = min(recorded), max(recorded)
     last = begin + horizon * math.floor((end - begin) / horizon * (1.0 + 1e-6))
     needed = {t for t in recorded if t <= last}
     reached = needed & {t for rows in whole.values() for t, _ in rows}
-    whole_way = squares and all(map(math.isfinite, squares)) and len(reached) >= COVERED * len(needed)
+    whole_way = (
+        squares and all(map(math.isfinite, squares)) and len(reached) >= COVERED * len(needed)
+    )
     return math.sqrt(sum(squares) / len(squares)) if whole_way else None

@@ -20,12 +20,17 @@ from functools import cache
 import numpy as np
 from rich.progress import track as shown
 
-from boatsim.diagnose import rules
-from boatsim.diagnose.filter import axes_of, nominal_levels, track
-from boatsim.diagnose.next.experiment import Plan, next_experiment, plans, question
-from boatsim.diagnose.problem import Problem, scale_of
-from boatsim.diagnose.search.rank import Ranking, rank
-from boatsim.diagnose.tried import library_for
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.experiment_design.next_experiment import (
+    Plan,
+    next_experiment,
+    plans,
+    question,
+)
+from boatsim.diagnosis.filter import axes_of, nominal_levels, track
+from boatsim.diagnosis.problem import Problem, scale_of
+from boatsim.diagnosis.search.ranking import Ranking, rank
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -80,11 +85,17 @@ def drawn(truth: str, rng: np.random.Generator) -> Boat:
     for name, about in kind.params().items():
         if about.fit:
             spread = about.spread * scale_of(about.unit, boat)
-            away = rng.choice((-1.0, 1.0)) * STRENGTH if name in (kind.strength or kind.params()) else rng.normal()
+            away = (
+                rng.choice((-1.0, 1.0)) * STRENGTH
+                if name in (kind.strength or kind.params())
+                else rng.normal()
+            )
             inside = about.low <= about.absent + away * spread <= about.high
             value = about.absent + (away if inside else -away) * spread
             values[program().index(truth, name)] = np.clip(value, about.low, about.high)
-    return Boat(values, program().switches([truth]), rng.uniform(*POSITION_SD), rng.uniform(*HEADING_SD))
+    return Boat(
+        values, program().switches([truth]), rng.uniform(*POSITION_SD), rng.uniform(*HEADING_SD)
+    )
 
 
 def gentle(rng: np.random.Generator, length: float) -> tuple[Array, Array]:
@@ -94,10 +105,16 @@ def gentle(rng: np.random.Generator, length: float) -> tuple[Array, Array]:
     begin = 0
     while begin < rows:
         end = begin + round(rng.uniform(3.0, 6.0) * RATE)
-        thrust, turn, steer = 0.3 * rng.choice((-1.0, 1.0)), rng.uniform(-0.1, 0.1), rng.uniform(-0.2, 0.2)
+        thrust, turn, steer = (
+            0.3 * rng.choice((-1.0, 1.0)),
+            rng.uniform(-0.1, 0.1),
+            rng.uniform(-0.2, 0.2),
+        )
         commands[begin:end] = thrust + turn, thrust - turn, steer, steer
         begin = end
-    return np.array([*rng.uniform(-1.0, 1.0, 2), rng.uniform(-np.pi, np.pi), 0.0, 0.0, 0.0]), commands
+    return np.array(
+        [*rng.uniform(-1.0, 1.0, 2), rng.uniform(-np.pi, np.pi), 0.0, 0.0, 0.0]
+    ), commands
 
 
 def played(plan: Plan) -> tuple[Array, Array]:
@@ -109,33 +126,48 @@ def played(plan: Plan) -> tuple[Array, Array]:
     return np.array([*start, 0.0, 0.0]), rows[now]
 
 
-def recorded(name: str, boat: Boat, start: Array, commands: Array, rng: np.random.Generator) -> Recording:
+def recorded(
+    name: str, boat: Boat, start: Array, commands: Array, rng: np.random.Generator
+) -> Recording:
     """What the camera sees of a boat under commands, with ambient force."""
     code, y, out = program().module, start.copy(), np.zeros((2, 6))
     memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
     code.settle(commands[0], memory, boat.values, boat.on, act)
     about = program().vessel.diagnosis
     rms = np.array([about.ambient[axis] for axis in axes_of(program().vessel)])
-    kept = np.exp(-1.0 / RATE / rules.time_constant(program().vessel))
+    kept = np.exp(-1.0 / RATE / priors.time_constant(program().vessel))
     force, rows = rms * rng.standard_normal(3), []
     for i in range(len(commands)):
         rows.append(y[:3].copy())
         code.rollout(
-            i / RATE, y, commands[i : i + 1], memory, 1.0 / RATE / SUBSTEPS, SUBSTEPS, program().body, boat.values,
-            boat.on, force, out,
-        )  # fmt: skip
+            i / RATE,
+            y,
+            commands[i : i + 1],
+            memory,
+            1.0 / RATE / SUBSTEPS,
+            SUBSTEPS,
+            program().body,
+            boat.values,
+            boat.on,
+            force,
+            out,
+        )
         force = kept * force + np.sqrt(1.0 - kept**2) * rms * rng.standard_normal(3)
     sd = np.array([boat.position_sd, boat.position_sd, boat.heading_sd])
     x, y_m, psi = (np.array(rows) + sd * rng.standard_normal((len(rows), 3))).T
     signals = dict(zip(program().vessel.commands, commands.T, strict=True))
-    return Recording(name, np.arange(len(rows)) / RATE, {"x_m": x, "y_m": y_m, "psi_rad": psi, **signals})
+    return Recording(
+        name, np.arange(len(rows)) / RATE, {"x_m": x, "y_m": y_m, "psi_rad": psi, **signals}
+    )
 
 
 def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
     """All entries ranked."""
     boat = program().vessel
-    uncertainty = rules.uncertainty(boat)
-    problem = Problem([track(r, program()) for r in recordings], nominal_levels(boat, recordings), uncertainty)
+    uncertainty = priors.uncertainty(boat)
+    problem = Problem(
+        [track(r, program()) for r in recordings], nominal_levels(boat, recordings), uncertainty
+    )
     return problem, rank(problem, tuple(e.name for e in program().suspects))
 
 
@@ -147,7 +179,9 @@ def probability(ranking: Ranking, name: str) -> float:
 
 def lead(ranking: Ranking, name: str) -> float:
     """Evidence of one entry over the best of the others and nothing [nats]."""
-    return ranking.first[name] - max(g for n, g in {NOTHING: 0.0, **ranking.first}.items() if n != name)
+    return ranking.first[name] - max(
+        g for n, g in {NOTHING: 0.0, **ranking.first}.items() if n != name
+    )
 
 
 def case(truth: str, seed: int) -> Outcome:
@@ -163,11 +197,17 @@ def case(truth: str, seed: int) -> Outcome:
     if plan is not None:
         menu = [p for p in plans(problem, *question(before)) if p.manoeuvre != plan.manoeuvre]
         any_one = menu[rng.integers(len(menu))]
-        after, other = (diagnosed([first, recorded(p.manoeuvre, boat, *played(p), rng)])[1] for p in (plan, any_one))
+        after, other = (
+            diagnosed([first, recorded(p.manoeuvre, boat, *played(p), rng)])[1]
+            for p in (plan, any_one)
+        )
     return Outcome(
-        truth, *(probability(r, truth) for r in (before, after, other, same)), plan.manoeuvre if plan else "",
-        plan.expected_gain if plan else 0.0, lead(after, truth) - lead(before, truth),
-    )  # fmt: skip
+        truth,
+        *(probability(r, truth) for r in (before, after, other, same)),
+        plan.manoeuvre if plan else "",
+        plan.expected_gain if plan else 0.0,
+        lead(after, truth) - lead(before, truth),
+    )
 
 
 def print_table(found: Sequence[Outcome]) -> None:
@@ -183,17 +223,25 @@ def print_table(found: Sequence[Outcome]) -> None:
     print(f"  with another one of the menu added    {np.mean([o.other for o in found]):.2f}")
     print(f"  with one more run of gentle steering  {np.mean([o.same for o in found]):.2f}")
     print(f"cases with a suggestion: {sum(bool(o.manoeuvre) for o in found)}")
-    print("expected, gained: evidence of the truth over its best rival [nats], foreseen and after the suggested run")
+    print(
+        "expected, gained: evidence of the truth over its best rival [nats], foreseen and after the suggested run"
+    )
 
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--quick", action="store_true", help="one seed, every third entry")
     args = parser.parse_args()
     names = [e.name for e in program().suspects if type(e).kind == "physics"]
-    chosen = [(n, 0) for n in names[::3]] if args.quick else [(n, seed) for n in names for seed in (0, 1)]
+    chosen = (
+        [(n, 0) for n in names[::3]]
+        if args.quick
+        else [(n, seed) for n in names for seed in (0, 1)]
+    )
     program().module  # noqa: B018  # compiled before the processes start, so that each need not
     begin = time.time()
     with ProcessPoolExecutor(args.jobs) as pool:

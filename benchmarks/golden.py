@@ -17,8 +17,8 @@ from boatsim.files import replacing
 from boatsim.physics.content import names
 from boatsim.physics.signals import STATE
 from boatsim.simulate import scenario
-from boatsim.simulate.norms import Norm, norms
-from boatsim.simulate.pins import TOLERANCE, digits, same
+from boatsim.simulate.baselines import TOLERANCE, digits, same
+from boatsim.simulate.evaluation import Norm, norms
 from boatsim.simulate.run import run
 
 HOME = Path(__file__).parents[1]
@@ -27,13 +27,24 @@ NEW = "is new"
 # Loops that run away, as published controllers may, forget how they began: what such a start moves there is kept.
 NUDGE, NUDGES = 1e-12, 6  # SI units off in every freedom; so many ways of it
 REACH = 3.0  # of what the nudges moved, within which another machine's arithmetic may end
-FIELDS = {"today": "", "at_reported": " at the rate reported", "published": " as published", "verdict": " verdict"}
-Values = dict[str, dict[str, Any]]  # norm -> today, at_reported, published, verdict, unit, and moves where it does
+FIELDS = {
+    "today": "",
+    "at_reported": " at the rate reported",
+    "published": " as published",
+    "verdict": " verdict",
+}
+Values = dict[
+    str, dict[str, Any]
+]  # norm -> today, at_reported, published, verdict, unit, and moves where it does
 
 
 def tracked() -> list[str]:
     """Scenarios that measure something."""
-    return [name for name in names("scenario") if (file := scenario.load(name).file).measure or file.check]
+    return [
+        name
+        for name in names("scenario")
+        if (file := scenario.load(name).file).measure or file.check
+    ]
 
 
 def measured(name: str) -> dict[str, Norm]:
@@ -49,7 +60,14 @@ def nudged(name: str) -> list[dict[str, Norm]]:
     rates = [s.symbol for s in STATE if s.rate and s.axis in start.vessel.freedoms]
     said = start.file.start.model_dump()
     return [
-        norms(run(scenario.load(name, {"start": said | {k: said[k] + x for k, x in zip(rates, xs, strict=True)}}), 0))
+        norms(
+            run(
+                scenario.load(
+                    name, {"start": said | {k: said[k] + x for k, x in zip(rates, xs, strict=True)}}
+                ),
+                0,
+            )
+        )
         for xs in off
     ]
 
@@ -65,7 +83,10 @@ def values(found: Mapping[str, Norm], beside: Sequence[Mapping[str, Norm]] = ())
             "verdict": n.verdict,
             "unit": n.unit,
         }
-        moves = max((abs(x - n.value) for other in beside if (x := other[name].value) and n.value), default=0.0)
+        moves = max(
+            (abs(x - n.value) for other in beside if (x := other[name].value) and n.value),
+            default=0.0,
+        )
         if n.value and moves > TOLERANCE * abs(n.value):
             kept[name]["moves"] = digits(moves)
     return kept
@@ -78,7 +99,9 @@ def path_of(name: str, home: Path = HOME) -> Path:
 
 def table(path: Path) -> dict[str, Values]:
     """The values kept in a file, by scenario; none if there is no such file."""
-    found: dict[str, Values] = json.loads(path.read_text(encoding="utf-8"))["scenarios"] if path.is_file() else {}
+    found: dict[str, Values] = (
+        json.loads(path.read_text(encoding="utf-8"))["scenarios"] if path.is_file() else {}
+    )
     return found
 
 
@@ -91,14 +114,18 @@ def text_of(scenarios: Mapping[str, Values]) -> str:
     """Content of a vessel's file: a line for each norm, so that a change of one is a change of one line."""
     parts = []
     for name, values in sorted(scenarios.items()):
-        rows = ",\n".join(f"   {json.dumps(norm)}: {json.dumps(value)}" for norm, value in values.items())
+        rows = ",\n".join(
+            f"   {json.dumps(norm)}: {json.dumps(value)}" for norm, value in values.items()
+        )
         parts.append(f"  {json.dumps(name)}: {{\n{rows}\n  }}")
     return '{\n "seed": 0,\n "scenarios": {\n' + ",\n".join(parts) + "\n }\n}\n"
 
 
 def drifts(name: str, old: Values, new: Values) -> list[str]:
     """A line for everything that is not as it was: scenario, norm, old, new and the paper's value."""
-    return [line for norm in {**old, **new} for line in _drift(name, norm, old.get(norm), new.get(norm))]
+    return [
+        line for norm in {**old, **new} for line in _drift(name, norm, old.get(norm), new.get(norm))
+    ]
 
 
 def update(changed: Mapping[str, tuple[Values, list[str]]], reason: str, home: Path = HOME) -> None:
@@ -109,7 +136,10 @@ def update(changed: Mapping[str, tuple[Values, list[str]]], reason: str, home: P
         _write(path, text_of(table(path) | new))
     changelog = home / "CHANGELOG.md"
     text = changelog.read_text(encoding="utf-8") if changelog.is_file() else "# Changelog\n"
-    _write(changelog, with_reason(text, reason, [line for _, lines in changed.values() for line in lines]))
+    _write(
+        changelog,
+        with_reason(text, reason, [line for _, lines in changed.values() for line in lines]),
+    )
 
 
 def with_reason(changelog: str, reason: str, lines: list[str]) -> str:
@@ -118,12 +148,18 @@ def with_reason(changelog: str, reason: str, lines: list[str]) -> str:
         changelog = f"{changelog.rstrip()}\n\n{HEADING}\n"
     moved = [line for line in lines if not line.endswith(NEW)]
     fresh = len(lines) - len(moved)
-    entry = [f"- {reason}", *(f"  - {line}" for line in moved), *([f"  - {fresh} new norms"] if fresh else [])]
+    entry = [
+        f"- {reason}",
+        *(f"  - {line}" for line in moved),
+        *([f"  - {fresh} new norms"] if fresh else []),
+    ]
     before, _, after = changelog.partition(f"{HEADING}\n")
     return f"{before}{HEADING}\n\n" + "\n".join(entry) + "\n" + after.lstrip("\n")
 
 
-def _drift(name: str, norm: str, old: Mapping[str, Any] | None, new: Mapping[str, Any] | None) -> Iterable[str]:
+def _drift(
+    name: str, norm: str, old: Mapping[str, Any] | None, new: Mapping[str, Any] | None
+) -> Iterable[str]:
     if old is None or new is None:
         yield f"{name} {norm} {NEW if old is None else 'is gone'}"
         return
@@ -141,7 +177,9 @@ def _write(path: Path, text: str) -> None:
 
 def main(arguments: list[str] | None = None) -> int:
     """0 nothing drifted or taken over, 1 drifted, 2 wrong use."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.golden", description="Norms kept of every scenario.")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.golden", description="Norms kept of every scenario."
+    )
     parser.add_argument("--update", action="store_true", help="take today's values")
     parser.add_argument("--reason", default="", help="why they changed; goes into CHANGELOG.md")
     given = parser.parse_args(arguments)

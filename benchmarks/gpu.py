@@ -22,7 +22,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.warp import Batch
 from boatsim.warp.runtime import device as known
 
@@ -61,7 +61,9 @@ def speed(boat: Vessel, device: str, largest: int) -> Table:
     """The table of rates."""
     table = Table("boats", *(f"{way} [boat-steps/s]" for way in WAYS), box=None)
     for n in (n for n in SIZES if n <= largest):
-        rates = (rate(Batch(boat, n, STEP, device, mujoco=on_mujoco)) for on_mujoco in WAYS.values())
+        rates = (
+            rate(Batch(boat, n, STEP, device, mujoco=on_mujoco)) for on_mujoco in WAYS.values()
+        )
         table.add_row(f"{n:,}", *(f"{found:.2e}" for found in rates))
     return table
 
@@ -84,24 +86,35 @@ def agreement(device: str) -> Table:
     table = Table("vessel", *WAYS, box=None)
     for path in sorted(Path("models").glob("*/vessel.toml")):
         boat = vessel.load(path.parent.name)
-        table.add_row(boat.name, *(f"{furthest(boat, device, on_mujoco):.1e}" for on_mujoco in WAYS.values()))
+        table.add_row(
+            boat.name, *(f"{furthest(boat, device, on_mujoco):.1e}" for on_mujoco in WAYS.values())
+        )
     return table
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print a table."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.gpu", description="Batches on Warp.")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.gpu", description="Batches on Warp."
+    )
     parser.add_argument("--device", default="cpu", help="one of Warp's: cpu, cuda:0")
     parser.add_argument("--vessel", default="joystick_boat", help="whose speed is measured")
     parser.add_argument("--most", type=int, help="boats at most")
-    parser.add_argument("--agreement", action="store_true", help="how far from the twin, over ten seconds")
+    parser.add_argument(
+        "--agreement", action="store_true", help="how far from the twin, over ten seconds"
+    )
     given = parser.parse_args(arguments)
     try:
         found = known(given.device)
-        print(f"{found} ({found.name}), steps of {STEP:g} s" + ("" if given.agreement else f", {given.vessel}"))
+        print(
+            f"{found} ({found.name}), steps of {STEP:g} s"
+            + ("" if given.agreement else f", {given.vessel}")
+        )
         most = given.most or LARGEST.get(given.device, max(SIZES))
         boat = vessel.load(given.vessel)
-        Console().print(agreement(given.device) if given.agreement else speed(boat, given.device, most))
+        Console().print(
+            agreement(given.device) if given.agreement else speed(boat, given.device, most)
+        )
     except BadInput as error:
         raise SystemExit(f"error: {error}") from None
 

@@ -12,7 +12,10 @@ from boatsim.physics.signals import Array
 
 JOINTS = {  # of a body without forces, with the rates it starts with [rad/s]
     "free joint": ("<freejoint/>", (0.0, 0.0, 0.0, 0.3, 0.5, 0.4)),
-    "three hinges": ('<joint axis="0 0 1"/><joint axis="0 1 0"/><joint axis="1 0 0"/>', (0.4, 0.5, 0.3)),
+    "three hinges": (
+        '<joint axis="0 0 1"/><joint axis="0 1 0"/><joint axis="1 0 0"/>',
+        (0.4, 0.5, 0.3),
+    ),
 }
 MODEL = """<mujoco><option integrator="RK4" timestep="{step}" gravity="0 0 0"/><worldbody><body>{joints}
 <inertial pos="0 0 0" mass="1" diaginertia="1 2 2.8"/></body></worldbody></mujoco>"""

@@ -17,9 +17,9 @@ import numpy as np
 import boatsim
 from boatsim.cli.progress import counting
 from boatsim.cli.show import printed
-from boatsim.diagnose.report.drawing import ticks
+from boatsim.diagnosis.report.svg_plots import ticks
 from boatsim.physics.signals import Array
-from boatsim.sweep.keys import Value
+from boatsim.sweeps.keys import Value
 
 SCENARIOS = ["joystick_boat/sway_[1-4]", "joystick_boat/yaw_[1-4]"]
 FIRST, SECOND = "pid_autopilot", "l1_joystick"
@@ -54,20 +54,35 @@ HEAD = ["manoeuvre", "norm", "pid p95", "L1 p95", "L1 - pid, mean", "L1 lower", 
 
 def main(arguments: list[str] | None = None) -> int:
     """Carry out, print; 0 if all runs are done."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.joystick_monte_carlo", description="L1 beside PID.")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.joystick_monte_carlo", description="L1 beside PID."
+    )
     parser.add_argument("--runs", type=int, default=120, help="boats for each manoeuvre")
     parser.add_argument("--jobs", type=int, default=None, help="runs at the same time")
     parser.add_argument("--out", default="out/joystick_monte_carlo", help="folder of the sweep")
-    parser.add_argument("--plot", type=Path, help="draw the norms of both controllers into this SVG")
+    parser.add_argument(
+        "--plot", type=Path, help="draw the norms of both controllers into this SVG"
+    )
     given = parser.parse_args(arguments)
     told = [name for names in NORMS.values() for name in names]
     with counting() as report:
         done = boatsim.sweep(
-            SCENARIOS, VARIED, DRAWN, given.runs, "latin", 0, given.out, given.jobs, norms=told, report=report
+            SCENARIOS,
+            VARIED,
+            DRAWN,
+            given.runs,
+            "latin",
+            0,
+            given.out,
+            given.jobs,
+            norms=told,
+            report=report,
         )
     rows, lost = _rows(done)
     printed(f"{SECOND} beside {FIRST}: sizes of the norms on {given.runs} boats", HEAD, rows, 2)
-    print(f"{SECOND} is not lower on most boats, or the mean difference is not below 0 with 95 %, in:")
+    print(
+        f"{SECOND} is not lower on most boats, or the mean difference is not below 0 with 95 %, in:"
+    )
     print("\n".join(f"  {line}" for line in lost) or "  nothing")
     for why, count in done.failures.items():
         print(f"{count} runs failed: {why}")
@@ -94,23 +109,39 @@ def _rows(done: boatsim.Sweep) -> tuple[list[list[str]], list[str]]:
         ends = [_p95(columns, scenario, controller, name) for controller in (FIRST, SECOND)]
         called = f"{pair.norm} [{pair.unit}]"
         rows.append(
-            [scenario.rpartition("/")[2], called, *(f"{end:.3g}" for end in ends),
-             f"{pair.difference:+.2g} ± {pair.sure:.1g}", f"{100 * pair.second_lower:.0f} %", str(pair.pairs)]
-        )  # fmt: skip
-        if not (pair.second_lower > 0.5 and pair.difference + pair.sure < 0.0) and "time" not in name:
-            lost.append(f"{rows[-1][0]} {called}: {pair.of_second:.3g} beside {pair.of_first:.3g}, "
-                        f"lower on {100 * pair.second_lower:.0f} %")  # fmt: skip
+            [
+                scenario.rpartition("/")[2],
+                called,
+                *(f"{end:.3g}" for end in ends),
+                f"{pair.difference:+.2g} ± {pair.sure:.1g}",
+                f"{100 * pair.second_lower:.0f} %",
+                str(pair.pairs),
+            ]
+        )
+        if (
+            not (pair.second_lower > 0.5 and pair.difference + pair.sure < 0.0)
+            and "time" not in name
+        ):
+            lost.append(
+                f"{rows[-1][0]} {called}: {pair.of_second:.3g} beside {pair.of_first:.3g}, "
+                f"lower on {100 * pair.second_lower:.0f} %"
+            )
     return rows, lost
 
 
 def _p95(columns: Mapping[str, Array], scenario: str, controller: str, name: str) -> float:
     """95 % of the boats lie below; one that never got there lies above all."""
-    return float(np.quantile(_sizes(columns, scenario, controller, name), 0.95, method="inverted_cdf"))
+    return float(
+        np.quantile(_sizes(columns, scenario, controller, name), 0.95, method="inverted_cdf")
+    )
 
 
 # The picture ----------------------------------------------------------------------------------------------------------
 
-DRAWN_NORMS = {"sway": ("heading_at_end", "surge_offset", "yaw_rate_l2"), "yaw": ("moved", "position_inf", "excursion")}
+DRAWN_NORMS = {
+    "sway": ("heading_at_end", "surge_offset", "yaw_rate_l2"),
+    "yaw": ("moved", "position_inf", "excursion"),
+}
 WIDE, HIGH, LEFT, TOP = 300, 170, 44, 46  # [px] a panel, and the room beside and above it
 LOOKS = {FIRST: "#0067b1", SECOND: "#c65102"}
 BELOW = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -125,8 +156,12 @@ def _picture(done: boatsim.Sweep) -> str:
     """Boxes of both controllers for each manoeuvre, a panel each norm: half of the boats in a box, 90 % in whiskers."""
     columns = {name: np.array(values) for name, values in done.columns.items()}
     width, height = 3 * (WIDE + LEFT) + 10, 2 * (HIGH + TOP) + 40
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}"><style>{STYLE}</style>']
-    parts.append("<title>Norms of the PID autopilot and of the L1 joystick on the same boats</title>")
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}"><style>{STYLE}</style>'
+    ]
+    parts.append(
+        "<title>Norms of the PID autopilot and of the L1 joystick on the same boats</title>"
+    )
     for row, (kind, names) in enumerate(DRAWN_NORMS.items()):
         for column, name in enumerate(names):
             x, y = LEFT + column * (WIDE + LEFT), TOP + row * (HIGH + TOP)
@@ -143,7 +178,9 @@ def _panel(
 ) -> Iterator[str]:
     """One norm over its manoeuvres."""
     spread = {
-        (s, c): np.quantile(_sizes(columns, s, c, name), BELOW, method="inverted_cdf") for s in scenarios for c in LOOKS
+        (s, c): np.quantile(_sizes(columns, s, c, name), BELOW, method="inverted_cdf")
+        for s in scenarios
+        for c in LOOKS
     }
     top = 1.08 * max(float(ends[-1]) for ends in spread.values())
     size = bool((np.array([v for v in columns[name] if v is not None]) < 0.0).any())
@@ -156,7 +193,9 @@ def _panel(
         middle = x + WIDE * (at + 0.5) / len(scenarios)
         yield f'<text class="middle" x="{middle:.1f}" y="{y + HIGH + 15}">{scenario.rpartition("/")[2]}</text>'
         for side, (controller, colour) in zip((-13, 13), LOOKS.items(), strict=True):
-            low, lower, half, upper, high = (y + HIGH * (1.0 - v / top) for v in spread[scenario, controller])
+            low, lower, half, upper, high = (
+                y + HIGH * (1.0 - v / top) for v in spread[scenario, controller]
+            )
             c = middle + side
             yield (
                 f'<path stroke="{colour}" stroke-width="1.6" d="M{c} {low:.1f}V{lower:.1f}M{c} {upper:.1f}V{high:.1f}'

@@ -13,7 +13,7 @@ import numpy as np
 from dm_control.rl.control import Environment
 
 from boatsim.learn import registration
-from boatsim.learn.game import play
+from boatsim.learn.environment_options import play
 from boatsim.simulate import env
 
 BEST_OF = 25
@@ -87,15 +87,24 @@ def dm(boat: Environment) -> float:
 def main() -> None:
     """Print the table."""
     print(f"control steps a second, {len(os.sched_getaffinity(0))} cores, {MANY} boats together\n")
-    print("| environment | control step, integration step | one boat | many together |\n| --- | --- | --- | --- |")
+    print(
+        "| environment | control step, integration step | one boat | many together |\n| --- | --- | --- | --- |"
+    )
     for name in registration.ids():
-        print(f"| {name} | 0.2 s, 0.1 s | {alone(name, 0.2, 0.1):,.0f} | {crowd(name, 0.2, 0.1):,.0f} |", flush=True)
+        print(
+            f"| {name} | 0.2 s, 0.1 s | {alone(name, 0.2, 0.1):,.0f} | {crowd(name, 0.2, 0.1):,.0f} |",
+            flush=True,
+        )
     name = registration.ids()[0]
-    print(f"| {name} | 0.08 s, 0.02 s | {alone(name, 0.08, 0.02):,.0f} | {crowd(name, 0.08, 0.02):,.0f} |")
+    print(
+        f"| {name} | 0.08 s, 0.02 s | {alone(name, 0.08, 0.02):,.0f} | {crowd(name, 0.08, 0.02):,.0f} |"
+    )
     boat = registration.says(name)["vessel"]
     print(f"| dm_env, {boat} on MuJoCo | 0.08 s, 0.02 s | {dm(env.load(f'{boat}/berth')):,.0f} | |")
     off = 1e3 * max(coarse(name, 0.1) for name in registration.ids())
-    print(f"\nsteps of 0.1 s put a boat at most {off:.1f} mm elsewhere after 20 s of random actions than steps of 5 ms")
+    print(
+        f"\nsteps of 0.1 s put a boat at most {off:.1f} mm elsewhere after 20 s of random actions than steps of 5 ms"
+    )
 
 
 if __name__ == "__main__":

@@ -31,14 +31,14 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.trials import SHARED
-from boatsim.diagnose import rules
-from boatsim.diagnose.analysis import open_recording
-from boatsim.diagnose.filter import axes_of, noise_of, nominal_levels, track
-from boatsim.diagnose.locate.forces import BAND, missing_force
-from boatsim.diagnose.locate.regions import LIKELY, Region, regions
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.rank import baseline
-from boatsim.diagnose.tried import library_for
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.filter import axes_of, noise_of, nominal_levels, track
+from boatsim.diagnosis.locate.missing_force import BAND, missing_force
+from boatsim.diagnosis.locate.regions import LIKELY, Region, regions
+from boatsim.diagnosis.pipeline import open_recording
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.ranking import baseline
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
 
@@ -66,11 +66,15 @@ class Located:
 def problem_of(trial: Path) -> Problem:
     """The recordings of a trial laid on the vessel's program, as a diagnosis does it."""
     opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
-    recordings, boat = [r.thinned(rules.rate(b)) for r, b in opened], opened[0][1]
+    recordings, boat = [r.thinned(priors.rate(b)) for r, b in opened], opened[0][1]
     program = Program(boat, library_for(boat).compiled)
     tracks = [track(r, program, noise_of(boat, recordings)) for r in recordings]
-    uncertainty = rules.uncertainty(boat)
-    return Problem(tracks, nominal_levels(boat, recordings), uncertainty | recordings[0].notes.coefficient_uncertainty)
+    uncertainty = priors.uncertainty(boat)
+    return Problem(
+        tracks,
+        nominal_levels(boat, recordings),
+        uncertainty | recordings[0].notes.coefficient_uncertainty,
+    )
 
 
 def recalibrated(problem: Problem) -> Fit:
@@ -87,13 +91,20 @@ def located(trial: Path) -> Located:
     found_in = regions(problem, known)
     seconds = time.process_time() - begin
     samples = []
-    columns = [f"{axis}_{'Nm' if axis in ('roll', 'yaw') else 'N'}" for axis in axes_of(problem.program.vessel)]
+    columns = [
+        f"{axis}_{'Nm' if axis in ('roll', 'yaw') else 'N'}"
+        for axis in axes_of(problem.program.vessel)
+    ]
     for k, force in zip(RUNS, forces, strict=True):
         truth = np.genfromtxt(trial / f"missing_force_{k}.csv", delimiter=",", names=True)
         # an average over an even number of rows lies half a row behind the row it is about
         rows = np.searchsorted(force.t, truth["t_s"], side="right") - 1
-        samples.append((force.mean[rows], force.sd[rows], np.column_stack([truth[c] for c in columns])))
-    found, sd, true = (np.concatenate(s) / problem.ambient.force for s in zip(*samples, strict=True))
+        samples.append(
+            (force.mean[rows], force.sd[rows], np.column_stack([truth[c] for c in columns]))
+        )
+    found, sd, true = (
+        np.concatenate(s) / problem.ambient.force for s in zip(*samples, strict=True)
+    )
     causes = tuple(e["name"] for e in json.loads((trial / "answer.json").read_text())["effects"])
     return Located(causes or (NOTHING,), found, sd, true, tuple(found_in), seconds)
 
@@ -104,10 +115,18 @@ def figures(trials: Sequence[Located], axis: int | slice = slice(None)) -> list[
     def count(which: Callable[[Located], Any]) -> int:
         return sum(int(which(t)[:, axis].sum()) for t in trials)
 
-    inside = np.mean([np.mean(np.abs(t.found - t.true)[:, axis] <= BAND * t.sd[:, axis]) for t in trials])
+    inside = np.mean(
+        [np.mean(np.abs(t.found - t.true)[:, axis] <= BAND * t.sd[:, axis]) for t in trials]
+    )
     flagged, false = count(lambda t: t.flagged), count(lambda t: t.flagged & (np.abs(t.true) < 1.0))
-    there, hit = count(lambda t: np.abs(t.true) > 2.0), count(lambda t: t.flagged & (np.abs(t.true) > 2.0))
-    shares = [f"{1.0 - false / flagged:.3f}" if flagged else "-", f"{hit / there:.3f}" if there else "-"]
+    there, hit = (
+        count(lambda t: np.abs(t.true) > 2.0),
+        count(lambda t: t.flagged & (np.abs(t.true) > 2.0)),
+    )
+    shares = [
+        f"{1.0 - false / flagged:.3f}" if flagged else "-",
+        f"{hit / there:.3f}" if there else "-",
+    ]
     return [f"{len(trials)}", f"{inside:.3f}", *shares, f"{flagged}", f"{there}"]
 
 
@@ -127,23 +146,37 @@ def table(trials: Sequence[Located], axes: Sequence[str]) -> Table:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("trials", type=Path, nargs="?", default=SHARED)
-    folders = sorted(t for t in parser.parse_args().trials.glob("T*") if (t / "missing_force_1.csv").exists())
+    folders = sorted(
+        t for t in parser.parse_args().trials.glob("T*") if (t / "missing_force_1.csv").exists()
+    )
     if not folders:
         raise SystemExit(f"{parser.parse_args().trials}: no trials with missing_force_1.csv there")
     located(folders[0])  # compiles
     trials = {t.name: located(t) for t in folders}
     console = Console()
-    console.print(table(list(trials.values()), axes_of(open_recording(folders[0] / "run_1.csv", None, ())[1])))
+    console.print(
+        table(list(trials.values()), axes_of(open_recording(folders[0] / "run_1.csv", None, ())[1]))
+    )
     none = {n: t for n, t in trials.items() if t.causes == (NOTHING,)}
     accidents = sum(bool(t.regions) for t in none.values())
-    console.print(f"regions found in nothing-missing trials: {accidents} of {len(none)}, at p < {LIKELY} a trial")
+    console.print(
+        f"regions found in nothing-missing trials: {accidents} of {len(none)}, at p < {LIKELY} a trial"
+    )
     for name, t in trials.items():
         for region in t.regions:
-            console.print(f"  {name} ({', '.join(t.causes)}): {region.statement}", highlight=False, soft_wrap=True)
+            console.print(
+                f"  {name} ({', '.join(t.causes)}): {region.statement}",
+                highlight=False,
+                soft_wrap=True,
+            )
     seconds = [t.seconds for t in trials.values()]
-    console.print(f"processor seconds for locating: median {statistics.median(seconds):.3f}, most {max(seconds):.3f}")
+    console.print(
+        f"processor seconds for locating: median {statistics.median(seconds):.3f}, most {max(seconds):.3f}"
+    )
 
 
 if __name__ == "__main__":

@@ -13,15 +13,15 @@ from pathlib import Path
 
 import numpy as np
 
-from boatsim.diagnose.analysis import check, diagnose
-from boatsim.diagnose.rules import froude_time
+from boatsim.diagnosis.pipeline import check, diagnose
+from boatsim.diagnosis.priors import froude_time
 from boatsim.errors import BadInput
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording, write_csv
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 VESSELS = ("trial_boat", "blueboat", "otter", "mariner")
 LASTS, HOLDS = 80.0, 4.0  # [s] of a log, of a command, on a boat of 1.2 m
@@ -54,7 +54,11 @@ def sailed(boat: Vessel, seed: int, lasts: float = LASTS) -> Columns:
     nq = len(boat.freedoms)
     states = twin.rollout(np.zeros(2 * nq), commands, slow / RATE)[:rows]
     x, y, psi = (states[:, boat.freedoms.index(axis)] for axis in ("surge", "sway", "yaw"))
-    noise = rng.standard_normal((3, rows)) * [[PLACE_SD * boat.length], [PLACE_SD * boat.length], [HEADING_SD]]
+    noise = rng.standard_normal((3, rows)) * [
+        [PLACE_SD * boat.length],
+        [PLACE_SD * boat.length],
+        [HEADING_SD],
+    ]
     t = np.arange(rows) * slow / RATE
     pose = {"x_m": x + noise[0], "y_m": y + noise[1], "psi_rad": psi + noise[2]}
     rounded = {n: np.round(v, 5 if n == "psi_rad" else 4) for n, v in pose.items()}
@@ -63,7 +67,9 @@ def sailed(boat: Vessel, seed: int, lasts: float = LASTS) -> Columns:
 
 def write(columns: Columns, path: Path) -> None:
     """The log as a file."""
-    write_csv(Recording(path.stem, columns["t_s"], {n: v for n, v in columns.items() if n != "t_s"}), path)
+    write_csv(
+        Recording(path.stem, columns["t_s"], {n: v for n, v in columns.items() if n != "t_s"}), path
+    )
 
 
 def _with(**made: Callable[[Columns], Array]) -> Callable[[Columns, Vessel], Columns]:
@@ -75,7 +81,10 @@ def _twins(boat: Vessel) -> bool:
 
 
 def _exchanged(columns: Columns, boat: Vessel) -> Columns:
-    swap = {n: n.replace("port", "#").replace("starboard", "port").replace("#", "starboard") for n in boat.commands}
+    swap = {
+        n: n.replace("port", "#").replace("starboard", "port").replace("#", "starboard")
+        for n in boat.commands
+    }
     return columns | {n: columns[other] for n, other in swap.items()}
 
 
@@ -134,22 +143,38 @@ FAULTS: dict[str, Fault] = {
     ),
     "y to port alone": Fault(_with(y_m=lambda c: -c["y_m"]), ("y_to_port",)),
     "ENU axes": Fault(
-        _with(x_m=lambda c: c["y_m"], y_m=lambda c: c["x_m"], psi_rad=lambda c: np.pi / 2 - c["psi_rad"]),
+        _with(
+            x_m=lambda c: c["y_m"],
+            y_m=lambda c: c["x_m"],
+            psi_rad=lambda c: np.pi / 2 - c["psi_rad"],
+        ),
         ("mirrored", "thrusters_exchanged", "rudder_sense"),
     ),
-    "x and y exchanged": Fault(_with(x_m=lambda c: c["y_m"], y_m=lambda c: c["x_m"]), ("axes_exchanged",)),
-    "heading from east": Fault(_with(psi_rad=lambda c: np.pi / 2 - c["psi_rad"]), ("heading_from_east",)),
+    "x and y exchanged": Fault(
+        _with(x_m=lambda c: c["y_m"], y_m=lambda c: c["x_m"]), ("axes_exchanged",)
+    ),
+    "heading from east": Fault(
+        _with(psi_rad=lambda c: np.pi / 2 - c["psi_rad"]), ("heading_from_east",)
+    ),
     "thrusters exchanged": Fault(_exchanged, ("thrusters_exchanged", "mirrored"), _twins),
-    "heading in degrees": Fault(_with(psi_rad=lambda c: np.degrees(c["psi_rad"]) % 360.0), ("heading_in_degrees",)),
-    "heading turned 90 deg": Fault(_with(psi_rad=lambda c: c["psi_rad"] + np.pi / 2), ("heading_turned",)),
-    "heading turned 40 deg": Fault(_with(psi_rad=lambda c: c["psi_rad"] + np.radians(40.0)), ("heading_turned",)),
+    "heading in degrees": Fault(
+        _with(psi_rad=lambda c: np.degrees(c["psi_rad"]) % 360.0), ("heading_in_degrees",)
+    ),
+    "heading turned 90 deg": Fault(
+        _with(psi_rad=lambda c: c["psi_rad"] + np.pi / 2), ("heading_turned",)
+    ),
+    "heading turned 40 deg": Fault(
+        _with(psi_rad=lambda c: c["psi_rad"] + np.radians(40.0)), ("heading_turned",)
+    ),
     "position held": Fault(_held, ("position_held",)),
     "outliers in bursts": Fault(_bursts, ("outliers",)),
     "latitude as metres": Fault(_geographic, ("latitude_as_metres",)),
     "commands in per cent": Fault(
         _percent,
         ("command_unit",),
-        lambda b: any(unit_of(n) != "rad" and not 67.0 < c.high < 150.0 for n, c in b.commands.items()),
+        lambda b: any(
+            unit_of(n) != "rad" and not 67.0 < c.high < 150.0 for n, c in b.commands.items()
+        ),
     ),
     "time in ms": Fault(_with(t_s=lambda c: 1000.0 * c["t_s"]), ("time_unit",)),
     "gaps bridged": Fault(_bridged, ("bridged",)),
@@ -158,7 +183,9 @@ FAULTS: dict[str, Fault] = {
 }
 
 
-def judged(boat: Vessel, columns: Columns, fault: Fault | None, ask: bool) -> tuple[bool, bool, list[str]]:
+def judged(
+    boat: Vessel, columns: Columns, fault: Fault | None, ask: bool
+) -> tuple[bool, bool, list[str]]:
     """Whether a log's fault is named, whether the boat is blamed instead, and all that is found."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.csv"
@@ -185,26 +212,40 @@ def table(names: Sequence[str], seeds: int, ask: bool = True) -> Iterator[str]:
     for title, fault in FAULTS.items():
         cells = []
         for boat in boats:
-            results = [judged(boat, log, fault, ask) for log in logs[boat.name]] if fault.needs(boat) else []
+            results = (
+                [judged(boat, log, fault, ask) for log in logs[boat.name]]
+                if fault.needs(boat)
+                else []
+            )
             counts = [sum(r[0] for r in results), sum(r[1] for r in results), len(results)]
             total += counts
             instead = sorted({n for named, _, found in results if not named for n in found})
-            cells.append(f"{','.join(instead)[:12]} {counts[0]} / {counts[1]} / {counts[2]}" if results else "-")
+            cells.append(
+                f"{','.join(instead)[:12]} {counts[0]} / {counts[1]} / {counts[2]}"
+                if results
+                else "-"
+            )
         yield f"{title:24s}" + "".join(f"{c:>24s}" for c in cells)
     good = []
     for boat in boats:
         accused = [found for log in logs[boat.name] if (found := judged(boat, log, None, False)[2])]
-        good.append(f"{len(accused)} of {seeds} {','.join(sorted({n for ns in accused for n in ns}))}".strip())
+        good.append(
+            f"{len(accused)} of {seeds} {','.join(sorted({n for ns in accused for n in ns}))}".strip()
+        )
     yield f"{'good logs accused':24s}" + "".join(f"{c:>24s}" for c in good)
     yield f"named {total[0]} of {total[2]} ({100.0 * total[0] / total[2]:.0f} %), called physics {total[1]}"
 
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--seeds", type=int, default=5, help="logs of each vessel")
     parser.add_argument("--vessels", nargs="*", default=list(VESSELS))
-    parser.add_argument("--check-only", action="store_true", help="do not diagnose what is not named")
+    parser.add_argument(
+        "--check-only", action="store_true", help="do not diagnose what is not named"
+    )
     given = parser.parse_args()
     for line in table(given.vessels, given.seeds, not given.check_only):
         print(line, flush=True)

@@ -15,7 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from boatsim.recordings.table import read
-from boatsim.simulate.log import PIECE
+from boatsim.simulate.run_log import PIECE
 
 HOUR, KILLED_AFTER, LOOK = 3600.0, 60.0, 0.2  # [s]
 ON_DISK = ("recording.csv", "camera.csv", "run.rrd")
@@ -37,7 +37,15 @@ below = 1.0
 def begin(folder: Path, hours: float) -> "subprocess.Popen[bytes]":
     """A run, going on."""
     (folder / "long.toml").write_text(SCENARIO.format(hours * HOUR))
-    words = [sys.executable, "-m", "boatsim", "run", str(folder / "long.toml"), "--out", str(folder / "out")]
+    words = [
+        sys.executable,
+        "-m",
+        "boatsim",
+        "run",
+        str(folder / "long.toml"),
+        "--out",
+        str(folder / "out"),
+    ]
     return subprocess.Popen(words, stdout=subprocess.DEVNULL)
 
 
@@ -47,7 +55,11 @@ def memory(process: int) -> tuple[float, float]:
         lines = Path(f"/proc/{process}/status").read_text(encoding="ascii").splitlines()
     except OSError:
         return 0.0, 0.0
-    said = {line.partition(":")[0]: line.split()[1] for line in lines if line.startswith("Rss") or "VmHWM" in line}
+    said = {
+        line.partition(":")[0]: line.split()[1]
+        for line in lines
+        if line.startswith("Rss") or "VmHWM" in line
+    }
     return float(said.get("RssAnon", 0.0)) / 1024, float(said.get("VmHWM", 0.0)) / 1024
 
 
@@ -76,14 +88,21 @@ def killed(hours: float) -> list[str]:
         run.kill()
         run.wait()
         (left,) = folder.glob("out.part-*")
-        lines = [f"killed after {KILLED_AFTER:g} s, leaves {', '.join(sorted(f.name for f in left.iterdir()))}"]
+        lines = [
+            f"killed after {KILLED_AFTER:g} s, leaves {', '.join(sorted(f.name for f in left.iterdir()))}"
+        ]
         for name in ON_DISK:
             found, behind = read(left / name), at - (left / name).stat().st_mtime
-            lines.append(f"  {name:14} {len(found)} rows, to {found.t[-1]:.2f} s; written {behind:.2f} s before it")
+            lines.append(
+                f"  {name:14} {len(found)} rows, to {found.t[-1]:.2f} s; written {behind:.2f} s before it"
+            )
         norms = left / "norms.json"
         so_far = json.loads(norms.read_text(encoding="utf-8"))
         behind = at - norms.stat().st_mtime
-        return [*lines, f"  norms.json     of the first {so_far['steps']} steps; written {behind:.2f} s before it"]
+        return [
+            *lines,
+            f"  norms.json     of the first {so_far['steps']} steps; written {behind:.2f} s before it",
+        ]
 
 
 def main() -> None:
@@ -93,7 +112,9 @@ def main() -> None:
     given = parser.parse_args()
     os.nice(10)
     print(f"memory holds {PIECE} rows of the log; the rest lies in a file\n")
-    print(f"{'hours':>10}{'steps':>12}{'took [s]':>10}{'own [MB]':>12}{'with files [MB]':>16}{'written [MB]':>14}")
+    print(
+        f"{'hours':>10}{'steps':>12}{'took [s]':>10}{'own [MB]':>12}{'with files [MB]':>16}{'written [MB]':>14}"
+    )
     for hours in (1.0, given.hours):
         print(whole(hours), flush=True)
     print()

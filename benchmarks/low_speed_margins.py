@@ -33,7 +33,9 @@ def channel(**switches: float) -> SampledChannel:
     return found
 
 
-def margins(of: SampledChannel, gain: float = 1.0, time_constant: float | None = None) -> LoopMargins:
+def margins(
+    of: SampledChannel, gain: float = 1.0, time_constant: float | None = None
+) -> LoopMargins:
     """Margins for a craft with another input gain or time constant [s] than assumed."""
     craft = replace(of, damping=1.0 / time_constant) if time_constant else of
     return loop_margins(craft.loop(gain), high=craft.highest)
@@ -48,7 +50,9 @@ def main() -> None:
     Console().print(table)
     table = Table("craft", "L1 delay margin s", "PD delay margin s")
     pair = (channel(), channel(adaptive=0.0))
-    cases: list[dict[str, float]] = [{"gain": g} for g in GAINS] + [{"time_constant": t} for t in TIME_CONSTANTS]
+    cases: list[dict[str, float]] = [{"gain": g} for g in GAINS] + [
+        {"time_constant": t} for t in TIME_CONSTANTS
+    ]
     for case in cases:
         words = ", ".join(f"{'omega' if k == 'gain' else 'T_n'} {x:g}" for k, x in case.items())
         found = [margins(one, **case) for one in pair]

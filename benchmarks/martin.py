@@ -30,9 +30,19 @@ from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario
 
 VESSELS = ("eastward_ho", "kynoc")
-CALM = ("offset", "impulse", "half_speed", "full_load", "full_load_half_speed", "slow_servo", "yaw_moment")
+CALM = (
+    "offset",
+    "impulse",
+    "half_speed",
+    "full_load",
+    "full_load_half_speed",
+    "slow_servo",
+    "yaw_moment",
+)
 SEAS = ("seas_90", "seas_45", "seas_60", "seas_30")
-PUBLISHED = tomllib.loads(Path(__file__).with_name("martin_published.toml").read_text(encoding="utf-8"))
+PUBLISHED = tomllib.loads(
+    Path(__file__).with_name("martin_published.toml").read_text(encoding="utf-8")
+)
 TUNING = {  # what the thesis sets by vessel, section 3.2; Eastward Ho's are the controllers' defaults
     "eastward_ho": {},
     "kynoc": {
@@ -40,7 +50,7 @@ TUNING = {  # what the thesis sets by vessel, section 3.2; Eastward Ho's are the
         "minimum_variance": {"yaw_first": 1.6, "yaw_second": -0.6399, "rudder_weight": 3e-4},
         "pole_placement": {"yaw_fast": 0.79, "yaw_slow": 0.81},
     },
-}  # fmt: skip
+}
 BOUNDARY = {  # of the sliding surface: course keeping, with roll reduction, the same at 15 deg/s
     "eastward_ho": (0.04, 0.025, 0.03),
     "kynoc": (0.09, 0.05, 0.06),
@@ -58,7 +68,14 @@ KINDS: dict[str, dict[str, Any]] = {
     "SS GPC": {"use": "predictive"},
     "SS GPC RRS": {"use": "predictive", "roll_reduction": True},
 }
-AT_15 = ("PID", "VSS RRS", "Pole RRS", "MV RRS", "SS GPC RRS", "Pole")  # repeated with the faster rudder
+AT_15 = (
+    "PID",
+    "VSS RRS",
+    "Pole RRS",
+    "MV RRS",
+    "SS GPC RRS",
+    "Pole",
+)  # repeated with the faster rudder
 
 
 def autopilot(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]:
@@ -67,7 +84,10 @@ def autopilot(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]:
     table |= TUNING[vessel].get(table["use"], {})
     if table["use"] == "sliding":
         which = (2 if rate > 10 else 1) if "roll_reduction" in table else 0
-        table |= {"boundary": BOUNDARY[vessel][which], "design_rate": radians(15.0 if rate > 10 else 5.0)}
+        table |= {
+            "boundary": BOUNDARY[vessel][which],
+            "design_rate": radians(15.0 if rate > 10 else 5.0),
+        }
     if kind == "MV RRS":
         table["rudder_weight"] = 0.0  # not printed
     return table
@@ -81,7 +101,11 @@ def sailed(test: Scenario, seed: int = 0) -> Recording:
     boat = replace(test.vessel, effects=tuple(e.seeded(seed) for e in test.vessel.effects))
     program, start = Program(boat), State(**test.file.start.motion())
     code, p, on = program.module, program.values(), program.switches()
-    memory, none, after = np.zeros(program.memory_size), np.zeros(code.NQ), np.empty((2, 2 * code.NQ))
+    memory, none, after = (
+        np.zeros(program.memory_size),
+        np.zeros(code.NQ),
+        np.empty((2, 2 * code.NQ)),
+    )
     code.settle(program.command_array({}), memory, p, on, np.zeros(program.held_size))
     y = program.joint_rates(np.array(start[1:])[list(code.SHOWS)])
     pilot, period, step = test.controller, test.controller.period, test.file.step
@@ -92,8 +116,24 @@ def sailed(test: Scenario, seed: int = 0) -> Recording:
         sense = Sense(s.t, s.psi, s.r, nan, nan, nan, nan, nan, nan, s.phi, s.p)
         commands = program.command_array(pilot.step(sense, test.goal_at(s.t)))
         row[:] = s.t, s.psi, s.phi, commands[0]
-        code.rollout(s.t, y, commands[None], memory, step, round(period / step), program.body, p, on, none, after)
-    return Recording(test.name, rows[:, 0], dict(zip(("psi_rad", "phi_rad", "rudder_rad"), rows[:, 1:].T, strict=True)))
+        code.rollout(
+            s.t,
+            y,
+            commands[None],
+            memory,
+            step,
+            round(period / step),
+            program.body,
+            p,
+            on,
+            none,
+            after,
+        )
+    return Recording(
+        test.name,
+        rows[:, 0],
+        dict(zip(("psi_rad", "phi_rad", "rudder_rad"), rows[:, 1:].T, strict=True)),
+    )
 
 
 def measured(test: Scenario, seed: int = 0) -> dict[str, float]:
@@ -141,7 +181,9 @@ class Entry:
         return found
 
 
-def entries(vessels: Iterable[str], tests: Sequence[str], kinds: Sequence[str], seeds: int) -> list[Entry]:
+def entries(
+    vessels: Iterable[str], tests: Sequence[str], kinds: Sequence[str], seeds: int
+) -> list[Entry]:
     """All that is asked for; the PID always, as others are measured by it."""
     wanted = [k for k in KINDS if k == "PID" or k in kinds]
     found = []
@@ -170,11 +212,12 @@ def sea_line(e: Entry, pid: Entry) -> str:
     """Rms of rudder, yaw and roll [deg] with the spread between seeds, and %PID."""
     names = ("rudder_rms", "yaw_rms", "roll_rms")
     printed = list(e.printed) or [nan] * 3
-    cells = [f"{p:6.2f} {e.each(n).mean():6.2f} +-{e.each(n).std():5.2f}" for p, n in zip(printed, names, strict=True)]
+    cells = [
+        f"{p:6.2f} {e.each(n).mean():6.2f} +-{e.each(n).std():5.2f}"
+        for p, n in zip(printed, names, strict=True)
+    ]
     base, ours = pid.printed[2], reduction(e, pid)
-    return (
-        f"{e.kind:11}  {'  '.join(cells)}   {100 * (1 - printed[2] / base):5.0f} {ours.mean():5.0f} +-{ours.std():3.0f}"
-    )
+    return f"{e.kind:11}  {'  '.join(cells)}   {100 * (1 - printed[2] / base):5.0f} {ours.mean():5.0f} +-{ours.std():3.0f}"
 
 
 def table(done: Sequence[Entry]) -> str:
@@ -184,10 +227,14 @@ def table(done: Sequence[Entry]) -> str:
         rows = [e for e in done if (e.vessel, e.test, e.rate) == (vessel, test, rate)]
         lines.append(f"\n{vessel}, {test}, rudder at {rate:g} deg/s: printed, ours")
         if test in CALM:
-            lines.append(f"{'':11}  settling [s]    rise [s]         late swing [deg]: printed, ours")
+            lines.append(
+                f"{'':11}  settling [s]    rise [s]         late swing [deg]: printed, ours"
+            )
             lines += [calm_line(e) for e in rows]
         else:
-            lines.append(f"{'':11}  {'rudder rms [deg]':24}{'yaw rms [deg]':24}{'roll rms [deg]':24}%PID")
+            lines.append(
+                f"{'':11}  {'rudder rms [deg]':24}{'yaw rms [deg]':24}{'roll rms [deg]':24}%PID"
+            )
             lines += [sea_line(e, rows[0]) for e in rows]
     return "\n".join(lines)
 
@@ -197,24 +244,36 @@ def agreements(done: Sequence[Entry]) -> str:
     by = {(e.vessel, e.test, e.kind): e for e in done if e.rate == 5.0}
 
     def roll_rank(vessel: str, test: str) -> int:
-        rolls = {k: e.each("roll_rms").mean() for (v, t, k), e in by.items() if (v, t) == (vessel, test)}
+        rolls = {
+            k: e.each("roll_rms").mean() for (v, t, k), e in by.items() if (v, t) == (vessel, test)
+        }
         return sorted(rolls, key=lambda k: rolls[k]).index("VSS RRS") + 1
 
     def ratio(vessel: str, test: str, one: str, other: str, norm: str = "yaw_rms") -> float:
-        return float(by[vessel, test, one].each(norm).mean() / by[vessel, test, other].each(norm).mean())
+        return float(
+            by[vessel, test, one].each(norm).mean() / by[vessel, test, other].each(norm).mean()
+        )
 
     quartering = list(product(VESSELS, SEAS[1:]))
     best = [("eastward_ho", t) for t in SEAS[1:]] + [("kynoc", "seas_30")]
     keepers = ("VSS", "MV", "Pole")
-    runaway = {k: by["eastward_ho", "seas_90", k].each("yaw_rms").mean() for k in ("MV RRS", "Pole RRS")}
+    runaway = {
+        k: by["eastward_ho", "seas_90", k].each("yaw_rms").mean() for k in ("MV RRS", "Pole RRS")
+    }
     return "\n".join(
         [
             "\nAgreements asked for",
-            "(a) place of VSS RRS as roll reducer: " + ", ".join(f"{v} {t} {roll_rank(v, t)}" for v, t in best),
-            "(b) yaw of VSS per PID (< 0.65): " + ", ".join(f"{ratio(v, t, 'VSS', 'PID'):.2f}" for v, t in quartering),
+            "(a) place of VSS RRS as roll reducer: "
+            + ", ".join(f"{v} {t} {roll_rank(v, t)}" for v, t in best),
+            "(b) yaw of VSS per PID (< 0.65): "
+            + ", ".join(f"{ratio(v, t, 'VSS', 'PID'):.2f}" for v, t in quartering),
             "(c) roll of the good course keepers in kynoc seas_45, less than PID by: "
-            + ", ".join(f"{k} {100 * (1 - ratio('kynoc', 'seas_45', k, 'PID', 'roll_rms')):.0f} %" for k in keepers),
-            "(d) yaw in eastward_ho seas_90: " + ", ".join(f"{k} {yaw:.0f} deg" for k, yaw in runaway.items()),
+            + ", ".join(
+                f"{k} {100 * (1 - ratio('kynoc', 'seas_45', k, 'PID', 'roll_rms')):.0f} %"
+                for k in keepers
+            ),
+            "(d) yaw in eastward_ho seas_90: "
+            + ", ".join(f"{k} {yaw:.0f} deg" for k, yaw in runaway.items()),
             "(e) yaw of VSS RRS per VSS (> 1): "
             + ", ".join(f"{ratio(v, t, 'VSS RRS', 'VSS'):.1f}" for v, t in product(VESSELS, SEAS)),
         ]
@@ -224,7 +283,9 @@ def agreements(done: Sequence[Entry]) -> str:
 # The puzzles ----------------------------------------------------------------------------------------------------------
 
 
-def mean_over(name: str, seeds: int, overrides: Mapping[str, Any] | None = None) -> tuple[Array, Array]:
+def mean_over(
+    name: str, seeds: int, overrides: Mapping[str, Any] | None = None
+) -> tuple[Array, Array]:
     """Roll and yaw rms [deg] of a scenario, seed by seed."""
     test = scenario.load(name, overrides)
     values = [measured(test, seed) for seed in range(seeds)]
@@ -244,14 +305,20 @@ def faster_rudder(seeds: int) -> list[str]:
         at = [float((100.0 * (1.0 - roll / pid)).mean()) for roll in (slow, fast)]
         gains[vessel, test] = at[1] - at[0]
         where = "beam, by the spectrum" if test == "broad" else test
-        lines.append(f"  {vessel:12} {where:22} %PID {at[0]:4.0f} at 5 deg/s, {at[1]:4.0f} at 15 deg/s")
+        lines.append(
+            f"  {vessel:12} {where:22} %PID {at[0]:4.0f} at 5 deg/s, {at[1]:4.0f} at 15 deg/s"
+        )
     off = [g for (_, test), g in gains.items() if test in SEAS[1:]]
-    near = {v: [g for (w, test), g in gains.items() if w == v and test not in SEAS[1:]] for v in VESSELS}
+    near = {
+        v: [g for (w, test), g in gains.items() if w == v and test not in SEAS[1:]] for v in VESSELS
+    }
     lines.append(
         f"answer: no in quartering seas ({min(off):+.0f} to {max(off):+.0f} points), whose energy the ship meets below "
         "her roll frequency, where few commands ask for more than 5 deg/s. At resonance, in beam seas, it does where "
         "the rudder is strong: "
-        + ", ".join(f"{v} {min(found):+.0f} to {max(found):+.0f} points" for v, found in near.items())
+        + ", ".join(
+            f"{v} {min(found):+.0f} to {max(found):+.0f} points" for v, found in near.items()
+        )
     )
     return lines
 
@@ -283,7 +350,9 @@ def puzzles(seeds: int) -> str:
 
 def main() -> None:
     """Parse, run in two processes, print."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--vessel", default="")
     parser.add_argument("--tests", default="")
     parser.add_argument("--autopilots", default="")

@@ -44,14 +44,21 @@ def force(boat: Vessel, **moved: float) -> Array:
     """Yaw moment, sway force and roll moment at the approach speed, the hull's own Coriolis force in it."""
     angle = {"angle": moved.pop("rudder", 0.0)}
     m = motion(**{"u": speed_of(boat), **moved})
-    forces = [e.wrench(m, **(angle if type(e).roles else {})) for e in boat.effects if isinstance(e, Force)]
+    forces = [
+        e.wrench(m, **(angle if type(e).roles else {}))
+        for e in boat.effects
+        if isinstance(e, Force)
+    ]
     w = Wrench(*np.sum(forces, axis=0))
     return np.array([w.N, w.Y - boat.body.mass * speed_of(boat) * m.r, w.K])
 
 
 def linear(boat: Vessel) -> tuple[Array, Array, Array]:
     """Continuous A (5, 5) over (psi, r, v, phi, p), B (5,) of the rudder, K (5, 3) of waves as (yaw, sway, roll)."""
-    rates = {n: np.linalg.solve(inertia(boat), force(boat, **{n: 1.0})) for n in ("r", "v", "phi", "p", "rudder")}
+    rates = {
+        n: np.linalg.solve(inertia(boat), force(boat, **{n: 1.0}))
+        for n in ("r", "v", "phi", "p", "rudder")
+    }
     A, K, mass = np.zeros((5, 5)), np.zeros((5, 3)), inertia(boat).diagonal()
     A[0, 1] = A[3, 4] = K[1, 0] = K[2, 1] = K[4, 2] = 1.0
     A[np.ix_([1, 2, 4], [1, 2, 3, 4])] = np.column_stack([rates[n] for n in ("r", "v", "phi", "p")])
@@ -119,14 +126,30 @@ def sea_of(boat: Vessel, angle: float, height: float, period: float) -> Irregula
     height = height or 0.01 * 9.81 * period**2 / (2 * pi)
     beam = float(angle == 90)
     sea = IrregularSea(
-        significant_height=height, modal_period=period, toward=radians(angle), flat=beam, course_kept=1.0
+        significant_height=height,
+        modal_period=period,
+        toward=radians(angle),
+        flat=beam,
+        course_kept=1.0,
     )
     return sea.completed(boat)
 
 
 def coefficients() -> Table:
     """The linear model of every condition."""
-    names = ("a_rr", "a_rv", "a_rphi", "a_vr", "a_vv", "a_pr", "a_pv", "a_pphi", "b_r", "b_v", "b_p")
+    names = (
+        "a_rr",
+        "a_rv",
+        "a_rphi",
+        "a_vr",
+        "a_vv",
+        "a_pr",
+        "a_pv",
+        "a_pphi",
+        "b_r",
+        "b_v",
+        "b_p",
+    )
     table = Table("vessel", "V [m/s]", *names, "T_phi [s]", "zeta", title="rates of (r, v, p)")
     for name, condition in ((n, c) for n in ("kynoc", "eastward_ho") for c in range(1, 5)):
         boat = vessel.load(name, [f"condition_{condition}"])
@@ -134,18 +157,24 @@ def coefficients() -> Table:
         rows = [*A[1, 1:4], *A[2, 1:3], *A[4, 1:4], B[1], B[2], B[4]]
         w = sqrt(-A[4, 3])
         last = (f"{2 * pi / w:.2f}", f"{-A[4, 4] / (2 * w):.3f}")
-        table.add_row(f"{name} {condition}", f"{speed_of(boat):.3f}", *(f"{a:.4f}" for a in rows), *last)
+        table.add_row(
+            f"{name} {condition}", f"{speed_of(boat):.3f}", *(f"{a:.4f}" for a in rows), *last
+        )
     return table
 
 
 def seas() -> Table:
     """What the thesis' seas do to the ships."""
-    table = Table("vessel", "encounter", "yaw", "sway", "direct roll", "slope [deg]", title="rms [deg/s^2]")
+    table = Table(
+        "vessel", "encounter", "yaw", "sway", "direct roll", "slope [deg]", title="rms [deg/s^2]"
+    )
     for name in ("kynoc", "eastward_ho"):
         for condition, angle, height, period in SEAS:
             boat = vessel.load(name, [f"condition_{condition}"])
             found, slope = accelerations(boat, sea_of(boat, angle, height, period))
-            table.add_row(f"{name} {condition}", f"{angle} deg", *(f"{a:.2f}" for a in found), f"{slope:.2f}")
+            table.add_row(
+                f"{name} {condition}", f"{angle} deg", *(f"{a:.2f}" for a in found), f"{slope:.2f}"
+            )
     return table
 
 
@@ -157,14 +186,21 @@ def main() -> None:
     truth, rudder = zigzag(boat, random_waves())
     for step in (0.02, 0.1):
         off = np.degrees(np.abs(on_mujoco(boat, rudder, random_waves(), step) - truth).max(axis=0))
-        console.print(f"120 s zig-zag in random waves, RK4 at {step} s: yaw {off[0]:.1e} deg, roll {off[3]:.1e} deg")
+        console.print(
+            f"120 s zig-zag in random waves, RK4 at {step} s: yaw {off[0]:.1e} deg, roll {off[3]:.1e} deg"
+        )
     engine = Engine(
-        vessel.load("eastward_ho", ["condition_3"], {"irregular_sea": {"significant_height": 0.88}}), step=0.1
+        vessel.load(
+            "eastward_ho", ["condition_3"], {"irregular_sea": {"significant_height": 0.88}}
+        ),
+        step=0.1,
     )
     engine.reset(State(u=6.68777))
     start = process_time()
     engine.advance(6000)
-    console.print(f"600 s in 160 waves, steps of 0.1 s: {process_time() - start:.2f} s of processor time")
+    console.print(
+        f"600 s in 160 waves, steps of 0.1 s: {process_time() - start:.2f} s of processor time"
+    )
 
 
 if __name__ == "__main__":

@@ -24,10 +24,11 @@ from boatsim.physics.content import find
 from tests import pushed_three_metre
 
 GOAL = 1.3  # times the hand-made vessel's error, at most
-UNITS = {"position_rms_m": ("position [m]", np.sqrt(2.0)), "heading_rms_rad": ("heading [deg]", 57.29578)}
-THRUST_COEFFICIENT = (
-    0.2  # K_T of a propeller of P/D 0.7 under way: M. M. Bernitsas et al. 1981, Wageningen B-series at J = 0.35
-)
+UNITS = {
+    "position_rms_m": ("position [m]", np.sqrt(2.0)),
+    "heading_rms_rad": ("heading [deg]", 57.29578),
+}
+THRUST_COEFFICIENT = 0.2  # K_T of a propeller of P/D 0.7 under way: M. M. Bernitsas et al. 1981, Wageningen B-series at J = 0.35
 LONGEST = 150.0  # [s] of a run of the tanker, for the time it takes
 MOST = 17.0  # [1/s] the fastest shaft of the manoeuvres that are fitted and judged
 
@@ -40,7 +41,9 @@ class Case:
     logs: Mapping[str, Mapping[str, Array]]  # columns
     unseen: Sequence[str]
     hand_made: Callable[[Path], Path]  # its file, written into a folder if it has to be
-    its_logs: Callable[[Mapping[str, Array]], Mapping[str, Array]] = dict  # columns as the hand-made vessel has them
+    its_logs: Callable[[Mapping[str, Array]], Mapping[str, Array]] = (
+        dict  # columns as the hand-made vessel has them
+    )
 
 
 def three_metre(folder: Path) -> Case:
@@ -62,14 +65,25 @@ def three_metre(folder: Path) -> Case:
 def blueboat(_: Path) -> Case:
     """The catamaran on the lake; its makers' page has the sizes, its source the thrusters."""
     boat = particulars(
-        "blueboat_new", 1.2, 0.77, 15.0, ["-0.45,-0.285,55.2,27.6", "-0.45,0.285,55.2,27.6"], [], hulls=2
+        "blueboat_new",
+        1.2,
+        0.77,
+        15.0,
+        ["-0.45,-0.285,55.2,27.6", "-0.45,0.285,55.2,27.6"],
+        [],
+        hulls=2,
     )
     logs = {}
     for path in runs("blueboat_lake"):
         read = columns(path)
         names = {"x_m": "north_m", "y_m": "east_m", "psi_rad": "heading_rad"}
-        names |= {"thrust_port_N": "force_right_N", "thrust_starboard_N": "force_left_N"}  # its README: exchanged
-        logs[path.stem] = {"t_s": read["t_s"]} | {ours: read[theirs] for ours, theirs in names.items()}
+        names |= {
+            "thrust_port_N": "force_right_N",
+            "thrust_starboard_N": "force_left_N",
+        }  # its README: exchanged
+        logs[path.stem] = {"t_s": read["t_s"]} | {
+            ours: read[theirs] for ours, theirs in names.items()
+        }
     unseen = sorted(logs)[2::4]
     return Case(boat, logs, unseen, lambda _: find("vessel", "blueboat"))
 
@@ -81,9 +95,15 @@ def esso_osaka(_: Path) -> Case:
     per = THRUST_COEFFICIENT * told["density_water_kgm3"] * propeller["D_m"] ** 4  # [N s^2]
     at = propeller["x_over_Lpp"] * told["Lpp_m"] - ahead
     boat = particulars(
-        "esso_osaka_new", told["Lpp_m"], told["beam_m"], told["mass_kg"], [f"{at},0,{per * MOST**2}"], [],
-        rudder=f"{rudder['x_from_midship_m'] - ahead},{rudder['area_m2']}", draught=told["draught_m"],
-    )  # fmt: skip
+        "esso_osaka_new",
+        told["Lpp_m"],
+        told["beam_m"],
+        told["mass_kg"],
+        [f"{at},0,{per * MOST**2}"],
+        [],
+        rudder=f"{rudder['x_from_midship_m'] - ahead},{rudder['area_m2']}",
+        draught=told["draught_m"],
+    )
     logs = {}
     for path in [p for p in runs("esso_osaka") if p.stem.startswith(("zigzag", "turn"))]:
         read = columns(path)
@@ -99,7 +119,9 @@ def esso_osaka(_: Path) -> Case:
         kept = {n: log[n] for n in ("t_s", "x_m", "y_m", "psi_rad")}
         return {**kept, "delta_rad": log["rudder_rad"], "n_rps": shaft}
 
-    return Case(boat, logs, sorted(logs)[2::4], lambda where: esso_osaka_vessel.written(where), theirs)
+    return Case(
+        boat, logs, sorted(logs)[2::4], lambda where: esso_osaka_vessel.written(where), theirs
+    )
 
 
 def longest(t: Array, leaps: Array) -> tuple[float, float]:
@@ -135,11 +157,17 @@ def judged(case: Case, folder: Path) -> Iterator[tuple[str, Fitted]]:
     for name, text in files(case.boat).items():
         (own / name).write_text(text, encoding="utf-8")
     yield "new", _fitted(own / VESSEL, case, folder / "new_logs", dict)
-    yield "hand-made", _fitted(case.hand_made(folder / "hand_made"), case, folder / "its_logs", case.its_logs)
+    yield (
+        "hand-made",
+        _fitted(case.hand_made(folder / "hand_made"), case, folder / "its_logs", case.its_logs),
+    )
 
 
 def _fitted(
-    file: Path, case: Case, folder: Path, taken: Callable[[Mapping[str, Array]], Mapping[str, Array]]
+    file: Path,
+    case: Case,
+    folder: Path,
+    taken: Callable[[Mapping[str, Array]], Mapping[str, Array]],
 ) -> Fitted:
     folder.mkdir()
     for name, log in case.logs.items():
@@ -150,7 +178,9 @@ def _fitted(
 
 def _write(file: Path, log: Mapping[str, Array]) -> None:
     """A recording."""
-    np.savetxt(file, np.column_stack(list(log.values())), "%.9g", ",", header=",".join(log), comments="")
+    np.savetxt(
+        file, np.column_stack(list(log.values())), "%.9g", ",", header=",".join(log), comments=""
+    )
 
 
 def rows(name: str) -> Iterator[list[str]]:
@@ -161,7 +191,15 @@ def rows(name: str) -> Iterator[list[str]]:
         found = dict(judged(case, folder))
     for family, (words, scale) in UNITS.items():
         new, hand = found["new"], found["hand-made"]
-        cells = [scale * x for x in (new.before[family], new.after[family], hand.before[family], hand.after[family])]
+        cells = [
+            scale * x
+            for x in (
+                new.before[family],
+                new.after[family],
+                hand.before[family],
+                hand.after[family],
+            )
+        ]
         ratios = [cells[1] / cells[2], cells[1] / cells[3]]
         verdict = "yes" if ratios[0] <= GOAL else "no"
         yield [
@@ -173,7 +211,8 @@ def rows(name: str) -> Iterator[list[str]]:
             verdict,
         ]
     print(
-        f"{name}: {', '.join(found['new'].best.suspects) or 'nothing'} found beside its coefficients", file=sys.stderr
+        f"{name}: {', '.join(found['new'].best.suspects) or 'nothing'} found beside its coefficients",
+        file=sys.stderr,
     )
 
 
@@ -182,7 +221,9 @@ def main(names: Sequence[str]) -> None:
     lines = []
     for name in names or CASES:
         if name in SETS and not runs(SETS[name]):
-            print(f"{name}: skipped, there are no recordings in ../shared/recordings/{SETS[name]}/runs")
+            print(
+                f"{name}: skipped, there are no recordings in ../shared/recordings/{SETS[name]}/runs"
+            )
             continue
         lines += list(rows(name))
     header = [
@@ -197,7 +238,11 @@ def main(names: Sequence[str]) -> None:
         "to fitted",
         "goal",
     ]
-    table(f"errors of free runs on logs no fit has seen; goal: at most {GOAL:g} times the hand-made", header, lines)
+    table(
+        f"errors of free runs on logs no fit has seen; goal: at most {GOAL:g} times the hand-made",
+        header,
+        lines,
+    )
 
 
 if __name__ == "__main__":

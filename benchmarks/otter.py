@@ -8,7 +8,11 @@ from math import pi
 from boatsim.physics import vessel
 from boatsim.simulate.engine import Engine, State
 
-SIGNALS = {"roll": "phi", "pitch": "theta", "yaw": "psi"}  # as the table of papers calls them; others as they are
+SIGNALS = {
+    "roll": "phi",
+    "pitch": "theta",
+    "yaw": "psi",
+}  # as the table of papers calls them; others as they are
 
 
 def figures() -> dict[str, float]:
@@ -28,7 +32,10 @@ def sailed(port: float, starboard: float, seconds: float, stations: int = 0) -> 
 def after_20_s(stations: int, words: str) -> dict[str, float]:
     """State at the end of the turn; the heading counts on from a half turn."""
     state = sailed(80.0, 60.0, 20.0, stations)
-    found = {n: getattr(state, SIGNALS.get(n, n)) for n in ("u", "v", "w", "p", "q", "r", "x", "y", "z", *SIGNALS)}
+    found = {
+        n: getattr(state, SIGNALS.get(n, n))
+        for n in ("u", "v", "w", "p", "q", "r", "x", "y", "z", *SIGNALS)
+    }
     found["yaw"] %= 2.0 * pi
     return {f"{name}, {words}": value for name, value in found.items()}
 

@@ -27,7 +27,7 @@ from benchmarks import golden
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.simulate import scenario
-from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED, within
+from boatsim.simulate.evaluation import MISSED, REPRODUCED, UNSTATED, within
 
 HOME = Path(__file__).parents[1]
 OUT = HOME / "docs" / "papers.md"
@@ -75,29 +75,48 @@ def rows(file: Path) -> Iterator[Row]:
 def _row(table: Mapping[str, Any], file: Path) -> Row:
     found = set(table) - KEYS
     if found not in OURS:
-        raise BadInput(f"{file.name}: {table.get('what')}: has {sorted(found)}; allowed are {[*map(sorted, OURS)]}")
-    ours, published, unit, command = table.get("ours"), table.get("published"), table.get("unit"), ""
+        raise BadInput(
+            f"{file.name}: {table.get('what')}: has {sorted(found)}; allowed are {[*map(sorted, OURS)]}"
+        )
+    ours, published, unit, command = (
+        table.get("ours"),
+        table.get("published"),
+        table.get("unit"),
+        "",
+    )
     if "norm" in table:
         values = _golden(table["scenario"])
         if table["norm"] not in values:
-            raise BadInput(f"{file.name}: {table['scenario']} has no norm {table['norm']}; it has {[*values]}")
+            raise BadInput(
+                f"{file.name}: {table['scenario']} has no norm {table['norm']}; it has {[*values]}"
+            )
         pinned = values[table["norm"]]
         ours, command = pinned["today"], f"`boatsim run {table['scenario']}`"
-        published, unit = pinned["published"] if published is None else published, unit or pinned["unit"]
+        published, unit = (
+            pinned["published"] if published is None else published,
+            unit or pinned["unit"],
+        )
     elif "figure" in table:
         ours, command = _figures(table["module"])[table["figure"]], f"`python -m {table['module']}`"
     elif "command" in table:
         command = f"`{table['command']}`"
     if published is None:
         raise BadInput(f"{file.name}: {table['what']}: nothing published to compare with")
-    tolerance, span = _tolerance(table, published), tuple(table["span"]) if "span" in table else None
+    tolerance, span = (
+        _tolerance(table, published),
+        tuple(table["span"]) if "span" in table else None,
+    )
     verdict = verdict_on(published, ours, tolerance, span)
     because, reason = table.get("because", ""), table.get("reason", "")
     if because not in ("", *BECAUSE):
-        raise BadInput(f"{file.name}: {table['what']}: because = {because!r}; allowed are {', '.join(BECAUSE)}")
+        raise BadInput(
+            f"{file.name}: {table['what']}: because = {because!r}; allowed are {', '.join(BECAUSE)}"
+        )
     if verdict == MISSED and not reason:
         raise BadInput(f"{file.name}: {table['what']}: {published} against {ours} needs a reason")
-    told = "; ".join(part for part in (_margin(tolerance, span, unit or ""), because, reason) if part)
+    told = "; ".join(
+        part for part in (_margin(tolerance, span, unit or ""), because, reason) if part
+    )
     return Row(table["what"], published, ours, unit or "", verdict, told, command, tolerance, span)
 
 
@@ -113,7 +132,9 @@ def _tolerance(table: Mapping[str, Any], published: Any) -> float | None:
     return norm.tolerance if norm is not None and norm.published == published else None
 
 
-def verdict_on(published: Any, ours: Any, tolerance: float | None, span: tuple[float, float] | None) -> str:
+def verdict_on(
+    published: Any, ours: Any, tolerance: float | None, span: tuple[float, float] | None
+) -> str:
     """What figures alone say."""
     if isinstance(ours, str) or (isinstance(published, str) and span is None):
         return WORDS
@@ -127,7 +148,11 @@ def verdict_on(published: Any, ours: Any, tolerance: float | None, span: tuple[f
 def _margin(tolerance: float | None, span: tuple[float, float] | None, unit: str) -> str:
     """The margin of a verdict in words."""
     if span is not None:
-        return f"at least {_shown(span[0], unit)}" if isinf(span[1]) else f"{span[0]:.4g} to {_shown(span[1], unit)}"
+        return (
+            f"at least {_shown(span[0], unit)}"
+            if isinf(span[1])
+            else f"{span[0]:.4g} to {_shown(span[1], unit)}"
+        )
     return "" if tolerance is None else f"within {_shown(tolerance, unit)}"
 
 
@@ -165,14 +190,19 @@ def document() -> str:
         paper, found = read_toml(file), list(rows(file))
         counts.update(r.verdict for r in found)
         head = "| figure | published | ours | verdict | margin, reason | from |\n| --- | --- | --- | --- | --- | --- |"
-        parts.append(f"## {paper['title']}\n\n{paper['source']}\n\n{head}\n" + "\n".join(r.line() for r in found))
+        parts.append(
+            f"## {paper['title']}\n\n{paper['source']}\n\n{head}\n"
+            + "\n".join(r.line() for r in found)
+        )
     parts.insert(1, ", ".join(f"{counts[v]} {v}" for v in VERDICTS) + ".")
     return "\n\n".join(parts) + "\n"
 
 
 def main(arguments: list[str] | None = None) -> int:
     """0 up to date or written, 1 out of date."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.papers", description="Published figures beside ours.")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.papers", description="Published figures beside ours."
+    )
     parser.add_argument("--update", action="store_true", help="write docs/papers.md")
     given = parser.parse_args(arguments)
     text = document()
@@ -180,7 +210,11 @@ def main(arguments: list[str] | None = None) -> int:
         OUT.write_text(text, encoding="utf-8")
     same = OUT.is_file() and OUT.read_text(encoding="utf-8") == text
     print(text.splitlines()[4])
-    print("docs/papers.md is up to date" if same else "docs/papers.md is out of date: --update writes it")
+    print(
+        "docs/papers.md is up to date"
+        if same
+        else "docs/papers.md is out of date: --update writes it"
+    )
     return int(not same)
 
 

@@ -15,14 +15,19 @@ from time import perf_counter
 import numpy as np
 
 from boatsim.physics import vessel
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.env import load as load_env
-from boatsim.simulate.twin import Twin
 
 STEP = 0.02  # [s]
 SHAFTS = {"n_port_radps": 80.0, "n_starboard_radps": 60.0}  # [rad/s]
 RUDDER = {"delta_rad": radians(-35.0), "n_rps": 11.8516}
-PWM = {"pwm_port": 120.0, "pwm_starboard": -90.0, "steer_port_rad": 0.4, "steer_starboard_rad": -0.3}
+PWM = {
+    "pwm_port": 120.0,
+    "pwm_starboard": -90.0,
+    "steer_port_rad": 0.4,
+    "steer_starboard_rad": -0.3,
+}
 ELLIPSOID = """<mujoco>
   <option timestep="{step}" gravity="0 0 0" density="1000" viscosity="0.001" integrator="RK4"/>
   <worldbody><body>
@@ -61,7 +66,11 @@ def otter() -> Pair:
             eta = attitudeEuler(eta, nu, STEP)
 
     made = vessel.load("otter")
-    return Pair("Python vehicle simulator, Otter, 60 s", theirs, of_us("otter", made, SHAFTS, [0.0] * 12, steps))
+    return Pair(
+        "Python vehicle simulator, Otter, 60 s",
+        theirs,
+        of_us("otter", made, SHAFTS, [0.0] * 12, steps),
+    )
 
 
 def tanker() -> Pair:
@@ -75,11 +84,32 @@ def tanker() -> Pair:
     length, draught, mass, rho, seconds = 7.0, 0.46, 3270.0, 1000.0, 200.0
     unit = 0.5 * rho * length**2 * draught  # [kg]
     hull = Mmg3DofBasicParams(
-        L_pp=length, B=1.27, d=draught, x_G=0.25, D_p=0.216, m=mass, I_zG=mass * (0.25 * length) ** 2, A_R=0.0539,
-        η=0.216 / 0.345, m_x=0.022 * unit, m_y=0.223 * unit, J_z=0.011 * unit * length**2, f_α=2.747, ε=1.09,
-        t_R=0.387, x_R=-0.5 * length, a_H=0.312, x_H=-0.464 * length, γ_R_minus=0.395, γ_R_plus=0.640, l_R=-0.71,
-        κ=0.50, t_P=0.22, w_P0=0.40, x_P=-0.48,
-    )  # fmt: skip
+        L_pp=length,
+        B=1.27,
+        d=draught,
+        x_G=0.25,
+        D_p=0.216,
+        m=mass,
+        I_zG=mass * (0.25 * length) ** 2,
+        A_R=0.0539,
+        η=0.216 / 0.345,
+        m_x=0.022 * unit,
+        m_y=0.223 * unit,
+        J_z=0.011 * unit * length**2,
+        f_α=2.747,
+        ε=1.09,
+        t_R=0.387,
+        x_R=-0.5 * length,
+        a_H=0.312,
+        x_H=-0.464 * length,
+        γ_R_minus=0.395,
+        γ_R_plus=0.640,
+        l_R=-0.71,
+        κ=0.50,
+        t_P=0.22,
+        w_P0=0.40,
+        x_P=-0.48,
+    )
     polynomials = Mmg3DofManeuveringParams(
         k_0=0.2931, k_1=-0.2753, k_2=-0.1385, R_0_dash=0.022, X_vv_dash=-0.040, X_vr_dash=0.002, X_rr_dash=0.011,
         X_vvvv_dash=0.771, Y_v_dash=-0.315, Y_r_dash=0.083, Y_vvv_dash=-1.607, Y_vvr_dash=0.379, Y_vrr_dash=-0.391,
@@ -87,7 +117,10 @@ def tanker() -> Pair:
         N_rrr_dash=-0.013,
     )  # fmt: skip
     times = np.linspace(0.0, seconds, 2001)
-    rudder, propeller = np.full(len(times), RUDDER["delta_rad"]), np.full(len(times), RUDDER["n_rps"])
+    rudder, propeller = (
+        np.full(len(times), RUDDER["delta_rad"]),
+        np.full(len(times), RUDDER["n_rps"]),
+    )
 
     def theirs() -> None:
         simulate_mmg_3dof(hull, polynomials, times, rudder, propeller, u0=1.179, ρ=rho)
@@ -140,7 +173,12 @@ def gym_boat() -> Pair:
 
 
 def of_us(
-    name: str, made: vessel.Vessel, commands: dict[str, float], start: list[float], steps: int, step: float = STEP
+    name: str,
+    made: vessel.Vessel,
+    commands: dict[str, float],
+    start: list[float],
+    steps: int,
+    step: float = STEP,
 ) -> dict[str, Work]:
     """Twin and MuJoCo engine on so many steps of Runge-Kutta under constant commands."""
     twin, engine = Twin(made, step), Engine(made, step=step, show=False)

@@ -20,15 +20,29 @@ from boatsim.recordings.importing.log import open_log
 from boatsim.recordings.table import Recording, read, write_csv
 
 HOURS, RATE = 10.0, 50.0  # [h], [Hz]
-NAMES = ("x_m", "y_m", "psi_rad", "thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
+NAMES = (
+    "x_m",
+    "y_m",
+    "psi_rad",
+    "thrust_port_N",
+    "thrust_starboard_N",
+    "steer_port_rad",
+    "steer_starboard_rad",
+)
 WIDE = 30_000  # columns
-PIECE, PIECES = 2_000_000, 64  # rows written together, and how many of those: 5.1 GB of five columns
+PIECE, PIECES = (
+    2_000_000,
+    64,
+)  # rows written together, and how many of those: 5.1 GB of five columns
 
 
 def long_run() -> Recording:
     """Ten hours of a boat that turns to and fro."""
     rng, t = np.random.default_rng(0), np.arange(round(HOURS * 3600 * RATE)) / RATE
-    slow = [0.3 * np.sin(0.01 * (i + 1) * t) + 0.003 * rng.standard_normal(len(t)) for i in range(len(NAMES))]
+    slow = [
+        0.3 * np.sin(0.01 * (i + 1) * t) + 0.003 * rng.standard_normal(len(t))
+        for i in range(len(NAMES))
+    ]
     return Recording("long", t, dict(zip(NAMES, slow, strict=True)))
 
 
@@ -38,7 +52,9 @@ def make(folder: Path) -> None:
     write_csv(run, folder / "ten_hours.csv")
     parquet.write_table(pa.table({"t_s": run.t, **run.signals}), folder / "ten_hours.parquet")
     head, *rows = (folder / "ten_hours.csv").read_text().splitlines()
-    (folder / "with_words.csv").write_text("\n".join([head + ",mode", *(row + ",AUTO" for row in rows)]))
+    (folder / "with_words.csv").write_text(
+        "\n".join([head + ",mode", *(row + ",AUTO" for row in rows)])
+    )
     names = ["t_s", *(f"c{i}" for i in range(WIDE - 1))]
     (folder / "wide.csv").write_text("\n".join([",".join(names), *[",".join("1" * WIDE)] * 100]))
     parquet.write_table(pa.table({n: np.arange(100.0) for n in names}), folder / "wide.parquet")
@@ -47,7 +63,9 @@ def make(folder: Path) -> None:
         for _ in range(400):
             file.write(b"1,2,3,4\n" * 250_000)
     piece = pa.table({n: np.zeros(PIECE) for n in ("t_s", *NAMES[:4])})
-    with parquet.ParquetWriter(folder / "zeros.parquet", piece.schema, compression="zstd") as writer:
+    with parquet.ParquetWriter(
+        folder / "zeros.parquet", piece.schema, compression="zstd"
+    ) as writer:
         for _ in range(PIECES):
             writer.write_table(piece)
 
@@ -56,12 +74,18 @@ def one(path: Path, as_log: bool) -> None:
     """Read a file in this process and print as JSON what that was."""
     begin = time.process_time()
     try:
-        found = f"{len(next(iter(open_log(path).signals.values())).t)} rows" if as_log else f"{len(read(path))} rows"
+        found = (
+            f"{len(next(iter(open_log(path).signals.values())).t)} rows"
+            if as_log
+            else f"{len(read(path))} rows"
+        )
     except BadInput as error:
         found = str(error).removeprefix(f"{path}: ")
     took = time.process_time() - begin
     said = Path("/proc/self/status").read_text(encoding="ascii")
-    peak = int(said.partition("VmHWM:")[2].split()[0]) / 1024  # getrusage counts what its parent took too
+    peak = (
+        int(said.partition("VmHWM:")[2].split()[0]) / 1024
+    )  # getrusage counts what its parent took too
     print(json.dumps([took, peak, found]))
 
 
@@ -78,7 +102,10 @@ def main() -> None:
                 done = subprocess.run(words, stdout=subprocess.PIPE, check=True)
                 seconds, peak, found = json.loads(done.stdout)
                 size = path.stat().st_size / 1e6
-                print(f"{path.name:20}{size:10.1f}{how:>11}{seconds:9.2f}{peak:13.0f}  {found}", flush=True)
+                print(
+                    f"{path.name:20}{size:10.1f}{how:>11}{seconds:9.2f}{peak:13.0f}  {found}",
+                    flush=True,
+                )
 
 
 if __name__ == "__main__":

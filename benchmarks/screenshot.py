@@ -31,7 +31,9 @@ def screenshot(rrd: Path, png: Path, at: float | None = None, settle: float = 4.
     with _viewer() as viewer:
         viewer.open(str(rrd.resolve()))
         time.sleep(settle)
-        viewer.set_time(TIMELINE, duration=last_time(rrd) if at is None else at, play_state="paused")
+        viewer.set_time(
+            TIMELINE, duration=last_time(rrd) if at is None else at, play_state="paused"
+        )
         time.sleep(settle)
         with replacing(png) as temporary:
             temporary.write_bytes(viewer.take_screenshot())
@@ -45,9 +47,20 @@ def _viewer(patience: float = 30.0) -> Iterator[ViewerClient]:
         port = free.getsockname()[1]
     drivers = glob(SOFTWARE)
     environment = {**os.environ, "VK_ICD_FILENAMES": drivers[0]} if drivers else None
-    command = [sys.executable, "-m", "rerun", "--headless", "--window-size", SIZE, "--port", str(port),
-               "--hide-welcome-screen"]  # fmt: skip
-    process = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, start_new_session=True)
+    command = [
+        sys.executable,
+        "-m",
+        "rerun",
+        "--headless",
+        "--window-size",
+        SIZE,
+        "--port",
+        str(port),
+        "--hide-welcome-screen",
+    ]
+    process = subprocess.Popen(
+        command, env=environment, stderr=subprocess.PIPE, start_new_session=True
+    )
     try:
         yield _connected(process, port, time.monotonic() + patience)
     finally:
@@ -62,11 +75,17 @@ def _connected(process: "subprocess.Popen[bytes]", port: int, until: float) -> V
             return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
         except OSError:
             time.sleep(0.2)
-    said = process.stderr.read().decode(errors="replace") if process.poll() is not None and process.stderr else ""
+    said = (
+        process.stderr.read().decode(errors="replace")
+        if process.poll() is not None and process.stderr
+        else ""
+    )
     raise RuntimeError(f"no viewer started; is a Vulkan driver installed? {said[-500:]}")
 
 
 if __name__ == "__main__":
     if len(sys.argv) not in (3, 4):
         sys.exit(__doc__)
-    screenshot(Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]) if len(sys.argv) == 4 else None)
+    screenshot(
+        Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]) if len(sys.argv) == 4 else None
+    )

@@ -8,10 +8,25 @@ import numpy as np
 
 from boatsim.physics.content import load_class
 from boatsim.simulate import scenario
-from boatsim.simulate.norms import norms
+from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import run
 
-BANDWIDTHS = (5.0, 10.0, 11.0, 12.0, 12.2, 13.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0)  # [1/s] k_u
+BANDWIDTHS = (
+    5.0,
+    10.0,
+    11.0,
+    12.0,
+    12.2,
+    13.0,
+    15.0,
+    20.0,
+    25.0,
+    30.0,
+    35.0,
+    40.0,
+    50.0,
+    60.0,
+)  # [1/s] k_u
 DELAYS = (0.002, 0.004, 0.006, 0.010, 0.020)  # [s]
 FILTERS = (80.0, 40.0, 20.0, 10.0)  # [1/s] k_h
 PERIODS = (0.0005, 0.001, 0.002, 0.004, 0.008)  # [s]
@@ -46,7 +61,12 @@ def with_control(name: str, **settings: float) -> dict[str, object]:
 def delayed(bandwidth: float, delay: float) -> float:
     """Rms rate [deg/s] of the jet's command along the sine, so late."""
     late = [{"use": "command_delay", "delay": delay}]
-    return value("heading_delay", "rate_rms", effect=late, **with_control("heading_delay", bandwidth=bandwidth))
+    return value(
+        "heading_delay",
+        "rate_rms",
+        effect=late,
+        **with_control("heading_delay", bandwidth=bandwidth),
+    )
 
 
 def main() -> None:
@@ -58,10 +78,17 @@ def main() -> None:
     print("rms rate of the jet's command [deg/s] along the sine, no rate limit; delay [ms]")
     print("k_h [1/s]" + "".join(f"{1e3 * delay:9.0f}" for delay in DELAYS))
     for bandwidth in FILTERS:
-        print(f"{bandwidth:9.0f}" + "".join(f"{delayed(bandwidth, delay):9.1f}" for delay in DELAYS), flush=True)
-    print("\ncontrol step [ms]   staircase: first and last time to 95 % [s]   heading sine: rms to the model [deg]")
+        print(
+            f"{bandwidth:9.0f}" + "".join(f"{delayed(bandwidth, delay):9.1f}" for delay in DELAYS),
+            flush=True,
+        )
+    print(
+        "\ncontrol step [ms]   staircase: first and last time to 95 % [s]   heading sine: rms to the model [deg]"
+    )
     for period in PERIODS:
-        stairs = norms(run(scenario.load("jet_ski/staircase", with_control("staircase", period=period)), 0))
+        stairs = norms(
+            run(scenario.load("jet_ski/staircase", with_control("staircase", period=period)), 0)
+        )
         times = [stairs[f"time_95_{i}"].value or np.nan for i in (1, 5)]
         sine = value("heading_sine", "rms", **with_control("heading_sine", period=period))
         print(f"{1e3 * period:17.1f}   {times[0]:.3f}  {times[1]:.3f}{sine:37.4f}", flush=True)

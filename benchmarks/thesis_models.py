@@ -37,7 +37,9 @@ def figures() -> dict[str, float]:
     for load in ARM:
         for spacing in ("narrow", "wide"):
             found[f"neutral angle {load} {spacing}"] = neutral_angle(load, spacing)
-    return found | derivatives() | {"Froude number of the sway tests": SWAY / sqrt(GRAVITY * LENGTH)}
+    return (
+        found | derivatives() | {"Froude number of the sway tests": SWAY / sqrt(GRAVITY * LENGTH)}
+    )
 
 
 def derivatives() -> dict[str, float]:
@@ -61,7 +63,9 @@ def response(model: Array, force: int, state: int) -> tuple[float, float, float]
     Where the last value is zero there is no rise, and settling is 2 % of the peak.
     """
     n = len(model)
-    x = step_response(LinearSystem(model, np.eye(n)[:, [force]], np.eye(n)[[state]]), STEP, 30_000)[:, 0]
+    x = step_response(LinearSystem(model, np.eye(n)[:, [force]], np.eye(n)[[state]]), STEP, 30_000)[
+        :, 0
+    ]
     peak = float(x[np.argmax(np.abs(x))])
     last = float(x[-1]) if abs(x[-1]) > 1e-6 else 0.0
     rise = _crossing(x / last, 0.9) - _crossing(x / last, 0.1) if last else 0.0
@@ -82,7 +86,10 @@ def neutral_angle(load: str, spacing: str) -> float:
     resistance = port.x + ARM[load]  # type: ignore[attr-defined]  # [m] centre of lateral resistance ahead of the CG
 
     def moment(angle: float) -> float:
-        pushes = port.wrench(motion(), thrust=1.0, angle=angle), starboard.wrench(motion(), thrust=-1.0, angle=-angle)
+        pushes = (
+            port.wrench(motion(), thrust=1.0, angle=angle),
+            starboard.wrench(motion(), thrust=-1.0, angle=-angle),
+        )
         return float(sum(w.N - resistance * w.Y for w in pushes))
 
     return degrees(brentq(moment, 0.0, pi / 4))

@@ -50,20 +50,27 @@ KINDS = {  # cause outside the library -> axis and factors of a described law th
     "shifting_cargo": "^roll.*(swinging|, from)",
 }
 SLACK = 1.05  # of the recalibrated error on run_3: a description must not do worse
-WORTH = 0.15  # share of the recalibrated error that the true structure must save for a skill to be told
+WORTH = (
+    0.15  # share of the recalibrated error that the true structure must save for a skill to be told
+)
 
 
 def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[str, Any]:
     """Diagnose one trial and replay its held-out run with the patched vessel; the answer."""
     from boatsim.cli import diagnosis as commands
-    from boatsim.diagnose import analysis
-    from boatsim.diagnose.report import patch
+    from boatsim.diagnosis import pipeline
+    from boatsim.diagnosis.report import patched_vessel
 
-    found = analysis.diagnose(
-        [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"], vessel_of(trial), without=without
+    found = pipeline.diagnose(
+        [trial / "run_1.csv", trial / "run_2.csv"],
+        [trial / "run_3.csv"],
+        vessel_of(trial),
+        without=without,
     )
     out.mkdir(parents=True, exist_ok=True)
-    patch.write(found.problem, found.vessel, found.ranking.best, out / "patched.toml", found.ranking.laws)
+    patched_vessel.write(
+        found.problem, found.vessel, found.ranking.best, out / "patched.toml", found.ranking.laws
+    )
     with contextlib.redirect_stdout(io.StringIO()):
         commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon_of(trial), out)
     (out / "diagnosis.json").write_text(json.dumps(found.findings.answer, indent=1))
@@ -93,15 +100,23 @@ def truth_of(answer: dict[str, Any]) -> set[str]:
 def said_of(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
     """Names the tool stands for, in the answer's own names where several count as the same."""
     truth = truth_of(answer)
-    same = {other: name for name, others in answer.get("equivalent", {}).items() for other in others}
+    same = {
+        other: name for name, others in answer.get("equivalent", {}).items() for other in others
+    }
     said = {e["name"] for e in found["effects"]} - set(answer.get("tolerated", []))
-    return {n if n in truth else same.get(n, n) for n in said} | ({"unknown"} if found["unknown"]["flag"] else set())
+    return {n if n in truth else same.get(n, n) for n in said} | (
+        {"unknown"} if found["unknown"]["flag"] else set()
+    )
 
 
 def meant_by(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
     """The same, a name that the answer says it cannot tell from a true one taken for that one."""
     truth, said = truth_of(answer), said_of(answer, found)
-    tied = {e["name"]: truth & set(e["tied_with"]) for e in found["effects"] if found["verdict"] == "ambiguous"}
+    tied = {
+        e["name"]: truth & set(e["tied_with"])
+        for e in found["effects"]
+        if found["verdict"] == "ambiguous"
+    }
     return {n if n in truth else min(tied.get(n, ()), default=n) for n in said}
 
 
@@ -127,17 +142,29 @@ def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
     """
     reference = answer.get("reference_position_rms_m", {})
     recalibrated, true = reference.get("recalibrated"), reference.get("true_structure")
-    if recalibrated is None or true is None or recalibrated - true <= max(1e-3, WORTH * recalibrated):
+    if (
+        recalibrated is None
+        or true is None
+        or recalibrated - true <= max(1e-3, WORTH * recalibrated)
+    ):
         return None
     patched = replay_errors(trial, out / "replay.csv", horizon_of(trial))
-    return -1.0 if patched is None else max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
+    return (
+        -1.0
+        if patched is None
+        else max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
+    )
 
 
 def of_its_kind(answer: dict[str, Any], found: dict[str, Any]) -> bool:
     """Whether a described law holds a term of the kind of the unknown cause."""
     (cause,) = answer["effects"]
     kind = KINDS[cause["name"].partition(":")[2]]
-    return any(re.search(kind, f"{law['axis']} {term['of']}") for law in found["described"] for term in law["terms"])
+    return any(
+        re.search(kind, f"{law['axis']} {term['of']}")
+        for law in found["described"]
+        for term in law["terms"]
+    )
 
 
 def of_recalibrated(found: dict[str, Any]) -> float | None:
@@ -162,9 +189,13 @@ def quantile(values: Sequence[float], q: float) -> float:
 
 def figures(answers: Answers, found: Answers) -> dict[str, str]:
     """Names right and wrong, by kind of trial."""
-    kind = {k: [n for n in found if answers[n]["kind"] == k] for k in ("none", "single", "pair", "unknown")}
+    kind = {
+        k: [n for n in found if answers[n]["kind"] == k]
+        for k in ("none", "single", "pair", "unknown")
+    }
     visible = {
-        k: [n for n in v if answers[n].get("visible") and not answers[n].get("borderline")] for k, v in kind.items()
+        k: [n for n in v if answers[n].get("visible") and not answers[n].get("borderline")]
+        for k, v in kind.items()
     }
     said = {n: said_of(answers[n], found[n]) for n in found}
     exact = {n: said[n] == truth_of(answers[n]) for n in found}
@@ -173,7 +204,9 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
     wrong = {n: meant[n] - truth_of(answers[n]) - {"unknown"} for n in found}
     concealed = [n for n in visible["single"] if answers[n]["concealed"]]
     known = [*kind["none"], *kind["single"], *kind["pair"]]
-    unknown = {c: [n for n in visible["unknown"] if answers[n]["concealed"] is c] for c in (False, True)}
+    unknown = {
+        c: [n for n in visible["unknown"] if answers[n]["concealed"] is c] for c in (False, True)
+    }
     return {
         "false alarms among nothing-missing trials": share([bool(said[n]) for n in kind["none"]]),
         "visible single effects, exactly named": share([exact[n] for n in visible["single"]]),
@@ -181,18 +214,32 @@ def figures(answers: Answers, found: Answers) -> dict[str, str]:
         "  exactly named, or told to be tied": share([fair[n] for n in visible["single"]]),
         "visible pairs, both named and nothing else": share([exact[n] for n in visible["pair"]]),
         "wrong names (none, singles, pairs)": share([bool(wrong[n]) for n in known]),
-        "visible unknown cause flagged, pilot": share(["unknown" in said[n] for n in unknown[False]]),
-        "visible unknown cause flagged, concealed": share(["unknown" in said[n] for n in unknown[True]]),
-        "visible unknown cause described": share([bool(found[n]["described"]) for n in visible["unknown"]]),
-        "  with a term of its kind": share([of_its_kind(answers[n], found[n]) for n in visible["unknown"]]),
-        "known cause called unknown": share(["unknown" in said[n] for n in (*kind["single"], *kind["pair"])]),
+        "visible unknown cause flagged, pilot": share(
+            ["unknown" in said[n] for n in unknown[False]]
+        ),
+        "visible unknown cause flagged, concealed": share(
+            ["unknown" in said[n] for n in unknown[True]]
+        ),
+        "visible unknown cause described": share(
+            [bool(found[n]["described"]) for n in visible["unknown"]]
+        ),
+        "  with a term of its kind": share(
+            [of_its_kind(answers[n], found[n]) for n in visible["unknown"]]
+        ),
+        "known cause called unknown": share(
+            ["unknown" in said[n] for n in (*kind["single"], *kind["pair"])]
+        ),
     }
 
 
 def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> dict[str, str]:
     """Held-out skill, parameters, seconds."""
-    skills = [s for n in found if answers[n]["kind"] in ("single", "pair")
-              and (s := skill(trials / n, out / n, answers[n])) is not None]  # fmt: skip
+    skills = [
+        s
+        for n in found
+        if answers[n]["kind"] in ("single", "pair")
+        and (s := skill(trials / n, out / n, answers[n])) is not None
+    ]
     exact = [n for n in found if said_of(answers[n], found[n]) == truth_of(answers[n])]
     z = [x for n in exact for x in deviations(answers[n], found[n])]
     table, seconds = {}, [f["seconds"] for f in found.values() if "seconds" in f]
@@ -231,7 +278,14 @@ def reliability(answers: Answers, found: Answers) -> list[tuple[str, int, float,
         inside = [(p, true) for p, true in pairs if low <= p < high or p == high == 1.0]
         if inside:
             mean = statistics.mean(p for p, _ in inside)
-            table.append((f"{low:.2f} to {high:.2f}", len(inside), mean, statistics.mean(float(t) for _, t in inside)))
+            table.append(
+                (
+                    f"{low:.2f} to {high:.2f}",
+                    len(inside),
+                    mean,
+                    statistics.mean(float(t) for _, t in inside),
+                )
+            )
     return table
 
 
@@ -242,21 +296,29 @@ def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answer
         if n in found and answer["kind"] == "single" and answer.get("visible"):
             (name,) = truth_of(answer)
             alike = [t for e in found[n]["effects"] if e["name"] == name for t in e["tied_with"]]
-            left_out[n] = tuple(dict.fromkeys((name, *answer.get("equivalent", {}).get(name, []), *alike)))
+            left_out[n] = tuple(
+                dict.fromkeys((name, *answer.get("equivalent", {}).get(name, []), *alike))
+            )
     todo = {n: (trials / n, out / "unknowns" / n, names) for n, names in left_out.items()}
     again = all_of(jobs, todo, "without the truth")
     flagged = {n: f["unknown"]["flag"] for n, f in again.items()}
     print("\nunknowns: the true entry and its look-alikes taken out of the library")
     for what, concealed in (("pilot", False), ("concealed", True)):
-        print(f"  flagged, {what:10s} {share([flagged[n] for n in again if answers[n]['concealed'] is concealed])}")
-    print(f"  flagged, or nothing named  {share([flagged[n] or not f['effects'] for n, f in again.items()])}")
+        print(
+            f"  flagged, {what:10s} {share([flagged[n] for n in again if answers[n]['concealed'] is concealed])}"
+        )
+    print(
+        f"  flagged, or nothing named  {share([flagged[n] or not f['effects'] for n, f in again.items()])}"
+    )
     skills = {n: skill(trials / n, out / "unknowns" / n, answers[n]) for n in again}
     told = [s for s in skills.values() if s is not None]
     if told:
         print(f"  skill, truth taken out     {statistics.median(told):.3f} ({len(told)} trials)")
     by_law = [s for n, s in skills.items() if s is not None and again[n]["described"]]
     if by_law:
-        print(f"  of these by a description  {statistics.median(by_law):.3f} ({len(by_law)} trials)")
+        print(
+            f"  of these by a description  {statistics.median(by_law):.3f} ({len(by_law)} trials)"
+        )
     for n, f in again.items():
         instead = [f"{e['name']} ({e['gain_nats']:.0f} nats)" for e in f["effects"]]
         law = "described" if f["described"] else "unknown"
@@ -271,7 +333,10 @@ def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> 
     for vessel in ("", *several):
         part = {n: f for n, f in found.items() if vessel in ("", vessels[n])}
         print(f"\n{vessel}, {len(part)} trials" if vessel else "")
-        for what, value in {**figures(answers, part), **fit_figures(trials, out, answers, part)}.items():
+        for what, value in {
+            **figures(answers, part),
+            **fit_figures(trials, out, answers, part),
+        }.items():
             print(f"{what:44s} {value}")
     print()
 
@@ -295,13 +360,19 @@ def score(trials: Path, results: Path, answers: Answers) -> None:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("trials", type=Path, nargs="?", default=SHARED)
     parser.add_argument("--out", type=Path, default=Path("out/trials"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--unknowns", action="store_true", help="also the table of unknowns")
-    parser.add_argument("--answers", type=Path, metavar="RESULTS", help="score these answers, diagnose nothing")
-    parser.add_argument("--make", type=Path, metavar="DIR", help="make the second practice set there, and no more")
+    parser.add_argument(
+        "--answers", type=Path, metavar="RESULTS", help="score these answers, diagnose nothing"
+    )
+    parser.add_argument(
+        "--make", type=Path, metavar="DIR", help="make the second practice set there, and no more"
+    )
     parser.add_argument("--seed", type=int, default=1, help="of the set that is made")
     args = parser.parse_args()
     if args.make:
@@ -309,7 +380,9 @@ def main() -> None:
 
         make_set(args.make, args.seed)
         return
-    answers = {t.name: json.loads((t / "answer.json").read_text()) for t in sorted(args.trials.glob("T*"))}
+    answers = {
+        t.name: json.loads((t / "answer.json").read_text()) for t in sorted(args.trials.glob("T*"))
+    }
     if not answers:
         raise SystemExit(f"{args.trials}: no trials there")
     if args.answers:
@@ -319,8 +392,12 @@ def main() -> None:
             raise SystemExit(str(error)) from None
         return
     begin = time.time()
-    found = all_of(args.jobs, {n: (args.trials / n, args.out / n, ()) for n in answers}, "diagnosing")
-    print(f"{len(found)} trials in {time.time() - begin:.0f} s on {args.jobs} processes; answers in {args.out}")
+    found = all_of(
+        args.jobs, {n: (args.trials / n, args.out / n, ()) for n in answers}, "diagnosing"
+    )
+    print(
+        f"{len(found)} trials in {time.time() - begin:.0f} s on {args.jobs} processes; answers in {args.out}"
+    )
     print_figures(args.trials, args.out, answers, found)
     print_wrong(answers, found)
     print("\nreliability: entries by stated probability, in trials with one effect or none")

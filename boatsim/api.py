@@ -10,10 +10,10 @@ from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from boatsim.diagnose import analysis
-from boatsim.diagnose.replaying import joined, replayed
-from boatsim.diagnose.report import files
-from boatsim.diagnose.report.entries import Answer
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.replay import joined, replayed
+from boatsim.diagnosis.report import output_files
+from boatsim.diagnosis.report.schema import Answer
 from boatsim.physics import vessel as vessels
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, silent
@@ -22,18 +22,18 @@ from boatsim.recordings.notes import notes_for
 from boatsim.recordings.table import Recording
 from boatsim.simulate.batch import Batch as Batch
 from boatsim.simulate.controllers import steered
+from boatsim.simulate.evaluation import Norm, NormEntry, all_norms
 from boatsim.simulate.fleet import Fleet as Fleet
-from boatsim.simulate.norms import Norm, NormEntry, all_norms
 from boatsim.simulate.run import run as simulate
-from boatsim.sweep.axes import axis_of
-from boatsim.sweep.carry_out import swept
-from boatsim.sweep.designs import Kind as Design
-from boatsim.sweep.draws import draw_of
-from boatsim.sweep.indices import Index, indices
-from boatsim.sweep.keys import Value
-from boatsim.sweep.plan import plan
-from boatsim.sweep.results import Results
-from boatsim.sweep.summary import Pair, Spread, pairs, spreads
+from boatsim.sweeps.axes import axis_of
+from boatsim.sweeps.designs import Kind as Design
+from boatsim.sweeps.execute import swept
+from boatsim.sweeps.indices import Index, indices
+from boatsim.sweeps.keys import Value
+from boatsim.sweeps.plan import plan
+from boatsim.sweeps.results import Results
+from boatsim.sweeps.sampled_keys import draw_of
+from boatsim.sweeps.summary import Pair, Spread, pairs, spreads
 
 Name = str | Path  # of something shipped, of a file, or of a folder
 Names = Name | Sequence[Name]  # one or several
@@ -68,7 +68,7 @@ class Parameter(NamedTuple):
 class Diagnosis:
     """What a vessel leaves out of recordings; `found` is all of it, curves too."""
 
-    found: analysis.Diagnosis
+    found: pipeline.Diagnosis
 
     @property
     def answer(self) -> Answer:
@@ -94,7 +94,9 @@ class Diagnosis:
     def parameters(self) -> dict[str, dict[str, Parameter]]:
         """Parameters of what was named: entry -> name -> value and standard deviation, in the parameter's unit."""
         return {
-            effect["name"]: {k: Parameter(p["value"], p["sd"]) for k, p in effect["parameters"].items()}
+            effect["name"]: {
+                k: Parameter(p["value"], p["sd"]) for k, p in effect["parameters"].items()
+            }
             for effect in self.answer["effects"]
         }
 
@@ -105,13 +107,19 @@ class Diagnosis:
         1 - rms of the patched boat / rms of the same boat with but its own coefficients refitted: 0 gains nothing.
         """
         fit = self.answer["fit"]
-        position, heading, roll = fit.get("position_rms_m"), fit.get("heading_rms_rad"), fit.get("roll_rms_rad")
+        position, heading, roll = (
+            fit.get("position_rms_m"),
+            fit.get("heading_rms_rad"),
+            fit.get("roll_rms_rad"),
+        )
         by_name = {"position": position, "heading": heading, "roll": roll}
-        return {name: 1.0 - rms["patched"] / rms["recalibrated"] for name, rms in by_name.items() if rms}
+        return {
+            name: 1.0 - rms["patched"] / rms["recalibrated"] for name, rms in by_name.items() if rms
+        }
 
     def write(self, folder: Name) -> None:
         """All files of `boatsim diagnose`: report.html, report.md, diagnosis.json, patched.toml, diagnosis.rrd."""
-        files.write(self.found, Path(folder))
+        output_files.write(self.found, Path(folder))
 
 
 @dataclass(frozen=True)
@@ -159,7 +167,9 @@ def load_vessel(name: Name, load: Names = ()) -> Vessel:
     return vessels.load(str(name), _names(load))
 
 
-def run(scenario: Name, seed: int | None = None, controller: Name | None = None, out: Name | None = None) -> Run:
+def run(
+    scenario: Name, seed: int | None = None, controller: Name | None = None, out: Name | None = None
+) -> Run:
     """Run a scenario by name or file, steered by its own controller or another; `out` is a folder for the files.
 
     An interruption ends the run and keeps what was reached. Raises BadInput or BadPhysics.
@@ -197,7 +207,9 @@ def _norm(entry: NormEntry) -> Norm:
     """A norm of norms.json."""
     said = {f.name: entry[f.name] for f in fields(Norm)}  # type: ignore[literal-required]
     if guard := entry["guard"]:
-        said["guard"] = tuple(end if end is not None else (-inf, inf)[i] for i, end in enumerate(guard))
+        said["guard"] = tuple(
+            end if end is not None else (-inf, inf)[i] for i, end in enumerate(guard)
+        )
     return Norm(**said)
 
 
@@ -213,7 +225,7 @@ def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
     file = Path(path)
     if vessel is None and not notes_for(file).notes.vessel:
         return table.read(file)
-    return analysis.open_recording(file, None if vessel is None else str(vessel), _names(load))[0]
+    return pipeline.open_recording(file, None if vessel is None else str(vessel), _names(load))[0]
 
 
 def diagnose(
@@ -244,10 +256,14 @@ def diagnose(
     """
     name = None if vessel is None else str(vessel)
     tried = _names(library), _names(without)
-    return Diagnosis(analysis.diagnose(_paths(runs), _paths(hold_out), name, _names(load), *tried, horizon))
+    return Diagnosis(
+        pipeline.diagnose(_paths(runs), _paths(hold_out), name, _names(load), *tried, horizon)
+    )
 
 
-def replay(recording: Name, vessel: Name | None = None, load: Names = (), horizon: float = 6.0) -> Recording:
+def replay(
+    recording: Name, vessel: Name | None = None, load: Names = (), horizon: float = 6.0
+) -> Recording:
     """Free runs of a vessel, each of `horizon` [s] from a recorded state with the recorded commands alone.
 
     The result has the pose at the times of the recording, and the number of each free run in `segment`. `vessel` may be
@@ -259,7 +275,9 @@ def replay(recording: Name, vessel: Name | None = None, load: Names = (), horizo
     >>> sorted(as_written.signals)
     ['psi_rad', 'segment', 'x_m', 'y_m']
     """
-    opened, boat = analysis.open_recording(Path(recording), None if vessel is None else str(vessel), _names(load))
+    opened, boat = pipeline.open_recording(
+        Path(recording), None if vessel is None else str(vessel), _names(load)
+    )
     return joined(replayed(opened, boat, horizon))
 
 
@@ -295,7 +313,10 @@ def sweep(
     >>> pair.norm, pair.second, pair.pairs
     ('|heading_at_end|', 'l1_joystick', 4)
     """
-    axes = [axis_of(key, values if isinstance(values, str) else list(values)) for key, values in (vary or {}).items()]
+    axes = [
+        axis_of(key, values if isinstance(values, str) else list(values))
+        for key, values in (vary or {}).items()
+    ]
     draws = [draw_of(key, law) for key, law in (draw or {}).items()]
     made = plan(_names(scenarios), axes, draws, runs, seed, design)
     return Sweep(*swept(made, Path(out), jobs, ray, _names(norms), report), Path(out))

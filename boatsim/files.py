@@ -14,12 +14,16 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from boatsim.errors import BadInput, unknown_name
 
 # What TOML and JSON say, as tomllib and json read it; a point in time is a date
-Value: TypeAlias = "None | str | bool | int | float | date | time | Sequence[Value] | Mapping[str, Value]"
+Value: TypeAlias = (
+    "None | str | bool | int | float | date | time | Sequence[Value] | Mapping[str, Value]"
+)
 
 LARGEST = 1 << 20  # bytes of a TOML file
 DEEPEST = 32  # tables and lists within each other
 WHOLE = 1 << 63  # beyond all integers that TOML promises to read
-DOTTED = re.compile(r"""(?<![\w-])(?:(?:[\w-]{1,200}+|"[^"\n]{0,200}"|'[^'\n]{0,200}')[ \t]{0,9}\.[ \t]{0,9}){32}""")
+DOTTED = re.compile(
+    r"""(?<![\w-])(?:(?:[\w-]{1,200}+|"[^"\n]{0,200}"|'[^'\n]{0,200}')[ \t]{0,9}\.[ \t]{0,9}){32}"""
+)
 
 
 class Table(BaseModel):
@@ -47,9 +51,13 @@ def read_toml(path: Path) -> dict[str, Value]:
     except FileNotFoundError:
         raise BadInput(f"{path}: no such file") from None
     except RecursionError:
-        raise BadInput(f"{path}: not a TOML file (tables or lists more than {DEEPEST} deep)") from None
+        raise BadInput(
+            f"{path}: not a TOML file (tables or lists more than {DEEPEST} deep)"
+        ) from None
     except (ValueError, OSError) as error:
-        said = error.strerror if isinstance(error, OSError) else str(error).partition("; use sys.")[0]
+        said = (
+            error.strerror if isinstance(error, OSError) else str(error).partition("; use sys.")[0]
+        )
         raise BadInput(f"{path}: not a TOML file ({said})".replace("\n", " ")) from None
 
 
@@ -65,7 +73,9 @@ def _check_sizes(content: Mapping[str, Value]) -> None:
         elif isinstance(value, list):
             left += [(key, v, depth + 1) for v in value]
         elif isinstance(value, int) and abs(value) >= WHOLE:
-            raise ValueError(f"{key} is an integer of {len(str(abs(value)))} digits; allowed are those of 64 bits")
+            raise ValueError(
+                f"{key} is an integer of {len(str(abs(value)))} digits; allowed are those of 64 bits"
+            )
 
 
 def checked(model: type[T], data: Mapping[str, object], file: str) -> T:
@@ -83,12 +93,16 @@ def tables(value: object) -> list[dict[str, Value]]:
 
 def _line(model: type[BaseModel], error: ValidationError) -> str:
     """First mistake of a validation in words."""
-    first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")  # a misspelt key is also a missing one
+    first = min(
+        error.errors(), key=lambda e: e["type"] != "extra_forbidden"
+    )  # a misspelt key is also a missing one
     place = ".".join(str(p) for p in first["loc"])
     if first["type"] == "extra_forbidden":
         table = ".".join(str(p) for p in first["loc"][:-1])
         return unknown_name(
-            f"key{f' in [{table}]' if table else ''}", str(first["loc"][-1]), _keys(model, first["loc"])
+            f"key{f' in [{table}]' if table else ''}",
+            str(first["loc"][-1]),
+            _keys(model, first["loc"]),
         )
     if first["type"] == "missing":
         return f"{place} is missing"
@@ -101,7 +115,10 @@ def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
     for key in place[:-1]:
         if not isinstance(key, str) or key not in model.model_fields:
             continue
-        kinds = [model.model_fields[key].annotation, *getattr(model.model_fields[key].annotation, "__args__", ())]
+        kinds = [
+            model.model_fields[key].annotation,
+            *getattr(model.model_fields[key].annotation, "__args__", ()),
+        ]
         model = next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), model)
     return list(model.model_fields)
 

@@ -65,7 +65,9 @@ def _handled(how: Handler) -> Iterator[None]:
     before = {}
     if current_thread() is main_thread():
         # one that is ignored stays so: nohup, and a shell that runs us in the background, mean it
-        before = {s: signal.signal(s, how) for s in SIGNALS if signal.getsignal(s) != signal.SIG_IGN}
+        before = {
+            s: signal.signal(s, how) for s in SIGNALS if signal.getsignal(s) != signal.SIG_IGN
+        }
     try:
         yield
     finally:

@@ -36,8 +36,12 @@ class FeedForwardSpeed(CompiledController):
     law: ClassVar = law
     remembers: ClassVar = record("started", "goal", "model")
 
-    period: float = param(0.002, low=0.0001, high=1.0, unit="s", words="time between two control steps")
-    gain: float = param(1.4, low=0.0, high=100.0, unit="1/s", words="thrust per mass and speed error")
+    period: float = param(
+        0.002, low=0.0001, high=1.0, unit="s", words="time between two control steps"
+    )
+    gain: float = param(
+        1.4, low=0.0, high=100.0, unit="1/s", words="thrust per mass and speed error"
+    )
     linear: float = param(0.1926, low=0.0, high=10.0, unit="1/s", words="drag assumed, Table 3")
     quadratic: float = param(0.0035, low=0.0, high=10.0, unit="1/m", words="drag assumed, Table 3")
 

@@ -15,7 +15,10 @@ from boatsim.physics.base import param
 THETA, SIGMA, OMEGA = (0.2025, 1.7716), (-23.17, 23.17), (0.1, 2.0)  # section 4.1; 1/s, m/s^2, 1
 SLOWEST = 0.5  # [m/s] thrust is power / speed down to here
 IDLE, FULL = 1.0, 7.0  # throttle
-LINEAR, QUADRATIC = 0.1926, 0.0035  # [1/s], [1/m] drag per mass, Table 3: only where the filter starts
+LINEAR, QUADRATIC = (
+    0.1926,
+    0.0035,
+)  # [1/s], [1/m] drag per mass, Table 3: only where the filter starts
 NO_LIMIT = 1e9  # [m/s^3] of the thrust's rate
 
 
@@ -25,7 +28,10 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
     for b in boats:
         q, m, s, wanted = settings[b], memory[b], sense[b], goal[b].u_mps
         u = max(s.u, SLOWEST)
-        low, high = power_of(IDLE, q.q2) / u, power_of(FULL, q.q2) / u  # [m/s^2] thrust per mass at this speed
+        low, high = (
+            power_of(IDLE, q.q2) / u,
+            power_of(FULL, q.q2) / u,
+        )  # [m/s^2] thrust per mass at this speed
         m.loop.after[0] = s.u
         if m.started == 0.0:
             m.model, m.throttle, m.started = s.u, IDLE, 1.0
@@ -53,23 +59,43 @@ class L1Cruise(CompiledController):
     goals: ClassVar[tuple[str, ...]] = ("u_mps", "jet_rad")
     unsaid: ClassVar = {"jet_rad": 0.0}
     law: ClassVar = law
-    remembers: ClassVar = record("started", "goal", "model", "speed", "throttle", loop=loop_memory(1))
+    remembers: ClassVar = record(
+        "started", "goal", "model", "speed", "throttle", loop=loop_memory(1)
+    )
 
-    period: float = param(0.002, low=0.0001, high=0.1, unit="s", words="time between two control steps")
-    substep: float = param(1e-4, low=1e-6, high=0.1, unit="s", words="of predictor, adaptation and filter")
-    pole: float = param(1.4, low=0.1, high=20.0, unit="1/s", words="-alpha_des: of the motion asked for")
-    bandwidth: float = param(35.0, low=0.1, high=1e3, unit="1/s", words="k_u; the L1-norm condition needs 12.1")
+    period: float = param(
+        0.002, low=0.0001, high=0.1, unit="s", words="time between two control steps"
+    )
+    substep: float = param(
+        1e-4, low=1e-6, high=0.1, unit="s", words="of predictor, adaptation and filter"
+    )
+    pole: float = param(
+        1.4, low=0.1, high=20.0, unit="1/s", words="-alpha_des: of the motion asked for"
+    )
+    bandwidth: float = param(
+        35.0, low=0.1, high=1e3, unit="1/s", words="k_u; the L1-norm condition needs 12.1"
+    )
     adaptation: float = param(1e4, low=1.0, high=1e7, unit="", words="Gamma_u")
-    q2: float = param(154.9, low=0.0, high=1e3, unit="m^2/s^3", words="of the power curve; printed 164.5")
-    gain_as_published: float = param(0.0, low=0.0, high=1.0, unit="", words="1: k_g = 1/pole, which is wrong")
+    q2: float = param(
+        154.9, low=0.0, high=1e3, unit="m^2/s^3", words="of the power curve; printed 164.5"
+    )
+    gain_as_published: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: k_g = 1/pole, which is wrong"
+    )
 
     def settings(self, count: int = 1) -> Records:
         """Its parameters, and how its loop is laid out."""
         low, high = zip(THETA, SIGMA, OMEGA, strict=True)
         loop = designed(
-            [[-self.pole]], low, high, (1.0, 0.0, 1.0), gain=self.adaptation, bandwidth=self.bandwidth,
-            period=self.period, step=self.substep,
-        )  # fmt: skip
+            [[-self.pole]],
+            low,
+            high,
+            (1.0, 0.0, 1.0),
+            gain=self.adaptation,
+            bandwidth=self.bandwidth,
+            period=self.period,
+            step=self.substep,
+        )
         return with_parts(super().settings(count), loop=loop)
 
     def estimates(self) -> dict[str, Estimate]:

@@ -13,10 +13,23 @@ from boatsim.control.adaptive_loop import (
     shift_loop,
 )
 from boatsim.control.base import Estimate, wrap
-from boatsim.control.compiled import CompiledController, Records, lean, merged, record, unlocked, with_parts
+from boatsim.control.compiled import (
+    CompiledController,
+    Records,
+    lean,
+    merged,
+    record,
+    unlocked,
+    with_parts,
+)
 from boatsim.physics.base import param
 
-THETA_1, THETA_2, SIGMA, OMEGA = (-3.0, 3.0), (-5.0, 5.0), (-5.0, 5.0), (0.1, 10.0)  # chosen: none are published
+THETA_1, THETA_2, SIGMA, OMEGA = (
+    (-3.0, 3.0),
+    (-5.0, 5.0),
+    (-5.0, 5.0),
+    (0.1, 10.0),
+)  # chosen: none are published
 JUMP = 1.0  # [rad/s] a reference that changes faster jumps
 STIFFNESS = 1.0  # [1/s^2] of the motion asked for, A_m = [[0, -1], [1, -1.4]]
 wrapped = lean(wrap)
@@ -71,28 +84,52 @@ class L1Heading(CompiledController):
     law: ClassVar = law
     remembers: ClassVar = record("started", "goal", "jet", "error", "rate", loop=loop_memory(2))
 
-    period: float = param(0.002, low=0.0001, high=0.1, unit="s", words="time between two control steps")
-    substep: float = param(2e-4, low=1e-6, high=0.1, unit="s", words="of predictor, adaptation and filter")
-    damping: float = param(1.4, low=0.1, high=20.0, unit="1/s", words="of the motion asked for, A_m")
-    bandwidth: float = param(80.0, low=0.1, high=1e3, unit="1/s", words="k_h; published condition 60")
+    period: float = param(
+        0.002, low=0.0001, high=0.1, unit="s", words="time between two control steps"
+    )
+    substep: float = param(
+        2e-4, low=1e-6, high=0.1, unit="s", words="of predictor, adaptation and filter"
+    )
+    damping: float = param(
+        1.4, low=0.1, high=20.0, unit="1/s", words="of the motion asked for, A_m"
+    )
+    bandwidth: float = param(
+        80.0, low=0.1, high=1e3, unit="1/s", words="k_h; published condition 60"
+    )
     adaptation: float = param(1e5, low=1.0, high=1e7, unit="", words="Gamma_h")
-    first_omega: float = param(3.0, low=0.1, high=10.0, unit="1/s^2", words="input gain assumed at the start")
-    largest: float = param(radians(15.0), low=0.0, high=1.5, unit="rad", words="jet deflection either way")
-    rate: float = param(radians(30.0), low=0.001, high=1e3, unit="rad/s", words="fastest turning of the jet")
+    first_omega: float = param(
+        3.0, low=0.1, high=10.0, unit="1/s^2", words="input gain assumed at the start"
+    )
+    largest: float = param(
+        radians(15.0), low=0.0, high=1.5, unit="rad", words="jet deflection either way"
+    )
+    rate: float = param(
+        radians(30.0), low=0.001, high=1e3, unit="rad/s", words="fastest turning of the jet"
+    )
     jumps_shift: float = param(
         1.0, low=0.0, high=1.0, unit="", words="0: a step of the reference surprises, as printed"
     )
-    knows_rate: float = param(1.0, low=0.0, high=1.0, unit="", words="0: the reference's rate is left out, as printed")
-    regressor_as_published: float = param(0.0, low=0.0, high=1.0, unit="", words="1: sigma is adapted by delta, eq. 32")
+    knows_rate: float = param(
+        1.0, low=0.0, high=1.0, unit="", words="0: the reference's rate is left out, as printed"
+    )
+    regressor_as_published: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: sigma is adapted by delta, eq. 32"
+    )
 
     def settings(self, count: int = 1) -> Records:
         """Its parameters, and how its loop is laid out."""
         am = [[0.0, -1.0], [STIFFNESS, -self.damping]]
         low, high = zip(THETA_1, THETA_2, SIGMA, OMEGA, strict=True)
         loop = designed(
-            am, low, high, (0.0, 0.0, 0.0, self.first_omega), gain=self.adaptation, bandwidth=self.bandwidth,
-            period=self.period, step=self.substep,
-        )  # fmt: skip
+            am,
+            low,
+            high,
+            (0.0, 0.0, 0.0, self.first_omega),
+            gain=self.adaptation,
+            bandwidth=self.bandwidth,
+            period=self.period,
+            step=self.substep,
+        )
         if self.regressor_as_published:
             loop["by"][:, 2] = 3
         return with_parts(super().settings(count), loop=loop)

@@ -25,22 +25,38 @@ class L1HeadingDiscrete(Controller):
     1 - f22 = 5.8 % of the disturbance stays. Goals: `psi_rad`, `elevator_rad`.
     """
 
-    words: ClassVar[str] = "discrete L1 heading control of a water-jet craft at low speed and astern"
+    words: ClassVar[str] = (
+        "discrete L1 heading control of a water-jet craft at low speed and astern"
+    )
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad", "elevator_rad")
     goals: ClassVar[tuple[str, ...]] = ("psi_rad", "elevator_rad")
 
-    period: float = param(0.1, low=0.001, high=10.0, unit="s", words="time between two control steps, T_s")
-    k_p: float = param(0.5, low=0.0, high=100.0, unit="1/s^2", words="yaw acceleration per heading error")
+    period: float = param(
+        0.1, low=0.001, high=10.0, unit="s", words="time between two control steps, T_s"
+    )
+    k_p: float = param(
+        0.5, low=0.0, high=100.0, unit="1/s^2", words="yaw acceleration per heading error"
+    )
     k_d: float = param(0.7, low=0.0, high=100.0, unit="1/s", words="yaw acceleration per yaw rate")
     time_constant: float = param(1.67, low=0.05, high=100.0, unit="s", words="T_n assumed")
     jet_gain: float = param(
         0.599, low=1e-3, high=100.0, unit="1/s^2", words="yaw acceleration per nozzle angle, beta 0"
     )
-    jet_range: float = param(radians(15.0), low=0.0, high=1.6, unit="rad", words="largest nozzle angle")
-    elevator_rate: float = param(radians(30.0), low=1e-3, high=1e3, unit="rad/s", words="fastest bucket command")
-    elevator_start: float = param(0.0, low=0.0, high=1.6, unit="rad", words="bucket before the first step")
-    least_share: float = param(0.1, low=1e-3, high=1.0, unit="", words="|cos 2 beta| below which the nozzle rests")
-    wave_filter: float = param(1.0, low=0.0, high=1.0, unit="", words="1: PD behind the wave filter; 0: PD alone")
+    jet_range: float = param(
+        radians(15.0), low=0.0, high=1.6, unit="rad", words="largest nozzle angle"
+    )
+    elevator_rate: float = param(
+        radians(30.0), low=1e-3, high=1e3, unit="rad/s", words="fastest bucket command"
+    )
+    elevator_start: float = param(
+        0.0, low=0.0, high=1.6, unit="rad", words="bucket before the first step"
+    )
+    least_share: float = param(
+        0.1, low=1e-3, high=1.0, unit="", words="|cos 2 beta| below which the nozzle rests"
+    )
+    wave_filter: float = param(
+        1.0, low=0.0, high=1.0, unit="", words="1: PD behind the wave filter; 0: PD alone"
+    )
     adaptive: float = param(1.0, low=0.0, high=1.0, unit="", words="1: with L1; 0: without")
     omega_1: float = param(4.5, low=0.1, high=50.0, unit="rad/s", words="wave filter: notch")
     omega_2: float = param(7.0, low=0.1, high=50.0, unit="rad/s", words="wave filter: roll-off")
@@ -49,9 +65,15 @@ class L1HeadingDiscrete(Controller):
     k: float = param(0.16, low=1e-4, high=100.0, unit="", words="L1 feedback gain")
     k_1: float = param(4.894e-3, low=1e-6, high=1.0, unit="", words="gain of D(z)")
     p_1: float = param(0.938, low=0.0, high=1.0, unit="", words="pole of D(z)")
-    z_1: float = param(0.9789, low=-1.0, high=1.0, unit="", words="zero of D(z), -z_1; Table B.1 leaves it out: 0")
-    pd_as_published: float = param(0.0, low=0.0, high=1.0, unit="", words="1: eq. 15's minus sign on the heading error")
-    filter_as_published: float = param(0.0, low=0.0, high=1.0, unit="", words="1: zeros of s taken for zeros of z")
+    z_1: float = param(
+        0.9789, low=-1.0, high=1.0, unit="", words="zero of D(z), -z_1; Table B.1 leaves it out: 0"
+    )
+    pd_as_published: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: eq. 15's minus sign on the heading error"
+    )
+    filter_as_published: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: zeros of s taken for zeros of z"
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -87,12 +109,17 @@ class L1HeadingDiscrete(Controller):
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Commands for the next period: bucket on its way, nozzle from heading and gyro."""
         wanted, reach = goal.get("elevator_rad", 0.0), self.elevator_rate * self.period
-        before, self._elevator = self._elevator, clip(wanted, self._elevator - reach, self._elevator + reach)
+        before, self._elevator = (
+            self._elevator,
+            clip(wanted, self._elevator - reach, self._elevator + reach),
+        )
         adding = self._disturbance(sense.r) if self.adaptive else 0.0
         u = self._baseline(wrap(goal.get("psi_rad", 0.0) - sense.psi), sense.r) + adding
         per_angle = self._per_angle(before)
         jet = clip(u / per_angle, -self.jet_range, self.jet_range) if per_angle else 0.0
-        self._predicted = self._decay * (self._predicted or 0.0) + self._gain * (per_angle * jet + self._sigma)
+        self._predicted = self._decay * (self._predicted or 0.0) + self._gain * (
+            per_angle * jet + self._sigma
+        )
         return {"throttle": IDLE, "jet_rad": jet, "elevator_rad": self._elevator}
 
     def estimates(self) -> dict[str, Estimate]:
@@ -119,7 +146,9 @@ class L1HeadingDiscrete(Controller):
 
     def _per_angle(self, before: float) -> float:
         """Yaw acceleration per nozzle angle over the period to come [1/s^2]; 0 where it passes through zero."""
-        share = [cos(2.0 * beta) for beta in (before, 0.5 * (before + self._elevator), self._elevator)]
+        share = [
+            cos(2.0 * beta) for beta in (before, 0.5 * (before + self._elevator), self._elevator)
+        ]
         return self.jet_gain * share[1] if min(map(abs, share)) >= self.least_share else 0.0
 
     def _law(self, z: Complex) -> tuple[Complex, Complex]:

@@ -54,28 +54,57 @@ class L1JoystickAsPublished(Controller):
     """
 
     words: ClassVar[str] = "the thesis' Arduino program, defects included"
-    commands: ClassVar[tuple[str, ...]] = ("pwm_port", "pwm_starboard", "steer_port_rad", "steer_starboard_rad")
+    commands: ClassVar[tuple[str, ...]] = (
+        "pwm_port",
+        "pwm_starboard",
+        "steer_port_rad",
+        "steer_starboard_rad",
+    )
 
     r_1: float = param(0.0, low=-1.0, high=1.0, unit="m/s", words="surge command of the program")
     r_2: float = param(0.07, low=-1.0, high=1.0, unit="m/s", words="sway command of the program")
     r_3: float = param(0.0, low=-5.0, high=5.0, unit="rad/s", words="yaw command of the program")
     h0: float = param(0.159, low=0.0, high=2 * pi, unit="rad", words="compass bearing at the start")
-    seeded: bool = False  # item 24: heading[0] is 0 at the first sample; True: it is the first reading
-    integer_division: bool = True  # item 16: 5/7 is 0, 99/70 is 1; mended: 5.0/7.0 (felt only if not seeded)
-    surge_history: bool = True  # item 17: U_1[0] = U_1[1]; U_1[1] = U_1[0]; mended: shifted like U_2 and U_3
+    seeded: bool = (
+        False  # item 24: heading[0] is 0 at the first sample; True: it is the first reading
+    )
+    integer_division: bool = (
+        True  # item 16: 5/7 is 0, 99/70 is 1; mended: 5.0/7.0 (felt only if not seeded)
+    )
+    surge_history: bool = (
+        True  # item 17: U_1[0] = U_1[1]; U_1[1] = U_1[0]; mended: shifted like U_2 and U_3
+    )
     sigma_sign: bool = True  # item 18: sigma adapts along +error; mended: along -error
-    unscaled_disturbance: bool = True  # item 18: theta x + sigma beside the sampled input; mended: inside it
-    start_values: bool = True  # item 19: sigma 0.9, theta_1, omega_1, sigma_1 0 at the start; mended: clipped
-    sway_coefficient: bool = True  # item 20: -0.9324 U_3[2] in the sway row; mended: -0.001193 U_3[2]
-    misplaced_parenthesis: bool = True  # item 21: -yaw (a - sway b); mended: yaw a - sway b = -(xt' P b) x
+    unscaled_disturbance: bool = (
+        True  # item 18: theta x + sigma beside the sampled input; mended: inside it
+    )
+    start_values: bool = (
+        True  # item 19: sigma 0.9, theta_1, omega_1, sigma_1 0 at the start; mended: clipped
+    )
+    sway_coefficient: bool = (
+        True  # item 20: -0.9324 U_3[2] in the sway row; mended: -0.001193 U_3[2]
+    )
+    misplaced_parenthesis: bool = (
+        True  # item 21: -yaw (a - sway b); mended: yaw a - sway b = -(xt' P b) x
+    )
     divide_by_four: bool = True  # item 22: five readings over four; mended: over five
-    acceleration_as_velocity: bool = True  # item 23: surge[0] = surge_a; mended: surge[0] = surge[1] + T_s surge_a
-    unused_gyro: bool = True  # item 23: yaw rate from two compass headings; mended: yaw[0] = yaw_a, the gyro
+    acceleration_as_velocity: bool = (
+        True  # item 23: surge[0] = surge_a; mended: surge[0] = surge[1] + T_s surge_a
+    )
+    unused_gyro: bool = (
+        True  # item 23: yaw rate from two compass headings; mended: yaw[0] = yaw_a, the gyro
+    )
     reversed_difference: bool = True  # item 23: old minus new heading; mended: new minus old
-    heading_wrap: bool = False  # item 23: bearings in 0 to 2 pi, jumps left in; False: continuous bearing
+    heading_wrap: bool = (
+        False  # item 23: bearings in 0 to 2 pi, jumps left in; False: continuous bearing
+    )
     parked_inward: bool = True  # item 25: servos wait at 30 deg; mended: at 0
-    surge_feed_forward: bool = True  # item 26: kg_1 = 0.8; mended: 2, the pole of the coded surge model
-    longer_period: bool = False  # item 27: the loop's own work takes longer than T_s; False: exactly T_s
+    surge_feed_forward: bool = (
+        True  # item 26: kg_1 = 0.8; mended: 2, the pole of the coded surge model
+    )
+    longer_period: bool = (
+        False  # item 27: the loop's own work takes longer than T_s; False: exactly T_s
+    )
 
     estimate: dict[str, float] = field(init=False, repr=False)
 
@@ -87,7 +116,9 @@ class L1JoystickAsPublished(Controller):
 
     def reset(self) -> None:
         """As after `setup()`: global arrays are zero, the servos parked."""
-        self.estimate = dict(FIRST) if self.start_values else {n: clip(v, *BOUNDS[n]) for n, v in FIRST.items()}
+        self.estimate = (
+            dict(FIRST) if self.start_values else {n: clip(v, *BOUNDS[n]) for n, v in FIRST.items()}
+        )
         self._first = True
         self._surge = self._sway = self._yaw = self._heading = 0.0
         self._m_surge, self._m_sway, self._m_yaw = [0.0] * 3, [0.0] * 3, [0.0] * 3
@@ -134,7 +165,13 @@ class L1JoystickAsPublished(Controller):
         add_1 = e["sigma_1"] + e["theta_1"] * self._surge
         if self.unscaled_disturbance:
             (u1, u2, u3), omega_1, omega_23 = self._u, e["omega_1"], e["omega_23"]
-            add = (add_1, e["theta_23"] * self._sway, e["sigma_2"], e["theta_23"] * self._yaw, e["sigma_3"])
+            add = (
+                add_1,
+                e["theta_23"] * self._sway,
+                e["sigma_2"],
+                e["theta_23"] * self._yaw,
+                e["sigma_3"],
+            )
         else:  # eta = omega u + theta x + sigma, one sample younger than u in its history
             u1, u2, u3 = ([nan, *eta[:2]] for eta in self._eta)
             omega_1 = omega_23 = 1.0
@@ -142,15 +179,25 @@ class L1JoystickAsPublished(Controller):
         sway_3 = 0.9324 if self.sway_coefficient else 0.001193
         m1, m2, m3 = self._m_surge, self._m_sway, self._m_yaw
         push(m1, 0.9048 * m1[0] - 0.04758 * u1[1] * omega_1 + add[0])
-        into_sway = (0.04998 * u2[1] - 0.0466 * u2[2] - 0.001221 * u3[1] - sway_3 * u3[2]) * omega_23
+        into_sway = (
+            0.04998 * u2[1] - 0.0466 * u2[2] - 0.001221 * u3[1] - sway_3 * u3[2]
+        ) * omega_23
         push(m2, 1.93 * m2[0] - 0.9324 * m2[1] + add[1] + into_sway + add[2])
-        into_yaw = (0.04827 * u3[1] - 0.04827 * u3[2] + 0.001221 * u2[1] + 0.001193 * u2[2]) * 0.2118 * omega_23
+        into_yaw = (
+            (0.04827 * u3[1] - 0.04827 * u3[2] + 0.001221 * u2[1] + 0.001193 * u2[2])
+            * 0.2118
+            * omega_23
+        )
         push(m3, 1.93 * m3[0] - 0.9324 * m3[1] + add[3] + into_yaw + add[4] - 0.3529)
 
     def _adapt(self) -> None:
         """Euler step of the seven adaptation laws, then `constrain`."""
         surge, sway, yaw, (u1, u2, u3) = self._surge, self._sway, self._yaw, (u[0] for u in self._u)
-        surge_e, sway_e, yaw_e = self._m_surge[0] - surge, self._m_sway[0] - sway, self._m_yaw[0] - yaw
+        surge_e, sway_e, yaw_e = (
+            self._m_surge[0] - surge,
+            self._m_sway[0] - sway,
+            self._m_yaw[0] - yaw,
+        )
         sign = 1.0 if self.sigma_sign else -1.0
         self._move("theta_1", -1.0 * surge_e * surge)
         self._move("theta_23", self._product(yaw, sway, sway_e, yaw_e))
@@ -162,7 +209,9 @@ class L1JoystickAsPublished(Controller):
 
     def _product(self, yaw: float, sway: float, sway_e: float, yaw_e: float) -> float:
         """The gradient of theta_23 or omega_23, meant to be -(xt' P b) x with P of xt' P xt."""
-        five_sevenths, ninety_nine = (0.0, 1.0) if self.integer_division else (5.0 / 7.0, 99.0 / 70.0)
+        five_sevenths, ninety_nine = (
+            (0.0, 1.0) if self.integer_division else (5.0 / 7.0, 99.0 / 70.0)
+        )
         by_yaw, by_sway = 0.5 * sway_e - five_sevenths * yaw_e, ninety_nine * sway_e - 0.5 * yaw_e
         if self.misplaced_parenthesis:
             return -1.0 * yaw * (by_yaw - sway * by_sway)
@@ -178,7 +227,9 @@ class L1JoystickAsPublished(Controller):
         push(self._eta[1], e["omega_23"] * u[1][0] + e["theta_23"] * self._sway + e["sigma_2"])
         push(self._eta[2], e["omega_23"] * u[2][0] + e["theta_23"] * self._yaw + e["sigma_3"])
         kg = (0.8 if self.surge_feed_forward else 2.0, 0.7143, 1.0)
-        for r, wanted, gain, eta in zip(self._r, (self.r_1, self.r_2, self.r_3), kg, self._eta, strict=True):
+        for r, wanted, gain, eta in zip(
+            self._r, (self.r_1, self.r_2, self.r_3), kg, self._eta, strict=True
+        ):
             push(r, wanted * gain - eta[0])
         for channel, pole in enumerate((1.062, 1.082, 1.082)):
             if channel == 0 and self.surge_history:
@@ -196,7 +247,9 @@ class L1JoystickAsPublished(Controller):
         power = clip(NOMINAL_POWER - 0.30 * NOMINAL_POWER + 1.3 * self._u[0][0], 50.0, 255.0)
         return self._commands(float(int(power)), -NOMINAL_POWER, port, starboard)
 
-    def _commands(self, pwm_port: float, pwm_starboard: float, port: float, starboard: float) -> dict[str, float]:
+    def _commands(
+        self, pwm_port: float, pwm_starboard: float, port: float, starboard: float
+    ) -> dict[str, float]:
         """By name of command channel; angles come in as degrees inward."""
         angles = (radians(port), -radians(starboard))
         return dict(zip(self.commands, (pwm_port, pwm_starboard, *angles), strict=True))

@@ -27,31 +27,57 @@ class L1JoystickBlind(AdaptiveJoystick):
 
     words: ClassVar[str] = "L1 joystick for a boat without a speed sensor: tries its motors first"
 
-    check_pwm: float = param(90.0, low=10.0, high=255.0, unit="", words="PWM of pulses ahead; choose that of a sway")
-    check_rest: float = param(0.48, low=0.08, high=5.0, unit="s", words="standstill of the motors between pulses")
-    check_reach: float = param(0.045, low=0.001, high=1.0, unit="m/s", words="speed that a pulse is to give")
-    check_shortest: float = param(0.24, low=0.08, high=5.0, unit="s", words="shortest pulse, the first ones")
+    check_pwm: float = param(
+        90.0, low=10.0, high=255.0, unit="", words="PWM of pulses ahead; choose that of a sway"
+    )
+    check_rest: float = param(
+        0.48, low=0.08, high=5.0, unit="s", words="standstill of the motors between pulses"
+    )
+    check_reach: float = param(
+        0.045, low=0.001, high=1.0, unit="m/s", words="speed that a pulse is to give"
+    )
+    check_shortest: float = param(
+        0.24, low=0.08, high=5.0, unit="s", words="shortest pulse, the first ones"
+    )
     check_longest: float = param(0.64, low=0.08, high=5.0, unit="s", words="longest pulse")
     check_lag: float = param(0.15, low=0.01, high=2.0, unit="s", words="assumed lag of thrust")
-    check_yaw: float = param(1.0, low=0.0, high=10.0, unit="", words="yaw acceleration by drift per yaw rate squared")
-    check_surge: float = param(0.6, low=0.0, high=10.0, unit="m", words="deceleration by drift per yaw rate squared")
-    check_power: float = param(1.25, low=0.5, high=3.0, unit="", words="exponent of thrust assumed in the check")
+    check_yaw: float = param(
+        1.0, low=0.0, high=10.0, unit="", words="yaw acceleration by drift per yaw rate squared"
+    )
+    check_surge: float = param(
+        0.6, low=0.0, high=10.0, unit="m", words="deceleration by drift per yaw rate squared"
+    )
+    check_power: float = param(
+        1.25, low=0.5, high=3.0, unit="", words="exponent of thrust assumed in the check"
+    )
     check_enough: float = param(
         0.006, low=1e-4, high=0.5, unit="", words="standard deviation of the reverse it ends at"
     )
-    check_most: float = param(4.0, low=2.0, high=50.0, unit="", words="most pairs of trains of pulses")
+    check_most: float = param(
+        4.0, low=2.0, high=50.0, unit="", words="most pairs of trains of pulses"
+    )
     known_astern: float = param(
         0.0, low=0.0, high=5.0, unit="", words="factor on PWM astern; 0: to be found by a check"
     )
-    known_angle: float = param(0.0, low=-0.5, high=0.5, unit="rad", words="by which both steerings are off")
-    known_scale: float = param(1.0, low=0.05, high=20.0, unit="", words="true over assumed acceleration by the motors")
-    way_gain: float = param(0.3, low=0.0, high=5.0, unit="1/s", words="surge speed asked for per way reckoned")
+    known_angle: float = param(
+        0.0, low=-0.5, high=0.5, unit="rad", words="by which both steerings are off"
+    )
+    known_scale: float = param(
+        1.0, low=0.05, high=20.0, unit="", words="true over assumed acceleration by the motors"
+    )
+    way_gain: float = param(
+        0.3, low=0.0, high=5.0, unit="1/s", words="surge speed asked for per way reckoned"
+    )
 
     def reset(self) -> None:
         """At rest, motors untried unless they are known."""
         super().reset()
         self._check = None if self.known_astern else self._new_check()
-        self._astern, self._angle, self._scale = self.known_astern or 1.0, self.known_angle, self.known_scale
+        self._astern, self._angle, self._scale = (
+            self.known_astern or 1.0,
+            self.known_angle,
+            self.known_scale,
+        )
         self._psi = self._start = nan  # [rad] compass when the base took over, and before the check
         self._left = 0.0  # [rad] still to be turned back
         self._u = self._x = 0.0  # [m/s], [m] reckoned, beside what the stick asked for
@@ -77,7 +103,10 @@ class L1JoystickBlind(AdaptiveJoystick):
             "reckoned_u_mps": self._u,
             "reckoned_x_m": self._x,
         }
-        return {**super().estimates(), **{name: Estimate(value, nan, nan) for name, value in found.items()}}
+        return {
+            **super().estimates(),
+            **{name: Estimate(value, nan, nan) for name, value in found.items()},
+        }
 
     @property
     def found(self) -> tuple[float, float, float] | None:

@@ -23,7 +23,17 @@ def sway_spread(q: Any, m: Any, s: Any, wanted: float) -> float:
     opened = sway_difference(q, wanted)
     if isnan(s.v):
         return opened
-    felt = missing(m.sway, s.v, m.Y, m.acted != 0.0, wanted, q.sway_pole, q.sway_mass, q.sway_bandwidth, q.period)
+    felt = missing(
+        m.sway,
+        s.v,
+        m.Y,
+        m.acted != 0.0,
+        wanted,
+        q.sway_pole,
+        q.sway_mass,
+        q.sway_bandwidth,
+        q.period,
+    )
     if opened == 0.0:
         return 0.0
     spread = (q.sway_mass * q.sway_pole * wanted - felt) / sin(atan2(q.half_spacing, q.arm))
@@ -52,14 +62,26 @@ class L1JoystickSway(AdaptiveJoystick):
     her own mass of water with her. While the stick asks for no sway the motors do not work against each other for one.
     """
 
-    words: ClassVar[str] = "L1 adaptive joystick with surge, sway and yaw closed, for a measured sway velocity"
+    words: ClassVar[str] = (
+        "L1 adaptive joystick with surge, sway and yaw closed, for a measured sway velocity"
+    )
     law: ClassVar = law
-    remembers: ClassVar = record("acted", "X", "Y", "N", yaw=AXIS, surge=AXIS, sway=AXIS, heading=HEADING)
+    remembers: ClassVar = record(
+        "acted", "X", "Y", "N", yaw=AXIS, surge=AXIS, sway=AXIS, heading=HEADING
+    )
 
-    sway_mass: float = param(11.5, low=0.5, high=2000.0, unit="kg", words="assumed sway mass, added mass included")
-    sway_pole: float = param(0.7, low=0.05, high=10.0, unit="1/s", words="pole of the sway asked for")
-    sway_bandwidth: float = param(1.0, low=0.05, high=20.0, unit="rad/s", words="low-pass of the sway estimate")
-    least_difference: float = param(0.3, low=0.01, high=5.0, unit="N", words="least thrust difference while swaying")
+    sway_mass: float = param(
+        11.5, low=0.5, high=2000.0, unit="kg", words="assumed sway mass, added mass included"
+    )
+    sway_pole: float = param(
+        0.7, low=0.05, high=10.0, unit="1/s", words="pole of the sway asked for"
+    )
+    sway_bandwidth: float = param(
+        1.0, low=0.05, high=20.0, unit="rad/s", words="low-pass of the sway estimate"
+    )
+    least_difference: float = param(
+        0.3, low=0.01, high=5.0, unit="N", words="least thrust difference while swaying"
+    )
 
     def estimates(self) -> dict[str, Estimate]:
         """The base's, and those of sway."""
@@ -72,5 +94,10 @@ class L1JoystickSway(AdaptiveJoystick):
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
         """The base's, and sway."""
-        delayed = partial(LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8))
-        return (*super().loop_channels(), delayed("sway", pole=self.sway_pole, bandwidth=self.sway_bandwidth))
+        delayed = partial(
+            LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
+        )
+        return (
+            *super().loop_channels(),
+            delayed("sway", pole=self.sway_pole, bandwidth=self.sway_bandwidth),
+        )

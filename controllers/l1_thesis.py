@@ -30,7 +30,9 @@ def known(row: Any, v: float, r: float) -> float:
 
 
 @merged
-def stepped(value: float, regressor: float, error: float, low: float, high: float, gain: float, dt: float) -> float:
+def stepped(
+    value: float, regressor: float, error: float, low: float, high: float, gain: float, dt: float
+) -> float:
     """An estimate after dt [s] of the gradient law with projection, cut at its bounds."""
     rate = gain * projected(value, -regressor * error, low, high)
     return within(value + dt * rate, low, high)
@@ -87,22 +89,37 @@ class L1Thesis(CompiledController):
 
     words: ClassVar[str] = "L1 adaptive sway of the thesis' simulations, steering the only control"
     commands: ClassVar[tuple[str, ...]] = (
-        "thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad",
-    )  # fmt: skip
+        "thrust_port_N",
+        "thrust_starboard_N",
+        "steer_port_rad",
+        "steer_starboard_rad",
+    )
     law: ClassVar = law
     # predicted states; both poles of the low-pass [rad/s^2]; angle commanded, and where the servo is taken to be
-    remembers: ClassVar = record("started", "vh", "rh", "slow", "fast", "angle", "reached", sway=ROW, yaw=ROW)
+    remembers: ClassVar = record(
+        "started", "vh", "rh", "slow", "fast", "angle", "reached", sway=ROW, yaw=ROW
+    )
 
-    period: float = param(5e-4, low=5e-4, high=0.01, unit="s", words="time between two control steps")
-    power: float = param(0.5, low=0.01, high=8.0, unit="N", words="nominal power F0: both thrusts together")
-    modulated: bool = False  # F = F0 sin d / sin 23.6 deg instead of F0, d the angle the motors have reached
+    period: float = param(
+        5e-4, low=5e-4, high=0.01, unit="s", words="time between two control steps"
+    )
+    power: float = param(
+        0.5, low=0.01, high=8.0, unit="N", words="nominal power F0: both thrusts together"
+    )
+    modulated: bool = (
+        False  # F = F0 sin d / sin 23.6 deg instead of F0, d the angle the motors have reached
+    )
     servo_lag: float = param(0.15, low=0.0, high=60.0, unit="s", words="assumed, of the steering")
     adaptation: float = param(1e4, low=0.0, high=1e6, unit="", words="gain of the gradient laws")
     mass: float = param(10.4, low=0.1, high=1e3, unit="kg", words="assumed, sway")
     inertia: float = param(2.0, low=0.01, high=1e3, unit="kg m^2", words="assumed, yaw")
     neutral: float = param(0.3875, low=0.0, high=0.7854, unit="rad", words="assumed neutral angle")
-    slope: float = param(0.62, low=0.01, high=10.0, unit="m/rad", words="assumed fall of the lever with the angle")
-    filter_gain: float = param(4.5, low=0.01, high=100.0, unit="", words="times 1.07 (s + 17.7)/(s (s + 50)), AppH")
+    slope: float = param(
+        0.62, low=0.01, high=10.0, unit="m/rad", words="assumed fall of the lever with the angle"
+    )
+    filter_gain: float = param(
+        4.5, low=0.01, high=100.0, unit="", words="times 1.07 (s + 17.7)/(s (s + 50)), AppH"
+    )
     feed_forward_as_published: bool = False
 
     def estimates(self) -> dict[str, Estimate]:
@@ -113,4 +130,7 @@ class L1Thesis(CompiledController):
             for axis, row in (("sway", sway), ("yaw", yaw))
             for (name, bounds), value in zip(BOUNDS.items(), row, strict=False)
         }
-        return found | {"reference_v_mps": Estimate(vh, nan, nan), "reference_r_radps": Estimate(rh, nan, nan)}
+        return found | {
+            "reference_v_mps": Estimate(vh, nan, nan),
+            "reference_r_radps": Estimate(rh, nan, nan),
+        }

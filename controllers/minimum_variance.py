@@ -16,14 +16,22 @@ class MinimumVariance(LearningHelm):
     not.
     """
 
-    words: ClassVar[str] = "adaptive minimum variance by three-way swings, with or without roll reduction"
+    words: ClassVar[str] = (
+        "adaptive minimum variance by three-way swings, with or without roll reduction"
+    )
     nominal_yaw: ClassVar = (0.8, 0.03, 0.0)  # Martin's nominal ship, section 3.2
     nominal_roll: ClassVar = (-1.7624, 0.9561, 0.01, -0.3)
 
     yaw_first: float = param(1.8, low=-2.0, high=2.0, unit="", words="ideal yaw")
-    yaw_second: float = param(-0.8099, low=-1.0, high=1.0, unit="", words="ideal yaw, one period earlier")
-    roll_first: float = param(1.59, low=-2.0, high=2.0, unit="", words="ideal roll: 7 s, damping 0.3")
-    roll_second: float = param(-0.764, low=-1.0, high=1.0, unit="", words="ideal roll, one period earlier")
+    yaw_second: float = param(
+        -0.8099, low=-1.0, high=1.0, unit="", words="ideal yaw, one period earlier"
+    )
+    roll_first: float = param(
+        1.59, low=-2.0, high=2.0, unit="", words="ideal roll: 7 s, damping 0.3"
+    )
+    roll_second: float = param(
+        -0.764, low=-1.0, high=1.0, unit="", words="ideal roll, one period earlier"
+    )
     roll_weight: float = param(1.0, low=0.0, high=100.0, unit="", words="K_r, with roll reduction")
     rudder_weight: float = param(5e-5, low=0.0, high=10.0, unit="", words="rho")
     weighs_angle: bool = False  # rho weighs the rudder angle instead of its swing
@@ -47,4 +55,7 @@ class MinimumVariance(LearningHelm):
         (a2y, _, b2y), (a1r, a2r, _, b2r) = self.ship.yaw, self.ship.roll
         psi = (2.0 + a2y) * s0 - (1.0 + 2.0 * a2y) * s1 + a2y * s2 + b2y * (f0 - f1)
         phi = (1.0 - a1r) * f0 + (a1r - a2r) * f1 + a2r * f2 + b2r * (s0 - 2.0 * s1 + s2)
-        return psi - self.yaw_first * s0 - self.yaw_second * s1, phi - self.roll_first * f0 - self.roll_second * f1
+        return (
+            psi - self.yaw_first * s0 - self.yaw_second * s1,
+            phi - self.roll_first * f0 - self.roll_second * f1,
+        )

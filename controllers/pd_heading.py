@@ -32,7 +32,9 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
     for b in boats:
         q, s, g = settings[b], sense[b], goal[b]
         follow(q, memory[b], s, g.psi_rad)
-        turn = q.stiffness * wrapped(g.psi_rad - s.psi) - (q.damping - 1.0 / q.time_constant) * s.r  # [rad/s^2]
+        turn = (
+            q.stiffness * wrapped(g.psi_rad - s.psi) - (q.damping - 1.0 / q.time_constant) * s.r
+        )  # [rad/s^2]
         sent[b].jet_rad = within(turn * q.time_constant / q.gain, -q.largest, q.largest)
         sent[b].throttle = g.throttle
 
@@ -51,12 +53,20 @@ class PdHeading(CompiledController):
     law: ClassVar = law
     remembers: ClassVar = record("started", "goal", "error", "rate")
 
-    period: float = param(0.002, low=0.0001, high=1.0, unit="s", words="time between two control steps")
-    gain: float = param(2.95, low=0.01, high=100.0, unit="1/s", words="assumed K, of the 15 deg step (Table 4)")
+    period: float = param(
+        0.002, low=0.0001, high=1.0, unit="s", words="time between two control steps"
+    )
+    gain: float = param(
+        2.95, low=0.01, high=100.0, unit="1/s", words="assumed K, of the 15 deg step (Table 4)"
+    )
     time_constant: float = param(0.97, low=0.01, high=1e3, unit="s", words="assumed T")
-    stiffness: float = param(1.0, low=0.0, high=100.0, unit="1/s^2", words="of the motion asked for")
+    stiffness: float = param(
+        1.0, low=0.0, high=100.0, unit="1/s^2", words="of the motion asked for"
+    )
     damping: float = param(1.4, low=0.0, high=100.0, unit="1/s", words="of the motion asked for")
-    largest: float = param(radians(15.0), low=0.0, high=1.5, unit="rad", words="jet deflection either way")
+    largest: float = param(
+        radians(15.0), low=0.0, high=1.5, unit="rad", words="jet deflection either way"
+    )
 
     def estimates(self) -> dict[str, Estimate]:
         """Heading wanted, and the one of the motion asked for."""

@@ -23,7 +23,9 @@ from boatsim.physics.base import param
 ROUNDING = 1e-9  # [N m], [N] less is missed by rounding alone, which must not stop an integrator
 SERVO_LAG = 0.06  # [s] "about one time step" in the thesis; used for the printed margins only
 # Integral parts [N m], [N]; asked for minus applied in the last step [N m], [N].
-REMEMBERS = record("acted", "moment_held", "surge_held", "moment_missed", "surge_missed", heading=HEADING)
+REMEMBERS = record(
+    "acted", "moment_held", "surge_held", "moment_missed", "surge_missed", heading=HEADING
+)
 
 
 @merged
@@ -77,25 +79,48 @@ class PidAutopilot(Outboards, CompiledController):
     """
 
     words: ClassVar[str] = "PID heading and PI surge speed on the joystick's allocation"
-    commands: ClassVar[tuple[str, ...]] = ("pwm_port", "pwm_starboard", "steer_port_rad", "steer_starboard_rad")
+    commands: ClassVar[tuple[str, ...]] = (
+        "pwm_port",
+        "pwm_starboard",
+        "steer_port_rad",
+        "steer_starboard_rad",
+    )
     goals: ClassVar[tuple[str, ...]] = STICK
     unsaid: ClassVar = dict.fromkeys(STICK, 0.0)
     law: ClassVar = law
     remembers: ClassVar = REMEMBERS
 
-    inertia: float = param(2.0, low=0.1, high=50.0, unit="kg m^2", words="assumed yaw inertia, added mass included")
+    inertia: float = param(
+        2.0, low=0.1, high=50.0, unit="kg m^2", words="assumed yaw inertia, added mass included"
+    )
     mass: float = param(5.0, low=0.5, high=500.0, unit="kg", words="assumed surge mass")
-    kp: float = param(0.64, low=0.0, high=25.0, unit="1/s^2", words="yaw acceleration per heading error")
-    ki: float = param(0.1, low=0.0, high=25.0, unit="1/s^3", words="the same per integrated heading error")
-    kd: float = param(1.3, low=0.0, high=25.0, unit="1/s", words="yaw acceleration per yaw rate error")
-    surge_kp: float = param(0.5, low=0.0, high=25.0, unit="1/s", words="surge acceleration per speed error")
-    surge_ki: float = param(0.1, low=0.0, high=25.0, unit="1/s^2", words="the same per integrated speed error")
-    largest_error: float = param(0.5, low=0.01, high=3.1, unit="rad", words="heading errors count up to this much")
-    blind_surge: float = param(1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor")
+    kp: float = param(
+        0.64, low=0.0, high=25.0, unit="1/s^2", words="yaw acceleration per heading error"
+    )
+    ki: float = param(
+        0.1, low=0.0, high=25.0, unit="1/s^3", words="the same per integrated heading error"
+    )
+    kd: float = param(
+        1.3, low=0.0, high=25.0, unit="1/s", words="yaw acceleration per yaw rate error"
+    )
+    surge_kp: float = param(
+        0.5, low=0.0, high=25.0, unit="1/s", words="surge acceleration per speed error"
+    )
+    surge_ki: float = param(
+        0.1, low=0.0, high=25.0, unit="1/s^2", words="the same per integrated speed error"
+    )
+    largest_error: float = param(
+        0.5, low=0.01, high=3.1, unit="rad", words="heading errors count up to this much"
+    )
+    blind_surge: float = param(
+        1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor"
+    )
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
         """The feedback loops, for margins; PI on a speed is PD on its integral."""
-        delayed = partial(LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8))
+        delayed = partial(
+            LoopChannel, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
+        )
         return (
             delayed("yaw", pid=(self.kp, self.ki, self.kd)),
             delayed("surge", pid=(self.surge_ki, 0.0, self.surge_kp)),

@@ -32,14 +32,20 @@ class PolePlacement(LearningHelm):
 
     yaw_fast: float = param(0.89, low=0.0, high=1.0, unit="", words="pole of yaw in z")
     yaw_slow: float = param(0.91, low=0.0, high=1.0, unit="", words="the other pole of yaw")
-    roll_real: float = param(0.798, low=-1.0, high=1.0, unit="", words="real part of the poles of roll: 7 s")
-    roll_imaginary: float = param(0.363, low=0.0, high=1.0, unit="", words="imaginary part: damping 0.3")
+    roll_real: float = param(
+        0.798, low=-1.0, high=1.0, unit="", words="real part of the poles of roll: 7 s"
+    )
+    roll_imaginary: float = param(
+        0.363, low=0.0, high=1.0, unit="", words="imaginary part: damping 0.3"
+    )
 
     def reset(self) -> None:
         """Nothing learnt beyond the nominal ship."""
         super().reset()
         self._gains = np.zeros(4 if self.roll_reduction else 2)
-        self._wanted: Array = np.array([1.0, -self.yaw_fast - self.yaw_slow, self.yaw_fast * self.yaw_slow])
+        self._wanted: Array = np.array(
+            [1.0, -self.yaw_fast - self.yaw_slow, self.yaw_fast * self.yaw_slow]
+        )
         if self.roll_reduction:
             roll = [1.0, -2.0 * self.roll_real, self.roll_real**2 + self.roll_imaginary**2]
             self._wanted = np.convolve(self._wanted, roll)

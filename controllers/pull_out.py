@@ -11,10 +11,17 @@ from boatsim.physics.base import param
 class PullOut(Steered):
     """Helm to one side, midships, to the other side, midships, each held for the same time."""
 
-    words: ClassVar[str] = "standard manoeuvre: steady turns to both sides, each followed by helm midships"
+    words: ClassVar[str] = (
+        "standard manoeuvre: steady turns to both sides, each followed by helm midships"
+    )
 
-    hold: float = param(60.0, low=0.1, high=1e5, unit="s", words="time for which each angle is held")
+    hold: float = param(
+        60.0, low=0.1, high=1e5, unit="s", words="time for which each angle is held"
+    )
 
     def helm(self, sense: Sense) -> float:
         """The angle of this part."""
-        return self.angle * (1.0, 0.0, -1.0, 0.0)[min(int((sense.t - self.execute) / self.hold + 1e-6), 3)]
+        return (
+            self.angle
+            * (1.0, 0.0, -1.0, 0.0)[min(int((sense.t - self.execute) / self.hold + 1e-6), 3)]
+        )

@@ -40,14 +40,18 @@ def surface(a: Array, b: Array, weights: Array, swing: float) -> Array:
             break
         if np.abs(p - last).max() < 1e-13 * size:
             return np.asarray(b @ p)
-    raise BadInput(f"sliding: no switching surface for a swing of {degrees(swing):g} deg in a period")
+    raise BadInput(
+        f"sliding: no switching surface for a swing of {degrees(swing):g} deg in a period"
+    )
 
 
 def nominal(roll_reduction: bool) -> tuple[Array, Array]:
     """A, B of the ship the surfaces are made for: (psi, psi-1, phi, phi-1, u-1), or (psi-2, psi-1, psi)."""
     if roll_reduction:
         return with_rudder(*state_space(YAW, ROLL))
-    return np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.8, -2.6, 2.8]]), np.array([0.0, 0.0, 0.017])
+    return np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.8, -2.6, 2.8]]), np.array(
+        [0.0, 0.0, 0.017]
+    )
 
 
 @dataclass
@@ -60,9 +64,15 @@ class Sliding(Helm):
     words: ClassVar[str] = "three-way relay on a switching surface, with or without roll reduction"
 
     roll_reduction: bool = False
-    boundary: float = param(0.04, low=0.0, high=100.0, unit="", words="half width of the layer around the surface")
-    design_rate: float = param(radians(5.0), low=1e-3, high=1.0, unit="rad/s", words="rudder rate of the surface")
-    printed: bool = True  # the surface as printed; False: computed from the nominal ship for the design rate
+    boundary: float = param(
+        0.04, low=0.0, high=100.0, unit="", words="half width of the layer around the surface"
+    )
+    design_rate: float = param(
+        radians(5.0), low=1e-3, high=1.0, unit="rad/s", words="rudder rate of the surface"
+    )
+    printed: bool = (
+        True  # the surface as printed; False: computed from the nominal ship for the design rate
+    )
     in_degrees: bool = False  # angles in S in degrees, as the thesis states angles elsewhere
 
     def reset(self) -> None:
@@ -79,13 +89,22 @@ class Sliding(Helm):
         key = (bool(self.roll_reduction), self.roll_reduction and self.design_rate > FAST)
         if self.printed:
             return PRINTED[key]
-        found = surface(*nominal(self.roll_reduction), np.array(WEIGHTS[key]), self.design_rate * self.period)
+        found = surface(
+            *nominal(self.roll_reduction), np.array(WEIGHTS[key]), self.design_rate * self.period
+        )
         return tuple(found.tolist())
 
     def side(self) -> float:
         """S = G x: which side of the surface the ship is on, and how far."""
-        x = (*self.psi[:2], *self.phi[:2], self.rudder) if self.roll_reduction else reversed(self.psi)
-        return sum(g * (degrees(s) if self.in_degrees else s) for g, s in zip(self._surface, x, strict=True))
+        x = (
+            (*self.psi[:2], *self.phi[:2], self.rudder)
+            if self.roll_reduction
+            else reversed(self.psi)
+        )
+        return sum(
+            g * (degrees(s) if self.in_degrees else s)
+            for g, s in zip(self._surface, x, strict=True)
+        )
 
     def demand(self) -> float:
         """A swing against the side, or none."""

@@ -11,9 +11,13 @@ from boatsim.physics.base import param
 class Spiral(Steered):
     """Dieudonne's manoeuvre: it shows whether a ship has two rates of turn at one helm angle."""
 
-    words: ClassVar[str] = "standard manoeuvre: helm in steps from side to side and back (Dieudonne)"
+    words: ClassVar[str] = (
+        "standard manoeuvre: helm in steps from side to side and back (Dieudonne)"
+    )
 
-    hold: float = param(60.0, low=0.1, high=1e5, unit="s", words="time for which each angle is held")
+    hold: float = param(
+        60.0, low=0.1, high=1e5, unit="s", words="time for which each angle is held"
+    )
     steps: int = param(4, low=1, high=50, unit="", words="from midships to the largest angle")
 
     def helm(self, sense: Sense) -> float:

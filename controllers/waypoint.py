@@ -22,13 +22,23 @@ class Waypoint(Controller):
     commands: ClassVar[tuple[str, ...]] = ("thrust_N", "azimuth_rad")
     goals: ClassVar[tuple[str, ...]] = ("x_m", "y_m")
 
-    period: float = param(0.01, low=0.001, high=10.0, unit="s", words="time between two control steps")
+    period: float = param(
+        0.01, low=0.001, high=10.0, unit="s", words="time between two control steps"
+    )
     full: float = param(20.0, low=0.0, high=1e3, unit="N", words="full thrust")
     swing: float = param(
-        0.47 * pi, low=-pi, high=pi, unit="rad", words="largest azimuth; negative for a thruster astern"
+        0.47 * pi,
+        low=-pi,
+        high=pi,
+        unit="rad",
+        words="largest azimuth; negative for a thruster astern",
     )
-    radius: float = param(2.5, low=0.01, high=50.0, unit="m", words="a point this close counts as reached")
-    near: float = param(10.0, low=0.1, high=200.0, unit="m", words="thrust fades inside this when turning")
+    radius: float = param(
+        2.5, low=0.01, high=50.0, unit="m", words="a point this close counts as reached"
+    )
+    near: float = param(
+        10.0, low=0.1, high=200.0, unit="m", words="thrust fades inside this when turning"
+    )
     position_replay: bool = False  # the published kinematics; False: the sensed position
 
     def __post_init__(self) -> None:
@@ -48,7 +58,10 @@ class Waypoint(Controller):
         self._believed = self._replayed(sense) if self.position_replay else (sense.x, sense.y)
         self._add(goal)
         x, y = self._believed
-        while len(self._ahead) > 1 and hypot(self._ahead[0][0] - x, self._ahead[0][1] - y) <= self.radius:
+        while (
+            len(self._ahead) > 1
+            and hypot(self._ahead[0][0] - x, self._ahead[0][1] - y) <= self.radius
+        ):
             del self._ahead[0]
         if not self._ahead:
             return {"thrust_N": 0.0, "azimuth_rad": 0.0}
@@ -81,7 +94,10 @@ class Waypoint(Controller):
         if self._before is not None:
             half = 0.5 * (sense.t - self._before.t)
             x, y = self._travelled
-            self._travelled = (x + half * (self._before.u + sense.u), y + half * (self._before.v + sense.v))
+            self._travelled = (
+                x + half * (self._before.u + sense.u),
+                y + half * (self._before.v + sense.v),
+            )
         self._before = sense
         (x, y), c, s = self._travelled, cos(sense.psi), sin(sense.psi)
         return x * c - y * s, x * s + y * c

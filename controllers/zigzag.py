@@ -14,9 +14,13 @@ REACHED = 1e-7  # [rad] a heading this close is reached
 class Zigzag(Steered):
     """Kempf's manoeuvre about the heading at the start of the run; a positive angle begins to starboard."""
 
-    words: ClassVar[str] = "standard manoeuvre: reverses the helm each time the heading has reached an angle"
+    words: ClassVar[str] = (
+        "standard manoeuvre: reverses the helm each time the heading has reached an angle"
+    )
 
-    heading: float = param(0.175, low=0.001, high=3.0, unit="rad", words="heading change at which the helm is reversed")
+    heading: float = param(
+        0.175, low=0.001, high=3.0, unit="rad", words="heading change at which the helm is reversed"
+    )
     reversals: int = param(5, low=1, high=1000, unit="", words="after which it is over")
     _side: float = field(default=0.0, init=False)
     _reversed: int = field(default=0, init=False)

@@ -18,8 +18,8 @@ from stable_baselines3.common.callbacks import BaseCallback
 
 from boatsim.control.approach import Approach
 from boatsim.control.base import Sense
-from boatsim.learn import chance, registration
-from boatsim.learn.game import play
+from boatsim.learn import episode_random, registration
+from boatsim.learn.environment_options import play
 from boatsim.learn.pilot import piloted
 from boatsim.learn.play import Play
 from boatsim.learn.sb3 import BoatVecEnv
@@ -47,7 +47,9 @@ class Curve(BaseCallback):
             return
         berthed = [bool(info["is_success"]) for info in self._over]
         times = [info["time_s"] for info in self._over if info["is_success"]]
-        self.rows.append((self.num_timesteps / 1e6, float(np.mean(berthed)), float(np.mean(times or [np.nan]))))
+        self.rows.append(
+            (self.num_timesteps / 1e6, float(np.mean(berthed)), float(np.mean(times or [np.nan])))
+        )
         self._over.clear()
         if len(self.rows) % 5 == 0:
             steps, share, seconds = self.rows[-1]
@@ -58,19 +60,31 @@ class Curve(BaseCallback):
 def trained(steps: int, boats: int) -> tuple[PPO, Curve]:
     """Proximal policy optimisation with stable-baselines3's defaults but for the sizes."""
     many = gymnasium.make_vec(
-        ID, num_envs=boats, vectorization_mode="vector_entry_point", autoreset_mode="SameStep", threads=1
+        ID,
+        num_envs=boats,
+        vectorization_mode="vector_entry_point",
+        autoreset_mode="SameStep",
+        threads=1,
     )
     env, curve = BoatVecEnv(many), Curve()  # type: ignore[arg-type]
     env.seed(0)
     model = PPO(
-        "MlpPolicy", env, n_steps=64, batch_size=4096, n_epochs=6, learning_rate=7e-4, gamma=0.995, seed=0,
-        device="cpu", policy_kwargs={"net_arch": [64, 64], "log_std_init": -0.5},
-    )  # fmt: skip
+        "MlpPolicy",
+        env,
+        n_steps=64,
+        batch_size=4096,
+        n_epochs=6,
+        learning_rate=7e-4,
+        gamma=0.995,
+        seed=0,
+        device="cpu",
+        policy_kwargs={"net_arch": [64, 64], "log_std_init": -0.5},
+    )
     model.learn(steps, callback=curve)
     return model, curve
 
 
-def of_policy(model: PPO, game: Play, seeds: chance.Seeds) -> Norms:
+def of_policy(model: PPO, game: Play, seeds: episode_random.Seeds) -> Norms:
     """How an episode of each boat went."""
     game.begin(seeds, np.arange(game.n))
     found: Norms = {}
@@ -117,7 +131,9 @@ def drawn(curve: Curve, path: Path) -> None:
         ]
     for colour, y in lines.items():
         points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True) if np.isfinite(b))
-        parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>')
+        parts.append(
+            f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>'
+        )
     parts += [
         '<text x="340" y="300" text-anchor="middle">control steps of all boats together [million]</text>',
         '<text x="60" y="24" fill="#0b6e99">episodes that end berthed</text>',
@@ -130,7 +146,9 @@ def drawn(curve: Curve, path: Path) -> None:
 def main() -> None:
     """Train, compare, print."""
     asked = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    asked.add_argument("--steps", type=int, default=8_000_000, help="control steps of all boats together")
+    asked.add_argument(
+        "--steps", type=int, default=8_000_000, help="control steps of all boats together"
+    )
     asked.add_argument("--boats", type=int, default=512, help="that are trained side by side")
     asked.add_argument("--draws", type=int, default=500, help="boats of the comparison")
     asked.add_argument("--out", type=Path, default=Path("out/berth"))
@@ -140,26 +158,40 @@ def main() -> None:
     model, curve = trained(told.steps, told.boats)
     wall = monotonic() - begun
     used = resource.getrusage(resource.RUSAGE_SELF)
-    print(f"trained in {wall:.0f} s on {len(os.sched_getaffinity(0))} cores, {used.ru_utime + used.ru_stime:.0f} s CPU")
+    print(
+        f"trained in {wall:.0f} s on {len(os.sched_getaffinity(0))} cores, {used.ru_utime + used.ru_stime:.0f} s CPU"
+    )
     model.save(told.out / "policy.zip")
     if curve.rows:
         drawn(curve, told.out / "curve.svg")
     says = registration.says(ID)
-    seeds = chance.episode(np.arange(UNSEEN, UNSEEN + told.draws, dtype=np.uint64), np.zeros(told.draws, np.uint64))
+    seeds = episode_random.episode(
+        np.arange(UNSEEN, UNSEEN + told.draws, dtype=np.uint64), np.zeros(told.draws, np.uint64)
+    )
     found = {
         "policy": of_policy(model, play(n=told.draws, **says), seeds),
-        "L1 joystick": piloted(play(n=told.draws, **{**says, "period": 0.08, "step": 0.08}), seeds, Berthing),
+        "L1 joystick": piloted(
+            play(n=told.draws, **{**says, "period": 0.08, "step": 0.08}), seeds, Berthing
+        ),
     }
     print(f"\n{told.draws} boats, none of which was trained on\n")
     print("| steered by | berthed | touched the quay | median time [s] | slowest tenth [s] |")
     print("| --- | --- | --- | --- | --- |")
     for name, norms in found.items():
         ok = norms["is_success"].astype(bool)
-        middle, slow = np.percentile(norms["time_s"][ok], (50, 90)) if ok.any() else (np.nan, np.nan)
-        print(f"| {name} | {ok.mean():.1%} | {norms['touched'].mean():.1%} | {middle:.1f} | {slow:.1f} |")
-    both = found["policy"]["is_success"].astype(bool) & found["L1 joystick"]["is_success"].astype(bool)
+        middle, slow = (
+            np.percentile(norms["time_s"][ok], (50, 90)) if ok.any() else (np.nan, np.nan)
+        )
+        print(
+            f"| {name} | {ok.mean():.1%} | {norms['touched'].mean():.1%} | {middle:.1f} | {slow:.1f} |"
+        )
+    both = found["policy"]["is_success"].astype(bool) & found["L1 joystick"]["is_success"].astype(
+        bool
+    )
     faster = found["policy"]["time_s"][both] < found["L1 joystick"]["time_s"][both]
-    print(f"\nof the {both.sum()} boats that both berth, the policy is the faster one on {faster.mean():.1%}")
+    print(
+        f"\nof the {both.sum()} boats that both berth, the policy is the faster one on {faster.mean():.1%}"
+    )
 
 
 if __name__ == "__main__":

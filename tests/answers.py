@@ -4,31 +4,46 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from boatsim.diagnose import analysis
+from boatsim.diagnosis import pipeline
 from boatsim.recordings import table as recording
 from boatsim.recordings.table import Recording
 
 
 def diagnosed(
-    runs: Sequence[Recording], folder: Path, vessel: str, library: Sequence[str] = (), horizon: float | None = None
+    runs: Sequence[Recording],
+    folder: Path,
+    vessel: str,
+    library: Sequence[str] = (),
+    horizon: float | None = None,
 ) -> dict[str, Any]:
     """The answer for runs written to files; the last one is held out."""
     files = [folder / f"{run.name}.csv" for run in runs]
     for file, run in zip(files, runs, strict=True):
         recording.write_csv(run, file)
-    return analysis.diagnose(files[:-1], files[-1:], vessel, library=library, horizon=horizon).findings.answer
+    return pipeline.diagnose(
+        files[:-1], files[-1:], vessel, library=library, horizon=horizon
+    ).findings.answer
 
 
-def named(answer: Mapping[str, Any], name: str, true: Mapping[str, float], more: bool = False) -> None:
+def named(
+    answer: Mapping[str, Any], name: str, true: Mapping[str, float], more: bool = False
+) -> None:
     """This effect and no other, none tied with it; every true value within 3.5 sd, and known to 30 %.
 
     With `more` there is a force besides that is no effect's, and the answer must say so.
     """
-    assert [e["name"] for e in answer["effects"]] == [name] and not answer["effects"][0]["tied_with"]
-    assert answer["unknown"]["flag"] == more and (more or answer["verdict"] == "named"), answer["sentence"]
+    assert [e["name"] for e in answer["effects"]] == [name] and not answer["effects"][0][
+        "tied_with"
+    ]
+    assert answer["unknown"]["flag"] == more and (more or answer["verdict"] == "named"), answer[
+        "sentence"
+    ]
     found = answer["effects"][0]["parameters"]
     for key, value in true.items():
-        assert abs(found[key]["value"] - value) < 3.5 * found[key]["sd"] < 3.5 * 0.3 * abs(value), (key, found[key])
+        assert abs(found[key]["value"] - value) < 3.5 * found[key]["sd"] < 3.5 * 0.3 * abs(value), (
+            key,
+            found[key],
+        )
 
 
 def nothing_missing(answer: Mapping[str, Any]) -> None:

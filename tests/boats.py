@@ -100,7 +100,9 @@ def written(folder: Path, name: str, text: str) -> Path:
     return place
 
 
-def planar(folder: Path, settings: Mapping[str, Mapping[str, Any]] | None = None, **more: Any) -> Vessel:
+def planar(
+    folder: Path, settings: Mapping[str, Mapping[str, Any]] | None = None, **more: Any
+) -> Vessel:
     """The boat of the reference cases, `settings` laid over its effects and body."""
     return vessel.load(str(written(folder, "test_boat", PLANAR)), settings=settings, **more)
 

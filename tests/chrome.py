@@ -12,7 +12,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+PROGRAM = (
+    shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+)
 OPTIONS = (
     "--headless --no-sandbox --disable-gpu --no-first-run --disable-quic --disable-background-networking "
     "--disable-component-update --disable-sync --remote-debugging-port=0"
@@ -34,7 +36,9 @@ class Page:
         """One command of the protocol and its answer; what happens meanwhile is passed over."""
         self._count += 1
         where = {} if method.startswith("Target.") else {"sessionId": self._session}
-        self._socket.send(json.dumps({"id": self._count, "method": method, "params": params, **where}))
+        self._socket.send(
+            json.dumps({"id": self._count, "method": method, "params": params, **where})
+        )
         while True:
             answer = json.loads(self._socket.recv(20))
             if answer.get("id") == self._count:
@@ -43,7 +47,9 @@ class Page:
 
     def run(self, script: str) -> Any:
         """Value of an expression in the page."""
-        found = self.say("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
+        found = self.say(
+            "Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True
+        )
         assert "exceptionDetails" not in found, found
         return found["result"].get("value")
 
@@ -57,7 +63,13 @@ class Page:
 
     def picture(self, path: Path, wide: int, high: int, dark: bool = False) -> None:
         """What it looks like, as PNG."""
-        self.say("Emulation.setDeviceMetricsOverride", width=wide, height=high, deviceScaleFactor=1, mobile=False)
+        self.say(
+            "Emulation.setDeviceMetricsOverride",
+            width=wide,
+            height=high,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
         scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
         self.say("Emulation.setEmulatedMedia", features=scheme)
         time.sleep(0.3)
@@ -76,21 +88,31 @@ def chromium(*more: str) -> Iterator[Any]:
     assert PROGRAM
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as home:
         command = [PROGRAM, *OPTIONS, *more, f"--user-data-dir={home}"]
-        started = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+        started = subprocess.Popen(
+            command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
+        )
         assert started.stderr
         try:
-            address = next(m[1] for line in started.stderr if (m := re.search(r"listening on (ws://\S+)", line)))
+            address = next(
+                m[1]
+                for line in started.stderr
+                if (m := re.search(r"listening on (ws://\S+)", line))
+            )
             with connect(address, max_size=None, compression=None) as socket:
 
                 def opened(url: str, before: str = GAMEPAD) -> Page:
                     browser = Page(socket, "", "")
                     target = browser.say("Target.createTarget", url="about:blank")["targetId"]
-                    session = browser.say("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+                    session = browser.say("Target.attachToTarget", targetId=target, flatten=True)[
+                        "sessionId"
+                    ]
                     page = Page(socket, session, target)
                     page.say("Page.enable")
                     page.say("Page.addScriptToEvaluateOnNewDocument", source=before)
                     page.say("Page.navigate", url=url)
-                    page.until(f"location.href === {json.dumps(url)} && document.readyState === 'complete'")
+                    page.until(
+                        f"location.href === {json.dumps(url)} && document.readyState === 'complete'"
+                    )
                     return page
 
                 yield opened

@@ -16,8 +16,14 @@ STEERING = np.array([  # eq. 15, rows v', p', r' by v, p, r, phi, delta
     [-0.218, 2.10, 0.443, 0.0, -2.29], [0.184, -1.06, -0.433, -1.74, 2.21], [-0.0526, 1.22, -0.697, 0.0, 2.01],
 ])  # fmt: skip
 NOISE = {  # standard deviations in the recordings
-    "x_m": 0.3, "y_m": 0.3, "psi_rad": 0.002, "phi_rad": 0.005, "u_mps": 0.15, "r_radps": 0.005, "p_radps": 0.005,
-}  # fmt: skip
+    "x_m": 0.3,
+    "y_m": 0.3,
+    "psi_rad": 0.002,
+    "phi_rad": 0.005,
+    "u_mps": 0.15,
+    "r_radps": 0.005,
+    "p_radps": 0.005,
+}
 ORDER = ("x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "p_radps", "r_radps")  # of a state
 RATE = 3.0  # [1/s] of the handle
 TURN = np.radians(30.0)  # [rad/s] of the jet
@@ -50,10 +56,15 @@ def slopes(y: Array, h: float, delta: float, craft: Craft) -> Array:
     kappa, skid = 1.0, 1.0
     if craft.full_speed > 0.0:
         part = u / craft.full_speed
-        kappa = min((craft.least**6 + abs(part) ** 6) ** (1 / 6) if craft.blunt else max(part, craft.least), 1.0)
+        kappa = min(
+            (craft.least**6 + abs(part) ** 6) ** (1 / 6) if craft.blunt else max(part, craft.least),
+            1.0,
+        )
     if craft.blunt:
         skid = 0.95 + 0.05 * abs(v)
-    du = kappa * (A1 * u + A2 * u * abs(u) + craft.turn_loss * skid * v * r + power(h, craft.q2) / max(u, 0.5))
+    du = kappa * (
+        A1 * u + A2 * u * abs(u) + craft.turn_loss * skid * v * r + power(h, craft.q2) / max(u, 0.5)
+    )
     du -= craft.cube * u**3
     jet = delta + craft.bias
     if craft.blunt:
@@ -71,9 +82,16 @@ def ramp(value: float, wanted: float, most: float) -> float:
 
 
 def sailed(
-    craft: Craft, throttle: Array, jet: Array, start: float, dt: float = 0.2, fine: int = 10, noise: float = 1.0,
-    seed: int = 0, name: str = "run",
-) -> Recording:  # fmt: skip
+    craft: Craft,
+    throttle: Array,
+    jet: Array,
+    start: float,
+    dt: float = 0.2,
+    fine: int = 10,
+    noise: float = 1.0,
+    seed: int = 0,
+    name: str = "run",
+) -> Recording:
     """A run under commands (N,) held for dt [s] each; handle and jet move at their rates in `fine` steps of a row."""
     rng = np.random.default_rng(seed)
     y, rows = np.array([0.0, 0.0, 0.0, 0.0, start, 0.0, 0.0, 0.0]), []
@@ -86,8 +104,14 @@ def sailed(
             y = rk4(y, part, *middle, craft)
             h, delta = later
     columns = dict(zip(ORDER, np.array(rows).T, strict=True))
-    signals = {n: columns[n] + noise * sd * rng.standard_normal(len(rows)) for n, sd in NOISE.items()}
-    signals |= {"throttle": np.asarray(throttle), "jet_rad": np.asarray(jet), "elevator_rad": np.zeros(len(rows))}
+    signals = {
+        n: columns[n] + noise * sd * rng.standard_normal(len(rows)) for n, sd in NOISE.items()
+    }
+    signals |= {
+        "throttle": np.asarray(throttle),
+        "jet_rad": np.asarray(jet),
+        "elevator_rad": np.zeros(len(rows)),
+    }
     return Recording(name, dt * np.arange(len(rows)), signals, Notes(vessel="jet_ski"))
 
 
@@ -103,7 +127,13 @@ def rk4(y: Array, dt: float, h: float, delta: float, craft: Craft) -> Array:
 def solved(craft: Craft, h: float, delta: float, start: Array, times: Array) -> Array:
     """States (N, 8) under held actuators by an eighth-order method."""
     done = solve_ivp(
-        lambda _, y: slopes(y, h, delta, craft), (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=1e-11
+        lambda _, y: slopes(y, h, delta, craft),
+        (0.0, times[-1]),
+        start,
+        "DOP853",
+        times,
+        rtol=1e-11,
+        atol=1e-11,
     )
     return np.asarray(done.y.T)
 
@@ -111,7 +141,9 @@ def solved(craft: Craft, h: float, delta: float, start: Array, times: Array) -> 
 def nominal_without(folder: Path, *effects: str) -> Path:
     """The vessel file of the craft with some of its effects left out, in a folder of its own."""
     own = vessel.load("jet_ski").file
-    head, *blocks = re.split(r"(?=^\[\[effect\]\]$|^\[diagnosis\]$)", own.read_text(encoding="utf-8"), flags=re.M)
+    head, *blocks = re.split(
+        r"(?=^\[\[effect\]\]$|^\[diagnosis\]$)", own.read_text(encoding="utf-8"), flags=re.M
+    )
     kept = [block for block in blocks if not any(f'use = "{name}"' in block for name in effects)]
     place = folder / "craft"
     place.mkdir(exist_ok=True)

@@ -18,7 +18,9 @@ BUCKETS = (0.0, 15.0, 30.0, 40.0, 50.0, 55.0)  # [deg]
 class Real:
     """What the craft really has, in the words of this file."""
 
-    leak: float = 0.0  # share of the jet that passes a lowered bucket; a raised one has nothing to leak
+    leak: float = (
+        0.0  # share of the jet that passes a lowered bucket; a raised one has nothing to leak
+    )
     late: float = 0.0  # [s] commands, up to a tenth more or less each
     astern_time: float = 1.67  # [s] T_n while it goes astern
     sea: float = 0.0  # [rad/s] rms of waves in the yaw rate
@@ -41,7 +43,9 @@ def waves(real: Real, n: int, seed: int) -> Array:
     w = real.sea_frequency * np.linspace(0.4, 2.5, 300)
     size = w**2 / ((w**2 - real.sea_frequency**2) ** 2 + (0.2 * real.sea_frequency * w) ** 2)
     at = FINE * np.arange(n)
-    summed = np.sqrt(2.0 * size / size.sum()) @ np.cos(np.outer(w, at) + rng.uniform(0.0, 2.0 * pi, (300, 1)))
+    summed = np.sqrt(2.0 * size / size.sum()) @ np.cos(
+        np.outer(w, at) + rng.uniform(0.0, 2.0 * pi, (300, 1))
+    )
     return np.asarray(real.sea * summed)
 
 
@@ -69,14 +73,24 @@ def recorded(real: Real, seed: int, commands: tuple[Array, Array] | None = None)
         beta += min(max(bucket[row] - beta, -RATE), RATE)
         passes = real.leak * (1.0 - exp(-beta / LIP))
         share = cos(2.0 * beta) + passes
-        lag = 1.67 + (real.astern_time - 1.67) * 0.5 * (1.0 - tanh(u / 0.15))  # the flow turns by and by
+        lag = 1.67 + (real.astern_time - 1.67) * 0.5 * (
+            1.0 - tanh(u / 0.15)
+        )  # the flow turns by and by
         r += FINE * ((share * delta - r) / lag + real.pushed * (1.0 + 0.3 * sin(0.7 * i * FINE)))
         u += FINE * (2.46 * share - u) / 5.58
         psi += FINE * (r + wave[i])
         x, y = x + FINE * u * cos(psi), y + FINE * u * sin(psi)
     rng = np.random.default_rng(seed)
-    shown = np.array(rows) + rng.standard_normal((len(rows), 5)) * [0.3, 0.3, 0.01, 0.05, 0.5 * pi / 180.0]
+    shown = np.array(rows) + rng.standard_normal((len(rows), 5)) * [
+        0.3,
+        0.3,
+        0.01,
+        0.05,
+        0.5 * pi / 180.0,
+    ]
     names = ("x_m", "y_m", "psi_rad", "u_mps", "r_radps")
     signals = dict(zip(names, shown.T, strict=True)) | {"jet_rad": nozzle, "elevator_rad": bucket}
     signals["throttle"] = np.ones(len(rows))
-    return Recording(f"{seed}", ROW * np.arange(len(rows)), signals, Notes(vessel="jet_ski", load=("low_speed",)))
+    return Recording(
+        f"{seed}", ROW * np.arange(len(rows)), signals, Notes(vessel="jet_ski", load=("low_speed",))
+    )

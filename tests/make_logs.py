@@ -2,7 +2,7 @@
 
 python tests/make_logs.py
 
-The boat is simulated (boatsim.simulate.twin, without noise); the logs are written by the library of each format where
+The boat is simulated (boatsim.simulate.compiled_engine, without noise); the logs are written by the library of each format where
 it has a writer (MCAP, bags, Parquet), else byte by byte as its documents say. Latitudes and longitudes come from the
 exact tangent plane by way of earth-centred coordinates, not from the formula that the readers use.
 """
@@ -27,7 +27,7 @@ A, F = 6378137.0, 1.0 / 298.257223563
 def simulated() -> dict[str, np.ndarray]:
     """Columns of the run at every step, commands in force from their row on."""
     from boatsim.physics.vessel import load
-    from boatsim.simulate.twin import Twin
+    from boatsim.simulate.compiled_engine import Twin
 
     t = STEP * np.arange(round(DURATION / STEP) + 1)
     turn = np.where(np.floor(t / 5.0) % 2 == 0, 1.0, -1.0) * np.where(t < 2.0, 0.0, 1.0)
@@ -58,7 +58,12 @@ def simulated() -> dict[str, np.ndarray]:
         )
     )  # noqa: E501
     keep = ("x_m", "y_m", "phi_rad", "theta_rad", "psi_rad", "r_radps")
-    return {"t_s": t, **{n: named[n] for n in keep}, "n_port_radps": port, "n_starboard_radps": starboard}
+    return {
+        "t_s": t,
+        **{n: named[n] for n in keep},
+        "n_port_radps": port,
+        "n_starboard_radps": starboard,
+    }
 
 
 def geodetic(north: float, east: float) -> tuple[float, float]:
@@ -66,7 +71,11 @@ def geodetic(north: float, east: float) -> tuple[float, float]:
     lat0, lon0 = ORIGIN
     e2 = F * (2.0 - F)
     n = A / math.sqrt(1.0 - e2 * math.sin(lat0) ** 2)
-    x0, y0, z0 = n * math.cos(lat0) * math.cos(lon0), n * math.cos(lat0) * math.sin(lon0), n * (1 - e2) * math.sin(lat0)
+    x0, y0, z0 = (
+        n * math.cos(lat0) * math.cos(lon0),
+        n * math.cos(lat0) * math.sin(lon0),
+        n * (1 - e2) * math.sin(lat0),
+    )
     x = x0 - math.sin(lat0) * math.cos(lon0) * north - math.sin(lon0) * east
     y = y0 - math.sin(lat0) * math.sin(lon0) * north + math.cos(lon0) * east
     z = z0 + math.cos(lat0) * north
@@ -99,10 +108,13 @@ def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, flo
     )  # noqa: E501
 
 
-def streams(run: dict[str, np.ndarray], rates: Sequence[float]) -> list[tuple[float, int, dict[str, float]]]:
+def streams(
+    run: dict[str, np.ndarray], rates: Sequence[float]
+) -> list[tuple[float, int, dict[str, float]]]:
     """(time, number of the stream, row) in the order of time."""
     return sorted(
-        ((row["t_s"], k, row) for k, rate in enumerate(rates) for row in every(run, rate)), key=lambda r: r[:2]
+        ((row["t_s"], k, row) for k, rate in enumerate(rates) for row in every(run, rate)),
+        key=lambda r: r[:2],
     )
 
 
@@ -120,13 +132,26 @@ MESSAGES = {  # name -> number, format, columns, units, multipliers
     "RCIN": (136, "QHHH", "TimeUS,C1,C2,C3", "sYYY", "F000"),
     "RCOU": (137, "QHHHH", "TimeUS,C1,C2,C3,C4", "sYYYY", "F0000"),
 }
-SIZES = {"b": "b", "B": "B", "H": "H", "f": "f", "d": "d", "L": "i", "Q": "Q", "n": "4s", "N": "16s", "Z": "64s"}
+SIZES = {
+    "b": "b",
+    "B": "B",
+    "H": "H",
+    "f": "f",
+    "d": "d",
+    "L": "i",
+    "Q": "Q",
+    "n": "4s",
+    "N": "16s",
+    "Z": "64s",
+}
 
 
 def packed(name: str, *values: object) -> bytes:
     number, format, *_ = MESSAGES[name]
     cells = [v.encode() if isinstance(v, str) else v for v in values]
-    return b"\xa3\x95" + bytes([number]) + struct.pack("<" + "".join(SIZES[c] for c in format), *cells)
+    return (
+        b"\xa3\x95" + bytes([number]) + struct.pack("<" + "".join(SIZES[c] for c in format), *cells)
+    )
 
 
 def ardupilot(run: dict[str, np.ndarray], path: Path) -> None:
@@ -148,7 +173,9 @@ def ardupilot(run: dict[str, np.ndarray], path: Path) -> None:
         "b": "B",
     }  # noqa: E501
     out += [packed("UNIT", us, ord(k), v) for k, v in units.items()]
-    out += [packed("MULT", us, ord(k), v) for k, v in {"F": 1e-6, "G": 1e-7, "0": 1.0, "-": 0.0}.items()]
+    out += [
+        packed("MULT", us, ord(k), v) for k, v in {"F": 1e-6, "G": 1e-7, "0": 1.0, "-": 0.0}.items()
+    ]
     out += [packed("FMTU", us, number, u, m) for number, _, _, u, m in MESSAGES.values()]
     servos = {1: 73, 3: 74}  # left and right throttle
     for output, function in servos.items():
@@ -169,7 +196,9 @@ def ardupilot(run: dict[str, np.ndarray], path: Path) -> None:
             out.append(packed("GPS", at, 0, 3, round(lat * 1e7), round(lon * 1e7)))
         else:
             port, starboard = pulse(row["n_port_radps"]), pulse(row["n_starboard_radps"])
-            out.append(packed("RCIN", at, 1500 + (port - starboard) // 4, 1500, (port + starboard) // 2))
+            out.append(
+                packed("RCIN", at, 1500 + (port - starboard) // 4, 1500, (port + starboard) // 2)
+            )
             out.append(packed("RCOU", at, port, 1500, starboard, 0))
     path.write_bytes(b"".join(out))
 
@@ -180,7 +209,10 @@ TOPICS = {
     "vehicle_attitude": ("uint64_t timestamp;float[4] q;", "<Q4f"),
     "vehicle_angular_velocity": ("uint64_t timestamp;float[3] xyz;", "<Q3f"),
     "vehicle_local_position": ("uint64_t timestamp;float x;float y;float z;", "<Q3f"),
-    "actuator_outputs": ("uint64_t timestamp;uint32_t noutputs;float[4] output;uint8_t[4] _padding0;", "<QI4f"),
+    "actuator_outputs": (
+        "uint64_t timestamp;uint32_t noutputs;float[4] output;uint8_t[4] _padding0;",
+        "<QI4f",
+    ),
 }
 
 
@@ -203,7 +235,12 @@ def ulog(run: dict[str, np.ndarray], path: Path) -> None:
             values = (row["x_m"], row["y_m"], 0.0)
         else:
             values = (2, pulse(row["n_port_radps"]), pulse(row["n_starboard_radps"]), 0.0, 0.0)
-        out.append(message("D", struct.pack("<H", kind) + struct.pack(list(TOPICS.values())[kind][1], at, *values)))
+        out.append(
+            message(
+                "D",
+                struct.pack("<H", kind) + struct.pack(list(TOPICS.values())[kind][1], at, *values),
+            )
+        )
     path.write_bytes(b"".join(out))
 
 
@@ -239,15 +276,21 @@ def messages(run: dict[str, np.ndarray], store: object) -> list[tuple[str, str, 
         elif kind == 1:
             none, zero = np.zeros(9), vector(x=0.0, y=0.0, z=0.0)
             imu = types["sensor_msgs/msg/Imu"](
-                header=head, orientation=turned, orientation_covariance=none,
-                angular_velocity=vector(x=0.0, y=0.0, z=-row["r_radps"]), angular_velocity_covariance=none,
-                linear_acceleration=zero, linear_acceleration_covariance=none,
-            )  # fmt: skip
+                header=head,
+                orientation=turned,
+                orientation_covariance=none,
+                angular_velocity=vector(x=0.0, y=0.0, z=-row["r_radps"]),
+                angular_velocity_covariance=none,
+                linear_acceleration=zero,
+                linear_acceleration_covariance=none,
+            )
             found.append(("/boat/imu", "sensor_msgs/msg/Imu", ns, imu))
         else:
             for side in ("port", "starboard"):
                 value = types["std_msgs/msg/Float64"](data=row[f"n_{side}_radps"] / FULL)
-                found.append((f"/thrusters/{side}/cmd", "std_msgs/msg/Float64", ns + 400_000, value))
+                found.append(
+                    (f"/thrusters/{side}/cmd", "std_msgs/msg/Float64", ns + 400_000, value)
+                )
     return found
 
 
@@ -264,7 +307,9 @@ def mcap(run: dict[str, np.ndarray], path: Path) -> None:
             if topic not in channels:
                 text = store.generate_msgdef(kind, ros_version=2)[0]
                 schema = writer.register_schema(name=kind, encoding="ros2msg", data=text.encode())
-                channels[topic] = writer.register_channel(topic=topic, message_encoding="cdr", schema_id=schema)
+                channels[topic] = writer.register_channel(
+                    topic=topic, message_encoding="cdr", schema_id=schema
+                )
             data = bytes(store.serialize_cdr(message, kind))
             writer.add_message(channels[topic], log_time=ns, data=data, publish_time=ns)
         writer.finish()
@@ -326,12 +371,16 @@ def nmea(run: dict[str, np.ndarray], path: Path) -> None:
         lat, lon = geodetic(row["x_m"], row["y_m"])
         clock = f"{when:%H%M%S}.{when.microsecond // 10_000:02d}"
         out.append(
-            sentence(f"GPRMC,{clock},A,{angle(lat, 2, 'NS')},{angle(lon, 3, 'EW')},1.94,350.0,{when:%d%m%y},,,A")
+            sentence(
+                f"GPRMC,{clock},A,{angle(lat, 2, 'NS')},{angle(lon, 3, 'EW')},1.94,350.0,{when:%d%m%y},,,A"
+            )
         )
         out.append(sentence(f"HEHDT,{math.degrees(row['psi_rad']) % 360.0:.3f},T"))
         out.append(sentence(f"TIROT,{math.degrees(row['r_radps']) * 60.0:.2f},A"))
         for number, side in enumerate(("port", "starboard"), 1):
-            out.append(sentence(f"ERRPM,S,{number},{row[f'n_{side}_radps'] * 30.0 / math.pi:.2f},,A"))
+            out.append(
+                sentence(f"ERRPM,S,{number},{row[f'n_{side}_radps'] * 30.0 / math.pi:.2f},,A")
+            )
     path.write_bytes("".join(out).encode("ascii"))
 
 
@@ -340,17 +389,23 @@ def nmea(run: dict[str, np.ndarray], path: Path) -> None:
 
 def table(run: dict[str, np.ndarray], path: Path) -> None:
     """Semicolons and decimal commas, times since 1970 in ms, degrees, per cent, fixes at 2 Hz repeated between."""
-    out = ["Zeit [ms];Breite;GPS Lat [deg];GPS Lon [deg];Heading [deg];Yaw rate [deg/s];Motor left [%];Motor right [%]"]
+    out = [
+        "Zeit [ms];Breite;GPS Lat [deg];GPS Lon [deg];Heading [deg];Yaw rate [deg/s];Motor left [%];Motor right [%]"
+    ]
     fix = ("", "")
     for k, row in enumerate(every(run, 10.0)):
         if k % 5 == 0:
             lat, lon = geodetic(row["x_m"], row["y_m"])
             fix = (f"{lat:.9f}", f"{lon:.9f}")
         cells = [
-            f"{(EPOCH + row['t_s']) * 1e3:.0f}", "1.08", *fix, f"{math.degrees(row['psi_rad']) % 360.0:.3f}",
-            f"{math.degrees(row['r_radps']):.4f}", f"{row['n_port_radps'] / FULL * 100.0:.2f}",
+            f"{(EPOCH + row['t_s']) * 1e3:.0f}",
+            "1.08",
+            *fix,
+            f"{math.degrees(row['psi_rad']) % 360.0:.3f}",
+            f"{math.degrees(row['r_radps']):.4f}",
+            f"{row['n_port_radps'] / FULL * 100.0:.2f}",
             f"{row['n_starboard_radps'] / FULL * 100.0:.2f}",
-        ]  # fmt: skip
+        ]
         out.append(";".join(cells).replace(".", ","))
     path.write_text("\n".join(out).replace("Zeit", "Time") + "\n", encoding="utf-8")
 
@@ -376,8 +431,12 @@ def parquet(run: dict[str, np.ndarray], path: Path) -> None:
                 "north": column([r["x_m"] for r in poses] + gap),
                 "east": column([r["y_m"] for r in poses] + gap),
                 "heading_deg": column([math.degrees(r["psi_rad"]) for r in poses] + gap),
-                "motor_port_rpm": column(other + [r["n_port_radps"] * 30.0 / math.pi for r in orders]),
-                "motor_starboard_rpm": column(other + [r["n_starboard_radps"] * 30.0 / math.pi for r in orders]),
+                "motor_port_rpm": column(
+                    other + [r["n_port_radps"] * 30.0 / math.pi for r in orders]
+                ),
+                "motor_starboard_rpm": column(
+                    other + [r["n_starboard_radps"] * 30.0 / math.pi for r in orders]
+                ),
             }
         ),
         path,
@@ -385,19 +444,29 @@ def parquet(run: dict[str, np.ndarray], path: Path) -> None:
 
 
 LOGS: dict[str, Callable[[dict[str, np.ndarray], Path], None]] = {
-    "rover.BIN": ardupilot, "px4.ulg": ulog, "ros2.mcap": mcap, "ros1.bag": bag1, "ros2_bag": bag2,
-    "instruments.nmea": nmea, "table.csv": table, "stacked.parquet": parquet,
-}  # fmt: skip
+    "rover.BIN": ardupilot,
+    "px4.ulg": ulog,
+    "ros2.mcap": mcap,
+    "ros1.bag": bag1,
+    "ros2_bag": bag2,
+    "instruments.nmea": nmea,
+    "table.csv": table,
+    "stacked.parquet": parquet,
+}
 
 
 def main() -> None:
     HERE.mkdir(parents=True, exist_ok=True)
     run = simulated()
-    lines = [",".join(run)] + [",".join(f"{v:.9g}" for v in row) for row in zip(*run.values(), strict=True)]
+    lines = [",".join(run)] + [
+        ",".join(f"{v:.9g}" for v in row) for row in zip(*run.values(), strict=True)
+    ]
     (HERE / "truth.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     for name, write in LOGS.items():
         write(run, HERE / name)
-        print(f"{name}: {sum(f.stat().st_size for f in [HERE / name, *(HERE / name).glob('*')] if f.is_file())} bytes")
+        print(
+            f"{name}: {sum(f.stat().st_size for f in [HERE / name, *(HERE / name).glob('*')] if f.is_file())} bytes"
+        )
 
 
 if __name__ == "__main__":

@@ -25,7 +25,9 @@ def levels(rng: np.random.Generator, duration: float) -> Array:
     """(N, 2) commands [N], a new pair every few seconds, as the nearest microsecond of a servo's pulse has them."""
     held = rng.uniform(-0.5, 1.0, (int(duration / HOLD) + 1, 2))
     us = np.vectorize(pulse)(WHOLE * held)
-    return np.repeat((us - 1500.0) / 400.0 * FULL, round(HOLD * RATE), axis=0)[: round(duration * RATE) + 1]
+    return np.repeat((us - 1500.0) / 400.0 * FULL, round(HOLD * RATE), axis=0)[
+        : round(duration * RATE) + 1
+    ]
 
 
 def day(seed: int, duration: float, starboard: float = 1.0) -> dict[str, Array]:
@@ -35,11 +37,17 @@ def day(seed: int, duration: float, starboard: float = 1.0) -> dict[str, Array]:
     slow = np.arange(len(commands)) / RATE
     true = path(commands * [1.0, starboard], slow)
     t = FINE * np.arange(round(duration / FINE) + 1)
-    read = [np.interp(t, slow, c) + sd * rng.standard_normal(len(t)) for c, sd in zip(true.T, SD, strict=True)]
+    read = [
+        np.interp(t, slow, c) + sd * rng.standard_normal(len(t))
+        for c, sd in zip(true.T, SD, strict=True)
+    ]
     r = np.interp(t, slow, np.gradient(true[:, 2], slow)) + 0.01 * rng.standard_normal(len(t))
     now = np.minimum((t * RATE + 1e-9).astype(int), len(commands) - 1)
     still = np.zeros(len(t))
-    sent = {f"n_{side}_radps": WHOLE * commands[now, k] / FULL for k, side in enumerate(("port", "starboard"))}
+    sent = {
+        f"n_{side}_radps": WHOLE * commands[now, k] / FULL
+        for k, side in enumerate(("port", "starboard"))
+    }
     pose = dict(zip(("x_m", "y_m", "psi_rad"), read, strict=True))
     return {"t_s": t, **pose, "phi_rad": still, "theta_rad": still, "r_radps": r, **sent}
 

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from scipy.integrate import odeint
 
-from boatsim.diagnose.filter import nominal_levels, track
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.rank import baseline
-from boatsim.diagnose.tried import library_for
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.ranking import baseline
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -20,8 +20,12 @@ M, IZ, A11, A22, A66 = 4.6, 0.6, 0.3, 9.0, 0.7  # kg, kg m^2
 DAMPING, X_MOTOR, Y_MOTOR = np.array([3.0, 10.0, 1.0]), -0.6, 0.19
 RATE, ROWS = 6.0, 240
 COMMANDS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
-Missing = Callable[[float, Array, Array], Array]  # t, (x, y, psi, u, v, r, and what is late), commands -> X, Y, N
-Late = tuple[float, Callable[[Array], float]]  # time constant [s] with which something follows the commands, and what
+Missing = Callable[
+    [float, Array, Array], Array
+]  # t, (x, y, psi, u, v, r, and what is late), commands -> X, Y, N
+Late = tuple[
+    float, Callable[[Array], float]
+]  # time constant [s] with which something follows the commands, and what
 
 
 def push(thrust: Array, steer: Array) -> Array:
@@ -30,11 +34,17 @@ def push(thrust: Array, steer: Array) -> Array:
 
 
 def sail(
-    name: str, seed: int, missing: Missing, facts: dict[str, Any] | None = None, late: Late | None = None
+    name: str,
+    seed: int,
+    missing: Missing,
+    facts: dict[str, Any] | None = None,
+    late: Late | None = None,
 ) -> tuple[Recording, Array]:
     """A recording of the trial boat under a further force, and that force at every row."""
     rng = np.random.default_rng(seed)
-    levels = np.column_stack([rng.uniform(-0.9, 0.9, (ROWS // 8, 2)), rng.uniform(-0.6, 0.6, (ROWS // 8, 2))])
+    levels = np.column_stack(
+        [rng.uniform(-0.9, 0.9, (ROWS // 8, 2)), rng.uniform(-0.6, 0.6, (ROWS // 8, 2))]
+    )
     commands = np.repeat(levels, 8, axis=0)
 
     def slope(y: Array, t: float, command: Array) -> list[float]:
@@ -51,16 +61,24 @@ def sail(
         poses.append(y[:3])
         fine = np.linspace(now, now + 1 / RATE, 5)
         path = odeint(slope, y, fine, args=(command,), rtol=1e-7, atol=1e-9)
-        forces.append(np.mean([missing(a, b, command) for a, b in zip(fine, path, strict=True)], axis=0))
+        forces.append(
+            np.mean([missing(a, b, command) for a, b in zip(fine, path, strict=True)], axis=0)
+        )
         y = path[-1]
     seen = np.array(poses) + rng.standard_normal((ROWS, 3)) * [0.003, 0.003, 0.012]
-    signals = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True)) | dict(zip(COMMANDS, commands.T, strict=True))
-    return Recording(name, t, signals, Notes(vessel="trial_boat", facts=facts or {})), np.array(forces)
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True)) | dict(
+        zip(COMMANDS, commands.T, strict=True)
+    )
+    return Recording(name, t, signals, Notes(vessel="trial_boat", facts=facts or {})), np.array(
+        forces
+    )
 
 
 def laid(*recordings: Recording) -> tuple[Problem, Fit]:
     program = Program(BOAT, library_for(BOAT).compiled)
     problem = Problem(
-        [track(r, program) for r in recordings], nominal_levels(BOAT, recordings), {"damping": 0.05, "thrust": 0.05}
+        [track(r, program) for r in recordings],
+        nominal_levels(BOAT, recordings),
+        {"damping": 0.05, "thrust": 0.05},
     )
     return problem, baseline(problem)[1]

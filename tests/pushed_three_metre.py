@@ -12,7 +12,11 @@ ADDED = np.array([7.0, 34.0, 14.0])  # [kg], [kg], [kg m^2]
 LINEAR = np.array([14.0, 60.0, 38.0])  # [N s/m], [N s/m], [N m s]
 SQUARE = np.array([6.0, 80.0, 30.0])  # [N s^2/m^2], [N s^2/m^2], [N m s^2]
 ARM = 0.6  # [m] of each thruster beside the centre line
-LAG, ASTERN, CURRENT = 0.35, 0.7, np.array([0.15, -0.1])  # [s], share of the thrust, [m/s] north and east
+LAG, ASTERN, CURRENT = (
+    0.35,
+    0.7,
+    np.array([0.15, -0.1]),
+)  # [s], share of the thrust, [m/s] north and east
 HOLD, RATE = 4.0, 10.0  # [s] between commands, [Hz] of rows
 FULL = 60.0  # [N] of each
 SD = np.array([0.02, 0.02, 0.01])  # [m], [m], [rad] of what is read
@@ -33,12 +37,18 @@ def path(commands: Array, t: Array) -> Array:
         Y = -drag[1] - (M + ADDED[0]) * u * r
         N = ARM * (push[0] - push[1]) - drag[2] - (ADDED[1] - ADDED[0]) * u * v
         order = commands[min(int(now * RATE), len(commands) - 1)]
-        return np.array([north, east, r, X / mass[0], Y / mass[1], N / mass[2], *((order - y[6:]) / LAG)])
+        return np.array(
+            [north, east, r, X / mass[0], Y / mass[1], N / mass[2], *((order - y[6:]) / LAG)]
+        )
 
     y, rows = np.zeros(8), []
-    for a, b in zip(t[:-1], t[1:], strict=True):  # through the water from rest; commands are held over each row
+    for a, b in zip(
+        t[:-1], t[1:], strict=True
+    ):  # through the water from rest; commands are held over each row
         rows.append(y[:3])
-        y = solve_ivp(lambda s, y, a=a: slope(min(s, a + 0.5 / RATE), y), (a, b), y, rtol=1e-7, atol=1e-9).y[:, -1]
+        y = solve_ivp(
+            lambda s, y, a=a: slope(min(s, a + 0.5 / RATE), y), (a, b), y, rtol=1e-7, atol=1e-9
+        ).y[:, -1]
     return np.array([*rows, y[:3]])
 
 
@@ -50,7 +60,14 @@ def write(file: Path, seed: int, duration: float = 180.0) -> None:
     commands = levels[np.minimum((t / HOLD + 1e-9).astype(int), len(levels) - 1)]
     seen = path(commands, t) + rng.standard_normal((len(t), 3)) * SD
     rows = np.column_stack([t, seen, commands])
-    np.savetxt(file, rows, "%.9g", ",", header="t_s,x_m,y_m,psi_rad,thrust_port_N,thrust_starboard_N", comments="")
+    np.savetxt(
+        file,
+        rows,
+        "%.9g",
+        ",",
+        header="t_s,x_m,y_m,psi_rad,thrust_port_N,thrust_starboard_N",
+        comments="",
+    )
 
 
 HAND_MADE = f"""about = "the 3 m boat by whoever built it: its own numbers, but for the day's current"

@@ -14,17 +14,27 @@ from scipy.integrate import solve_ivp
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Notes, Recording
 
-MASS, INERTIA, WATER = 4.6, 0.6, (0.3, 9.0, 0.7)  # [kg], [kg m^2], [kg, kg, kg m^2] of the water that moves along
+MASS, INERTIA, WATER = (
+    4.6,
+    0.6,
+    (0.3, 9.0, 0.7),
+)  # [kg], [kg m^2], [kg, kg, kg m^2] of the water that moves along
 DAMPING = np.array([3.0, 10.0, 1.0])  # [N s/m, N s/m, N m s]
 STERN, ASIDE = -0.6, 0.19  # [m] of the thrusters, from the mass centre
 LENGTH, DRAUGHT = 1.2, 0.07  # [m]
 WALLS = np.array([[-4.0, -3.0], [4.0, 3.0]])  # [m] of the tank: low and high, along x and y
 MAST = 0.5  # [m] height of an antenna
-USUAL = np.array([0.25, 0.05, 0.35])  # [m/s, m/s, rad/s] speeds at which damping has the value a `Real` states
+USUAL = np.array(
+    [0.25, 0.05, 0.35]
+)  # [m/s, m/s, rad/s] speeds at which damping has the value a `Real` states
 FURTHER = (  # entries tried beyond the vessel's own list, in every test of this boat the same
-    "heading_offset", "position_frame_error", "quadratic_damping", "cubic_damping", "forward_speed_damping",
+    "heading_offset",
+    "position_frame_error",
+    "quadratic_damping",
+    "cubic_damping",
+    "forward_speed_damping",
     "sway_yaw_coupling",
-)  # fmt: skip
+)
 COMMANDS = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
 
 
@@ -34,27 +44,68 @@ class Real:
 
     late: float = 0.0  # [s] commands, by a quarter more or less each
     play: float = 0.0  # [rad] steering
-    bent: tuple[float, float] = (0.0, 0.0)  # [rad] by which port and starboard thruster point further to starboard
-    lag: float = 0.0  # [s] until thrust is at 63 % of a step: a quarter more from rest, less of a small one
+    bent: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # [rad] by which port and starboard thruster point further to starboard
+    lag: float = (
+        0.0  # [s] until thrust is at 63 % of a step: a quarter more from rest, less of a small one
+    )
     dead: float = 0.0  # [N] of command that friction takes
     power: tuple[float, float] = (1.0, 1.0)  # thrust per stated thrust, port and starboard
     walk: float = 0.0  # side force per thrust astern
     cargo: tuple[float, float] = (0.0, 0.0)  # [kg], [m] ahead
     trim: float = 0.0  # [m] by which the hull's own mass is ahead
     munk: float = 0.0  # share of the water's Coriolis force
-    linear: tuple[float, float, float] = (1.0, 1.0, 1.0)  # damping per stated damping at usual speeds, by axis
-    square: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [N s^2/m^2, N s^2/m^2, N m s^2] damping by axis
-    cube: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [N s^3/m^3, N s^3/m^3, N m s^3] damping by axis
-    lift: tuple[float, float] = (0.0, 0.0)  # [N s^2/m^2, N s^2] damping of sway and yaw per speed ahead or astern
-    way: tuple[float, float] = (0.0, 0.0)  # [kg, kg] side force to port per u r, moment to port per u v
+    linear: tuple[float, float, float] = (
+        1.0,
+        1.0,
+        1.0,
+    )  # damping per stated damping at usual speeds, by axis
+    square: tuple[float, float, float] = (
+        0.0,
+        0.0,
+        0.0,
+    )  # [N s^2/m^2, N s^2/m^2, N m s^2] damping by axis
+    cube: tuple[float, float, float] = (
+        0.0,
+        0.0,
+        0.0,
+    )  # [N s^3/m^3, N s^3/m^3, N m s^3] damping by axis
+    lift: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # [N s^2/m^2, N s^2] damping of sway and yaw per speed ahead or astern
+    way: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # [kg, kg] side force to port per u r, moment to port per u v
     skeg: float = 0.0  # [m] by which the sideways damping acts ahead
-    strips: tuple[float, float] = (0.0, 0.0)  # mean drag coefficient of the sections, [N s^2/m^2] surge drag
-    line: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)  # [N/m], [m] length, [m] anchor north, east
-    walls: tuple[float, float] = (0.0, 0.0)  # rise of damping at a wall, [N] towards it; half of both at 0.48 m
-    stream: tuple[float, float] = (0.0, 0.0)  # [m/s] water to north and east; walls and line are not for this case
+    strips: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # mean drag coefficient of the sections, [N s^2/m^2] surge drag
+    line: tuple[float, float, float, float] = (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )  # [N/m], [m] length, [m] anchor north, east
+    walls: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # rise of damping at a wall, [N] towards it; half of both at 0.48 m
+    stream: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # [m/s] water to north and east; walls and line are not for this case
     sea: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [N], [N], [N m] rms of irregular waves
     scale: tuple[float, float] = (1.0, 1.0)  # recorded per true length, along x and y
-    compass: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [rad] constant error, heading north, heading east
+    compass: tuple[float, float, float] = (
+        0.0,
+        0.0,
+        0.0,
+    )  # [rad] constant error, heading north, heading east
     antenna: tuple[float, float] = (0.0, 0.0)  # [m] ahead, to starboard of the mass centre
     clock: float = 0.0  # [s] by which the camera's clock is ahead: its rows show an earlier boat
 
@@ -68,18 +119,31 @@ def slopes(t: float, y: Array, command: Array, real: Real) -> Array:
     thrust, builds_up = turned(y[6:], wanted(command[:2], real), real)
     steer = command[2:] + np.array(real.bent) * np.cos(command[2:])  # a rod of the wrong length
     force = pushed(thrust, steer, real) + damped(nu, real) + held(y, c, s, real)
-    separated = 1.1 - 0.3 * nu[1] ** 2 / (nu[0] ** 2 + nu[1] ** 2 + 1e-12)  # less of it in a large drift
+    separated = 1.1 - 0.3 * nu[1] ** 2 / (
+        nu[0] ** 2 + nu[1] ** 2 + 1e-12
+    )  # less of it in a large drift
     for momentum in (solid @ nu, real.munk * separated * (water @ nu)):
-        force += [nu[2] * momentum[1], -nu[2] * momentum[0], nu[1] * momentum[0] - nu[0] * momentum[1]]
+        force += [
+            nu[2] * momentum[1],
+            -nu[2] * momentum[0],
+            nu[1] * momentum[0] - nu[0] * momentum[1],
+        ]
     force += np.array(real.sea) * waves(t)
     u, v, r = nu
-    return np.concatenate([[u * c - v * s, u * s + v * c, r], np.linalg.solve(solid + water, force), builds_up])
+    return np.concatenate(
+        [[u * c - v * s, u * s + v * c, r], np.linalg.solve(solid + water, force), builds_up]
+    )
 
 
 def stowed(real: Real) -> tuple[tuple[float, float], ...]:
     """Masses and where they lie: most of the hull's own has slid, the cargo is as long as a crate."""
     mass, x = real.cargo
-    return (0.2 * MASS, 0.0), (0.8 * MASS, 1.25 * real.trim), (0.5 * mass, x - 0.1), (0.5 * mass, x + 0.1)
+    return (
+        (0.2 * MASS, 0.0),
+        (0.8 * MASS, 1.25 * real.trim),
+        (0.5 * mass, x - 0.1),
+        (0.5 * mass, x + 0.1),
+    )
 
 
 def body(mass: float, x: float) -> Array:
@@ -108,7 +172,9 @@ def turned(shaft: Array, thrust: Array, real: Real) -> tuple[Array, Array]:
 def pushed(thrust: Array, steer: Array, real: Real) -> Array:
     """Both thrusters, and their side forces, of which ahead is left a third: more than in proportion to their load."""
     X, Y = thrust * np.cos(steer), thrust * np.sin(steer)
-    side = real.walk * sum(float(T) * (0.7 + 0.45 * abs(T)) * (1.0 if T < 0.0 else 0.33) for T in thrust)
+    side = real.walk * sum(
+        float(T) * (0.7 + 0.45 * abs(T)) * (1.0 if T < 0.0 else 0.33) for T in thrust
+    )
     return at(STERN, X.sum(), Y.sum() + side) + [0.0, 0.0, ASIDE * (X[0] - X[1])]
 
 
@@ -125,7 +191,9 @@ def damped(nu: Array, real: Real) -> Array:
     section = LENGTH / 60
     x = section * (np.arange(60) + 0.5) - 0.5 * LENGTH
     across = v + x * r
-    keel = -DAMPING[1] * real.linear[1] * real.skeg * 12.0 / LENGTH**3 * x * across * section  # fuller at one end
+    keel = (
+        -DAMPING[1] * real.linear[1] * real.skeg * 12.0 / LENGTH**3 * x * across * section
+    )  # fuller at one end
     force += [0.0, keel.sum(), (x * keel).sum()]
     if any(real.strips):
         fullness = 1.15 - 0.45 * (2.0 * x / LENGTH) ** 2  # bow and stern are fined
@@ -141,10 +209,14 @@ def held(y: Array, c: float, s: float, real: Real) -> Array:
     if stiffness:
         reach = np.array([north - y[0] - STERN * c, east - y[1] - STERN * s])
         beyond = max(hypot(*reach) - length, 0.0)
-        pull = stiffness * beyond * (0.8 + 0.5 * beyond) / hypot(*reach) * reach  # a rope that stiffens
+        pull = (
+            stiffness * beyond * (0.8 + 0.5 * beyond) / hypot(*reach) * reach
+        )  # a rope that stiffens
         force += at(STERN, c * pull[0] + s * pull[1], c * pull[1] - s * pull[0])
     if any(real.walls):
-        low, high = 1.0 / (1.0 + (abs(WALLS - y[:2]) / 0.48) ** 2)  # as far as a wall's mirror image is felt
+        low, high = 1.0 / (
+            1.0 + (abs(WALLS - y[:2]) / 0.48) ** 2
+        )  # as far as a wall's mirror image is felt
         draw = real.walls[1] * (high - low)
         force += [c * draw[0] + s * draw[1], c * draw[1] - s * draw[0], 0.0]
         force -= real.walls[0] * (low + high).sum() * DAMPING * y[3:6]
@@ -165,10 +237,19 @@ def seen(t: float, y: Array, real: Real) -> Array:
     """What camera and compass make of a boat in the water, which drifts with a stream that swells and ebbs."""
     x, north, psi = y[:3]
     ahead, starboard = real.antenna
-    starboard -= MAST * y[3] * y[5] / 9.81 if any(real.antenna) else 0.0  # the boat leans out of a turn
-    place = np.array([x + cos(psi) * ahead - sin(psi) * starboard, north + sin(psi) * ahead + cos(psi) * starboard])
+    starboard -= (
+        MAST * y[3] * y[5] / 9.81 if any(real.antenna) else 0.0
+    )  # the boat leans out of a turn
+    place = np.array(
+        [
+            x + cos(psi) * ahead - sin(psi) * starboard,
+            north + sin(psi) * ahead + cos(psi) * starboard,
+        ]
+    )
     place += (t + 0.3 * TIDE * (1.0 - cos(t / TIDE))) * np.array(real.stream)
-    place *= 1.0 + (np.array(real.scale) - 1.0) * (0.8 + 0.2 * hypot(*place))  # a lens errs most at its edge
+    place *= 1.0 + (np.array(real.scale) - 1.0) * (
+        0.8 + 0.2 * hypot(*place)
+    )  # a lens errs most at its edge
     constant, at_north, at_east = real.compass
     quarter = 0.1 * hypot(at_north, at_east) * sin(2.0 * psi)  # iron lying athwart
     return np.array([*place, psi + constant + at_north * cos(psi) + at_east * sin(psi) + quarter])
@@ -184,7 +265,9 @@ def played(steer: Array, play: float) -> Array:
     return out
 
 
-def recorded(real: Real, seed: int, hold: int = 5, start: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Recording:
+def recorded(
+    real: Real, seed: int, hold: int = 5, start: tuple[float, float, float] = (0.0, 0.0, 0.0)
+) -> Recording:
     """40 s at 6 Hz from a pose at rest, of random steps held for some rows, seen by a camera with noise."""
     rng = np.random.default_rng(seed)
     dt, n = 1 / 6, 240
@@ -192,7 +275,9 @@ def recorded(real: Real, seed: int, hold: int = 5, start: tuple[float, float, fl
     raw = np.column_stack([rng.uniform(-0.9, 0.9, (steps, 2)), rng.uniform(-0.6, 0.6, (steps, 2))])
     raw = np.repeat(raw, hold, axis=0)
     acts = np.column_stack([raw[:, :2], played(raw[:, 2:], real.play)])
-    moments = dt * np.arange(n) - real.clock * (0.85 + 0.3 * np.arange(n) / n)  # at which the rows are true: it drifts
+    moments = dt * np.arange(n) - real.clock * (
+        0.85 + 0.3 * np.arange(n) / n
+    )  # at which the rows are true: it drifts
     first = min(0.0, -real.clock)
     arrivals = dt * np.arange(0, n, hold) + real.late * rng.uniform(0.75, 1.25, steps)
     ends = np.concatenate([[first], dt * np.arange(n + 1), moments, arrivals])
@@ -201,8 +286,16 @@ def recorded(real: Real, seed: int, hold: int = 5, start: tuple[float, float, fl
     for a, b in zip(ends[:-1], ends[1:], strict=True):
         poses[round(a, 6)] = seen(a, y, real)
         step = max(int(np.searchsorted(arrivals, 0.5 * (a + b))) - 1, 0)
-        y = solve_ivp(slopes, (a, b), y, args=(acts[hold * step], real), rtol=1e-6, atol=1e-8).y[:, -1]
+        y = solve_ivp(slopes, (a, b), y, args=(acts[hold * step], real), rtol=1e-6, atol=1e-8).y[
+            :, -1
+        ]
     t: Array = dt * np.arange(n, dtype=float)
-    pose = np.array([poses[round(a, 6)] for a in moments]) + rng.standard_normal((n, 3)) * [0.003, 0.003, 0.012]
-    signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | dict(zip(COMMANDS, raw.T, strict=True))
+    pose = np.array([poses[round(a, 6)] for a in moments]) + rng.standard_normal((n, 3)) * [
+        0.003,
+        0.003,
+        0.012,
+    ]
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | dict(
+        zip(COMMANDS, raw.T, strict=True)
+    )
     return Recording(f"{seed}", t, signals, Notes(vessel="trial_boat"))

@@ -12,7 +12,9 @@ from boatsim.recordings.table import Recording
 SWING = 0.47 * pi  # [rad] largest azimuth
 CREEP = 0.02  # [m/s] below which a power law's damping is linear
 LEVER = 0.4  # [m] mass centre to thruster
-Control = Callable[[float, list[float]], tuple[float, float]]  # t, state -> thrust [N], azimuth [rad]
+Control = Callable[
+    [float, list[float]], tuple[float, float]
+]  # t, state -> thrust [N], azimuth [rad]
 
 
 @dataclass(frozen=True)
@@ -23,7 +25,11 @@ class Real:
     depth: float = 0.045  # [m] D of its Table I
     sway: tuple[float, float] = (80.0, 1.0)  # damping d |v|^a sign(v), in very slow flow linear
     stern: bool = False  # thruster behind the mass centre
-    gust: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [N] steady, [N] sine of 0.4 pi rad/s, [rad] towards
+    gust: tuple[float, float, float] = (
+        0.0,
+        0.0,
+        0.0,
+    )  # [N] steady, [N] sine of 0.4 pi rad/s, [rad] towards
     lever: float = 0.0  # [m] of the gust ahead of the mass centre
     replay: bool = False  # positions as its eq. 1 has them
 
@@ -39,9 +45,19 @@ class Real:
         ahead, abeam = force * cos(toward - z), force * sin(toward - z)
         side = thrust * sin(azimuth)
         du = (thrust * cos(azimuth) + ahead + my * v * w - 14.0 * u) / mx
-        dv = ((-side if self.stern else side) + abeam - mx * u * w - d * hypot(v, CREEP) ** (a - 1.0) * v) / my
+        dv = (
+            (-side if self.stern else side)
+            + abeam
+            - mx * u * w
+            - d * hypot(v, CREEP) ** (a - 1.0) * v
+        ) / my
         munk = water / 2 - 0.05 * self.mass
-        dw = (LEVER * side + self.lever * (1.0 + 0.2 * cos(toward - z)) * abeam - munk * u * v - 5.0 * w) / mz
+        dw = (
+            LEVER * side
+            + self.lever * (1.0 + 0.2 * cos(toward - z)) * abeam
+            - munk * u * v
+            - 5.0 * w
+        ) / mz
         if self.replay:
             return [u, v, w, du, dv, dw]
         return [u * cos(z) - v * sin(z), u * sin(z) + v * cos(z), w, du, dv, dw]
@@ -51,7 +67,9 @@ class Real:
         x, y, c, n = s[0], s[1], cos(s[2]), sin(s[2])
         return (x * c - y * n, x * n + y * c) if self.replay else (x, y)
 
-    def run(self, control: Control, duration: float, held: float = 0.0, start: list[float] | None = None) -> Array:
+    def run(
+        self, control: Control, duration: float, held: float = 0.0, start: list[float] | None = None
+    ) -> Array:
         """Rows of t, X, Y, psi, u, v, r, thrust, azimuth every 10 ms; `held` [s] between two looks of the control.
 
         With `held` 0 the control is evaluated at every stage of the Runge-Kutta step, as the paper's is.
@@ -71,7 +89,10 @@ class Real:
             b = slope(t + h / 2, [x + h / 2 * k for x, k in zip(s, a, strict=True)])
             c = slope(t + h / 2, [x + h / 2 * k for x, k in zip(s, b, strict=True)])
             d = slope(t + h, [x + h * k for x, k in zip(s, c, strict=True)])
-            s = [x + h / 6 * (p + 2 * q + 2 * r + w) for x, p, q, r, w in zip(s, a, b, c, d, strict=True)]
+            s = [
+                x + h / 6 * (p + 2 * q + 2 * r + w)
+                for x, p, q, r, w in zip(s, a, b, c, d, strict=True)
+            ]
         return np.array(rows)
 
 
@@ -85,7 +106,9 @@ def navigation(x: float, y: float, full: float = 20.0, radius: float = 2.5) -> C
             return 0.0, 0.0
         if abs(off) < pi / 2:
             return full, SWING * off / (pi / 2)
-        return full / 3 * distance / 10 if distance <= 10.0 else full / 2, SWING * (1.0 if off > 0 else -1.0)
+        return full / 3 * distance / 10 if distance <= 10.0 else full / 2, SWING * (
+            1.0 if off > 0 else -1.0
+        )
 
     return control
 
@@ -96,5 +119,8 @@ def recording(name: str, rows: Array, seed: int, every: int = 5) -> Recording:
     rows = rows[::every]
     noisy = rows[:, 1:7] + 0.005 * rng.standard_normal((len(rows), 6))
     names = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
-    signals = dict(zip(names, noisy.T, strict=True)) | {"thrust_N": rows[:, 7], "azimuth_rad": rows[:, 8]}
+    signals = dict(zip(names, noisy.T, strict=True)) | {
+        "thrust_N": rows[:, 7],
+        "azimuth_rad": rows[:, 8],
+    }
     return Recording(name, rows[:, 0], signals)

@@ -8,11 +8,20 @@ from typing import Any
 from boatsim.physics.content import names
 from boatsim.simulate import scenario
 from boatsim.simulate.cases import content
-from boatsim.simulate.norms import Norm, norms
+from boatsim.simulate.evaluation import Norm, norms
 from boatsim.simulate.run import run
 
 SHIPPED = tuple(name for name in names("scenario") if name.startswith("joystick_boat/"))
-TESTS = ("sway_1", "sway_2", "sway_3", "sway_4", "yaw_1", "yaw_2", "yaw_3", "yaw_4")  # of the thesis
+TESTS = (
+    "sway_1",
+    "sway_2",
+    "sway_3",
+    "sway_4",
+    "yaw_1",
+    "yaw_2",
+    "yaw_3",
+    "yaw_4",
+)  # of the thesis
 
 
 def raw(name: str) -> dict[str, Any]:
@@ -30,7 +39,8 @@ def found(name: str, seed: int = 0) -> tuple[dict[str, Norm], int]:
 def mean(runs: Sequence[dict[str, Norm]]) -> dict[str, float]:
     """Mean of each norm over runs; nan, which meets no bar, where one of them never reached it."""
     return {
-        name: sum(nan if (value := one[name].value) is None else value for one in runs) / len(runs) for name in runs[0]
+        name: sum(nan if (value := one[name].value) is None else value for one in runs) / len(runs)
+        for name in runs[0]
     }
 
 

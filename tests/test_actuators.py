@@ -20,8 +20,11 @@ from boatsim.simulate.engine import Engine
 STEP = 0.1  # [s]
 SETTLED = 0.5  # [s] after which each of these has arrived
 EFFECTS = [
-    RateLimit(rate=8.0), Servo(rate=8.0, lag=0.0), Servo(rate=8.0, lag=0.06), CommandDelay(delay=0.23),
-]  # fmt: skip
+    RateLimit(rate=8.0),
+    Servo(rate=8.0, lag=0.0),
+    Servo(rate=8.0, lag=0.06),
+    CommandDelay(delay=0.23),
+]
 
 
 def parts(effect: Any, command: float, memory: Any, seconds: float) -> list[float]:
@@ -32,7 +35,9 @@ def parts(effect: Any, command: float, memory: Any, seconds: float) -> list[floa
         while left > 1e-9:
             dt = min(left, max(type(effect).pause.py_func(command, memory, 0, q), 1e-6))
             lengths.append(dt)
-            type(effect).channel.py_func(Course(command, command, command), 0.0, 0.0, memory, 0, dt, q)
+            type(effect).channel.py_func(
+                Course(command, command, command), 0.0, 0.0, memory, 0, dt, q
+            )
             left -= dt
             assert len(lengths) < 100, f"{effect.name} halts at {memory[:4]} under {command!r}"
     return lengths
@@ -45,7 +50,9 @@ def test_an_actuator_that_has_arrived_asks_for_no_shorter_step(effect: Channel) 
     settled = [lag, STEP - lag] if lag else [STEP]
     for command in np.random.default_rng(1).uniform(-0.785, 0.785, 300).tolist():
         moving = parts(effect, command, memory, SETTLED)
-        assert len(moving) <= len(settled) * round(SETTLED / STEP) + 3  # a bend or two, and what a step leaves over
+        assert (
+            len(moving) <= len(settled) * round(SETTLED / STEP) + 3
+        )  # a bend or two, and what a step leaves over
         assert parts(effect, command, memory, 5 * STEP) == pytest.approx(settled * 5)
 
 
@@ -100,37 +107,65 @@ def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: fl
         memory, path = np.zeros(program.memory_size), np.zeros((rows + 1, 2 * code.NQ))
         code.settle(commands[0], memory, values, on, np.zeros(3 * program.held_size))
         code.rollout(
-            0.0, np.zeros(2 * code.NQ), commands, memory, STEP / substeps, substeps, np.array(program.body), values,
-            on, np.zeros(code.NQ), path,
-        )  # fmt: skip
+            0.0,
+            np.zeros(2 * code.NQ),
+            commands,
+            memory,
+            STEP / substeps,
+            substeps,
+            np.array(program.body),
+            values,
+            on,
+            np.zeros(code.NQ),
+            path,
+        )
         ends.append(path[-1, : code.NQ])
-    assert ends[0] == pytest.approx(ends[1], abs=1e-4)  # [m], [rad]; an arrival missed by 10 ms moves it by 0.01
+    assert ends[0] == pytest.approx(
+        ends[1], abs=1e-4
+    )  # [m], [rad]; an arrival missed by 10 ms moves it by 0.01
 
 
 def test_a_delay_of_a_ship_outlasts_commands_that_change_at_every_step() -> None:
     """A sine sent anew every 20 ms, 6 s late: 300 commands are on their way; remembered in means 77 ms long."""
-    late, memory, step, shown = CommandDelay(delay=6.0).values(), np.zeros(CommandDelay.slots), 0.02, []
+    late, memory, step, shown = (
+        CommandDelay(delay=6.0).values(),
+        np.zeros(CommandDelay.slots),
+        0.02,
+        [],
+    )
     times = step * np.arange(1500)
     for given in np.sin(0.5 * times):
-        passed = CommandDelay.channel.py_func(Course(given, given, given), 0.0, 0.0, memory, 0, step, late)
+        passed = CommandDelay.channel.py_func(
+            Course(given, given, given), 0.0, 0.0, memory, 0, step, late
+        )
         shown.append(passed.middle)
     after = times > 6.5
-    assert np.array(shown)[after] == pytest.approx(np.sin(0.5 * (times[after] - 6.0)), abs=0.5 * 0.077)
+    assert np.array(shown)[after] == pytest.approx(
+        np.sin(0.5 * (times[after] - 6.0)), abs=0.5 * 0.077
+    )
 
 
 def test_a_drive_that_is_dead_over_all_of_its_span_is_refused_in_a_line() -> None:
-    with pytest.raises(BadInput, match=r"^drive_map\.dead = 60; allowed is less than its span, 50$"):
+    with pytest.raises(
+        BadInput, match=r"^drive_map\.dead = 60; allowed is less than its span, 50$"
+    ):
         DriveMap(span=50.0, dead=60.0)
 
 
 @pytest.mark.parametrize(("behind", "first"), [(0.0, 0.3), (0.5, 0.25), (1.0, 0.2)])
-def test_play_begins_where_it_is_said_to_hang_and_is_whole_from_then_on(behind: float, first: float) -> None:
+def test_play_begins_where_it_is_said_to_hang_and_is_whole_from_then_on(
+    behind: float, first: float
+) -> None:
     """0.2 rad of play under a first command of 0.3 rad: half of it is between its middle and its end."""
     q = SteeringBacklash(width=0.2, behind=behind).values()
     memory = np.zeros(1)
 
     def angle(command: float, seconds: float) -> float:
-        return float(SteeringBacklash.channel.py_func(Course(*[command] * 3), 0.0, 0.0, memory, 0, seconds, q).end)
+        return float(
+            SteeringBacklash.channel.py_func(
+                Course(*[command] * 3), 0.0, 0.0, memory, 0, seconds, q
+            ).end
+        )
 
     for _ in range(3):  # as actuators are settled
         angle(0.3, 1e4)

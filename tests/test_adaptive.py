@@ -34,7 +34,9 @@ P = lyapunov(AM)
 PB = (float(P[0, 1]), float(P[1, 1]))  # P b with b = (0, 1)
 
 
-def project_ball(theta: Sequence[float], rate: Sequence[float], radius: float, tolerance: float) -> list[float]:
+def project_ball(
+    theta: Sequence[float], rate: Sequence[float], radius: float, tolerance: float
+) -> list[float]:
     """Projection operator: the rate, slowed down outwards so that theta never leaves the ball of this radius."""
     square = sum(t * t for t in theta)
     along = sum(t * y for t, y in zip(theta, rate, strict=True))
@@ -50,7 +52,10 @@ def test_lyapunov_matrix_of_the_example() -> None:
 
 
 def test_lyapunov_equation_holds_for_any_weight() -> None:
-    a, q = np.array([[-1.0, 3.0, 0.2], [0.0, -2.0, 1.0], [-0.5, 0.0, -0.7]]), np.diag([1.0, 2.0, 5.0])
+    a, q = (
+        np.array([[-1.0, 3.0, 0.2], [0.0, -2.0, 1.0], [-0.5, 0.0, -0.7]]),
+        np.diag([1.0, 2.0, 5.0]),
+    )
     p = lyapunov(a, q)
     assert a.T @ p + p @ a == pytest.approx(-q, abs=1e-12)
 
@@ -59,7 +64,9 @@ vectors = st.lists(st.floats(-10.0, 10.0), min_size=3, max_size=3)
 
 
 @given(theta=vectors, rate=vectors, true=vectors)
-def test_projection_never_works_against_the_truth(theta: list[float], rate: list[float], true: list[float]) -> None:
+def test_projection_never_works_against_the_truth(
+    theta: list[float], rate: list[float], true: list[float]
+) -> None:
     radius, tolerance = 12.0, 0.1
     inner = radius / sqrt(1.0 + tolerance)
     wanted = np.array(true) * min(1.0, inner / max(float(np.linalg.norm(true)), 1e-9))
@@ -115,7 +122,9 @@ def test_sigma_reads_a_lasting_disturbance_after_one_period() -> None:
         boat, law = Predictor(1.4, 0.5, 0.08), PiecewiseConstant(1.4, 0.5, 0.08)
         for applied in (0.0, 2.0, -1.0, 0.3):
             law.predict(applied)
-            assert law.adapt(boat.predict(applied + disturbance)) == pytest.approx(exp(-0.112) * disturbance, abs=1e-12)
+            assert law.adapt(boat.predict(applied + disturbance)) == pytest.approx(
+                exp(-0.112) * disturbance, abs=1e-12
+            )
 
 
 # L1 norm
@@ -148,8 +157,14 @@ def test_l1_norm_of_an_unstable_system_is_refused() -> None:
 
 def test_l1_norms_of_example_a() -> None:
     """A box of +-10 for both unknowns has |th1| + |th2| up to 20."""
-    assert l1_rows(unfiltered(AM, (0.0, 1.0), 160.0)) == pytest.approx([0.006008, 0.014740], abs=5e-7)
-    for bandwidth, value, digit in ((160.0, 0.2948, 5e-5), (60.0, 0.756, 5e-4), (30.0, 1.437, 5e-4)):
+    assert l1_rows(unfiltered(AM, (0.0, 1.0), 160.0)) == pytest.approx(
+        [0.006008, 0.014740], abs=5e-7
+    )
+    for bandwidth, value, digit in (
+        (160.0, 0.2948, 5e-5),
+        (60.0, 0.756, 5e-4),
+        (30.0, 1.437, 5e-4),
+    ):
         found = l1_condition(l1_norm(unfiltered(AM, (0.0, 1.0), bandwidth)), 20.0)
         assert found == pytest.approx(value, abs=digit)
 
@@ -176,7 +191,9 @@ def test_margins_of_an_integrator_with_delay(k: float, delay: float) -> None:
 
 
 def test_a_loop_past_its_margin_is_called_unstable() -> None:
-    def resonant(s: Any, delay: float) -> Any:  # crosses 1 three times; the last crossover is the tight one
+    def resonant(
+        s: Any, delay: float
+    ) -> Any:  # crosses 1 three times; the last crossover is the tight one
         return 0.4 * np.exp(-delay * s) * (1.0 + 0.3 * s**2 / (s**2 + 0.1 * s + 9.0)) / s
 
     margin = loop_margins(lambda s: resonant(s, 0.0))
@@ -201,9 +218,12 @@ def jet_loops() -> dict[str, Callable[[Any], Any]]:
 
 
 @pytest.mark.parametrize(
-    ("name", "crossover", "phase_deg", "delay"), [("pd", 0.755, 82.8, 1.92), ("l1", 0.759, 67.6, 1.56)]
+    ("name", "crossover", "phase_deg", "delay"),
+    [("pd", 0.755, 82.8, 1.92), ("l1", 0.759, 67.6, 1.56)],
 )
-def test_margins_of_sampled_loops(name: str, crossover: float, phase_deg: float, delay: float) -> None:
+def test_margins_of_sampled_loops(
+    name: str, crossover: float, phase_deg: float, delay: float
+) -> None:
     found = loop_margins(jet_loops()[name], high=pi / 0.1)
     assert found.crossover == pytest.approx(crossover, abs=5e-4)
     assert np.degrees(found.phase) == pytest.approx(phase_deg, abs=0.05)
@@ -310,8 +330,16 @@ def test_compiled_rates_are_the_gradient_laws() -> None:
     s[:4], s[8], s[10:] = (1.0, -2.0, 1.5, -1.0), -3.0, (-9.9, 9.8, 4.95, -9.7)
     error = float((s[2:4] - s[:2]) @ PB)
     example_b(0.0, s, np.array([0.0, 0.0, 1e5]), ds)
-    pairs = zip(s[10:], (1.0, -2.0, -3.0, 1.0), ((-10.0, 10.0), (-10.0, 10.0), (0.25, 5.0), (-10.0, 10.0)), strict=True)
-    laws = [Gradient(value, low, high, 1e5).rate(regressor, error) for value, regressor, (low, high) in pairs]
+    pairs = zip(
+        s[10:],
+        (1.0, -2.0, -3.0, 1.0),
+        ((-10.0, 10.0), (-10.0, 10.0), (0.25, 5.0), (-10.0, 10.0)),
+        strict=True,
+    )
+    laws = [
+        Gradient(value, low, high, 1e5).rate(regressor, error)
+        for value, regressor, (low, high) in pairs
+    ]
     assert ds[10:] == pytest.approx(laws)
     example_a(0.0, s, np.array([1.0, 0.0, 1e4]), ds)
     wanted = [-error, 2.0 * error]
@@ -320,7 +348,9 @@ def test_compiled_rates_are_the_gradient_laws() -> None:
     assert projected != pytest.approx(wanted)
 
 
-def reference_system(am: ArrayLike, b: ArrayLike, theta: ArrayLike, bandwidth: float) -> LinearSystem:
+def reference_system(
+    am: ArrayLike, b: ArrayLike, theta: ArrayLike, bandwidth: float
+) -> LinearSystem:
     """The loop with every unknown known: x' = Am x + b (u + theta'x), u = C(s)(r - theta'x), from r to (x, u).
 
     Am (n, n) [1/s], b (n,), theta (n,), bandwidth [rad/s]: what the adaptive loop tends to as its gain grows.
@@ -347,7 +377,9 @@ def test_reference_system_of_example_a() -> None:
 def test_ideal_model_of_example_a() -> None:
     ideal = LinearSystem(np.array(AM), np.array([[0.0], [1.0]]), np.array([[1.0, 0.0]]))
     y = step_response(ideal, 1e-4, 150_000)[:, 0]
-    reference = step_response(reference_system(AM, (0.0, 1.0), (4.0, -4.5), 160.0), 1e-4, 150_000)[:, 0]
+    reference = step_response(reference_system(AM, (0.0, 1.0), (4.0, -4.5), 160.0), 1e-4, 150_000)[
+        :, 0
+    ]
     assert y.max() == pytest.approx(1.045988, abs=5e-7)
     assert y.argmax() * 1e-4 == pytest.approx(4.3991, abs=1e-4)
     assert abs(y - reference).max() <= 0.0100925
@@ -357,7 +389,9 @@ def test_ideal_model_of_example_a() -> None:
     ("step", "dt", "within", "prediction"),
     [(25.0, 5e-5, 5.7e-5, 0.0526), (100.0, 2e-5, 6.7e-6, 0.0529), (400.0, 5e-6, 8e-7, 0.0531)],
 )
-def test_steps_of_example_a_scale_uniformly(step: float, dt: float, within: float, prediction: float) -> None:
+def test_steps_of_example_a_scale_uniformly(
+    step: float, dt: float, within: float, prediction: float
+) -> None:
     found = figures_a(step, 0.0, 12.0, dt)
     assert found.to_reference / step <= within
     assert found.prediction == pytest.approx(prediction, abs=5e-5)
@@ -375,7 +409,9 @@ def test_cosine_of_example_a() -> None:
     assert found.to_ideal == pytest.approx(1.054, abs=5e-4)
 
 
-@pytest.mark.parametrize(("gain", "prediction", "within"), [(1e5, 1.0832e-4, 2.649e-5), (1e4, 1.1203e-3, 2.662e-4)])
+@pytest.mark.parametrize(
+    ("gain", "prediction", "within"), [(1e5, 1.0832e-4, 2.649e-5), (1e4, 1.1203e-3, 2.662e-4)]
+)
 def test_first_8_s_of_example_b(gain: float, prediction: float, within: float) -> None:
     found = figures_b(gain, 8.0, 2e-5)
     assert found.prediction == pytest.approx(prediction, rel=5e-5)
@@ -395,7 +431,11 @@ def test_20_s_of_example_b(dt: float) -> None:
 
 def test_20_s_of_example_b_with_a_tenth_of_the_gain() -> None:
     found = figures_b(1e4, 20.0, 1e-5)
-    assert found.prediction == pytest.approx(0.0067, abs=1e-4)  # a burst again: 0.00674 to 0.00684 by step
+    assert found.prediction == pytest.approx(
+        0.0067, abs=1e-4
+    )  # a burst again: 0.00674 to 0.00684 by step
     assert found.to_reference <= 2.7495e-4
     assert found.to_ideal == pytest.approx(0.0199, abs=5e-5)
-    assert found.to_reference / figures_b(1e5, 20.0, 2e-5).to_reference == pytest.approx(10.0, abs=0.1)
+    assert found.to_reference / figures_b(1e5, 20.0, 2e-5).to_reference == pytest.approx(
+        10.0, abs=0.1
+    )

@@ -27,7 +27,10 @@ GRID = [-0.12 + 0.01 * i for i in range(25)]
 def force_of_each_motor(drive: Drive, half_spacing: float, arm: float) -> Push:
     """Section 1 of the thesis review: N = sum of x Y - y X over both motors, port at (-arm, -half_spacing)."""
     X = Y = N = 0.0
-    motors = [(-half_spacing, drive.port, drive.angle), (half_spacing, drive.starboard, -drive.angle)]
+    motors = [
+        (-half_spacing, drive.port, drive.angle),
+        (half_spacing, drive.starboard, -drive.angle),
+    ]
     for y, thrust, angle in motors:
         X, Y = X + thrust * cos(angle), Y + thrust * sin(angle)
         N += -arm * thrust * sin(angle) - y * thrust * cos(angle)
@@ -37,14 +40,18 @@ def force_of_each_motor(drive: Drive, half_spacing: float, arm: float) -> Push:
 @pytest.mark.parametrize("angle", [0.0, 0.3, ANGLE_MAX])
 def test_push_is_the_sum_over_both_motors(angle: float) -> None:
     drive = Drive(0.4, -0.3, angle)
-    assert OURS.push(drive) == pytest.approx(force_of_each_motor(drive, OURS.half_spacing, OURS.arm), abs=1e-14)
+    assert OURS.push(drive) == pytest.approx(
+        force_of_each_motor(drive, OURS.half_spacing, OURS.arm), abs=1e-14
+    )
 
 
 @pytest.mark.parametrize(
     ("half_spacing", "arm", "published"),
     [(0.19, 0.6, 17.57), (0.28, 0.6, 25.02), (0.19, 0.64, 16.53), (0.28, 0.64, 23.63)],
 )
-def test_neutral_angles_of_the_four_boats(half_spacing: float, arm: float, published: float) -> None:
+def test_neutral_angles_of_the_four_boats(
+    half_spacing: float, arm: float, published: float
+) -> None:
     boat = Outboards(half_spacing=half_spacing, arm=arm)
     assert degrees(boat.neutral_angle()) == pytest.approx(published, abs=0.01)
     assert boat.lever(boat.neutral_angle()) == pytest.approx(0.0, abs=1e-15)
@@ -98,7 +105,9 @@ def test_sway_thrust_grows_where_the_moment_needs_it() -> None:
 
 
 def test_a_turn_at_the_limits_keeps_a_reserve_for_surge() -> None:
-    weak = Outboards(rated_thrust=0.35)  # astern gives 0.4 N at most, less than half of the largest difference
+    weak = Outboards(
+        rated_thrust=0.35
+    )  # astern gives 0.4 N at most, less than half of the largest difference
     hard = weak.push(weak.allocate(0.0, 0.0, 1.0))
     assert hard.X == pytest.approx(0.0, abs=1e-12)
     back = weak.push(weak.allocate(-1.0, 0.0, 1.0))
@@ -115,9 +124,13 @@ DEMANDS = {
 
 
 @given(**DEMANDS)
-def test_mirrored_demand_gives_the_mirrored_drive(surge: float, difference: float, moment: float, room: float) -> None:
+def test_mirrored_demand_gives_the_mirrored_drive(
+    surge: float, difference: float, moment: float, room: float
+) -> None:
     port, starboard, angle = OURS.allocate(surge, difference, moment, room)
-    assert OURS.allocate(surge, -difference, -moment, room) == pytest.approx((starboard, port, angle), abs=1e-12)
+    assert OURS.allocate(surge, -difference, -moment, room) == pytest.approx(
+        (starboard, port, angle), abs=1e-12
+    )
 
 
 @given(**DEMANDS)
@@ -140,7 +153,10 @@ def test_drive_is_continuous_while_the_sway_keeps_its_side() -> None:
         for difference in (0.06, 0.3, 0.6):
             line = [OURS.allocate(surge, difference, -0.4 + step * i, 0.1) for i in range(401)]
             for a, b in pairwise(line):
-                assert max(abs(p - q) for p, q in zip(OURS.push(a), OURS.push(b), strict=True)) < 5 * step
+                assert (
+                    max(abs(p - q) for p, q in zip(OURS.push(a), OURS.push(b), strict=True))
+                    < 5 * step
+                )
                 assert max(abs(a.port - b.port), abs(a.starboard - b.starboard)) < 5 * step
         for moment in (-0.2, -0.05, 0.0, 0.1):
             line = [OURS.allocate(surge, 0.06 + step * i, moment, 0.1) for i in range(420)]
@@ -149,7 +165,9 @@ def test_drive_is_continuous_while_the_sway_keeps_its_side() -> None:
                 assert abs(a.angle - b.angle) < 10 * step
 
 
-def test_letting_go_of_sway_is_smooth_in_a_helping_turn_and_reverses_the_motors_in_the_other() -> None:
+def test_letting_go_of_sway_is_smooth_in_a_helping_turn_and_reverses_the_motors_in_the_other() -> (
+    None
+):
     turn, still_swaying = OURS.allocate(0.0, 0.0, 0.1), OURS.allocate(0.0, 1e-9, 0.1)
     assert still_swaying == pytest.approx(turn, abs=1e-6)
     turn, still_swaying = OURS.allocate(0.0, 0.0, -0.1), OURS.allocate(0.0, 1e-9, -0.1)
@@ -158,9 +176,13 @@ def test_letting_go_of_sway_is_smooth_in_a_helping_turn_and_reverses_the_motors_
 
 
 @given(st.integers(-PWM_MAX, PWM_MAX), st.floats(0.0, 60.0), st.floats(0.6, 2.0))
-def test_pwm_and_thrust_are_inverse_above_the_dead_band(pwm: int, dead: float, power: float) -> None:
+def test_pwm_and_thrust_are_inverse_above_the_dead_band(
+    pwm: int, dead: float, power: float
+) -> None:
     motor = Outboards(dead_pwm=dead, thrust_power=power)
-    assert motor.pwm(motor.thrust(pwm)) == (pwm if abs(pwm) > dead + 1 else pytest.approx(0, abs=dead + 1))
+    assert motor.pwm(motor.thrust(pwm)) == (
+        pwm if abs(pwm) > dead + 1 else pytest.approx(0, abs=dead + 1)
+    )
 
 
 def test_a_motor_gives_less_astern() -> None:
@@ -179,7 +201,12 @@ def test_applied_push_is_that_of_the_rounded_setting() -> None:
 
 def test_commands_are_mirror_angles_by_name() -> None:
     assert OURS.setting(Drive(0.5, -0.335, radians(30))).commands() == pytest.approx(
-        {"pwm_port": 150, "pwm_starboard": -150, "steer_port_rad": pi / 6, "steer_starboard_rad": -pi / 6}
+        {
+            "pwm_port": 150,
+            "pwm_starboard": -150,
+            "steer_port_rad": pi / 6,
+            "steer_starboard_rad": -pi / 6,
+        }
     )
 
 

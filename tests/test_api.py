@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[1]
 USER = """
 from typing import reveal_type
 import boatsim
-import boatsim.diagnose.analysis
+import boatsim.diagnosis.pipeline
 
 done: boatsim.Run = boatsim.run("joystick_boat/sway_1", seed=3)
 found: boatsim.Diagnosis = boatsim.diagnose(["a.csv"], hold_out=["b.csv"])
@@ -42,10 +42,14 @@ def test_the_example_of_each_function_runs_as_it_is_written(
     assert result.failed == 0
 
 
-@pytest.mark.parametrize("first", ["", "import boatsim.diagnose.rules", "from boatsim import diagnose"])
+@pytest.mark.parametrize(
+    "first", ["", "import boatsim.diagnosis.priors", "from boatsim import diagnose"]
+)
 def test_the_functions_are_there_whatever_was_imported_before(first: str) -> None:
     code = f"import boatsim\n{first}\nprint(*(callable(getattr(boatsim, n)) for n in {OFFERED}))"
-    said = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    said = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
     assert said.split() == ["True"] * len(OFFERED)
 
 
@@ -55,7 +59,9 @@ def test_a_diagnosis_is_asked_for_by_the_name_of_its_folder_too(tmp_path: Path) 
 
 
 def test_one_name_is_as_good_as_a_sequence_of_it(tmp_path: Path) -> None:
-    assert boatsim.load_vessel("joystick_boat", "heavy") == boatsim.load_vessel("joystick_boat", ("heavy",))
+    assert boatsim.load_vessel("joystick_boat", "heavy") == boatsim.load_vessel(
+        "joystick_boat", ("heavy",)
+    )
     log = tmp_path / "out" / "camera.csv"
     boatsim.run("joystick_boat/sway_1", out=log.parent)
     with pytest.raises(BadInput, match="load 'heav' does not exist"):
@@ -72,7 +78,9 @@ def test_replay_is_the_file_of_the_command_with_each_time_once(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     boatsim.run("joystick_boat/sway_1", out=tmp_path)
-    assert diagnosis.replay(tmp_path / "camera.csv", None, [], 6.0, tmp_path) == 0, capsys.readouterr().err
+    assert diagnosis.replay(tmp_path / "camera.csv", None, [], 6.0, tmp_path) == 0, (
+        capsys.readouterr().err
+    )
     header, *lines = (tmp_path / "replay.csv").read_text().splitlines()
     written = np.array([[float(cell) for cell in line.split(",")] for line in lines])
     assert header == "t_s,segment,x_m,y_m,psi_rad"
@@ -80,7 +88,9 @@ def test_replay_is_the_file_of_the_command_with_each_time_once(
     assert shared.sum() == written[-1, 1] > 0  # each run but the first begins where one ends
     told = boatsim.replay(tmp_path / "camera.csv")
     assert np.allclose(
-        np.column_stack([told.t, *(told[n] for n in header.split(",")[1:])]), written[~shared], atol=1e-8
+        np.column_stack([told.t, *(told[n] for n in header.split(",")[1:])]),
+        written[~shared],
+        atol=1e-8,
     )
 
 
@@ -102,15 +112,23 @@ def test_a_strict_type_checker_knows_what_comes_back(tmp_path: Path) -> None:
 
 
 def test_a_run_with_files_says_the_same_as_one_without(tmp_path: Path) -> None:
-    kept, free = (boatsim.run("joystick_boat/sway_1", seed=2, out=out) for out in (tmp_path / "out", None))
+    kept, free = (
+        boatsim.run("joystick_boat/sway_1", seed=2, out=out) for out in (tmp_path / "out", None)
+    )
     assert kept.norms == free.norms and kept.seed == free.seed == 2 and free.folder is None
-    assert set(kept.norms) == set(json.loads((tmp_path / "out" / "norms.json").read_text())["norms"])
+    assert set(kept.norms) == set(
+        json.loads((tmp_path / "out" / "norms.json").read_text())["norms"]
+    )
     assert abs(kept.recording["y_m"] - free.recording["y_m"]).max() < 1e-8
-    assert kept.camera is not None and free.camera is not None and len(kept.camera) == len(free.camera)
+    assert (
+        kept.camera is not None and free.camera is not None and len(kept.camera) == len(free.camera)
+    )
 
 
 def test_another_controller_steers(tmp_path: Path) -> None:
-    own, other = (boatsim.run("joystick_boat/sway_1", controller=c) for c in (None, "pid_autopilot"))
+    own, other = (
+        boatsim.run("joystick_boat/sway_1", controller=c) for c in (None, "pid_autopilot")
+    )
     assert own.norms["yaw_rate_rms"].value != other.norms["yaw_rate_rms"].value
     with pytest.raises(BadInput, match="controller pd_heading does not fit"):
         boatsim.run("joystick_boat/sway_1", controller="pd_heading")

@@ -13,7 +13,8 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "control.identification control.helm control.compiled control.axis control.joystick control.motor_check".split()
 )
 HEAVY = {  # library -> the only modules that may import it
-    "mujoco": {f"simulate.{name}" for name in ("world", "native", "engine", "env")} | {"warp.on_mujoco"},
+    "mujoco": {f"simulate.{name}" for name in ("world", "native_callback", "engine", "env")}
+    | {"warp.on_mujoco"},
     "mujoco_warp": {"warp.on_mujoco"},
     "warp": {"warp.runtime"},
     "dm_control": {"simulate.env"},
@@ -21,8 +22,8 @@ HEAVY = {  # library -> the only modules that may import it
     "gymnasium": {f"learn.{name}" for name in ("registration", "single", "spaces", "vector")},
     "stable_baselines3": {"learn.sb3"},
     "rerun": {"view.rerun_log", "view.blueprint", "view.stream", "recordings.readers.rrd"},
-    "jinja2": {"diagnose.report.sheet"},
-    "ray": {"sweep.workers.cluster"},
+    "jinja2": {"diagnosis.report.html_page"},
+    "ray": {"sweeps.workers.ray_cluster"},
     "pymavlink": {"recordings.logs.ardupilot"},
     "mcap": {"recordings.logs.mcap"},
     "rosbags": {"recordings.logs.rosbag"},
@@ -30,7 +31,10 @@ HEAVY = {  # library -> the only modules that may import it
     "pynmea2": {"recordings.logs.nmea"},
     "websockets": {"drive.server"},
 }
-BY_ANY_NAME = {"physics.content", "physics.cache"}  # what files name, and programs composed on the spot
+BY_ANY_NAME = {
+    "physics.content",
+    "physics.cache",
+}  # what files name, and programs composed on the spot
 CONTROLLERS = sorted((HOME / "controllers").glob("*.py"))
 
 
@@ -46,7 +50,9 @@ def test_only_content_and_programs_are_imported_by_a_name_that_is_found_in_a_run
 
 
 def test_an_import_by_name_counts_as_one(tmp_path: Path) -> None:
-    (tmp_path / "a.py").write_text('from importlib import import_module\nimport_module("boatsim.view.scene")\n')
+    (tmp_path / "a.py").write_text(
+        'from importlib import import_module\nimport_module("boatsim.view.scene")\n'
+    )
     assert own(tmp_path / "a.py") == {"view.scene"}
 
 
@@ -63,7 +69,11 @@ def test_a_controller_knows_nothing_of_the_simulator(path: Path) -> None:
 @pytest.mark.parametrize("library", HEAVY)
 def test_a_heavy_library_is_imported_in_its_place_only(library: str) -> None:
     files = OURS | {f"controllers/{path.stem}": path for path in CONTROLLERS}
-    users = {name for name, path in files.items() if library in {full.split(".")[0] for full in imported(path)}}
+    users = {
+        name
+        for name, path in files.items()
+        if library in {full.split(".")[0] for full in imported(path)}
+    }
     assert users <= HEAVY[library]
 
 
@@ -85,9 +95,15 @@ def test_the_picture_shows_every_import_from_folder_to_folder_once() -> None:
         "progress",
         "version",
     }  # of no folder
-    assert sorted(map(int, shown)) == sorted(n for pair, n in found.items() if not left_out & set(pair))
+    assert sorted(map(int, shown)) == sorted(
+        n for pair, n in found.items() if not left_out & set(pair)
+    )
 
 
 def test_a_further_file_on_a_shelf_leaves_the_picture_as_it_is() -> None:
-    assert on_shelf("physics.effects.made_up") == on_shelf("physics.effects.fan_wind") == "physics.effects"
+    assert (
+        on_shelf("physics.effects.made_up")
+        == on_shelf("physics.effects.fan_wind")
+        == "physics.effects"
+    )
     assert on_shelf("physics.param") == "physics.param"

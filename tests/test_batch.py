@@ -6,7 +6,7 @@ import pytest
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.simulate.batch import TURN, Batch
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 EXTRA = (
     {"use": "weak_reverse", "astern_factor": 0.694},
@@ -66,7 +66,9 @@ def test_a_batch_agrees_with_the_twin(name):
     batch.reset(start, rows[0])
     for i, row in enumerate(rows):
         batch.advance(row, 5)
-        np.testing.assert_allclose(batch.states, np.tile(course[i + 1], (3, 1)), rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(
+            batch.states, np.tile(course[i + 1], (3, 1)), rtol=1e-9, atol=1e-9
+        )
     np.testing.assert_allclose(batch.t, 2.0)
 
 
@@ -80,7 +82,9 @@ def test_actuators_keep_what_they_remember_from_call_to_call():
 
 
 def test_only_the_boats_meant_are_reset_set_and_assigned():
-    batch = Batch([vessel.load("joystick_boat", [load], extra=EXTRA) for load in ("light", "heavy")], 6)
+    batch = Batch(
+        [vessel.load("joystick_boat", [load], extra=EXTRA) for load in ("light", "heavy")], 6
+    )
     mass = batch._body[:, 0].copy()
     assert mass[0] != mass[1] and (mass[::2] == mass[0]).all()
     batch.advance(orders(6), 50)
@@ -90,7 +94,14 @@ def test_only_the_boats_meant_are_reset_set_and_assigned():
     np.testing.assert_allclose(batch.states[mask], [START, START], atol=1e-12)
     assert (batch.states[~mask] == moved[~mask]).all() and batch.t.tolist() == [0, 1, 1, 0, 1, 1]
     batch.set("weak_reverse.astern_factor", [0.5, 0.6], boats=[1, 4])
-    assert batch.get("weak_reverse.astern_factor").tolist() == [0.694, 0.5, 0.694, 0.694, 0.6, 0.694]
+    assert batch.get("weak_reverse.astern_factor").tolist() == [
+        0.694,
+        0.5,
+        0.694,
+        0.694,
+        0.6,
+        0.694,
+    ]
     batch.assign(0, boats=[1])
     assert batch._body[1, 0] == mass[0] and batch.get("weak_reverse.astern_factor")[1] == 0.694
 
@@ -116,11 +127,17 @@ def test_boats_in_waves_take_their_courses_from_their_seeds():
     ("act", "said"),
     [
         (lambda b: b.set("fan_wnd.speed", 1.0), "fan_wind.speed"),
-        (lambda b: b.set("fan_wind.speed", [1.0, 99.0]), "fan_wind.speed = 99; allowed 0 to 40 m/s"),
+        (
+            lambda b: b.set("fan_wind.speed", [1.0, 99.0]),
+            "fan_wind.speed = 99; allowed 0 to 40 m/s",
+        ),
         (lambda b: b.advance(np.zeros((2, 3))), "commands of shape (2, 3)"),
         (lambda b: b.advance(np.zeros((3, len(BOAT.commands)))), "commands of shape (3, "),
         (lambda b: b.advance(1.0), "commands of shape ()"),
-        (lambda b: b.set("fan_wind.speed", [1.0, 2.0, 3.0]), "allowed are one, or one for each of 2 boats"),
+        (
+            lambda b: b.set("fan_wind.speed", [1.0, 2.0, 3.0]),
+            "allowed are one, or one for each of 2 boats",
+        ),
         (lambda b: b.assign(1), "vessel 1; allowed 0 to 0"),
         (lambda b: b.assign(-1), "vessel -1; allowed 0 to 0"),
         (lambda b: Batch(BOAT, 2, seeds=[1]), "1 seeds for 2 boats"),

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from boatsim.cli import diagnosis as commands
-from boatsim.diagnose import analysis
+from boatsim.diagnosis import pipeline
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Course, motion
@@ -30,9 +30,13 @@ def slopes(t: float, y: np.ndarray, left: float, right: float) -> list[float]:
     _, _, psi, u, v, r = y
     c, s = np.cos(psi), np.sin(psi)
     return [
-        u * c - v * s, u * s + v * c, r, (left + right - SURGE * u) / MASS + v * r, -SWAY * v / MASS - u * r,
+        u * c - v * s,
+        u * s + v * c,
+        r,
+        (left + right - SURGE * u) / MASS + v * r,
+        -SWAY * v / MASS - u * r,
         (ARM * (right - left) - YAW * r) / INERTIA,
-    ]  # fmt: skip
+    ]
 
 
 def recorded(folder: Path, seconds: float = 40.0) -> Path:
@@ -43,10 +47,14 @@ def recorded(folder: Path, seconds: float = 40.0) -> Path:
     y = np.zeros((len(t), 6))
     y[0] = [3.0, -7.0, 1.2, 0.0, 0.0, 0.0]
     for i in range(len(t) - 1):
-        y[i + 1] = solve_ivp(slopes, (0.0, 0.1), y[i], args=tuple(force[i]), rtol=1e-9, atol=1e-12).y[:, -1]
+        y[i + 1] = solve_ivp(
+            slopes, (0.0, 0.1), y[i], args=tuple(force[i]), rtol=1e-9, atol=1e-12
+        ).y[:, -1]
     pose = y[:, :3] + rng.normal(0.0, [0.005, 0.005, 0.001], (len(t), 3))
     idle = np.full((len(t), 2), 1511.0)
-    rows = np.column_stack([t, pose, rng.normal(0.0, 1.0, (len(t), 3)), idle, force, np.zeros(len(t))])
+    rows = np.column_stack(
+        [t, pose, rng.normal(0.0, 1.0, (len(t), 3)), idle, force, np.zeros(len(t))]
+    )
     path = folder / "run_900.csv"
     np.savetxt(path, rows, delimiter=",", header=HEADER, comments="", fmt="%.6f")
     return path
@@ -74,14 +82,16 @@ def test_a_recording_toml_has_the_last_word_about_columns(tmp_path: Path) -> Non
 
 
 def test_a_minus_in_a_vessels_columns_flips_the_sign(tmp_path: Path) -> None:
-    seen = recording.read(recorded(tmp_path), columns={"x_m": "north_m", "psi_rad": "- heading_rad"})
+    seen = recording.read(
+        recorded(tmp_path), columns={"x_m": "north_m", "psi_rad": "- heading_rad"}
+    )
     table = np.genfromtxt(tmp_path / "run_900.csv", delimiter=",", names=True)
     assert seen["psi_rad"] == pytest.approx(-table["heading_rad"])
 
 
 def test_without_a_vessel_the_line_says_that_there_is_none(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match=r"run_900\.csv: no vessel given"):
-        analysis.open_recording(recorded(tmp_path), None, [])
+        pipeline.open_recording(recorded(tmp_path), None, [])
 
 
 def test_more_of_the_channel_called_left_turns_the_blueboat_to_port(tmp_path: Path) -> None:
@@ -101,7 +111,9 @@ def pushing(thruster: Thruster, thrust: float, angle: float = 0.0) -> Any:
 
 
 @pytest.mark.slow
-def test_a_run_in_the_columns_of_the_lake_is_replayed_right(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_in_the_columns_of_the_lake_is_replayed_right(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     commands.replay(recorded(tmp_path), "blueboat", [], 10.0, tmp_path / "out")
     said = dict(line.split(":") for line in capsys.readouterr().out.splitlines()[:2])
     assert float(said["position_rms_m"].split()[0]) < 0.1  # it goes some 15 m in 10 s
@@ -125,14 +137,24 @@ def test_a_boat_that_turns_without_slipping_has_its_side_force_from_the_coupling
 
 @pytest.mark.parametrize("speed", [2.0, -1.3])
 @pytest.mark.parametrize("thrust", [30.0, 8.0, -8.0, -30.0])
-def test_of_a_thrust_against_the_way_is_left_what_exceeds_the_idle_drag(thrust: float, speed: float) -> None:
+def test_of_a_thrust_against_the_way_is_left_what_exceeds_the_idle_drag(
+    thrust: float, speed: float
+) -> None:
     drag, a, yawing = 4.0, 0.4, 0.5
-    port = speed + ARM * yawing  # along its axis, of a mount on the port side in a turn to starboard
+    port = (
+        speed + ARM * yawing
+    )  # along its axis, of a mount on the port side in a turn to starboard
     m = motion(u=port * np.cos(a) - ARM * yawing, v=port * np.sin(a), r=yawing)
     own, signals = Thruster(y=-ARM), pushing(Thruster(), thrust, a)
-    left = thrust if thrust * port > 0.0 else np.sign(thrust) * max(abs(thrust) - drag * port**2, 0.0)
-    both = np.add(own.wrench(m, signals), DraggedPropeller(drag=drag).wrench(m, signals, own.values()))
-    assert both == pytest.approx([left * np.cos(a), left * np.sin(a), 0.0, 0.0, 0.0, ARM * left * np.cos(a)])
+    left = (
+        thrust if thrust * port > 0.0 else np.sign(thrust) * max(abs(thrust) - drag * port**2, 0.0)
+    )
+    both = np.add(
+        own.wrench(m, signals), DraggedPropeller(drag=drag).wrench(m, signals, own.values())
+    )
+    assert both == pytest.approx(
+        [left * np.cos(a), left * np.sin(a), 0.0, 0.0, 0.0, ARM * left * np.cos(a)]
+    )
 
 
 def test_an_idle_propeller_and_one_at_rest_lack_nothing() -> None:
@@ -144,12 +166,14 @@ def test_an_idle_propeller_and_one_at_rest_lack_nothing() -> None:
 
 def test_the_usv_of_no_mass_turns_to_the_side_whose_thruster_pushes_less() -> None:
     boat = vessel.load("twin_usv")
-    seen, _ = analysis.open_recording(DATA / "sin.csv", "twin_usv", [])
+    seen, _ = pipeline.open_recording(DATA / "sin.csv", "twin_usv", [])
     assert boat.columns.get("pwm_left_us", "pwm_left_us") == "pwm_left_us"
     smooth = np.ones(20) / 20
     turning = np.convolve(np.gradient(seen["psi_rad"], seen.t), smooth, "same")
     push = np.convolve(seen["pwm_left_us"] - seen["pwm_right_us"], smooth, "same")
     assert np.corrcoef(turning, push)[0, 1] > 0.9
     port = replace(boat.effect("pulse_thrust"), at_span=2.0)  # type: ignore[type-var]
-    given = type(port).channel(Course(0.0, 0.0, 0.0), -1.0, 1700.0, np.zeros(1), 0, 0.1, port.values())
+    given = type(port).channel(
+        Course(0.0, 0.0, 0.0), -1.0, 1700.0, np.zeros(1), 0, 0.1, port.values()
+    )
     assert given == pytest.approx((1.0, 1.0, 1.0))

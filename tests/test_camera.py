@@ -30,19 +30,27 @@ def test_marks_stand_where_a_turned_hull_carries_them() -> None:
     assert frame.marks == pytest.approx((10.0, 20.1, 10.3, 20.4, 9.8, 19.3))
 
 
-@pytest.mark.parametrize("marks", [MARKS, {"fore": (0.183, 0.0), "aft": (-0.117, 0.0)}], ids=["three", "two"])
+@pytest.mark.parametrize(
+    "marks", [MARKS, {"fore": (0.183, 0.0), "aft": (-0.117, 0.0)}], ids=["three", "two"]
+)
 def test_the_pose_scatters_as_the_notes_say(marks: dict[str, tuple[float, float]]) -> None:
     camera, n = Camera(mark_sd=0.003, marks=marks), 40_000
     noise = np.random.default_rng(1).standard_normal((n, 2 * len(marks)))
     place, psi = camera.pose(camera.seen(np.zeros(n), np.full(n, 0.7), noise))
     told = camera.noise()
-    assert (place.real.std(), place.imag.std()) == pytest.approx((told["position_sd_m"],) * 2, rel=0.02)
+    assert (place.real.std(), place.imag.std()) == pytest.approx(
+        (told["position_sd_m"],) * 2, rel=0.02
+    )
     assert psi.std() == pytest.approx(told["heading_sd_rad"], rel=0.02)
 
 
 def test_the_log_has_a_column_for_each_mark_of_vessel_and_scenario() -> None:
-    told = scenario.load("joystick_boat/sway_1", {"duration": 1.0, "camera": {"marks": {"mast": [0.0, 0.1]}}})
-    seen = [n for n in run(told).recording.signals if n.startswith("camera_") and n.endswith("_x_m")]
+    told = scenario.load(
+        "joystick_boat/sway_1", {"duration": 1.0, "camera": {"marks": {"mast": [0.0, 0.1]}}}
+    )
+    seen = [
+        n for n in run(told).recording.signals if n.startswith("camera_") and n.endswith("_x_m")
+    ]
     assert seen == ["camera_led_x_m", "camera_button_x_m", "camera_mast_x_m", "camera_x_m"]
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from boatsim.cli.batch import plan
+from boatsim.cli.run_many import plan
 from boatsim.errors import BadInput
 from boatsim.physics.content import find, names
 from boatsim.simulate import scenario
@@ -23,18 +23,27 @@ def write(path: Path, text: str) -> Path:
 
 
 def test_tables_are_merged_key_by_key_and_all_else_takes_the_place() -> None:
-    base = {"a": 1, "start": {"u": 2.0, "commands": {"x": 1.0, "y": 2.0}}, "goal": [{"n": 1}, {"n": 2}]}
+    base = {
+        "a": 1,
+        "start": {"u": 2.0, "commands": {"x": 1.0, "y": 2.0}},
+        "goal": [{"n": 1}, {"n": 2}],
+    }
     over = {"b": 3, "start": {"u": 5.0, "commands": {"y": 9.0}}, "goal": [{"n": 7}]}
     assert merged(base, over) == {
-        "a": 1, "b": 3, "start": {"u": 5.0, "commands": {"x": 1.0, "y": 9.0}}, "goal": [{"n": 7}]
-    }  # fmt: skip
+        "a": 1,
+        "b": 3,
+        "start": {"u": 5.0, "commands": {"x": 1.0, "y": 9.0}},
+        "goal": [{"n": 7}],
+    }
     assert base["start"] == {"u": 2.0, "commands": {"x": 1.0, "y": 2.0}}
 
 
 def test_a_table_that_says_what_to_use_begins_anew() -> None:
     base = {"controller": {"use": "waypoint", "radius": 2.0}}
     assert merged(base, {"controller": {"use": "replay"}}) == {"controller": {"use": "replay"}}
-    assert merged(base, {"controller": {"radius": 3.0}}) == {"controller": {"use": "waypoint", "radius": 3.0}}
+    assert merged(base, {"controller": {"radius": 3.0}}) == {
+        "controller": {"use": "waypoint", "radius": 3.0}
+    }
 
 
 def test_a_case_lies_on_the_rest_of_its_file_or_on_the_base_it_names(tmp_path: Path) -> None:
@@ -47,13 +56,17 @@ def test_a_case_lies_on_the_rest_of_its_file_or_on_the_base_it_names(tmp_path: P
     one, two, three = (scenario.load(f"{file}:{case}") for case in ("one", "two", "three"))
     assert [s.name for s in (one, two, three)] == ["one", "two", "three"]
     assert [(s.file.duration, s.file.start.u, s.controller.period) for s in (one, two, three)] == [
-        (2.0, 1.0, 0.1), (3.0, 1.0, 0.1), (2.0, 0.0, 0.5)
-    ]  # fmt: skip
+        (2.0, 1.0, 0.1),
+        (3.0, 1.0, 0.1),
+        (2.0, 0.0, 0.5),
+    ]
 
 
 def test_a_file_builds_on_a_shipped_scenario_and_on_files_beside_it(tmp_path: Path) -> None:
     shipped = write(tmp_path / "far.toml", 'base = "joystick_boat/sway_1"\ncontroller.pole = 2.0\n')
-    assert content(str(shipped))[0] == merged(content("joystick_boat/sway_1")[0], {"controller": {"pole": 2.0}})
+    assert content(str(shipped))[0] == merged(
+        content("joystick_boat/sway_1")[0], {"controller": {"pole": 2.0}}
+    )
     write(tmp_path / "_common.toml", HEAD)
     write(tmp_path / "some.toml", 'base = "_common.toml"\n[[case]]\nname = "a"\nstart.u = 4.0\n')
     last = write(tmp_path / "last.toml", 'base = "some.toml:a"\nduration = 1.0\n')
@@ -85,7 +98,9 @@ def test_every_name_of_a_shipped_scenario_is_a_case_or_a_file_of_its_folder() ->
 
 def test_a_folder_a_pattern_and_a_file_stand_for_their_scenarios(tmp_path: Path) -> None:
     everything = names("scenario")
-    assert meant("jet_ski") == meant("jet_ski/") == [n for n in everything if n.startswith("jet_ski/")]
+    assert (
+        meant("jet_ski") == meant("jet_ski/") == [n for n in everything if n.startswith("jet_ski/")]
+    )
     assert meant("joystick_boat/sway_?") == [f"joystick_boat/sway_{n}" for n in (1, 2, 3, 4)]
     assert meant("joystick_boat/sway_1") == ["joystick_boat/sway_1"]
     file = write(tmp_path / "mine.toml", HEAD + '[[case]]\nname = "one"\n[[case]]\nname = "two"\n')
@@ -97,10 +112,14 @@ def test_a_folder_a_pattern_and_a_file_stand_for_their_scenarios(tmp_path: Path)
 
 def test_cases_run_into_folders_of_their_own_names(tmp_path: Path) -> None:
     file = write(tmp_path / "mine.toml", HEAD + '[[case]]\nname = "one"\n[[case]]\nname = "two"\n')
-    assert [t.folder for t in plan([str(file)], tmp_path, None)] == [tmp_path / "one", tmp_path / "two"]
+    assert [t.folder for t in plan([str(file)], tmp_path, None)] == [
+        tmp_path / "one",
+        tmp_path / "two",
+    ]
     assert [t.name for t in plan(["joystick_boat/yaw_[12]"], tmp_path, None)] == [
-        "joystick_boat/yaw_1", "joystick_boat/yaw_2"
-    ]  # fmt: skip
+        "joystick_boat/yaw_1",
+        "joystick_boat/yaw_2",
+    ]
 
 
 # Mistakes -------------------------------------------------------------------------------------------------------------
@@ -109,20 +128,48 @@ def test_cases_run_into_folders_of_their_own_names(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "asked", "line"),
     [
-        ('[[case]]\nname = "a"\nbase = "b"\n[[case]]\nname = "b"\nbase = "a"', ":a", "base .*a -> b -> a"),
+        (
+            '[[case]]\nname = "a"\nbase = "b"\n[[case]]\nname = "b"\nbase = "a"',
+            ":a",
+            "base .*a -> b -> a",
+        ),
         ('[[case]]\nname = "a"\nbase = "a"', ":a", "mine.toml: a: base leads back .*: a -> a"),
-        ('[[case]]\nname = "a"\n[[case]]\nname = "a"', ":a", r"mine\.toml: case 'a' stands there twice"),
+        (
+            '[[case]]\nname = "a"\n[[case]]\nname = "a"',
+            ":a",
+            r"mine\.toml: case 'a' stands there twice",
+        ),
         ("[[case]]\nduration = 1.0", ":a", r"mine\.toml: \[\[case\]\] 1: name = None; allowed are"),
         ('[[case]]\nname = "a/b"', ":a", r"mine\.toml: \[\[case\]\] 1: name = 'a/b'; allowed are"),
         ('[case]\nname = "a"', ":a", r"mine\.toml: case = .*; allowed are \[\[case\]\] tables"),
-        ('[[case]]\nname = "calm"', ":clam", r"mine\.toml: case 'clam' does not exist; did you mean 'calm'"),
-        ('[[case]]\nname = "calm"', "", r"mine\.toml holds several cases; say which: mine\.toml:calm"),
-        ('[[case]]\nname = "a"\nbase = "sway_1"', ":a", "a: base: scenario 'sway_1' .* mean 'joystick_boat/sway_1'"),
-        ('[[case]]\nname = "a"\nbase = "gone.toml"', ":a", r"mine\.toml: a: base: gone\.toml: no such file"),
+        (
+            '[[case]]\nname = "calm"',
+            ":clam",
+            r"mine\.toml: case 'clam' does not exist; did you mean 'calm'",
+        ),
+        (
+            '[[case]]\nname = "calm"',
+            "",
+            r"mine\.toml holds several cases; say which: mine\.toml:calm",
+        ),
+        (
+            '[[case]]\nname = "a"\nbase = "sway_1"',
+            ":a",
+            "a: base: scenario 'sway_1' .* mean 'joystick_boat/sway_1'",
+        ),
+        (
+            '[[case]]\nname = "a"\nbase = "gone.toml"',
+            ":a",
+            r"mine\.toml: a: base: gone\.toml: no such file",
+        ),
         ('[[case]]\nname = "a"\nbase = 3', ":a", r"mine\.toml: a: base: 3; allowed is the name"),
-        ('[[case]]\nname = "a"\nduratoin = 3', ":a", r"mine\.toml: a: key 'duratoin' .*did you mean 'duration'"),
+        (
+            '[[case]]\nname = "a"\nduratoin = 3',
+            ":a",
+            r"mine\.toml: a: key 'duratoin' .*did you mean 'duration'",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_mistake_in_a_case_is_one_line(tmp_path: Path, text: str, asked: str, line: str) -> None:
     file = write(tmp_path / "mine.toml", f"{HEAD}{text}\n")
     with pytest.raises(BadInput, match=line) as caught:
@@ -133,10 +180,14 @@ def test_a_mistake_in_a_case_is_one_line(tmp_path: Path, text: str, asked: str, 
 def test_a_base_that_leads_round_through_files_is_one_line(tmp_path: Path) -> None:
     write(tmp_path / "a.toml", 'base = "b.toml"\n')
     write(tmp_path / "b.toml", 'base = "a.toml"\n')
-    with pytest.raises(BadInput, match=r"a\.toml: base leads back .*: a\.toml -> b\.toml -> a\.toml"):
+    with pytest.raises(
+        BadInput, match=r"a\.toml: base leads back .*: a\.toml -> b\.toml -> a\.toml"
+    ):
         scenario.load(str(tmp_path / "a.toml"))
 
 
 def test_a_pattern_that_nothing_is_like_is_one_line() -> None:
-    with pytest.raises(BadInput, match=r"no scenario is like 'joystick_boat/swy_\*' \(they are in catamaran, "):
+    with pytest.raises(
+        BadInput, match=r"no scenario is like 'joystick_boat/swy_\*' \(they are in catamaran, "
+    ):
         plan(["joystick_boat/swy_*"], None, None)

@@ -12,12 +12,12 @@ from real_catamaran import Real, navigation, recording
 
 from boatsim.cli import diagnosis as commands
 from boatsim.control.base import Sense
-from boatsim.diagnose import analysis
-from boatsim.diagnose.log.position_frame import in_one_frame, turned_share
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.checks.position_frame import in_one_frame, turned_share
 from boatsim.errors import BadInput
-from boatsim.measures.arrival import Arrival
-from boatsim.measures.speed_reached import SpeedReached
-from boatsim.measures.turning_radius import TurningRadius
+from boatsim.metrics.arrival import Arrival
+from boatsim.metrics.speed_reached import SpeedReached
+from boatsim.metrics.turning_radius import TurningRadius
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench, motion
 from boatsim.physics.content import load_class, names
@@ -30,15 +30,28 @@ from boatsim.physics.effects.thruster import Thruster
 from boatsim.recordings import table as recordings
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.norms import norms
+from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import Run, run
-from boatsim.simulate.twin import Twin
 from boatsim.view.outputs import run_into
 
 SHIPPED = [name for name in names("scenario") if name.startswith("catamaran/")]
-TABLE_III = {0: (2.4, 2.7), 45: (2.6, 2.8), 90: (3.0, 3.0), 135: (4.1, 3.1), 180: (5.1, 3.2)}  # s, m
-STEADY = {5: 0.199, 10: 0.223, 20: 0.263, 40: 0.289, 60: 0.265, 80: 0.228}  # N -> m, steady circle at full azimuth
+TABLE_III = {
+    0: (2.4, 2.7),
+    45: (2.6, 2.8),
+    90: (3.0, 3.0),
+    135: (4.1, 3.1),
+    180: (5.1, 3.2),
+}  # s, m
+STEADY = {
+    5: 0.199,
+    10: 0.223,
+    20: 0.263,
+    40: 0.289,
+    60: 0.265,
+    80: 0.228,
+}  # N -> m, steady circle at full azimuth
 TRIALS = {  # bearing of the disturbance [rad], its steady part [N]; T IV
     1: (pi / 4, 10.0), 3: (pi / 4, 30.0), 5: (pi / 2, 20.0), 6: (pi / 2, 30.0), 7: (3 * pi / 4, 10.0),
 }  # fmt: skip
@@ -67,7 +80,9 @@ def test_particulars_are_those_of_table_1_with_a_mean_submerged_depth_of_45_mm()
 
 def test_table_3_is_met_to_its_last_digit_in_all_ten_cells() -> None:
     found = {a: values(f"speed_{a}") for a in TABLE_III}
-    assert {a: (round(f["time"] or 0, 1), round(f["distance"] or 0, 1)) for a, f in found.items()} == TABLE_III
+    assert {
+        a: (round(f["time"] or 0, 1), round(f["distance"] or 0, 1)) for a, f in found.items()
+    } == TABLE_III
 
 
 def test_table_3_needs_the_criterion_of_99_percent() -> None:
@@ -78,13 +93,23 @@ def test_table_3_needs_the_criterion_of_99_percent() -> None:
 
 @pytest.mark.slow
 def test_the_published_kinematics_let_the_boat_arrive_where_the_right_ones_do_not() -> None:
-    assert values("disturbance_6")["time"] is None and values("disturbance_6_replay")["time"] is not None
-    assert values("disturbance_8")["time"] is None and values("disturbance_8_replay")["time"] is not None
-    assert values("disturbance_9")["time"] is None and values("disturbance_9_replay")["time"] is None
+    assert (
+        values("disturbance_6")["time"] is None
+        and values("disturbance_6_replay")["time"] is not None
+    )
+    assert (
+        values("disturbance_8")["time"] is None
+        and values("disturbance_8_replay")["time"] is not None
+    )
+    assert (
+        values("disturbance_9")["time"] is None and values("disturbance_9_replay")["time"] is None
+    )
 
 
 @pytest.mark.parametrize(("trial", "arrives"), [(6, 12.6), (8, 43.0), (9, None)])
-def test_a_disturbance_fixed_to_the_hull_gives_the_published_outcomes_too(trial: int, arrives: float | None) -> None:
+def test_a_disturbance_fixed_to_the_hull_gives_the_published_outcomes_too(
+    trial: int, arrives: float | None
+) -> None:
     told = scenario.load(f"catamaran/disturbance_{trial}").file.set["gust"]
     hull = {"set": {"gust": told | {"turns_with_hull": 1.0}}, "duration": 60.0}
     found = norms(run(scenario.load(f"catamaran/disturbance_{trial}", hull)))["time"].value
@@ -114,7 +139,9 @@ def held(thrust: float) -> dict[str, float]:
 
 def track(name: str) -> Array:
     log = sailed(name).recording
-    return np.column_stack([log.t, *(log[n] for n in ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps"))])
+    return np.column_stack(
+        [log.t, *(log[n] for n in ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps"))]
+    )
 
 
 @pytest.mark.parametrize("trial", [1, 5])
@@ -122,16 +149,22 @@ def test_engine_and_controller_follow_the_printed_equations(trial: int) -> None:
     toward, steady = TRIALS[trial]
     real = Real(gust=(steady, 5.0, toward))
     ours = track(f"disturbance_{trial}")
-    assert ours == pytest.approx(real.run(navigation(20.0, 0.0), ours[-1, 0], held=0.01)[:, :7], abs=1e-6)
+    assert ours == pytest.approx(
+        real.run(navigation(20.0, 0.0), ours[-1, 0], held=0.01)[:, :7], abs=1e-6
+    )
     at_every_stage = real.run(navigation(20.0, 0.0), ours[-1, 0])
-    arrived = at_every_stage[np.argmax(np.hypot(20 - at_every_stage[:, 1], at_every_stage[:, 2]) <= 2.5), 0]
+    arrived = at_every_stage[
+        np.argmax(np.hypot(20 - at_every_stage[:, 1], at_every_stage[:, 2]) <= 2.5), 0
+    ]
     assert values(f"disturbance_{trial}")["time"] == pytest.approx(arrived, abs=0.02)
 
 
 def test_replayed_positions_are_those_of_the_printed_equation_1() -> None:
     toward, steady = TRIALS[5]
     log = sailed("disturbance_5_replay").recording
-    rows = Real(gust=(steady, 5.0, toward), replay=True).run(navigation(20.0, 0.0), log.t[-1], held=0.01)
+    rows = Real(gust=(steady, 5.0, toward), replay=True).run(
+        navigation(20.0, 0.0), log.t[-1], held=0.01
+    )
     assert log["estimate_x_m"] == pytest.approx(rows[:, 1], abs=1e-3)
     assert log["estimate_y_m"] == pytest.approx(rows[:, 2], abs=1e-3)
 
@@ -160,11 +193,16 @@ def test_without_thrust_and_disturbance_the_energy_only_falls() -> None:
 
 
 @pytest.mark.slow
-def test_boat_replays_a_recording_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_boat_replays_a_recording_of_its_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """The disturbance goes with the recording, in its notes."""
     run_into(tmp_path / "run", scenario.load("catamaran/disturbance_5"))
     assert commands.compare(tmp_path / "run" / "recording.csv", None, [], None, tmp_path) == 0
-    errors = {line.split()[0]: float(line.split()[1]) for line in capsys.readouterr().out.splitlines()[1:-1]}
+    errors = {
+        line.split()[0]: float(line.split()[1])
+        for line in capsys.readouterr().out.splitlines()[1:-1]
+    }
     assert errors.keys() == {"x_m", "y_m", "psi_rad"} and max(errors.values()) < 1e-6
 
 
@@ -189,13 +227,18 @@ def waypoint(**settings: Any) -> Any:
         (20.0, 0.0, 2 * pi + 0.5, 20.0, -0.47 * pi * 0.5 / (pi / 2)),  # headings beyond a turn
     ],
 )
-def test_navigation_is_appendix_b(x: float, y: float, psi: float, thrust: float, azimuth: float) -> None:
+def test_navigation_is_appendix_b(
+    x: float, y: float, psi: float, thrust: float, azimuth: float
+) -> None:
     found = waypoint().step(sense(0.0, 0.0, psi), {"x_m": x, "y_m": y})
     assert found == pytest.approx({"thrust_N": thrust, "azimuth_rad": azimuth}, abs=1e-12)
 
 
 def test_several_points_are_visited_in_their_order_and_each_is_waited_for() -> None:
-    told = {"goal": [{"x_m": 8.0, "y_m": 0.0}, {"from": 1.0, "x_m": 8.0, "y_m": 8.0}], "duration": 14.0}
+    told = {
+        "goal": [{"x_m": 8.0, "y_m": 0.0}, {"from": 1.0, "x_m": 8.0, "y_m": 8.0}],
+        "duration": 14.0,
+    }
     log = run(scenario.load("catamaran/heading_0", told)).recording
     first, second = (np.hypot(log["x_m"] - 8.0, log["y_m"] - y) <= 2.5 for y in (0.0, 8.0))
     assert first.any() and second.any() and np.argmax(first) < np.argmax(second)
@@ -212,14 +255,27 @@ def test_no_goal_means_no_thrust() -> None:
 def straight(u: float, seconds: float = 10.0) -> Recording:
     t: Array = np.linspace(0.0, seconds, 101)
     still = np.zeros_like(t)
-    signals = {"x_m": u * t, "y_m": still, "u_mps": np.full_like(t, u), "v_mps": still, "thrust_N": still}
+    signals = {
+        "x_m": u * t,
+        "y_m": still,
+        "u_mps": np.full_like(t, u),
+        "v_mps": still,
+        "thrust_N": still,
+    }
     return Recording("straight", t, signals | {"r_radps": still})
 
 
 def test_arrival_on_a_straight_line() -> None:
     found = Arrival(x=7.0, radius=2.0).values(straight(1.0))
     assert found == pytest.approx(
-        {"time": 5.0, "distance": 5.0, "straight_line": 5.0, "closest": 0.0, "end_x": 10.0, "end_y": 0.0}
+        {
+            "time": 5.0,
+            "distance": 5.0,
+            "straight_line": 5.0,
+            "closest": 0.0,
+            "end_x": 10.0,
+            "end_y": 0.0,
+        }
     )
     missed = Arrival(x=7.0, y=3.0, radius=2.0).values(straight(1.0))
     assert missed == pytest.approx({"closest": 3.0, "end_x": 10.0, "end_y": 0.0})
@@ -239,8 +295,15 @@ def test_speed_reached_in_closed_form() -> None:
 def test_turning_radius_of_a_circle() -> None:
     t: Array = np.linspace(0.0, 10.0, 1001)
     on = (t < 8.0).astype(float)
-    signals = {"x_m": 2 * np.sin(t), "y_m": 2 - 2 * np.cos(t), "u_mps": np.full_like(t, 2.0), "v_mps": 0 * t}
-    found = TurningRadius().values(Recording("circle", t, signals | {"r_radps": np.ones_like(t), "thrust_N": on}))
+    signals = {
+        "x_m": 2 * np.sin(t),
+        "y_m": 2 - 2 * np.cos(t),
+        "u_mps": np.full_like(t, 2.0),
+        "v_mps": 0 * t,
+    }
+    found = TurningRadius().values(
+        Recording("circle", t, signals | {"r_radps": np.ones_like(t), "thrust_N": on})
+    )
     assert found == pytest.approx({"radius": 2.0, "half_width": 2.0, "time": 8.0}, abs=0.02)
     assert TurningRadius().values(straight(1.0)) == {}
 
@@ -261,7 +324,9 @@ def test_gust_is_a_sine_in_one_direction_of_the_world() -> None:
     X, Y = force * cos(2.0 - 0.7), force * sin(2.0 - 0.7)
     assert gust.wrench(m) == pytest.approx(Wrench(X=X, Y=Y, N=0.1 * Y))
     Y = force * sin(2.0)
-    assert replace(gust, turns_with_hull=1.0).wrench(m) == pytest.approx(Wrench(X=force * cos(2.0), Y=Y, N=0.1 * Y))
+    assert replace(gust, turns_with_hull=1.0).wrench(m) == pytest.approx(
+        Wrench(X=force * cos(2.0), Y=Y, N=0.1 * Y)
+    )
 
 
 def test_gust_off_centre_is_what_a_lever_adds_to_the_vessels_own_gust() -> None:
@@ -275,7 +340,9 @@ def test_gust_off_centre_is_what_a_lever_adds_to_the_vessels_own_gust() -> None:
 
 def test_speed_hold_keeps_the_speed_whatever_the_turn() -> None:
     held = SpeedHold(speed=2.0, gain=100.0, mass=7.0)
-    assert held.wrench(motion(u=2.0, v=0.5, r=0.3)).X == pytest.approx(-7.0 * 0.5 * 0.3)  # m(u' - v r) = X: u' = 0
+    assert held.wrench(motion(u=2.0, v=0.5, r=0.3)).X == pytest.approx(
+        -7.0 * 0.5 * 0.3
+    )  # m(u' - v r) = X: u' = 0
     assert held.wrench(motion(u=2.1)).X == pytest.approx(-10.0)
     assert SpeedHold().completed(vessel.load("catamaran")).mass == 7.0
 
@@ -284,20 +351,28 @@ def test_payload_and_deeper_draught_make_the_heavier_boat() -> None:
     boat = vessel.load("catamaran")
     more = vessel.added(boat, Payload(mass=2.0))
     assert more.body.mass == 9.0
-    assert more.body.yaw_inertia - boat.body.yaw_inertia == pytest.approx(2.0 * (0.55**2 + 1.0) / 12, rel=1e-4)
+    assert more.body.yaw_inertia - boat.body.yaw_inertia == pytest.approx(
+        2.0 * (0.55**2 + 1.0) / 12, rel=1e-4
+    )
     own: Any = boat.effect("added_mass")
     error = AddedMassError(surge_factor=1.3, sway_factor=1.5, yaw_factor=0.8)
     off: Any = vessel.added(boat, error).effect("added_mass")
-    assert (off.surge, off.sway, off.yaw) == pytest.approx((1.3 * own.surge, 1.5 * own.sway, 0.8 * own.yaw))
+    assert (off.surge, off.sway, off.yaw) == pytest.approx(
+        (1.3 * own.surge, 1.5 * own.sway, 0.8 * own.yaw)
+    )
     with pytest.raises(BadInput, match="body.mass = -1"):
         vessel.added(boat, Payload(mass=-8.0))
 
 
 def test_damping_exponent_makes_a_power_law_of_the_vessels_linear_damping() -> None:
     boat, m = vessel.load("catamaran"), motion(u=0.5, v=-0.2, r=0.4)
-    release = DampingExponent(surge_exponent=1.5, sway_exponent=2.0, sway_equal=0.5, yaw_exponent=3.0)
+    release = DampingExponent(
+        surge_exponent=1.5, sway_exponent=2.0, sway_equal=0.5, yaw_exponent=3.0
+    )
     power: Any = vessel.added(boat, release).effect("linear_damping")
-    assert power.wrench(m) == pytest.approx(Wrench(X=-14 * 0.5**1.5, Y=80 * 0.2**2 / 0.5, N=-5 * 0.4**3))
+    assert power.wrench(m) == pytest.approx(
+        Wrench(X=-14 * 0.5**1.5, Y=80 * 0.2**2 / 0.5, N=-5 * 0.4**3)
+    )
     assert power.wrench(motion()) == Wrench()
 
 
@@ -315,17 +390,24 @@ def recorded(folder: Path, trials: list[int], seconds: float = 12.0, **real: Any
         name = f"D{n}".replace("-", "m")
         paths.append(folder / f"{name}.csv")
         recordings.write_csv(recording(name, rows, seed=abs(n)), paths[-1])
-        notes += [f"[runs.{name}.set.gust]", f"mean = {gust[0]}", f"amplitude = {gust[1]}", f"toward = {gust[2]}"]
+        notes += [
+            f"[runs.{name}.set.gust]",
+            f"mean = {gust[0]}",
+            f"amplitude = {gust[1]}",
+            f"toward = {gust[2]}",
+        ]
     (folder / "recording.toml").write_text("\n".join(notes))
     return paths
 
 
 def answer_to(paths: list[Path]) -> dict[str, Any]:
-    return analysis.diagnose(paths).findings.answer
+    return pipeline.diagnose(paths).findings.answer
 
 
 def named(answer: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    return {e["name"]: {k: p["value"] for k, p in e["parameters"].items()} for e in answer["effects"]}
+    return {
+        e["name"]: {k: p["value"] for k, p in e["parameters"].items()} for e in answer["effects"]
+    }
 
 
 @pytest.mark.slow
@@ -335,11 +417,16 @@ def test_the_boat_of_the_paper_lacks_nothing(tmp_path: Path) -> None:
 
 
 def test_case_1_turned_positions_are_found_before_forces_are_blamed(tmp_path: Path) -> None:
-    found = analysis.diagnose(recorded(tmp_path, [3, 5, -5], replay=True))
-    assert found.findings.answer["verdict"] == "nothing_missing" and not found.findings.answer["effects"]
+    found = pipeline.diagnose(recorded(tmp_path, [3, 5, -5], replay=True))
+    assert (
+        found.findings.answer["verdict"] == "nothing_missing"
+        and not found.findings.answer["effects"]
+    )
     assert len(found.remarks) == 3
     for line in found.remarks:
-        assert "contradict each other in proportion to yaw rate and distance from the origin" in line
+        assert (
+            "contradict each other in proportion to yaw rate and distance from the origin" in line
+        )
 
 
 @pytest.mark.parametrize("trial", TRIALS)
@@ -351,14 +438,18 @@ def test_honest_positions_stay(trial: int) -> None:
     # a fast velocity log, an antenna off the mass centre, a turned compass and a current are other errors than this
     x, y, psi, u = (honest[n] for n in ("x_m", "y_m", "psi_rad", "u_mps"))
     wrong = {
-        "x_m": x + 0.3 * np.cos(psi) + 0.1 * honest.t, "y_m": y + 0.3 * np.sin(psi),
-        "u_mps": 1.1 * u, "psi_rad": psi + 0.1,
-    }  # fmt: skip
+        "x_m": x + 0.3 * np.cos(psi) + 0.1 * honest.t,
+        "y_m": y + 0.3 * np.sin(psi),
+        "u_mps": 1.1 * u,
+        "psi_rad": psi + 0.1,
+    }
     other = replace(honest, signals=honest.signals | wrong)
     assert in_one_frame(other) is other
 
 
-@pytest.mark.parametrize(("trials", "lever"), [([3, 5, -5, 7], 0.05), ([3, 5, -5, 7], 0.15), ([1], 0.05)])
+@pytest.mark.parametrize(
+    ("trials", "lever"), [([3, 5, -5, 7], 0.05), ([3, 5, -5, 7], 0.15), ([1], 0.05)]
+)
 def test_case_2_a_disturbance_off_the_mass_centre_is_named_with_its_lever(
     tmp_path: Path, trials: list[int], lever: float
 ) -> None:
@@ -381,7 +472,9 @@ def test_case_3_a_heavier_boat_is_named_with_its_deeper_draught(tmp_path: Path) 
     assert found["added_mass_error"]["sway_factor"] == pytest.approx(0.0521**2 / 0.045**2, rel=0.1)
 
 
-@pytest.mark.parametrize(("trials", "coefficient"), [([1], 80.0), ([3, 5, 6], 80.0), ([3, 5, 6], 400.0)])
+@pytest.mark.parametrize(
+    ("trials", "coefficient"), [([1], 80.0), ([3, 5, 6], 80.0), ([3, 5, 6], 400.0)]
+)
 def test_case_4_quadratic_sway_damping_in_place_of_linear_is_named(
     tmp_path: Path, trials: list[int], coefficient: float
 ) -> None:

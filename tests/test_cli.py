@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 
 from boatsim import __version__
 from boatsim.cli import app
-from boatsim.cli.batch import plan
+from boatsim.cli.run_many import plan
 from boatsim.physics import content
 from boatsim.recordings import table as recording
 
@@ -96,7 +96,12 @@ def test_a_run_leaves_its_files_and_nothing_else(sway: tuple[Path, Any]) -> None
 def test_norms_json_has_what_the_table_prints(sway: tuple[Path, Any]) -> None:
     out, result = sway
     found = norms_of(out)
-    head = {"scenario": "joystick_boat/sway_1", "controller": "l1_joystick", "seed": 0, "complete": True}
+    head = {
+        "scenario": "joystick_boat/sway_1",
+        "controller": "l1_joystick",
+        "seed": 0,
+        "complete": True,
+    }
     head |= {"steps": len(recording.read(out / "recording.csv")) - 1, "saturated_steps": {}}
     assert {k: v for k, v in found.items() if k != "norms"} == head
     for name, norm in found["norms"].items():
@@ -110,17 +115,27 @@ def test_norms_json_agrees_with_recording_csv(sway: tuple[Path, Any]) -> None:
     out, _ = sway
     found, log = norms_of(out)["norms"], recording.read(out / "recording.csv")
     t = found["time_to_end"]["value"]
-    starboard = np.interp([t - 1.0 / 3.0, t], log.t, log["y_m"])  # at the frame before, and at the frame it was seen
+    starboard = np.interp(
+        [t - 1.0 / 3.0, t], log.t, log["y_m"]
+    )  # at the frame before, and at the frame it was seen
     assert starboard[0] < 0.9 <= starboard[1]
-    assert found["surge_offset"]["value"] == pytest.approx(np.interp(t, log.t, log["x_m"]), abs=1e-9)
+    assert found["surge_offset"]["value"] == pytest.approx(
+        np.interp(t, log.t, log["x_m"]), abs=1e-9
+    )
 
 
 def test_scenarios_of_one_name_do_not_share_a_folder() -> None:
     """Neither in one command nor in two."""
     both = ["kynoc/half_speed", "eastward_ho/half_speed"]
     alone = [plan([name], None, None)[0].folder for name in both]
-    assert alone == [task.folder for task in plan(both, None, None)] == [Path("out") / name for name in both]
-    assert [t.folder for t in plan(both, Path("dir"), None)] == [Path("dir") / name for name in both]
+    assert (
+        alone
+        == [task.folder for task in plan(both, None, None)]
+        == [Path("out") / name for name in both]
+    )
+    assert [t.folder for t in plan(both, Path("dir"), None)] == [
+        Path("dir") / name for name in both
+    ]
     assert plan(both[:1], Path("dir"), None)[0].folder == Path("dir")
 
 
@@ -173,10 +188,15 @@ def test_another_seed_is_another_course_of_the_waves(tmp_path: Path) -> None:
 
 
 def test_several_scenarios_get_a_folder_each_and_one_exit_code(tmp_path: Path) -> None:
-    good, missed = write(tmp_path / "good.toml"), write(tmp_path / "missed.toml", PLAIN + IMPOSSIBLE)
+    good, missed = (
+        write(tmp_path / "good.toml"),
+        write(tmp_path / "missed.toml", PLAIN + IMPOSSIBLE),
+    )
     assert boatsim("run", good, missed, "--out", tmp_path / "out").exit_code == 1
     assert {f.name for f in (tmp_path / "out").iterdir()} == {"good", "missed"}
-    assert all({f.name for f in folder.iterdir()} == FILES for folder in (tmp_path / "out").iterdir())
+    assert all(
+        {f.name for f in folder.iterdir()} == FILES for folder in (tmp_path / "out").iterdir()
+    )
     assert norms_of(tmp_path / "out" / "missed")["norms"]["v_mps_inf"]["ok"] is False
 
 
@@ -205,7 +225,11 @@ MISTAKES = {  # change of the plain scenario, what its one line must name
     "type": ("duration = 2.0", 'duration = "long"', ("duration", "long")),
     "syntax": ("duration = 2.0", "duration = ", ("s.toml", "line")),
     # known only when the run is over
-    "check": ("[[goal]]", '[[check]]\nsignal = "v_mp"\nnorm = "inf"\nbelow = 1.0\n[[goal]]', ("v_mp", "'v_mps'")),
+    "check": (
+        "[[goal]]",
+        '[[check]]\nsignal = "v_mp"\nnorm = "inf"\nbelow = 1.0\n[[goal]]',
+        ("v_mp", "'v_mps'"),
+    ),
 }
 
 
@@ -215,12 +239,16 @@ def test_a_mistake_is_one_line_exit_code_2_and_leaves_nothing(mistake: str, tmp_
     file = write(tmp_path / "s.toml", change=(old, new))
     result = boatsim("run", file, "--out", tmp_path / "out")
     assert result.exit_code == 2 and not result.stdout
-    assert result.stderr.count("\n") == 1 and all(part in result.stderr for part in named), result.stderr
+    assert result.stderr.count("\n") == 1 and all(part in result.stderr for part in named), (
+        result.stderr
+    )
     assert list(tmp_path.iterdir()) == [file]
 
 
 def test_nothing_runs_if_one_of_several_scenarios_is_wrong(tmp_path: Path) -> None:
-    result = boatsim("run", write(tmp_path / "s.toml"), "joystick_boat/sway_11", "--out", tmp_path / "out")
+    result = boatsim(
+        "run", write(tmp_path / "s.toml"), "joystick_boat/sway_11", "--out", tmp_path / "out"
+    )
     assert result.exit_code == 2 and "did you mean 'joystick_boat/sway_1'" in result.stderr
     assert not (tmp_path / "out").exists()
 
@@ -228,7 +256,9 @@ def test_nothing_runs_if_one_of_several_scenarios_is_wrong(tmp_path: Path) -> No
 def test_two_scenarios_never_share_a_folder(tmp_path: Path) -> None:
     file = write(tmp_path / "s.toml")
     result = boatsim("run", file, file, "--out", tmp_path / "out")
-    assert result.exit_code == 2 and "named twice" in result.stderr and not (tmp_path / "out").exists()
+    assert (
+        result.exit_code == 2 and "named twice" in result.stderr and not (tmp_path / "out").exists()
+    )
 
 
 def test_a_file_where_the_folder_should_be_is_left_alone(tmp_path: Path) -> None:
@@ -272,15 +302,37 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
     for name in ("diagnose", "replay", "compare"):
         monkeypatch.setattr(f"boatsim.cli.diagnosis.{name}", fake)
     boat = ["--vessel", "trial_boat", "--load", "heavy,wide", "--out", "o"]
-    kept = ["--hold-out", "c.csv", "--library", "wind", "--library", "own.py", "--without", "current", "--horizon", 3]
+    kept = [
+        "--hold-out",
+        "c.csv",
+        "--library",
+        "wind",
+        "--library",
+        "own.py",
+        "--without",
+        "current",
+        "--horizon",
+        3,
+    ]
     assert boatsim("diagnose", "a.csv", "b.csv", *boat, *kept).exit_code == 0
     assert (
-        boatsim("replay", "a.csv", *boat).exit_code == boatsim("replay", "a.csv", *boat, "--horizon", 4).exit_code == 0
+        boatsim("replay", "a.csv", *boat).exit_code
+        == boatsim("replay", "a.csv", *boat, "--horizon", 4).exit_code
+        == 0
     )
     assert boatsim("compare", "a.csv", "--scenario", "s.toml", "--out", "o").exit_code == 0
     a, load, out = Path("a.csv"), ["heavy", "wide"], Path("o")
     assert asked == [
-        ([a, Path("b.csv")], [Path("c.csv")], "trial_boat", load, out, ["wind", "own.py"], ["current"], 3.0),
+        (
+            [a, Path("b.csv")],
+            [Path("c.csv")],
+            "trial_boat",
+            load,
+            out,
+            ["wind", "own.py"],
+            ["current"],
+            3.0,
+        ),
         (a, "trial_boat", load, 6.0, out),
         (a, "trial_boat", load, 4.0, out),
         (a, None, [], "s.toml", out),
@@ -294,7 +346,9 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_a_shipped_scenario_is_a_script(tmp_path: Path) -> None:
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"  # where the installed `boatsim` lies
     script = content.root() / "scenarios" / "joystick_boat" / "berth.toml"
-    done = subprocess.run([script], cwd=tmp_path, env=os.environ | {"PATH": path}, capture_output=True, text=True)
+    done = subprocess.run(
+        [script], cwd=tmp_path, env=os.environ | {"PATH": path}, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
     assert {f.name for f in (tmp_path / "out" / "joystick_boat" / "berth").iterdir()} == FILES
 
@@ -302,15 +356,31 @@ def test_a_shipped_scenario_is_a_script(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", content.names("scenario"))
 def test_every_shipped_scenario_can_be_executed(name: str) -> None:
     file = content.find("scenario", name)
-    assert os.access(file, os.X_OK) and file.read_text().startswith("#!/usr/bin/env -S boatsim run\n")
+    assert os.access(file, os.X_OK) and file.read_text().startswith(
+        "#!/usr/bin/env -S boatsim run\n"
+    )
 
 
 @pytest.mark.slow
 def test_ctrl_c_stops_all_processes_and_keeps_what_each_had(tmp_path: Path) -> None:
-    short, *long = write(tmp_path / "short.toml"), *(write(tmp_path / f"{n}.toml", change=("2.0", "8e4")) for n in "ab")
+    short, *long = (
+        write(tmp_path / "short.toml"),
+        *(write(tmp_path / f"{n}.toml", change=("2.0", "8e4")) for n in "ab"),
+    )
     assert boatsim("run", short, "--out", tmp_path / "alone").exit_code == 0
     out = tmp_path / "out"
-    command: list[str | Path] = [sys.executable, "-m", "boatsim", "run", short, *long, "--jobs", "2", "--out", out]
+    command: list[str | Path] = [
+        sys.executable,
+        "-m",
+        "boatsim",
+        "run",
+        short,
+        *long,
+        "--jobs",
+        "2",
+        "--out",
+        out,
+    ]
     # a shell that runs us in the background ignores SIGINT, which a child would inherit
     heeding = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
     with subprocess.Popen(
@@ -326,16 +396,22 @@ def test_ctrl_c_stops_all_processes_and_keeps_what_each_had(tmp_path: Path) -> N
             os.killpg(running.pid, signal.SIGKILL)
             raise
         assert running.stderr
-        assert [line for line in running.stderr if not line.startswith("progress: ")] == [INTERRUPTED]
+        assert [line for line in running.stderr if not line.startswith("progress: ")] == [
+            INTERRUPTED
+        ]
     assert sorted(f.name for f in out.iterdir()) == ["a", "b", "short"]
     for folder in out.iterdir():
         assert {f.name for f in folder.iterdir()} == FILES
         assert norms_of(folder)["complete"] is (folder.name == "short")
-    same = [(folder / "recording.csv").read_bytes() for folder in (tmp_path / "alone", out / "short")]
+    same = [
+        (folder / "recording.csv").read_bytes() for folder in (tmp_path / "alone", out / "short")
+    ]
     assert same[0] == same[1]
 
 
-def test_a_folder_of_vessel_and_scenarios_runs_the_scenarios_and_one_without_any_is_a_line(tmp_path: Path) -> None:
+def test_a_folder_of_vessel_and_scenarios_runs_the_scenarios_and_one_without_any_is_a_line(
+    tmp_path: Path,
+) -> None:
     shutil.copytree(content.find("vessel", "trial_boat").parent, tmp_path / "mine")
     bare = boatsim("run", str(tmp_path / "mine"))
     assert bare.exit_code == 2 and "there is no scenario (*.toml) in this folder" in bare.stderr
@@ -390,7 +466,9 @@ def test_a_mistake_in_an_effect_of_ones_own_is_a_line_that_says_where(
     shutil.copytree(content.find("vessel", "trial_boat").parent, tmp_path / "mine")
     text = (tmp_path / "mine" / "vessel.toml").read_text()
     own = '[[effect]]\nuse = "misty_drag.py"\nc = 1.0\n\n'
-    (tmp_path / "mine" / "vessel.toml").write_text(text.replace("[[effect]]", own + "[[effect]]", 1))
+    (tmp_path / "mine" / "vessel.toml").write_text(
+        text.replace("[[effect]]", own + "[[effect]]", 1)
+    )
     assert right in LAW
     (tmp_path / "mine" / "misty_drag.py").write_text(LAW.replace(right, wrong, 1))
     (tmp_path / "mine" / "drift.toml").write_text(

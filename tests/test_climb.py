@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from jet_craft import Craft, sailed
 
-from boatsim.diagnose.climb import climbed
-from boatsim.diagnose.filter import nominal_levels, track
-from boatsim.diagnose.fit import learnt
-from boatsim.diagnose.tried import library_for
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.coordinate_search import climbed
+from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.fit import learnt
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -34,7 +34,9 @@ def test_at_the_top_each_coordinate_is_looked_at_once() -> None:
         return hill(x)
 
     climbed(score, TOP, 0.5, 0.01)
-    assert len(asked) == 1 + 3 * len(TOP)  # where it begins; then a step on either side and the parabola's top
+    assert len(asked) == 1 + 3 * len(
+        TOP
+    )  # where it begins; then a step on either side and the parabola's top
 
 
 def test_what_never_rises_is_left_where_it_is() -> None:
@@ -44,7 +46,11 @@ def test_what_never_rises_is_left_where_it_is() -> None:
 
 def test_derivatives_learnt_from_a_step_agree_with_it_and_stay_across_it() -> None:
     rng = np.random.default_rng(0)
-    J, true, step = rng.standard_normal((7, 3)), rng.standard_normal((7, 3)), np.array([0.2, -0.1, 0.4])
+    J, true, step = (
+        rng.standard_normal((7, 3)),
+        rng.standard_normal((7, 3)),
+        np.array([0.2, -0.1, 0.4]),
+    )
     found = learnt(J, true @ step, step)
     assert found @ step == pytest.approx(true @ step)
     across = np.array([1.0, 2.0, 0.0])  # at right angles to the step
@@ -52,7 +58,9 @@ def test_derivatives_learnt_from_a_step_agree_with_it_and_stay_across_it() -> No
     assert (learnt(J, np.zeros(7), np.zeros(3)) == J).all()
 
 
-def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shorter_steps_do() -> None:
+def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shorter_steps_do() -> (
+    None
+):
     boat = vessel.load("jet_ski")
     run = sailed(Craft(cube=0.2), np.repeat([2.0, 6.0, 3.0], 50), np.zeros(150), 5.0)
     program = Program(boat, library_for(boat).entries)
@@ -61,7 +69,9 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
         laid = track(run, program)
         laid.step *= share
         values = laid.values.copy()
-        values[program.index("cubic_damping", "surge")] = 90.0  # 15 /s at 5 m/s; at rest the craft has less than 1 /s
+        values[program.index("cubic_damping", "surge")] = (
+            90.0  # 15 /s at 5 m/s; at rest the craft has less than 1 /s
+        )
         levels = nominal_levels(boat, [run])
         said.append(laid.likelihood(values, program.switches(("cubic_damping",)), levels))
     assert np.isfinite(said).all() and said[0] == pytest.approx(said[1], abs=3.0)
@@ -76,12 +86,15 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     laid = track(run, program)
     means, covariances = laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))
     assert laid.rates[0] == pytest.approx(24.0, abs=1.5)  # of noisy fixes a second apart
-    speed, sd = means[0, program.module.NQ], covariances[0, program.module.NQ, program.module.NQ] ** 0.5
+    speed, sd = (
+        means[0, program.module.NQ],
+        covariances[0, program.module.NQ, program.module.NQ] ** 0.5,
+    )
     assert speed == pytest.approx(24.0, abs=4.0 * sd) and sd < 0.5
     laid.rates[:] = 0.0
-    assert laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))[0][0, 4] == pytest.approx(
-        speed, abs=0.1 * sd
-    )  # however wrong the guess
+    assert laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))[0][
+        0, 4
+    ] == pytest.approx(speed, abs=0.1 * sd)  # however wrong the guess
 
 
 def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> None:

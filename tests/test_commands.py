@@ -10,7 +10,7 @@ from boats import PLANAR, planar, written
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.diagnose.filter import track
+from boatsim.diagnosis.filter import track
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.commands import taken_row, taken_rows
@@ -20,9 +20,9 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings import table
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine
 from boatsim.simulate.run import Run, run
-from boatsim.simulate.twin import Twin
 
 pytestmark = pytest.mark.usefixtures("trusted")
 
@@ -82,9 +82,13 @@ def test_nothing_leaves_its_range(boat: Vessel) -> None:
 
 
 def test_rows_of_a_recording_are_limited_and_what_it_lacks_is_neutral(tmp_path: Path) -> None:
-    text = PLANAR.replace("steer_starboard_rad = { low", "steer_starboard_rad = { neutral = 0.5, low")
+    text = PLANAR.replace(
+        "steer_starboard_rad = { low", "steer_starboard_rad = { neutral = 0.5, low"
+    )
     own = vessel.load(str(written(tmp_path, "test_boat", text)))
-    rows = taken_rows(own, {"thrust_port_N": np.array([1.0, 500.0]), "sent_thrust_port_N": np.full(2, 7.0)}, 2)
+    rows = taken_rows(
+        own, {"thrust_port_N": np.array([1.0, 500.0]), "sent_thrust_port_N": np.full(2, 7.0)}, 2
+    )
     assert rows.tolist() == [[1.0, 0.0, 0.0, 0.5], [100.0, 0.0, 0.0, 0.5]]
 
 
@@ -94,7 +98,10 @@ def test_a_command_that_is_not_finite_is_refused(boat: Vessel, value: float) -> 
         lambda: taken_row(boat, {"steer_port_rad": value}),
         lambda: Engine(boat).command({"steer_port_rad": value}),
     ):
-        with pytest.raises(BadInput, match=r"^test_boat: command steer_port_rad = -?(nan|inf); allowed -3.2 to 3.2$"):
+        with pytest.raises(
+            BadInput,
+            match=r"^test_boat: command steer_port_rad = -?(nan|inf); allowed -3.2 to 3.2$",
+        ):
             way()
 
 
@@ -192,7 +199,9 @@ def test_a_start_beyond_the_range_is_limited_too(tmp_path: Path, boat: Vessel) -
     assert ran(file).recording["actual_thrust_port_N"][0] == 100.0
 
 
-def test_a_recording_with_sent_commands_is_read_without_remarks(tmp_path: Path, boat: Vessel) -> None:
+def test_a_recording_with_sent_commands_is_read_without_remarks(
+    tmp_path: Path, boat: Vessel
+) -> None:
     """`sent_` is one of our own columns: beyond the range it is no mistake of the recording."""
     boatsim("run", stubborn(tmp_path, boat, value=500.0), "--out", tmp_path / "out")
     seen = table.read(tmp_path / "out" / "recording.csv", boat.limits())
@@ -259,7 +268,9 @@ class Breath(Force):
 """
 
 
-def test_a_run_logs_any_force_of_the_air_apart_by_what_it_says_of_itself(tmp_path: Path, boat: Vessel) -> None:
+def test_a_run_logs_any_force_of_the_air_apart_by_what_it_says_of_itself(
+    tmp_path: Path, boat: Vessel
+) -> None:
     file = stubborn(tmp_path, boat)
     assert "wind_Y_N" not in ran(file).recording.signals
     (tmp_path / "breath.py").write_text(BREATH)

@@ -48,7 +48,9 @@ def run(tmp_path: Path) -> Path:
     return tmp_path / "run" / "recording.csv"
 
 
-def test_a_run_knows_its_scenario_and_is_compared_with_all_that_acted_in_it(run: Path, tmp_path: Path) -> None:
+def test_a_run_knows_its_scenario_and_is_compared_with_all_that_acted_in_it(
+    run: Path, tmp_path: Path
+) -> None:
     assert notes_for(run).notes.facts["scenario"] == str(tmp_path / "own.toml")
     own, said = heading_error(run, "--out", tmp_path / "c")
     bare, _ = heading_error(run, "--vessel", "joystick_boat", "--out", tmp_path / "c")
@@ -64,6 +66,8 @@ def test_a_scenario_that_is_gone_or_of_another_boat_is_said_and_the_vessel_acts_
     found, said = heading_error(run, "--out", tmp_path / "c")
     assert found == bare and "compared with the vessel alone" in said and "no such file" in said
     notes = run.parent / "recording.toml"
-    notes.write_text(notes.read_text().replace(str(tmp_path / "own.toml"), "kvlcc2_mmg/turning_circle"))
+    notes.write_text(
+        notes.read_text().replace(str(tmp_path / "own.toml"), "kvlcc2_mmg/turning_circle")
+    )
     found, said = heading_error(run, "--out", tmp_path / "c")
     assert found == bare and "compared with the vessel alone" in said

@@ -21,7 +21,7 @@ from benchmarks.real.concealed.judging import (
     right_size,
     shares,
 )
-from boatsim.diagnose.report.entries import EffectEntry
+from boatsim.diagnosis.report.schema import EffectEntry
 from boatsim.physics.effects import thrust_deadband, weak_reverse
 from boatsim.recordings.table import Recording
 
@@ -37,10 +37,16 @@ def run() -> Recording:
     north, east = 1.2 * np.cos(0.1 * t), 0.5 + 0.3 * np.sin(0.15 * t)
     x, y = 12.0 * np.sin(0.1 * t), 0.5 * t - 2.0 * np.cos(0.15 * t)
     signals = {
-        "x_m": x, "y_m": y, "psi_rad": psi, "r_radps": 0.16 * np.cos(0.2 * t),
-        "u_mps": np.cos(psi) * north + np.sin(psi) * east, "v_mps": np.cos(psi) * east - np.sin(psi) * north,
-        "phi_rad": 0.1 * np.sin(t), PORT: 20.0 * np.sin(0.3 * t), STARBOARD: 15.0 * np.cos(0.5 * t),
-    }  # fmt: skip
+        "x_m": x,
+        "y_m": y,
+        "psi_rad": psi,
+        "r_radps": 0.16 * np.cos(0.2 * t),
+        "u_mps": np.cos(psi) * north + np.sin(psi) * east,
+        "v_mps": np.cos(psi) * east - np.sin(psi) * north,
+        "phi_rad": 0.1 * np.sin(t),
+        PORT: 20.0 * np.sin(0.3 * t),
+        STARBOARD: 15.0 * np.cos(0.5 * t),
+    }
     return Recording("made", t, signals)
 
 
@@ -63,12 +69,18 @@ def test_a_weaker_starboard_motor_is_an_imbalance_beside_less_of_both() -> None:
     assert uneven(0.8, "port").values["fraction"] == -f
 
 
-def test_weak_reverse_and_dead_band_give_what_was_given_by_the_librarys_own_laws(run: Recording) -> None:
+def test_weak_reverse_and_dead_band_give_what_was_given_by_the_librarys_own_laws(
+    run: Recording,
+) -> None:
     weak, dead = SimpleNamespace(astern_factor=0.7), SimpleNamespace(width=3.0)
     reverse = a.weaker_astern((PORT,), 0.7)(run)[PORT]
     band = a.dead_band((PORT,), 3.0)(run)[PORT]
-    assert [weak_reverse.weakened.py_func(x, weak) for x in reverse] == pytest.approx(run[PORT].tolist())
-    assert [thrust_deadband.beyond.py_func(x, dead) for x in band] == pytest.approx(run[PORT].tolist())
+    assert [weak_reverse.weakened.py_func(x, weak) for x in reverse] == pytest.approx(
+        run[PORT].tolist()
+    )
+    assert [thrust_deadband.beyond.py_func(x, dead) for x in band] == pytest.approx(
+        run[PORT].tolist()
+    )
 
 
 def test_a_command_of_nothing_stays_nothing_in_a_dead_band() -> None:
@@ -83,7 +95,9 @@ def test_a_rudder_that_is_off_or_steers_harder_gives_what_was_given(run: Recordi
 
 
 @pytest.mark.parametrize("seconds", [0.4, -0.4])
-def test_commands_written_so_much_earlier_arrive_when_they_were_given(run: Recording, seconds: float) -> None:
+def test_commands_written_so_much_earlier_arrive_when_they_were_given(
+    run: Recording, seconds: float
+) -> None:
     altered = a.late((PORT, STARBOARD), seconds)(run)
     given = np.interp(altered.t + seconds, run.t, run[PORT])
     assert altered[PORT] == pytest.approx(given)
@@ -96,7 +110,9 @@ def test_late_commands_are_a_late_clock_and_early_ones_nothing_else() -> None:
     assert {c.name for c in late_by(-0.4).either} == {"clock_offset"}
 
 
-def test_galilei_keeps_speeds_through_the_water_and_moves_positions_as_speeds_over_ground(run: Recording) -> None:
+def test_galilei_keeps_speeds_through_the_water_and_moves_positions_as_speeds_over_ground(
+    run: Recording,
+) -> None:
     altered = a.current(NORTH, EAST)(run)
     water = np.array([[NORTH], [EAST]])
     assert over_ground(altered) - water == pytest.approx(over_ground(run))
@@ -109,12 +125,18 @@ def test_a_compass_that_is_off_leaves_positions_and_speeds_over_ground(run: Reco
     altered = a.heading_off(0.1, 0.2, -0.15)(run)
     off = altered["psi_rad"] - run["psi_rad"]
     assert off == pytest.approx(0.1 + 0.2 * np.cos(run["psi_rad"]) - 0.15 * np.sin(run["psi_rad"]))
-    assert over_ground(altered) == pytest.approx(over_ground(run))  # it resolves them along what it shows
-    assert altered["r_radps"][1:-1] == pytest.approx(np.gradient(altered["psi_rad"], run.t)[1:-1], abs=1e-3)
+    assert over_ground(altered) == pytest.approx(
+        over_ground(run)
+    )  # it resolves them along what it shows
+    assert altered["r_radps"][1:-1] == pytest.approx(
+        np.gradient(altered["psi_rad"], run.t)[1:-1], abs=1e-3
+    )
     assert (altered["x_m"] == run["x_m"]).all()
 
 
-def test_another_point_of_the_hull_keeps_its_distance_and_moves_as_its_positions(run: Recording) -> None:
+def test_another_point_of_the_hull_keeps_its_distance_and_moves_as_its_positions(
+    run: Recording,
+) -> None:
     altered = a.of_another_point(0.4, -0.3)(run)
     arm = np.stack([altered[n] - run[n] for n in ("x_m", "y_m")])
     assert np.hypot(*arm) == pytest.approx(0.5)
@@ -130,10 +152,14 @@ def test_late_fixes_are_positions_of_before(run: Recording) -> None:
 
 def test_positions_stretched_and_shrunk_again_are_the_same(run: Recording) -> None:
     altered = a.stretched(1 / 1.25 - 1.0, 1.0)(a.stretched(0.25, -0.5)(run))
-    assert altered["x_m"] == pytest.approx(run["x_m"]) and altered["y_m"] == pytest.approx(run["y_m"])
+    assert altered["x_m"] == pytest.approx(run["x_m"]) and altered["y_m"] == pytest.approx(
+        run["y_m"]
+    )
 
 
-def test_a_roll_shown_more_is_the_restoring_stiffness_times_it_in_a_linear_law(run: Recording) -> None:
+def test_a_roll_shown_more_is_the_restoring_stiffness_times_it_in_a_linear_law(
+    run: Recording,
+) -> None:
     stiffness, offset = 822.3, 0.012
     shown = a.rolled(offset)(run)["phi_rad"]
     assert -stiffness * shown + stiffness * offset == pytest.approx(-stiffness * run["phi_rad"])
@@ -159,7 +185,13 @@ def test_another_frame_is_the_same_motion(run: Recording) -> None:
 
 def test_nothing_is_changed_in_place(run: Recording) -> None:
     before = {n: x.copy() for n, x in run.signals.items()}
-    for alter in (a.current(1.0, 1.0), a.dead_band((PORT,), 1.0), a.heading_off(0.1), a.rolled(0.1), a.late_fixes(0.5)):
+    for alter in (
+        a.current(1.0, 1.0),
+        a.dead_band((PORT,), 1.0),
+        a.heading_off(0.1),
+        a.rolled(0.1),
+        a.late_fixes(0.5),
+    ):
         alter(run)
     assert all((run[n] == x).all() for n, x in before.items())
 
@@ -193,6 +225,10 @@ def test_shares_count_visible_causes_apart_from_those_that_can_not_be_told() -> 
 def test_what_is_concealed_in_a_release_is_named_with_its_size(tmp_path: Path) -> None:
     study = next(s for s in STUDIES if s.name == "roll_at_rest")
     patched = Patched(study, tmp_path)
-    some = [c for c in patched.cases() if c.name.startswith(("roll shown 0.012 rad more", "clock", "cubic_damping"))]
+    some = [
+        c
+        for c in patched.cases()
+        if c.name.startswith(("roll shown 0.012 rad more", "clock", "cubic_damping"))
+    ]
     verdicts = [patched.verdict(c) for c in some]
     assert [v.outcome for v in verdicts] == [RIGHT, RIGHT, ALONE, RIGHT], [v.said for v in verdicts]

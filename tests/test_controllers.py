@@ -18,7 +18,12 @@ L1Joystick = load_class("controller", "l1_joystick")
 PidAutopilot = load_class("controller", "pid_autopilot")
 OpenLoop = load_class("controller", "open_loop")
 RIVALS = pytest.mark.parametrize("controller", [L1Joystick, PidAutopilot], ids=lambda c: c.__name__)
-BOATS = {"S1": (0.19, 0.60), "S2": (0.28, 0.60), "S3": (0.19, 0.64), "S4": (0.28, 0.64)}  # spacing, arm [m]
+BOATS = {
+    "S1": (0.19, 0.60),
+    "S2": (0.28, 0.60),
+    "S3": (0.19, 0.64),
+    "S4": (0.28, 0.64),
+}  # spacing, arm [m]
 
 
 @dataclass
@@ -80,7 +85,9 @@ def readings(seed: int = 1, number: int = 120) -> list[Sense]:
     ]
 
 
-def played(controller: Any, senses: list[Sense], goal: Mapping[str, float] | None = None) -> list[dict[str, float]]:
+def played(
+    controller: Any, senses: list[Sense], goal: Mapping[str, float] | None = None
+) -> list[dict[str, float]]:
     controller.reset()
     return [controller.step(sense, goal or {}) for sense in senses]
 
@@ -112,14 +119,18 @@ def test_estimates_as_published_are_relays_between_their_bounds() -> None:
         controller.step(sense, {})
         bounded = [e for e in controller.estimates().values() if e.low == e.low]
         assert all(e.low <= e.value <= e.high for e in bounded)
-        on_bound += sum(e.value in (e.low, e.high) for e in bounded[1:])  # theta_1 moves by error times surge, slowly
+        on_bound += sum(
+            e.value in (e.low, e.high) for e in bounded[1:]
+        )  # theta_1 moves by error times surge, slowly
         total += len(bounded) - 1
     assert on_bound > 0.8 * total
 
 
 def test_first_estimates_as_published_lie_outside_their_bounds() -> None:
     found = AsPublished().estimates()
-    outside = {name for name, e in found.items() if not (e.low <= e.value <= e.high) and e.low == e.low}
+    outside = {
+        name for name, e in found.items() if not (e.low <= e.value <= e.high) and e.low == e.low
+    }
     assert outside == {"theta_1", "omega_1", "sigma_1", "sigma_2", "sigma_3"}
     mended = AsPublished(start_values=False).estimates()
     assert all(e.low <= e.value <= e.high for e in mended.values() if e.low == e.low)
@@ -163,7 +174,9 @@ def test_steering_as_published_is_whole_degrees_between_the_stops() -> None:
     for commands in played(AsPublished(), readings()):
         port, starboard = inward(commands), -degrees(commands["steer_starboard_rad"])
         assert port == pytest.approx(round(port)) and 0.0 <= port <= 42.0
-        assert 0.0 <= starboard - port <= 1.0 + 1e-9  # truncation opens the port and closes the starboard servo
+        assert (
+            0.0 <= starboard - port <= 1.0 + 1e-9
+        )  # truncation opens the port and closes the starboard servo
 
 
 def test_a_loop_that_takes_too_long_runs_at_its_own_period() -> None:
@@ -195,7 +208,9 @@ def test_each_switch_changes_what_the_program_does(switch: str) -> None:
         values = []
         for sense in readings():
             controller.step(sense, {})
-            values += [e.value for e in controller.estimates().values()] + [steering_output(controller)]
+            values += [e.value for e in controller.estimates().values()] + [
+                steering_output(controller)
+            ]
         return values
 
     assert trace(**{switch: CHANGED[switch]}) != trace()
@@ -261,7 +276,9 @@ def test_yaw_command_turns_at_its_rate_and_stops_at_its_angle(controller: Any, t
 
 @RIVALS
 @pytest.mark.parametrize("sway", [0.0, 0.02, 0.07, -0.07])
-def test_sway_and_yaw_at_once_still_turn_at_the_rate_asked_for(controller: Any, sway: float) -> None:
+def test_sway_and_yaw_at_once_still_turn_at_the_rate_asked_for(
+    controller: Any, sway: float
+) -> None:
     boat = Turntable(0.28, 0.64, thrust=0.6)
     boat.run(controller(), {"sway_mps": sway, "yaw_radps": 0.1}, 40.0)
     assert boat.r == pytest.approx(0.1, rel=0.05)
@@ -272,12 +289,19 @@ def test_mirrored_readings_and_stick_give_mirrored_commands(controller: Any) -> 
     goal = {"surge_mps": 0.05, "sway_mps": 0.04, "yaw_radps": -0.05}
     mirrored_goal = {"surge_mps": 0.05, "sway_mps": -0.04, "yaw_radps": 0.05}
     noise = random.Random(4)
-    senses = [replace(STILL, r=noise.gauss(0.0, 0.05), u=noise.gauss(0.05, 0.02)) for _ in range(100)]
+    senses = [
+        replace(STILL, r=noise.gauss(0.0, 0.05), u=noise.gauss(0.05, 0.02)) for _ in range(100)
+    ]
     mirrored = [replace(s, r=-s.r) for s in senses]
     for one, other in zip(
-        played(controller(), senses, goal), played(controller(), mirrored, mirrored_goal), strict=True
+        played(controller(), senses, goal),
+        played(controller(), mirrored, mirrored_goal),
+        strict=True,
     ):
-        assert (other["pwm_port"], other["pwm_starboard"]) == (one["pwm_starboard"], one["pwm_port"])
+        assert (other["pwm_port"], other["pwm_starboard"]) == (
+            one["pwm_starboard"],
+            one["pwm_port"],
+        )
         assert other["steer_port_rad"] == -one["steer_starboard_rad"]
 
 
@@ -286,7 +310,11 @@ def test_surge_command_with_a_speed_sensor_is_held(controller: Any) -> None:
     run, u, speeds = controller(), 0.0, []
     for _ in range(1000):
         commands = run.step(replace(STILL, u=u), {"surge_mps": 0.1})
-        thrust = sum(0.004 * pwm * (1.0 if pwm > 0 else 0.6) for name, pwm in commands.items() if "pwm" in name)
+        thrust = sum(
+            0.004 * pwm * (1.0 if pwm > 0 else 0.6)
+            for name, pwm in commands.items()
+            if "pwm" in name
+        )
         u += 0.08 * (thrust - 0.02 * u - 2.5 * u * abs(u)) / 4.8
         speeds.append(u)
     assert sum(speeds[-200:]) / 200 == pytest.approx(0.1, rel=0.02)
@@ -295,7 +323,12 @@ def test_surge_command_with_a_speed_sensor_is_held(controller: Any) -> None:
 @RIVALS
 def test_nothing_asked_for_at_rest_stops_the_motors(controller: Any) -> None:
     for commands in played(controller(), [STILL] * 5):
-        assert commands == {"pwm_port": 0, "pwm_starboard": 0, "steer_port_rad": 0, "steer_starboard_rad": 0}
+        assert commands == {
+            "pwm_port": 0,
+            "pwm_starboard": 0,
+            "steer_port_rad": 0,
+            "steer_starboard_rad": 0,
+        }
 
 
 @RIVALS
@@ -319,7 +352,10 @@ def test_predictor_is_told_the_saturated_command() -> None:
     for _ in range(40):
         commands = controller.step(replace(STILL, r=rate), {"yaw_radps": 0.5})
         assert controller.estimates()["sigma_yaw_Nm"].value == pytest.approx(0.0, abs=1e-12)
-        port, astern = commands["pwm_port"] / 150 * 0.5, commands["pwm_starboard"] / 150 * 0.5 * 0.67
+        port, astern = (
+            commands["pwm_port"] / 150 * 0.5,
+            commands["pwm_starboard"] / 150 * 0.5 * 0.67,
+        )
         rate = assumed.decay * rate + assumed.gain * 0.235 * (port - astern)
     assert abs(commands["pwm_starboard"]) > 150
 
@@ -328,7 +364,9 @@ def test_lasting_moment_is_answered_in_full() -> None:
     boat = Turntable(push=0.03, damping=2.8)  # the predictor's own pole: nothing else is unknown
     controller = L1Joystick()
     boat.run(controller, {"sway_mps": 0.07}, 40.0)
-    assert controller.remembered["N"] == pytest.approx(-0.03, abs=0.006)  # a servo step of 1 deg is 0.006 N m
+    assert controller.remembered["N"] == pytest.approx(
+        -0.03, abs=0.006
+    )  # a servo step of 1 deg is 0.006 N m
     assert controller.estimates()["sigma_yaw_Nm"].value == pytest.approx(0.03, abs=0.008)
 
 
@@ -336,7 +374,9 @@ def test_saturation_does_not_wind_the_pid_up() -> None:
     """Held fast under a full stick for 40 s, the rival answers a heading past its aim within three steps."""
     controller = PidAutopilot()
     commands = played(controller, [STILL] * 500, {"yaw_radps": 0.02})
-    assert commands[-1]["pwm_starboard"] < -200  # 0.45 N astern: as much as the allocation ever asks for
+    assert (
+        commands[-1]["pwm_starboard"] < -200
+    )  # 0.45 N astern: as much as the allocation ever asks for
     swing = replace(STILL, r=12.0)  # one period of this is 1 rad, well past the 0.8 rad asked for
     controller.step(swing, {})
     answers = [controller.step(STILL, {}) for _ in range(3)]
@@ -352,9 +392,15 @@ def test_loops_bear_two_more_periods_of_delay(controller: Any) -> None:
 
 @pytest.mark.parametrize(
     ("name", "channels"),
-    [("l1_joystick", {"yaw", "surge"}), ("l1_joystick_sway", {"yaw", "surge", "sway"}), ("l1_joystick_blind", {"yaw"})],
+    [
+        ("l1_joystick", {"yaw", "surge"}),
+        ("l1_joystick_sway", {"yaw", "surge", "sway"}),
+        ("l1_joystick_blind", {"yaw"}),
+    ],
 )
-def test_every_channel_meets_the_l1_condition_for_every_input_gain(name: str, channels: set[str]) -> None:
+def test_every_channel_meets_the_l1_condition_for_every_input_gain(
+    name: str, channels: set[str]
+) -> None:
     rows = table(load_class("controller", name)())
     assert {row.channel for row in rows} == channels
     assert all(row.norm * row.needed < 1.0 and row.stable and row.delay_s > 0.16 for row in rows)
@@ -388,7 +434,10 @@ def test_a_blind_boat_whose_motors_are_known_is_not_tried_again() -> None:
 
 def test_a_blind_boat_hears_no_stick_while_its_motors_are_tried() -> None:
     controller = load_class("controller", "l1_joystick_blind")()
-    assert all(c["pwm_port"] == c["pwm_starboard"] for c in played(controller, [STILL] * 40, {"sway_mps": 0.07}))
+    assert all(
+        c["pwm_port"] == c["pwm_starboard"]
+        for c in played(controller, [STILL] * 40, {"sway_mps": 0.07})
+    )
     assert controller.found is None
 
 
@@ -405,7 +454,9 @@ def test_open_loop_plays_its_goal() -> None:
     assert controller.initial_commands() == {}
 
 
-@pytest.mark.parametrize("name", ["l1_joystick", "l1_joystick_as_published", "pid_autopilot", "open_loop"])
+@pytest.mark.parametrize(
+    "name", ["l1_joystick", "l1_joystick_as_published", "pid_autopilot", "open_loop"]
+)
 def test_misspelt_setting_is_named_with_the_nearest_one(name: str) -> None:
     with pytest.raises(BadInput, match="'perod' does not exist; did you mean 'period'"):
         load_class("controller", name).from_settings({"perod": 0.1})
@@ -414,4 +465,6 @@ def test_misspelt_setting_is_named_with_the_nearest_one(name: str) -> None:
 def test_integer_division_is_named_when_misspelt() -> None:
     with pytest.raises(BadInput, match="did you mean 'integer_division'"):
         AsPublished.from_settings({"integer_divison": False})
-    assert AsPublished.from_settings({"integer_division": False, "h0": radians(5.0)}).h0 == radians(5.0)
+    assert AsPublished.from_settings({"integer_division": False, "h0": radians(5.0)}).h0 == radians(
+        5.0
+    )

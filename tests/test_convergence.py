@@ -8,7 +8,7 @@ from alike import few
 
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 STEPS = (0.04, 0.02, 0.01, 0.005)  # [s]
 FINE = 0.00125  # [s] taken for the truth
@@ -28,7 +28,11 @@ def paths(name: str) -> dict[float, Array]:
     boat = vessel.load(name)
     twin, rng, n = Twin(boat), np.random.default_rng(0), len(boat.freedoms)
     limits = [RANGE.get(c, limits) for c, limits in boat.limits().items()]
-    rows = np.column_stack([rng.uniform(*limit, ROWS) for limit in limits]) if limits else np.zeros((ROWS, 0))
+    rows = (
+        np.column_stack([rng.uniform(*limit, ROWS) for limit in limits])
+        if limits
+        else np.zeros((ROWS, 0))
+    )
     start = np.zeros(2 * n)
     if "surge" in boat.freedoms:
         start[n] = START.get(name, boat.manoeuvring.speed or 0.0)

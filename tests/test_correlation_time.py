@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from real_boat import Real, recorded
 
-from boatsim.diagnose import analysis, correlation_time, rules
-from boatsim.diagnose.filter import nominal_levels, track
+from boatsim.diagnosis import correlation_time, pipeline, priors
+from boatsim.diagnosis.filter import nominal_levels, track
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.physics import vessel
@@ -24,13 +24,15 @@ def test_no_vessel_states_one_and_the_usual_one_goes_by_froudes_law(name: str) -
     text = read_toml(find("vessel", name))
     assert "time_constant" not in text.get("diagnosis", {})
     boat = vessel.load(name)
-    assert rules.time_constant(boat) == pytest.approx(np.sqrt(boat.length / 1.2))
+    assert priors.time_constant(boat) == pytest.approx(np.sqrt(boat.length / 1.2))
 
 
 def test_a_vessel_file_that_states_one_is_told_so(tmp_path: Path) -> None:
     own = vessel.load("kvlcc2_roll").file
     (tmp_path / "hull.xml").write_text((own.parent / "hull.xml").read_text())
-    (tmp_path / "vessel.toml").write_text(own.read_text().replace("[diagnosis]", "[diagnosis]\ntime_constant = 2.0"))
+    (tmp_path / "vessel.toml").write_text(
+        own.read_text().replace("[diagnosis]", "[diagnosis]\ntime_constant = 2.0")
+    )
     with pytest.raises(BadInput, match="time_constant"):
         vessel.load(str(tmp_path))
 
@@ -48,7 +50,11 @@ def test_a_vessel_file_that_states_one_is_told_so(tmp_path: Path) -> None:
 def test_it_is_halved_or_doubled_as_long_as_that_predicts_clearly_better(
     errors: dict[float, float], taken: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(correlation_time, "halves_errors", lambda problem, found, seconds: np.full(9, errors[seconds]))
+    monkeypatch.setattr(
+        correlation_time,
+        "halves_errors",
+        lambda problem, found, seconds: np.full(9, errors[seconds]),
+    )
     problem: Any = SimpleNamespace(ambient=SimpleNamespace(time_constant=1.0))
     named: Any = SimpleNamespace(suspects=("wind",))
     assert correlation_time.correlation_time(problem, named) == taken
@@ -58,13 +64,18 @@ def test_it_is_halved_or_doubled_as_long_as_that_predicts_clearly_better(
 def test_what_swings_from_run_to_run_is_not_clearly_less() -> None:
     before = np.full(8, 0.01)
     assert correlation_time.clearly_less(0.9 * before, before)
-    assert not correlation_time.clearly_less(0.9 * before * np.exp(0.3 * (-1.0) ** np.arange(8)), before)
+    assert not correlation_time.clearly_less(
+        0.9 * before * np.exp(0.3 * (-1.0) ** np.arange(8)), before
+    )
 
 
 def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> None:
     boat = vessel.load("kvlcc2_roll")
     t = np.arange(0.0, 20.0, 0.2)
-    whole = track(Recording("decay", t, {"phi_rad": 0.2 * np.cos(2.5 * t) * np.exp(-0.05 * t)}), Program(boat, ()))
+    whole = track(
+        Recording("decay", t, {"phi_rad": 0.2 * np.cos(2.5 * t) * np.exp(-0.05 * t)}),
+        Program(boat, ()),
+    )
     ((first,), (second,)) = correlation_time.halves([whole])
     assert np.concatenate([first.times, second.times]) == pytest.approx(t)
     assert len(first.times) == len(second.times) and second.start[0] == whole.measured[50, 0]
@@ -74,11 +85,16 @@ def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> N
 
 @pytest.mark.slow
 def test_what_a_recordings_notes_state_is_a_fact(tmp_path: Path) -> None:
-    assert nominal_levels(vessel.load("trial_boat"), [Recording("r", np.zeros(1), {})]).time_constant == 1.0
+    assert (
+        nominal_levels(vessel.load("trial_boat"), [Recording("r", np.zeros(1), {})]).time_constant
+        == 1.0
+    )
     run = replace(recorded(Real(power=(1.15, 0.85)), 1), notes=Notes())
     write_csv(run, tmp_path / "run.csv")
-    (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\n[ambient]\ntime_constant_s = 3.0\n')
-    assert analysis.diagnose([tmp_path / "run.csv"]).problem.ambient.time_constant == 3.0
+    (tmp_path / "recording.toml").write_text(
+        'vessel = "trial_boat"\n[ambient]\ntime_constant_s = 3.0\n'
+    )
+    assert pipeline.diagnose([tmp_path / "run.csv"]).problem.ambient.time_constant == 3.0
 
 
 def test_free_runs_over_which_nothing_was_recorded_say_nothing() -> None:

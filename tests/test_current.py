@@ -10,7 +10,7 @@ from boatsim.physics.effects.current import Current
 from boatsim.physics.program import Program
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel, added
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 NORTH, EAST = 0.8, -0.6  # [m/s] of the current: 1 m/s
 HELD = 5.0  # [s] each row of commands
@@ -19,7 +19,8 @@ CASES = [
     (name, load)
     for name in content.names("vessel")
     for load in ([], *([one] for one in vessel.load(name).loads))
-    if "surge" in vessel.load(name).freedoms  # a hull that only rolls about a fixed axis is carried nowhere
+    if "surge"
+    in vessel.load(name).freedoms  # a hull that only rolls about a fixed axis is carried nowhere
 ]
 
 
@@ -33,7 +34,11 @@ def commands(boat: Vessel) -> Array:
     """(N, C): every command alone at the ends of its range, then ten rows in which all of them jump by lot."""
     low, high = np.array([(c.low, c.high) for c in boat.commands.values()]).T
     rest = np.array([c.neutral for c in boat.commands.values()])
-    ends = [np.where(np.arange(len(low)) == i, end, rest) for i in range(len(low)) for end in (low, high)]
+    ends = [
+        np.where(np.arange(len(low)) == i, end, rest)
+        for i in range(len(low))
+        for end in (low, high)
+    ]
     return np.array([*ends, *np.random.default_rng(0).uniform(low, high, (10, len(low)))])
 
 

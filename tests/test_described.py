@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from pushed_boat import BOAT, Late, Missing, sail
 
-from boatsim.diagnose.analysis import Diagnosis, diagnose_recordings
-from boatsim.diagnose.filter import track
-from boatsim.diagnose.report import patch
-from boatsim.diagnose.tried import composed, library_for
+from boatsim.diagnosis.candidates import composed, library_for
+from boatsim.diagnosis.filter import track
+from boatsim.diagnosis.pipeline import Diagnosis, diagnose_recordings
+from boatsim.diagnosis.report import patched_vessel
 from boatsim.errors import BadInput
 from boatsim.physics import content, terms, vessel
 from boatsim.physics.base import Array, Motion, Wrench, motion
-from boatsim.physics.described import EVER
+from boatsim.physics.described_laws import EVER
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
 from boatsim.physics.effects.thruster import Thruster
@@ -35,15 +35,24 @@ CLOSED: Mapping[str, tuple[dict[str, Any], Callable[[Motion], float]]] = {
     "command": ({"of": ["thrust_port_N"]}, lambda m: 0.8),
     "size of a command": ({"of": ["abs_thrust_starboard_N", "surge_speed"]}, lambda m: 0.4 * m.ur),
     "twice the heading": ({"of": ["sin_twice_heading"]}, lambda m: sin(2 * m.psi)),
-    "ripple": ({"of": ["ripple_east"], "wavelength": 2.5, "crest": 0.4}, lambda m: cos(2 * pi * (m.y - 0.4) / 2.5)),
-    "beyond": ({"of": ["beyond_yaw_rate", "surge_speed"], "beyond": 0.2}, lambda m: (m.r - 0.2) * m.ur),
+    "ripple": (
+        {"of": ["ripple_east"], "wavelength": 2.5, "crest": 0.4},
+        lambda m: cos(2 * pi * (m.y - 0.4) / 2.5),
+    ),
+    "beyond": (
+        {"of": ["beyond_yaw_rate", "surge_speed"], "beyond": 0.2},
+        lambda m: (m.r - 0.2) * m.ur,
+    ),
     "not yet beyond": ({"of": ["beyond_sway_speed"], "beyond": 0.9}, lambda m: 0.0),
     "roll angle": ({"of": ["roll_angle", "roll_angle"]}, lambda m: m.phi**2),
     "within": ({"acts": "within", "begin": 6.0, "end": 7.0}, lambda m: 0.0),
     "from then on": ({"acts": "within", "begin": 7.0}, lambda m: 1.0),
     "rising": ({"acts": "rising", "begin": 5.0, "end": 13.0}, lambda m: 0.25),
     "fading": ({"acts": "fading", "begin": 1.0, "end": 5.0}, lambda m: exp(-1.5)),
-    "swinging": ({"of": ["north"], "acts": "swinging", "begin": 1.0, "end": 9.0}, lambda m: m.x * sin(2 * pi * 0.75)),
+    "swinging": (
+        {"of": ["north"], "acts": "swinging", "begin": 1.0, "end": 9.0},
+        lambda m: m.x * sin(2 * pi * 0.75),
+    ),
 }
 
 
@@ -70,10 +79,18 @@ def test_a_force_towards_a_bearing_of_the_earth_turns_against_the_hull() -> None
 
 @pytest.mark.parametrize(
     ("table", "share"),
-    [({}, 0.2), ({"side": "port"}, 0.2), ({"side": "starboard"}, 0.0), ({"sense": "astern"}, 0.0),
-     ({"sense": "ahead"}, 0.2), ({"of": ["abs_sway_speed"]}, 0.08)],
-)  # fmt: skip
-def test_a_change_of_thrust_is_a_share_of_what_the_drive_gives(table: dict[str, Any], share: float) -> None:
+    [
+        ({}, 0.2),
+        ({"side": "port"}, 0.2),
+        ({"side": "starboard"}, 0.0),
+        ({"sense": "astern"}, 0.0),
+        ({"sense": "ahead"}, 0.2),
+        ({"of": ["abs_sway_speed"]}, 0.08),
+    ],
+)
+def test_a_change_of_thrust_is_a_share_of_what_the_drive_gives(
+    table: dict[str, Any], share: float
+) -> None:
     law = DescribedThrust.from_settings({"coefficient": 0.2, **table}).completed(BOAT)
     drive = Thruster(x=-0.6, y=-0.19, gain=1.1)
     on, found = Thruster.signals(thrust=0.8, angle=0.3), drive.wrench(AT, thrust=0.8, angle=0.3)
@@ -83,22 +100,22 @@ def test_a_change_of_thrust_is_a_share_of_what_the_drive_gives(table: dict[str, 
 
 @pytest.mark.parametrize(
     ("table", "line"),
-    [({"of": ["surge_sped"]}, "of 'surge_sped' does not exist; did you mean 'surge_speed'"),
-     ({"axis": "swey"}, "axis 'swey' does not exist; did you mean 'sway'"),
-     ({"acts": "sometimes"}, "acts 'sometimes' does not exist"),
-     ({"of": ["north"] * 4}, "allowed are at most 3 factors"),
-     ({"acts": "within", "begin": 3.0, "end": 2.0}, "allowed is an end after it"),
-     ({"first": 3.0}, "setting 'first' does not exist")],
-)  # fmt: skip
+    [
+        ({"of": ["surge_sped"]}, "of 'surge_sped' does not exist; did you mean 'surge_speed'"),
+        ({"axis": "swey"}, "axis 'swey' does not exist; did you mean 'sway'"),
+        ({"acts": "sometimes"}, "acts 'sometimes' does not exist"),
+        ({"of": ["north"] * 4}, "allowed are at most 3 factors"),
+        ({"acts": "within", "begin": 3.0, "end": 2.0}, "allowed is an end after it"),
+        ({"first": 3.0}, "setting 'first' does not exist"),
+    ],
+)
 def test_words_that_do_not_exist_are_named(table: dict[str, Any], line: str) -> None:
     with pytest.raises(BadInput, match=line):
         DescribedForce.from_settings(table).completed(BOAT)
 
 
 def test_a_described_law_in_a_vessel_file_acts_on_engine_and_twin_alike(tmp_path: Path) -> None:
-    law = (
-        '[[effect]]\nuse = "described_force"\naxis = "yaw"\nof = ["surge_speed", "abs_yaw_rate"]\ncoefficient = -0.4\n'
-    )
+    law = '[[effect]]\nuse = "described_force"\naxis = "yaw"\nof = ["surge_speed", "abs_yaw_rate"]\ncoefficient = -0.4\n'
     boat = vessel.load(str(boats.written(tmp_path, "odd", boats.PLANAR + law)))
     (own,) = (e for e in boat.effects if isinstance(e, DescribedForce))
     assert own.shape() == {"axis": "yaw", "of": ["surge_speed", "abs_yaw_rate"], "acts": "always"}
@@ -108,8 +125,12 @@ def test_a_described_law_in_a_vessel_file_acts_on_engine_and_twin_alike(tmp_path
 def test_the_library_has_no_entry_of_its_own_for_what_is_described() -> None:
     library = library_for(BOAT)
     assert not [n for n in library.tried if n.startswith("described")]
-    assert {e.name for e in library.compiled} - {e.name for e in library.entries} == {e.name for e in library.slots}
-    assert not any(content.load_class("effect", n).told_by for n in ("described_force", "described_thrust"))
+    assert {e.name for e in library.compiled} - {e.name for e in library.entries} == {
+        e.name for e in library.slots
+    }
+    assert not any(
+        content.load_class("effect", n).told_by for n in ("described_force", "described_thrust")
+    )
 
 
 # ---- unknown causes, on recordings of an integrator that shares no code with the tool
@@ -145,7 +166,9 @@ def halved(found: Diagnosis, signal: str) -> bool:
 
 def replays(found: Diagnosis, unseen: Recording, folder: Path) -> None:
     """Whether the patched vessel does on an unseen recording what the fitted one does."""
-    patch.write(found.problem, found.vessel, found.ranking.best, folder / "patched.toml", found.ranking.laws)
+    patched_vessel.write(
+        found.problem, found.vessel, found.ranking.best, folder / "patched.toml", found.ranking.laws
+    )
     program, on = composed(vessel.load(str(folder / "patched.toml")))
     fit, levels = found.ranking.best, found.ranking.best.levels
     laid = track(unseen, found.problem.program)
@@ -154,11 +177,15 @@ def replays(found: Diagnosis, unseen: Recording, folder: Path) -> None:
             laid.values[found.problem.program.index(slot, key)] = x
     here = found.problem.values(laid, fit.free, fit.theta)
     again = track(unseen, program)
-    ours = laid.free_runs(here, found.problem.program.switches(tuple(found.ranking.laws)), levels, 6.0)
+    ours = laid.free_runs(
+        here, found.problem.program.switches(tuple(found.ranking.laws)), levels, 6.0
+    )
     theirs = again.free_runs(again.values, program.switches(on), levels, 6.0)
     for (a, path), (b, other) in zip(ours, theirs, strict=True):
         assert a == b
-        np.testing.assert_allclose(other, path, atol=2e-3)  # started at each program's own smoothed state
+        np.testing.assert_allclose(
+            other, path, atol=2e-3
+        )  # started at each program's own smoothed state
 
 
 def test_a_moment_that_swings_is_described_with_its_period_and_carries_over(tmp_path: Path) -> None:
@@ -166,7 +193,11 @@ def test_a_moment_that_swings_is_described_with_its_period_and_carries_over(tmp_
     answer = found.findings.answer
     assert answer["verdict"] == "described" and answer["unknown"]["flag"]
     law = answer["described"][0]
-    assert law["axis"] == "yaw" and law["carries_over"] and "swinging with a period" in law["statement"]
+    assert (
+        law["axis"] == "yaw"
+        and law["carries_over"]
+        and "swinging with a period" in law["statement"]
+    )
     assert law["statement"] in answer["sentence"][:1].lower() + answer["sentence"][1:]
     assert halved(found, "heading_rms_rad")
     best = next(w for w in found.findings.described if w.term.name in found.ranking.laws)
@@ -193,10 +224,16 @@ def test_what_acts_in_one_run_alone_is_an_event_and_no_part_of_the_patched_vesse
     assert answer["verdict"] == "described"
     (law,) = answer["described"]
     (term,) = law["terms"]
-    assert law["axis"] in ("sway", "north", "east") and not law["carries_over"] and term["run"] == "run_1"
+    assert (
+        law["axis"] in ("sway", "north", "east")
+        and not law["carries_over"]
+        and term["run"] == "run_1"
+    )
     assert "an event of run_1" in law["statement"]
     assert not found.ranking.laws
-    text = patch.patched(found.problem, found.vessel, found.ranking.best, Path("patched.toml"), found.ranking.laws)
+    text = patched_vessel.patched(
+        found.problem, found.vessel, found.ranking.best, Path("patched.toml"), found.ranking.laws
+    )
     assert "described" not in text
 
 

@@ -11,20 +11,20 @@ from pushed_boat import BOAT, Late, laid, sail
 from scipy.integrate import solve_ivp
 from test_described import diagnosed, halved, nothing, replays
 
-from boatsim.diagnose.describe.grammar import neighbours
-from boatsim.diagnose.describe.shapes import ways
-from boatsim.diagnose.describe.slots import write
-from boatsim.diagnose.filter import MAX_STEP
-from boatsim.diagnose.locate.hull_forces import actuators
-from boatsim.diagnose.report.described import factors, over_words, unit_of
-from boatsim.diagnose.tried import composed
+from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.filter import MAX_STEP
+from boatsim.diagnosis.locate.nominal_forces import actuators
+from boatsim.diagnosis.report.described_terms import factors, over_words, unit_of
+from boatsim.diagnosis.symbolic.grammar import neighbours
+from boatsim.diagnosis.symbolic.slots import write
+from boatsim.diagnosis.symbolic.term_forces import ways
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.program import Program
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine
-from boatsim.simulate.twin import Twin
 
 MEMORY = 0.7  # [s]
 SIGNALS = {  # factor -> of which signal of the commands (port, starboard, steer port, steer starboard), and what of it
@@ -35,14 +35,32 @@ SIGNALS = {  # factor -> of which signal of the commands (port, starboard, steer
     "changed_thrust_port_N": (lambda c: c[0], True),
 }
 LAWS: list[dict[str, Any]] = [
-    {"use": "described_force", "name": "described_1", "axis": "sway", "of": ["recent_thrust", "surge_speed"],
-     "memory": 1.3, "coefficient": 0.9},
-    {"use": "described_force", "name": "described_2", "axis": "yaw", "of": ["changed_steer_port_rad"],
-     "memory": 0.6, "coefficient": 0.2},
-    {"use": "described_thrust", "name": "described_thrust_1", "side": "port", "of": ["recent_abs_thrust_port_N"],
-     "memory": 2.0, "coefficient": -0.4},
+    {
+        "use": "described_force",
+        "name": "described_1",
+        "axis": "sway",
+        "of": ["recent_thrust", "surge_speed"],
+        "memory": 1.3,
+        "coefficient": 0.9,
+    },
+    {
+        "use": "described_force",
+        "name": "described_2",
+        "axis": "yaw",
+        "of": ["changed_steer_port_rad"],
+        "memory": 0.6,
+        "coefficient": 0.2,
+    },
+    {
+        "use": "described_thrust",
+        "name": "described_thrust_1",
+        "side": "port",
+        "of": ["recent_abs_thrust_port_N"],
+        "memory": 2.0,
+        "coefficient": -0.4,
+    },
     {"use": "thrust_lag", "time_constant": 0.3},
-]  # fmt: skip
+]
 
 
 def commanded(rows: int, seed: int = 5) -> Array:
@@ -63,7 +81,9 @@ def test_what_is_recalled_is_a_first_order_lag_to_the_last_digits(factor: str) -
         program.module.actuate_in_place(command, memory, dt, p, on, act)
         begin, middle, end = act.reshape(3, -1)[:, own]
         x = of(command)
-        path = solve_ivp(lambda t, z, x=x: [(x - z[0]) / MEMORY, z[0]], (0, dt), [y, 0], rtol=1e-11, atol=1e-13)
+        path = solve_ivp(
+            lambda t, z, x=x: [(x - z[0]) / MEMORY, z[0]], (0, dt), [y, 0], rtol=1e-11, atol=1e-13
+        )
         late, mean = path.y[0, -1], path.y[1, -1] / dt
         expected = [x - v if beyond else v for v in (y, late, mean)]
         assert [begin, end, (begin + 4 * middle + end) / 6] == pytest.approx(expected, abs=1e-8)
@@ -92,18 +112,32 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
     program, on = composed(replace(boat, found=tuple(law.get("name", law["use"]) for law in LAWS)))
     times, out = row * np.arange(61), np.full((1, 61, 6), np.nan)
     program.module.free_runs(
-        times, times, commands, MAX_STEP, program.body, program.values(), program.switches(on), np.array([0]),
-        np.array([60]), np.zeros((1, 6)), out,
-    )  # fmt: skip
+        times,
+        times,
+        commands,
+        MAX_STEP,
+        program.body,
+        program.values(),
+        program.switches(on),
+        np.array([0]),
+        np.array([60]),
+        np.zeros((1, 6)),
+        out,
+    )
     np.testing.assert_allclose(twin[:, :3], seen, atol=1e-9)
     np.testing.assert_allclose(out[0, :, :3], seen, atol=1e-6)
-    without = Twin(vessel.load("trial_boat", extra=LAWS[-1:]), MAX_STEP).rollout(np.zeros(6), commands[:-1], row)
+    without = Twin(vessel.load("trial_boat", extra=LAWS[-1:]), MAX_STEP).rollout(
+        np.zeros(6), commands[:-1], row
+    )
     assert np.abs(without - twin)[:, :3].max() > 0.02
 
 
 def test_a_vessel_whose_laws_do_not_look_back_remembers_nothing_more(tmp_path: Path) -> None:
     law = '[[effect]]\nuse = "described_force"\nof = ["surge_speed"]\ncoefficient = -0.4\n'
-    plain, also = boats.PLANAR + law, (boats.PLANAR + law).replace("surge_speed", "recent_thrust_port_N")
+    plain, also = (
+        boats.PLANAR + law,
+        (boats.PLANAR + law).replace("surge_speed", "recent_thrust_port_N"),
+    )
     short, long = (
         Program(vessel.load(str(boats.written(tmp_path, name, text + more)))).composition
         for name, text, more in (("short", plain, ""), ("long", also, "memory = 2.0\n"))
@@ -115,12 +149,20 @@ def test_a_vessel_whose_laws_do_not_look_back_remembers_nothing_more(tmp_path: P
 
 @pytest.mark.parametrize(
     ("table", "line"),
-    [({"of": "recent_thrust_prt_N", "memory": 2.0}, "did you mean 'recent_thrust_port_N'"),
-     ({"of": "recent_thrust"}, "memory is missing: the time constant"),
-     ({"of": ["recent_thrust", "recent_thrust_port_N"], "memory": 2.0}, "allowed is to look back at one signal"),
-     ({"of": ["recent_thrust", "changed_thrust"], "memory": 2.0}, "allowed is to look back at one signal"),
-     ({"of": "recent_thrust", "memory": 0.0}, "memory = 0 s; allowed 0.01 to 3600 s")],
-)  # fmt: skip
+    [
+        ({"of": "recent_thrust_prt_N", "memory": 2.0}, "did you mean 'recent_thrust_port_N'"),
+        ({"of": "recent_thrust"}, "memory is missing: the time constant"),
+        (
+            {"of": ["recent_thrust", "recent_thrust_port_N"], "memory": 2.0},
+            "allowed is to look back at one signal",
+        ),
+        (
+            {"of": ["recent_thrust", "changed_thrust"], "memory": 2.0},
+            "allowed is to look back at one signal",
+        ),
+        ({"of": "recent_thrust", "memory": 0.0}, "memory = 0 s; allowed 0.01 to 3600 s"),
+    ],
+)
 def test_words_of_the_past_that_do_not_exist_are_named(table: dict[str, Any], line: str) -> None:
     with pytest.raises(BadInput, match=line):
         DescribedForce.from_settings(table).completed(BOAT)
@@ -129,8 +171,12 @@ def test_words_of_the_past_that_do_not_exist_are_named(table: dict[str, Any], li
 def test_a_law_stands_behind_the_drives_by_which_signals_have_their_places(tmp_path: Path) -> None:
     law = '[[effect]]\nuse = "described_force"\nof = ["steer_port_rad"]\ncoefficient = 1.0\n\n'
     last = boats.PLANAR.rindex("[[effect]]")  # the other thruster
-    with pytest.raises(BadInput, match="described_force stands before an effect by which a channel acts"):
-        vessel.load(str(boats.written(tmp_path, "early", boats.PLANAR[:last] + law + boats.PLANAR[last:])))
+    with pytest.raises(
+        BadInput, match="described_force stands before an effect by which a channel acts"
+    ):
+        vessel.load(
+            str(boats.written(tmp_path, "early", boats.PLANAR[:last] + law + boats.PLANAR[last:]))
+        )
 
 
 def test_a_term_that_looks_back_is_said_in_words_with_its_unit() -> None:
@@ -139,9 +185,18 @@ def test_a_term_that_looks_back_is_said_in_words_with_its_unit() -> None:
         return factors(term, BOAT), unit_of(term, BOAT)
 
     assert said("sway", "recent_thrust_port_N") == ("thrust port of the last 5.00 s", "")
-    assert said("yaw", "recent_thrust", "surge_speed") == ("thrust of the last 5.00 s times surge speed", "s")
-    assert said("yaw", "changed_steer_port_rad") == ("what steer port is beyond that of the last 5.00 s", "N m")
-    assert said("sway", "recent_abs_thrust_port_N") == ("the size of thrust port of the last 5.00 s", "")
+    assert said("yaw", "recent_thrust", "surge_speed") == (
+        "thrust of the last 5.00 s times surge speed",
+        "s",
+    )
+    assert said("yaw", "changed_steer_port_rad") == (
+        "what steer port is beyond that of the last 5.00 s",
+        "N m",
+    )
+    assert said("sway", "recent_abs_thrust_port_N") == (
+        "the size of thrust port of the last 5.00 s",
+        "",
+    )
     assert over_words("recent_abs_thrust_port_N") == "the size of thrust port of late"
 
 
@@ -152,15 +207,22 @@ def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
     write(problem, "described_1", term, problem.tracks)
     number = next(i for i, e in enumerate(program.effects) if e.name == "described_1")
     acting = actuators(problem.tracks[0], ("described_1",), problem.tracks[0].values)
-    np.testing.assert_allclose(way.size(term), acting[:, program.composition.own(number)], atol=1e-9)
+    np.testing.assert_allclose(
+        way.size(term), acting[:, program.composition.own(number)], atol=1e-9
+    )
     assert {t.memory for t in neighbours(term, problem.tracks, 0.5)} == {1.7 * 1.5, 1.7 / 1.5}
 
 
 @pytest.mark.parametrize(
     ("factor", "late"),
-    [("recent_thrust_port_N", (5.0, lambda c: float(c[0]))), ("recent_thrust", (3.0, lambda c: float(c[0] + c[1])))],
+    [
+        ("recent_thrust_port_N", (5.0, lambda c: float(c[0]))),
+        ("recent_thrust", (3.0, lambda c: float(c[0] + c[1]))),
+    ],
 )
-def test_a_side_force_with_the_thrust_of_the_last_seconds_is_described(factor: str, late: Late, tmp_path: Path) -> None:
+def test_a_side_force_with_the_thrust_of_the_last_seconds_is_described(
+    factor: str, late: Late, tmp_path: Path
+) -> None:
     def wake(t: float, y: Array, command: Array) -> Array:
         return np.array([0.0, 0.6 * y[6], 0.0])
 
@@ -169,7 +231,9 @@ def test_a_side_force_with_the_thrust_of_the_last_seconds_is_described(factor: s
     (written,) = found.findings.described
     term = written.term
     assert isinstance(term, DescribedForce) and term.axis == "sway" and term.of == (factor,)
-    assert term.memory == pytest.approx(late[0], rel=0.3) and term.coefficient == pytest.approx(0.6, rel=0.1)
+    assert term.memory == pytest.approx(late[0], rel=0.3) and term.coefficient == pytest.approx(
+        0.6, rel=0.1
+    )
     assert f"of the last {term.memory:.3g}" in found.findings.answer["sentence"]
     assert written.carries and written.curve is not None and halved(found, "position_rms_m")
     replays(found, sail("run_3", 42, wake, late=late)[0], tmp_path)

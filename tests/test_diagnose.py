@@ -11,12 +11,12 @@ from scipy.linalg import expm
 from scipy.stats import multivariate_normal
 
 from boatsim.cli import diagnosis as commands
-from boatsim.diagnose import analysis
-from boatsim.diagnose.filter import Levels, nominal_levels, segments, track
-from boatsim.diagnose.problem import scale_of
-from boatsim.diagnose.report import show
-from boatsim.diagnose.report.answer import key_of
-from boatsim.diagnose.tried import library_for
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.filter import Levels, nominal_levels, segments, track
+from boatsim.diagnosis.problem import scale_of
+from boatsim.diagnosis.report import before_after
+from boatsim.diagnosis.report.answer import key_of
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.content import address, load_class
@@ -127,8 +127,13 @@ def joystick():
 def driven(boat: vessel.Vessel) -> Recording:
     """40 s at 6 Hz of random steps every half second, by MuJoCo at 6.7 ms, with the noise of its camera."""
     rng, rate, n = np.random.default_rng(1), 6, 240
-    raw = {c: np.repeat(rng.uniform(-150.0, 150.0, n // 3), 3) for c in ("pwm_port", "pwm_starboard")}
-    raw |= {c: np.repeat(rng.uniform(-0.7, 0.7, n // 3), 3) for c in ("steer_port_rad", "steer_starboard_rad")}
+    raw = {
+        c: np.repeat(rng.uniform(-150.0, 150.0, n // 3), 3) for c in ("pwm_port", "pwm_starboard")
+    }
+    raw |= {
+        c: np.repeat(rng.uniform(-0.7, 0.7, n // 3), 3)
+        for c in ("steer_port_rad", "steer_starboard_rad")
+    }
     engine, poses = Engine(boat, step=1 / rate / 25), []
     engine.reset(commands={c: values[0] for c, values in raw.items()})
     for i in range(n):
@@ -136,10 +141,16 @@ def driven(boat: vessel.Vessel) -> Recording:
         engine.command({c: values[i] for c, values in raw.items()})
         engine.advance(25)
     pose = np.array(poses) + rng.standard_normal((n, 3)) * [0.002, 0.002, 0.0094]
-    return Recording("driven", np.arange(n) / rate, dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | raw)
+    return Recording(
+        "driven",
+        np.arange(n) / rate,
+        dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | raw,
+    )
 
 
-def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely_splits_it(joystick):
+def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely_splits_it(
+    joystick,
+):
     recording = driven(joystick.vessel)
     laid, levels = track(recording, joystick), nominal_levels(joystick.vessel, [recording])
     nothing, delayed = joystick.switches(), joystick.switches(["command_delay"])
@@ -156,20 +167,31 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
 def test_a_ramp_ends_where_the_signal_that_pwm_is_turned_into_is_reached(joystick):
     code, values, on = joystick.module, joystick.values(), joystick.switches(["command_delay"])
     values[joystick.index("command_delay", "delay")] = 1e-5
-    values[joystick.index("thrust_lag", "time_constant")], values[joystick.index("rate_limit", "rate")] = 0.0, 2.0
+    (
+        values[joystick.index("thrust_lag", "time_constant")],
+        values[joystick.index("rate_limit", "rate")],
+    ) = 0.0, 2.0
     memory, act = np.zeros(joystick.memory_size), np.zeros(joystick.held_size)
     full, none = (joystick.command_array({"pwm_port": pwm}) for pwm in (150.0, 0.0))
     code.settle(full, memory, values, on, act)  # 0.617 N
-    assert code.until_bend(full, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(0.06)  # of the servos
+    assert code.until_bend(full, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(
+        0.06
+    )  # of the servos
     code.actuate_in_place(none, memory, 0.2, values, on, act)  # 0.4 N at 2 N/s
     assert code.until_bend(none, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(0.06)
     code.actuate_in_place(none, memory, 0.1, values, on, act)  # 0.017 N are left
-    assert code.until_bend(none, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(0.017 / 2.0, abs=1e-5)
+    assert code.until_bend(none, memory, 1.0, code.SHORTEST, values, on) == pytest.approx(
+        0.017 / 2.0, abs=1e-5
+    )
 
 
 def test_free_runs_start_every_horizon_and_leave_a_shorter_rest_out():
     starts, ends = segments(np.arange(0, 20.01, 0.5), 6.0)
-    assert [(0.5 * a, 0.5 * b) for a, b in zip(starts, ends, strict=True)] == [(0, 6), (6, 12), (12, 18)]
+    assert [(0.5 * a, 0.5 * b) for a, b in zip(starts, ends, strict=True)] == [
+        (0, 6),
+        (6, 12),
+        (12, 18),
+    ]
 
 
 # ---- answers on data from an integrator that shares no code with the tool
@@ -188,17 +210,25 @@ def truth(t, y, thrust, steer, astern, toward):
     off = toward[1] - psi
     X = (push * np.cos(steer)).sum() + toward[0] * np.cos(off) * (0.45 + 0.1 * np.cos(off) ** 2)
     Y = (push * np.sin(steer)).sum() + toward[0] * np.sin(off) * (1.0 - 0.1 * np.cos(off) ** 2)
-    N = X_MOTOR * (push * np.sin(steer)).sum() + Y_MOTOR * (push[0] * np.cos(steer[0]) - push[1] * np.cos(steer[1]))
+    N = X_MOTOR * (push * np.sin(steer)).sum() + Y_MOTOR * (
+        push[0] * np.cos(steer[0]) - push[1] * np.cos(steer[1])
+    )
     du = (X - XU * u + M * v * r) / (M + A11)
     dv = (Y - YV * v - M * u * r) / (M + A22)
     c, s = np.cos(psi), np.sin(psi)
     return [u * c - v * s, u * s + v * c, r, du, dv, (N - NR * r) / (IZ + A66)]
 
 
-def recorded(name: str, seed: int, astern: float = 1.0, wind: tuple[float, float] = (0.0, 0.0)) -> Recording:
+def recorded(
+    name: str, seed: int, astern: float = 1.0, wind: tuple[float, float] = (0.0, 0.0)
+) -> Recording:
     rng = np.random.default_rng(seed)
     dt, n = 1 / 6, 240
-    commands = np.repeat(np.column_stack([rng.uniform(-0.9, 0.9, (30, 2)), rng.uniform(-0.6, 0.6, (30, 2))]), 8, axis=0)
+    commands = np.repeat(
+        np.column_stack([rng.uniform(-0.9, 0.9, (30, 2)), rng.uniform(-0.6, 0.6, (30, 2))]),
+        8,
+        axis=0,
+    )
     y, rows = np.zeros(6), []
     for k in range(n):
         rows.append(y[:3])
@@ -206,7 +236,9 @@ def recorded(name: str, seed: int, astern: float = 1.0, wind: tuple[float, float
         y = solve_ivp(truth, (0, dt), y, args=args, rtol=1e-8, atol=1e-10).y[:, -1]
     pose = np.array(rows) + rng.standard_normal((n, 3)) * [0.003, 0.003, 0.012]
     names = ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
-    signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | dict(zip(names, commands.T, strict=True))
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | dict(
+        zip(names, commands.T, strict=True)
+    )
     return Recording(name, dt * np.arange(n), signals, Notes(vessel="trial_boat"))
 
 
@@ -223,7 +255,7 @@ def written(folder: Path, *recordings: Recording) -> list[Path]:
 
 def test_ideal_boat_has_nothing_missing(folder):
     runs = written(folder, recorded("ideal_1", 1), recorded("ideal_2", 2))
-    answer = analysis.diagnose(runs, vessel="trial_boat").findings.answer
+    answer = pipeline.diagnose(runs, vessel="trial_boat").findings.answer
     assert answer["verdict"] == "nothing_missing" and answer["effects"] == []
     limits = answer["upper_limits"]["weak_reverse"]["astern_factor"]
     assert 0.0 < limits < 0.1  # so small a weakness would have gone unseen
@@ -232,28 +264,40 @@ def test_ideal_boat_has_nothing_missing(folder):
 
 def test_two_effects_are_named_with_their_values_and_the_patched_boat_follows_unseen_data(folder):
     wind = (0.12, 0.8)
-    runs = written(folder, *(recorded(f"both_{i}", 10 + i, astern=0.7, wind=wind) for i in range(3)))
-    found = analysis.diagnose(runs, vessel="trial_boat")
+    runs = written(
+        folder, *(recorded(f"both_{i}", 10 + i, astern=0.7, wind=wind) for i in range(3))
+    )
+    found = pipeline.diagnose(runs, vessel="trial_boat")
     answer = found.findings.answer
-    assert {e["name"] for e in answer["effects"]} == {"weak_reverse", "wind"} and answer["verdict"] == "named"
+    assert {e["name"] for e in answer["effects"]} == {"weak_reverse", "wind"} and answer[
+        "verdict"
+    ] == "named"
     values = {k: p for e in answer["effects"] for k, p in e["parameters"].items()}
     for key, true in (("astern_factor", 0.7), ("force_N", 0.12), ("toward_rad", 0.8)):
-        assert abs(values[key]["value"] - true) < 4 * values[key]["sd"] and values[key]["sd"] < 0.1, key
+        assert (
+            abs(values[key]["value"] - true) < 4 * values[key]["sd"] and values[key]["sd"] < 0.1
+        ), key
     regions = {r["variable"]: r for r in answer["where"]["region"]}
     share = float(regions["thrust astern"]["statement"].split("about ")[1].split(" %")[0])
     # 30 % of it is missing; the smoothed force blurs thrust that changes every 1.3 s
     assert 20.0 < share < 40.0 and regions["thrust astern"]["p_value"] < 1e-6
-    toward = float(regions["heading in the world"]["statement"].split("toward ")[1].split(" deg")[0])
+    toward = float(
+        regions["heading in the world"]["statement"].split("toward ")[1].split(" deg")[0]
+    )
     assert abs(toward - np.degrees(0.8)) < 15.0
     rms = answer["fit"]["position_rms_m"]
     assert answer["fit"]["held_out"] == ["both_2"]
-    assert rms["patched"] < 0.006 < 0.2 * rms["recalibrated"]  # 3 mm camera noise and that of the smoothed start
+    assert (
+        rms["patched"] < 0.006 < 0.2 * rms["recalibrated"]
+    )  # 3 mm camera noise and that of the smoothed start
 
 
 @pytest.mark.slow
 def test_patched_file_gives_the_fitted_motion_back(folder):
-    runs = written(folder, *(recorded(f"both_{i}", 10 + i, astern=0.7, wind=(0.12, 0.8)) for i in range(2)))
-    found = analysis.diagnose(runs[:1], runs[1:], "trial_boat")
+    runs = written(
+        folder, *(recorded(f"both_{i}", 10 + i, astern=0.7, wind=(0.12, 0.8)) for i in range(2))
+    )
+    found = pipeline.diagnose(runs[:1], runs[1:], "trial_boat")
     commands.write(found, folder)
     again = vessel.load(str(folder / "patched.toml"))
     assert {e.name for e in again.effects} >= {"weak_reverse", "wind"}
@@ -262,7 +306,10 @@ def test_patched_file_gives_the_fitted_motion_back(folder):
     fitted, own = track(rec, found.problem.program), track(rec, Program(again))
     best = found.ranking.best
     first = fitted.free_runs(
-        found.problem.values(fitted, best.free, best.theta), fitted.program.switches(best.suspects), best.levels, 6.0
+        found.problem.values(fitted, best.free, best.theta),
+        fitted.program.switches(best.suspects),
+        best.levels,
+        6.0,
     )
     second = own.free_runs(own.values, own.program.switches(), best.levels, 6.0)
     for (_, a), (_, b) in zip(first, second, strict=True):
@@ -273,7 +320,9 @@ def test_patched_file_gives_the_fitted_motion_back(folder):
 def test_practice_trials_are_named_exactly(name):
     trial = DATA / "trials" / name
     truth_is = json.loads((trial / "answer.json").read_text())
-    answer = analysis.diagnose([trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"]).findings.answer
+    answer = pipeline.diagnose(
+        [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"]
+    ).findings.answer
     assert {e["name"] for e in answer["effects"]} == {e["name"] for e in truth_is["effects"]}
     reference = truth_is["reference_position_rms_m"]
     best = reference.get("true_structure", reference["recalibrated"])
@@ -282,7 +331,7 @@ def test_practice_trials_are_named_exactly(name):
 
 def test_a_single_run_keeps_its_middle_third_unseen():
     rec = recorded("single", 5)
-    fitted, unseen, note = show.split([rec], [])
+    fitted, unseen, note = before_after.split([rec], [])
     assert [len(r) for r in (*fitted, *unseen)] == pytest.approx([80, 80, 80], abs=2)
     assert unseen[0].t[0] > fitted[0].t[-1] - 0.2 and fitted[1].t[0] > unseen[0].t[-1]
     assert "middle third" in note
@@ -291,18 +340,23 @@ def test_a_single_run_keeps_its_middle_third_unseen():
 def test_bad_requests_get_one_line(folder):
     runs = written(folder, recorded("alone", 1))
     with pytest.raises(BadInput, match="no vessel given"):
-        analysis.diagnose(runs)
+        pipeline.diagnose(runs)
     with pytest.raises(BadInput, match="did you mean 'weak_reverse'"):
-        analysis.diagnose(runs, vessel="trial_boat", without=["weak_revers"])
+        pipeline.diagnose(runs, vessel="trial_boat", without=["weak_revers"])
     with pytest.raises(BadInput, match="phi_rad"):
-        analysis.diagnose(runs, vessel="kvlcc2_roll")
+        pipeline.diagnose(runs, vessel="kvlcc2_roll")
 
 
 @pytest.mark.parametrize(
     ("name", "unit", "key"),
-    [("force", "N", "force_N"), ("north", "m/s", "north_mps"), ("factor", "", "factor"),
-     ("time_constant", "s", "time_constant_s"), ("surge_quadratic", "N s^2/m^2", "surge_quadratic_Ns2pm2")],
-)  # fmt: skip
+    [
+        ("force", "N", "force_N"),
+        ("north", "m/s", "north_mps"),
+        ("factor", "", "factor"),
+        ("time_constant", "s", "time_constant_s"),
+        ("surge_quadratic", "N s^2/m^2", "surge_quadratic_Ns2pm2"),
+    ],
+)
 def test_parameter_keys_carry_their_unit(name, unit, key):
     assert key_of(name, unit) == key
 
@@ -322,9 +376,11 @@ def thesis(tmp_path_factory):
 def test_reverse_thrust_taken_for_ideal_is_found_in_the_thesis_own_tests(thesis):
     runs = [thesis / n / "camera.csv" for n in ("sway_1", "yaw_1")]
     unseen = [thesis / n / "camera.csv" for n in ("sway_3", "yaw_3")]
-    answer = analysis.diagnose(runs, unseen).findings.answer
+    answer = pipeline.diagnose(runs, unseen).findings.answer
     assert [e["name"] for e in answer["effects"]] == ["weak_reverse"]
-    assert answer["effects"][0]["parameters"]["astern_factor"]["value"] == pytest.approx(0.694, rel=0.05)
+    assert answer["effects"][0]["parameters"]["astern_factor"]["value"] == pytest.approx(
+        0.694, rel=0.05
+    )
     rms = answer["fit"]["position_rms_m"]
     assert rms["patched"] < rms["nominal"] / 5 and rms["patched"] < rms["recalibrated"] / 5
 
@@ -333,13 +389,15 @@ def test_reverse_thrust_taken_for_ideal_is_found_in_the_thesis_own_tests(thesis)
 
 
 def test_real_roll_decay_shows_nonlinear_damping_and_stiffening_on_unseen_data():
-    found = analysis.diagnose([DECAY]).findings
+    found = pipeline.diagnose([DECAY]).findings
     answer = found.answer
     names = {e["name"] for e in answer["effects"]}
     assert "righting_arm_stiffening" in names and names & {"quadratic_damping", "cubic_damping"}
     rms = answer["fit"]["roll_rms_rad"]
     assert rms["patched"] < 0.5 * rms["recalibrated"]
-    assert any("last third" in r for r in found.remarks)  # there the linear model is already right, and it says so
+    assert any(
+        "last third" in r for r in found.remarks
+    )  # there the linear model is already right, and it says so
 
 
 # ---- what a user may do
@@ -350,24 +408,24 @@ def test_a_recording_without_commands_is_refused_not_explained(folder):
     for gone in ("thrust_port_N", "steer_starboard_rad"):
         part = replace(full, signals={k: v for k, v in full.signals.items() if k != gone})
         with pytest.raises(BadInput, match=f"column {gone} is missing"):
-            analysis.diagnose(written(folder, part), vessel="trial_boat")
+            pipeline.diagnose(written(folder, part), vessel="trial_boat")
 
 
 def test_positions_in_millimetres_are_asked_about(folder):
     full = recorded("millimetres", 1)
     large = {k: v * 1000.0 if k in ("x_m", "y_m") else v for k, v in full.signals.items()}
     with pytest.raises(BadInput, match="are they in m"):
-        analysis.diagnose(written(folder, replace(full, signals=large)), vessel="trial_boat")
+        pipeline.diagnose(written(folder, replace(full, signals=large)), vessel="trial_boat")
 
 
 def test_what_is_fitted_can_not_be_held_out(folder):
     runs = written(folder, recorded("twice", 1))
     with pytest.raises(BadInput, match="given twice"):
-        analysis.diagnose(runs, runs, "trial_boat")
+        pipeline.diagnose(runs, runs, "trial_boat")
 
 
 def test_horizon_shrinks_to_what_was_kept_unseen():
-    answer = analysis.diagnose([DECAY.with_name("decay_15p5kn.csv")]).findings.answer
+    answer = pipeline.diagnose([DECAY.with_name("decay_15p5kn.csv")]).findings.answer
     assert 10.0 < answer["fit"]["horizon_s"] < 60.0 and answer["fit"]["roll_rms_rad"]["nominal"] > 0
 
 
@@ -410,7 +468,9 @@ def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder
     own = tmp_path / "roll_weed.py"
     own.write_text(WEED)
     without = ["cubic_damping", "quadratic_damping"]
-    code = commands.diagnose([DECAY], [], str(mine / "vessel.toml"), [], tmp_path / "out", [str(own)], without)
+    code = commands.diagnose(
+        [DECAY], [], str(mine / "vessel.toml"), [], tmp_path / "out", [str(own)], without
+    )
     assert code == 0 and "roll_weed" in capsys.readouterr().out
     (tmp_path / "elsewhere").mkdir()
     fit = json.loads((tmp_path / "out" / "diagnosis.json").read_text())["fit"]
@@ -423,7 +483,12 @@ def test_own_vessel_and_own_library_file_give_a_patched_boat_that_replays(folder
 def test_froude_scaled_priors_are_those_of_the_small_boat():
     small, large = vessel.load("trial_boat"), vessel.load("kvlcc2_roll")
     length = large.length / small.length
-    assert all(scale_of(unit, small) == pytest.approx(1.0) for unit in ("N", "N s^2/m^2", "N m", "m/s", "s", ""))
+    assert all(
+        scale_of(unit, small) == pytest.approx(1.0)
+        for unit in ("N", "N s^2/m^2", "N m", "m/s", "s", "")
+    )
     assert scale_of("m/s", large) == pytest.approx(length**0.5)
-    assert scale_of("N", large) == pytest.approx(large.body.mass / small.body.mass)  # weight has no other scale
+    assert scale_of("N", large) == pytest.approx(
+        large.body.mass / small.body.mass
+    )  # weight has no other scale
     assert scale_of("N s^2/m^2", large) == pytest.approx(large.body.mass / small.body.mass / length)

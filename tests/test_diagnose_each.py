@@ -11,9 +11,9 @@ from pyarrow import parquet
 import boatsim
 from boatsim.cli.sweeping import diagnose_each
 from boatsim.errors import BadInput
-from boatsim.sweep.diagnoses import Asked, diagnosed, folders_of, recordings
-from boatsim.sweep.workers.here import here
-from boatsim.sweep.workers.processes import Processes
+from boatsim.sweeps.diagnoses import Asked, diagnosed, folders_of, recordings
+from boatsim.sweeps.workers.in_process import here
+from boatsim.sweeps.workers.processes import Processes
 
 WRONG = "t_s,x_m\n0,0\n1,nonsense\n"
 
@@ -22,12 +22,24 @@ def table(folder: Path) -> dict[str, list[Any]]:
     return parquet.read_table(folder / "diagnoses.parquet").to_pydict()
 
 
-def test_a_folder_stands_for_the_recordings_in_it_and_runs_for_what_the_camera_saw(tmp_path: Path) -> None:
-    for name in ("logs/b.csv", "logs/a.parquet", "logs/notes.txt", "runs/one/camera.csv", "runs/one/recording.csv"):
+def test_a_folder_stands_for_the_recordings_in_it_and_runs_for_what_the_camera_saw(
+    tmp_path: Path,
+) -> None:
+    for name in (
+        "logs/b.csv",
+        "logs/a.parquet",
+        "logs/notes.txt",
+        "runs/one/camera.csv",
+        "runs/one/recording.csv",
+    ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
     found = recordings([tmp_path / "logs", tmp_path / "runs"])
-    assert [str(p.relative_to(tmp_path)) for p in found] == ["logs/a.parquet", "logs/b.csv", "runs/one/camera.csv"]
+    assert [str(p.relative_to(tmp_path)) for p in found] == [
+        "logs/a.parquet",
+        "logs/b.csv",
+        "runs/one/camera.csv",
+    ]
     assert folders_of(found) == ["logs/a", "logs/b", "runs/one"]
     assert folders_of([tmp_path / "x.csv", tmp_path / "x.parquet"]) == ["x.csv", "x.parquet"]
 
@@ -62,23 +74,33 @@ def test_what_is_done_is_not_done_again(tmp_path: Path) -> None:
         raise AssertionError
 
     diagnosed([log], Asked(vessel="joystick_boat"), out, nobody)
-    assert ((out / "diagnoses.parquet").read_bytes(), (out / "journal.jsonl").read_bytes()) == before
+    assert (
+        (out / "diagnoses.parquet").read_bytes(),
+        (out / "journal.jsonl").read_bytes(),
+    ) == before
     with pytest.raises(BadInput, match='asked vessel is "joystick_boat", not "otter"'):
         diagnosed([log], Asked(vessel="otter"), out, nobody)
 
 
 @pytest.mark.slow
-def test_each_is_diagnosed_as_it_would_be_alone_and_cut_off_ends_with_the_same_bytes(tmp_path: Path) -> None:
+def test_each_is_diagnosed_as_it_would_be_alone_and_cut_off_ends_with_the_same_bytes(
+    tmp_path: Path,
+) -> None:
     for name in ("sway_1", "sway_2"):
         boatsim.run(f"joystick_boat/{name}_as_published", out=tmp_path / "runs" / name)
     paths, out = recordings([tmp_path / "runs"]), tmp_path / "out"
     diagnosed(paths, Asked(), out, Processes(2))
     found = table(out)
     assert found["verdict"] == ["named", "named"] and found["causes"] == ["weak_reverse"] * 2
-    for value, sd in zip(found["weak_reverse.astern_factor"], found["weak_reverse.astern_factor sd"], strict=True):
+    for value, sd in zip(
+        found["weak_reverse.astern_factor"], found["weak_reverse.astern_factor sd"], strict=True
+    ):
         assert abs(value - 0.694) < 3 * sd
     alone = boatsim.diagnose(paths[0])
-    assert alone.parameters["weak_reverse"]["astern_factor"].value == found["weak_reverse.astern_factor"][0]
+    assert (
+        alone.parameters["weak_reverse"]["astern_factor"].value
+        == found["weak_reverse.astern_factor"][0]
+    )
     told = json.loads((out / "sway_1" / "diagnosis.json").read_text())
     assert told["verdict"] == "named" and (out / "sway_2" / "report.html").is_file()
     cut = tmp_path / "cut"

@@ -20,15 +20,15 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.drive.aside import aside
+from boatsim.drive.background_tasks import aside
 from boatsim.drive.clock import Clock
-from boatsim.drive.dials import dials_of
-from boatsim.drive.hands import DEAD, PATIENCE, Hands, Sticks, live
+from boatsim.drive.driver_input import DEAD, PATIENCE, Hands, Sticks, live
+from boatsim.drive.stick_mapping import dials_of
 from boatsim.drive.task import Task
 from boatsim.errors import BadInput
 from boatsim.physics.content import names
 from boatsim.recordings.table import Recording, read
-from boatsim.simulate import following, scenario
+from boatsim.simulate import scenario, tracking_errors
 from boatsim.simulate.manoeuvre import handled
 from boatsim.simulate.run import Runner
 
@@ -112,8 +112,12 @@ def test_hands_on_the_channels_stay_within_their_ranges_and_leave_them_neutral_i
     task = DRIVEN.setdefault(name, Task(name))
     taken = task.vessel.commands
     asked = task.dials.goal(sticks, 0.02, 0.0)
-    assert all(taken[key].low - 1e-6 <= value <= taken[key].high + 1e-6 for key, value in asked.items())
-    assert task.dials.goal(Sticks(), 0.02, 0.0) == pytest.approx({key: taken[key].neutral for key in asked}, abs=1e-6)
+    assert all(
+        taken[key].low - 1e-6 <= value <= taken[key].high + 1e-6 for key, value in asked.items()
+    )
+    assert task.dials.goal(Sticks(), 0.02, 0.0) == pytest.approx(
+        {key: taken[key].neutral for key in asked}, abs=1e-6
+    )
 
 
 DRIVEN: dict[str, Task] = {}
@@ -128,11 +132,17 @@ def test_most_vessels_can_be_driven_and_who_is_driven_ahead_goes_ahead() -> None
 
 
 @pytest.mark.parametrize("controller", ["l1_joystick", "pid_autopilot"])
-def test_the_sticks_of_a_joystick_controller_ask_for_its_three_goals_either_way(controller: str) -> None:
+def test_the_sticks_of_a_joystick_controller_ask_for_its_three_goals_either_way(
+    controller: str,
+) -> None:
     task = Task("joystick_boat", controller=controller)
     full = task.dials.goal(Sticks(1.0, 1.0, 1.0), 0.02, 0.0)
-    assert set(full) == {"surge_mps", "sway_mps", "yaw_radps"} and all(x > 0.0 for x in full.values())
-    assert task.dials.goal(Sticks(-1.0, -1.0, -1.0), 0.02, 0.0) == {key: -x for key, x in full.items()}
+    assert set(full) == {"surge_mps", "sway_mps", "yaw_radps"} and all(
+        x > 0.0 for x in full.values()
+    )
+    assert task.dials.goal(Sticks(-1.0, -1.0, -1.0), 0.02, 0.0) == {
+        key: -x for key, x in full.items()
+    }
 
 
 def test_a_goal_that_is_a_heading_is_turned_from_where_the_boat_points() -> None:
@@ -147,7 +157,12 @@ def test_a_goal_that_is_a_heading_is_turned_from_where_the_boat_points() -> None
 def test_a_controller_states_its_largest_goals_and_a_load_of_its_own_changes_nothing() -> None:
     task = Task("joystick_boat", "berth")
     made = scenario.load("joystick_boat/berth")
-    assert dials_of(made.vessel, made.controller, "l1_joystick").goal(Sticks(yaw=1.0), 0.02, 0.0)["yaw_radps"] == 0.1396
+    assert (
+        dials_of(made.vessel, made.controller, "l1_joystick").goal(Sticks(yaw=1.0), 0.02, 0.0)[
+            "yaw_radps"
+        ]
+        == 0.1396
+    )
     assert task.scenario.file.tank == made.file.tank and task.scenario.file.load == made.file.load
 
 
@@ -180,8 +195,14 @@ def test_what_can_not_be_driven_is_one_line(tmp_path: Path, given_: list[str], s
 
 
 @pytest.mark.parametrize("engine", ["mujoco", "twin"])
-def test_while_a_goal_is_off_commands_are_neutral_and_the_controller_begins_anew(engine: str) -> None:
-    goals = [{"yaw_radps": 0.1, "sway_mps": 0.05}, {"from": 4.0, "off": True}, {"from": 8.0, "yaw_radps": 0.0}]
+def test_while_a_goal_is_off_commands_are_neutral_and_the_controller_begins_anew(
+    engine: str,
+) -> None:
+    goals = [
+        {"yaw_radps": 0.1, "sway_mps": 0.05},
+        {"from": 4.0, "off": True},
+        {"from": 8.0, "yaw_radps": 0.0},
+    ]
     rows = 0.0 if engine == "mujoco" else 0.5  # [s] between them: the other may leap in between
     over = {"duration": 12.0, "goal": goals, "tank": None, "engine": engine, "log": rows}
     made = scenario.load("joystick_boat/berth", over)
@@ -252,10 +273,10 @@ def test_what_goes_wrong_aside_ends_the_run() -> None:
 
 @given(st.lists(st.integers(1, 99), unique=True).map(sorted))
 def test_errors_of_a_log_in_pieces_are_those_of_the_whole(cuts: list[int]) -> None:
-    tally = following.Tally()
+    tally = tracking_errors.Tally()
     for begin, end in zip([0, *cuts], [*cuts, 100], strict=True):
         tally.add(rows(begin, end))
-    assert tally.norms() == pytest.approx(following.errors(rows(0, 100)))
+    assert tally.norms() == pytest.approx(tracking_errors.errors(rows(0, 100)))
 
 
 def until(true, seconds: float = 10.0) -> None:
@@ -271,7 +292,16 @@ def until(true, seconds: float = 10.0) -> None:
 @contextmanager
 def driving(out: Path, *arguments: object) -> Iterator[tuple["subprocess.Popen[str]", str]]:
     """`boatsim drive` under way, and the address of its page."""
-    command = [sys.executable, "-m", "boatsim", "drive", *map(str, arguments), "--no-open", "--out", str(out)]
+    command = [
+        sys.executable,
+        "-m",
+        "boatsim",
+        "drive",
+        *map(str, arguments),
+        "--no-open",
+        "--out",
+        str(out),
+    ]
     running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         assert running.stderr
@@ -283,7 +313,9 @@ def driving(out: Path, *arguments: object) -> Iterator[tuple["subprocess.Popen[s
         running.communicate()
 
 
-def by_hand(out: Path, course: Mapping[float, tuple[float, float, float]], *arguments: object) -> None:
+def by_hand(
+    out: Path, course: Mapping[float, tuple[float, float, float]], *arguments: object
+) -> None:
     """A run driven by sticks that are moved at times [s] of it, then ended by the button."""
     with driving(out, *arguments) as (running, page):
         asyncio.run(_moved(page, course))
@@ -294,7 +326,9 @@ async def _moved(page: str, course: Mapping[float, tuple[float, float, float]]) 
     from websockets.asyncio.client import connect
 
     now = 0.0
-    async with connect(page.replace("http", "ws") + "socket", origin=page.rsplit("/", 2)[0]) as page_:
+    async with connect(
+        page.replace("http", "ws") + "socket", origin=page.rsplit("/", 2)[0]
+    ) as page_:
 
         async def look() -> None:
             nonlocal now
@@ -313,29 +347,46 @@ async def _moved(page: str, course: Mapping[float, tuple[float, float, float]]) 
 @pytest.fixture(scope="module")
 def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("drive") / "out"
-    course = {0.0: (0, 0, 0), 1.0: (0.7, 0, 0.5), 3.0: (-0.4, 0.8, -1.0), 5.0: (0, 0, 0), 7.0: (0, 0, 0)}
+    course = {
+        0.0: (0, 0, 0),
+        1.0: (0.7, 0, 0.5),
+        3.0: (-0.4, 0.8, -1.0),
+        5.0: (0, 0, 0),
+        7.0: (0, 0, 0),
+    }
     by_hand(out, course, "joystick_boat", "--scenario", "sway_1_wind")
     return out
 
 
 def test_what_was_driven_is_recorded_as_any_run(driven: Path) -> None:
-    assert {"recording.csv", "camera.csv", "norms.json", "run.rrd", "recording.toml", "scenario.toml"} == {
-        f.name for f in driven.iterdir()
-    }
+    assert {
+        "recording.csv",
+        "camera.csv",
+        "norms.json",
+        "run.rrd",
+        "recording.toml",
+        "scenario.toml",
+    } == {f.name for f in driven.iterdir()}
     log = read(driven / "recording.csv")
     assert log.notes.facts["driven"] is True and log.notes.facts["complete"] is True
     assert np.nanmax(log["goal_surge_mps"]) > 0.1 > -0.1 > np.nanmin(log["goal_yaw_radps"])
     assert "surge_error_rms" in json.loads((driven / "norms.json").read_text())["norms"]
 
 
-def test_what_was_driven_runs_again_from_its_file_to_the_last_bit(driven: Path, tmp_path: Path) -> None:
+def test_what_was_driven_runs_again_from_its_file_to_the_last_bit(
+    driven: Path, tmp_path: Path
+) -> None:
     done = boatsim("run", driven / "scenario.toml", "--out", tmp_path / "again")
     assert done.exit_code == 0, done.stderr
-    assert (tmp_path / "again" / "recording.csv").read_bytes() == (driven / "recording.csv").read_bytes()
+    assert (tmp_path / "again" / "recording.csv").read_bytes() == (
+        driven / "recording.csv"
+    ).read_bytes()
 
 
 @pytest.mark.parametrize("command", ["replay", "compare", "check"])
-def test_what_was_driven_is_a_recording_for_other_commands(driven: Path, tmp_path: Path, command: str) -> None:
+def test_what_was_driven_is_a_recording_for_other_commands(
+    driven: Path, tmp_path: Path, command: str
+) -> None:
     out = [] if command == "check" else ["--out", tmp_path / command]
     done = boatsim(command, driven / "recording.csv", *out)
     assert done.exit_code == 0, done.output
@@ -349,7 +400,10 @@ def test_what_was_driven_can_be_diagnosed(driven: Path, tmp_path: Path) -> None:
 
 def test_goals_too_many_for_a_file_are_left_out_of_it_and_what_they_are_of_stays() -> None:
     task = Task("joystick_boat", controller="l1_joystick")
-    many = [(0.02 * i, {"surge_mps": 0.01 * (i % 50), "sway_mps": 0.0, "yaw_radps": 0.0}) for i in range(40_000)]
+    many = [
+        (0.02 * i, {"surge_mps": 0.01 * (i % 50), "sway_mps": 0.0, "yaw_radps": 0.0})
+        for i in range(40_000)
+    ]
     assert task.toml(many, 800.0) is None
     assert "l1_joystick" in str(task.toml([], 800.0)) and "from" not in str(task.toml([], 800.0))
 
@@ -364,17 +418,25 @@ def test_a_port_that_is_taken_is_one_line(tmp_path: Path) -> None:
     assert f"port {port}: " in done.stderr and "without --port" in done.stderr
 
 
-def test_nobody_waits_for_ever_where_the_package_is_missing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_nobody_waits_for_ever_where_the_package_is_missing(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     for name in [n for n in sys.modules if n.partition(".")[0] == "websockets"]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "websockets", None)
     done = boatsim("drive", *JOYSTICK, "--out", tmp_path / "out")
-    assert done.exit_code == 2 and 'pip install "boatsim[drive]"' in done.stderr and done.stderr.count("\n") == 1
+    assert (
+        done.exit_code == 2
+        and 'pip install "boatsim[drive]"' in done.stderr
+        and done.stderr.count("\n") == 1
+    )
 
 
 # In a real browser ----------------------------------------------------------------------------------------------------
 
-in_browser = pytest.mark.skipif(chrome.PROGRAM is None, reason="there is no Chromium on this machine")
+in_browser = pytest.mark.skipif(
+    chrome.PROGRAM is None, reason="there is no Chromium on this machine"
+)
 
 
 @pytest.fixture(scope="module")
@@ -385,7 +447,9 @@ def opened():
         yield browser
 
 
-def test_a_gamepads_stick_arrives_as_a_goal_and_a_closed_page_stops_the_thrusters(opened, tmp_path: Path) -> None:
+def test_a_gamepads_stick_arrives_as_a_goal_and_a_closed_page_stops_the_thrusters(
+    opened, tmp_path: Path
+) -> None:
     with driving(tmp_path / "out", *JOYSTICK, "--seconds", 9) as (running, address):
         page = opened(address)
         page.until("frame && frame.t > 0.5 && !frame.away")
@@ -394,7 +458,9 @@ def test_a_gamepads_stick_arrives_as_a_goal_and_a_closed_page_stops_the_thruster
         page.close()
         said, told = running.communicate(timeout=60)
     assert running.returncode == 0, told
-    assert re.search("page (closed|hidden); commands are neutral", told)  # a tab that goes is hidden first
+    assert re.search(
+        "page (closed|hidden); commands are neutral", told
+    )  # a tab that goes is hidden first
     log = read(tmp_path / "out" / "recording.csv")
     driven = np.isfinite(log["goal_surge_mps"])
     assert log["goal_surge_mps"][driven].max() > 0.6 and log["goal_yaw_radps"][driven].max() > 0.05
@@ -405,14 +471,18 @@ def test_a_gamepads_stick_arrives_as_a_goal_and_a_closed_page_stops_the_thruster
     assert abs(log["actual_thrust_port_N"][-1]) < 1e-3
 
 
-def test_a_hidden_page_lets_go_and_takes_over_again_with_the_sticks_in_the_middle(opened, tmp_path: Path) -> None:
+def test_a_hidden_page_lets_go_and_takes_over_again_with_the_sticks_in_the_middle(
+    opened, tmp_path: Path
+) -> None:
     with driving(tmp_path / "out", "otter", "--seconds", 60) as (running, address):
         page = opened(address)
         page.until("frame && frame.t > 0.3 && !frame.away")
         page.run("push(0, -1, 0, 0)")
         page.until("frame.goals[0][0] > 50")
-        page.run("Object.defineProperty(document, 'hidden', {value: true, configurable: true});"
-                 "document.dispatchEvent(new Event('visibilitychange'))")  # fmt: skip
+        page.run(
+            "Object.defineProperty(document, 'hidden', {value: true, configurable: true});"
+            "document.dispatchEvent(new Event('visibilitychange'))"
+        )
         page.until("frame.away === 'page hidden' && frame.goals[0][0] === 0")
         page.run("Object.defineProperty(document, 'hidden', {value: false})")
         time.sleep(0.3)
@@ -434,7 +504,9 @@ def test_a_run_that_goes_wrong_is_told_to_the_page(opened, tmp_path: Path) -> No
     wild.write_text(WILD)
     with driving(tmp_path / "out", "otter", "--controller", wild) as (running, address):
         page = opened(address)
-        page.until("over.startsWith('The run has ended: controller') && over.includes('out of hand')")
+        page.until(
+            "over.startsWith('The run has ended: controller') && over.includes('out of hand')"
+        )
         assert running.wait(30) == 2
         page.close()
     assert not (tmp_path / "out").exists()

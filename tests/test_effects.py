@@ -12,7 +12,7 @@ import boats
 import numpy as np
 import pytest
 
-from boatsim.diagnose.tried import absent
+from boatsim.diagnosis.candidates import absent
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.base import (
@@ -36,7 +36,12 @@ from boatsim.physics.compose import kinds
 from boatsim.physics.effects.added_mass import AddedMass, ShallowWater
 from boatsim.physics.effects.cross_flow_drag import CrossFlowDrag
 from boatsim.physics.effects.current import Current
-from boatsim.physics.effects.damping import CubicDamping, DampingError, LinearDamping, QuadraticDamping
+from boatsim.physics.effects.damping import (
+    CubicDamping,
+    DampingError,
+    LinearDamping,
+    QuadraticDamping,
+)
 from boatsim.physics.effects.drive_map import PwmThrust
 from boatsim.physics.effects.fan_wind import AIR_DENSITY, FanWind
 from boatsim.physics.effects.rate_limit import SteeringRateLimit
@@ -51,30 +56,57 @@ from boatsim.physics.effects.weak_reverse import WeakReverse
 from boatsim.physics.effects.wind import Wind
 from boatsim.physics.program import Program
 
-SHELF: dict[str, type[Effect]] = {name: content.load_class("effect", name) for name in content.names("effect")}
-DESCRIBED = {n for n, e in SHELF.items() if e.described}  # laws of any words: those of test_described.py
-RANDOM = {"filtered_sea"} | DESCRIBED  # noise knows no sides, nor has an oscillator of its own in the filter
-FORCES = [n for n, e in SHELF.items() if issubclass(e, Force) and not issubclass(e, Unsteady) and n not in RANDOM]
+SHELF: dict[str, type[Effect]] = {
+    name: content.load_class("effect", name) for name in content.names("effect")
+}
+DESCRIBED = {
+    n for n, e in SHELF.items() if e.described
+}  # laws of any words: those of test_described.py
+RANDOM = {
+    "filtered_sea"
+} | DESCRIBED  # noise knows no sides, nor has an oscillator of its own in the filter
+FORCES = [
+    n
+    for n, e in SHELF.items()
+    if issubclass(e, Force) and not issubclass(e, Unsteady) and n not in RANDOM
+]
 CHANNELS = [n for n, e in SHELF.items() if issubclass(e, Channel)]
 FLOWS = [n for n, e in SHELF.items() if issubclass(e, Flow)]
 REACTIONS = [n for n, e in SHELF.items() if issubclass(e, Reaction)]
 INERTIAS = [n for n, e in SHELF.items() if issubclass(e, Inertia)]
-SUSPECTS = [n for n, e in SHELF.items() if n not in DESCRIBED and any(p.fit for p in e.params().values())]
+SUSPECTS = [
+    n for n, e in SHELF.items() if n not in DESCRIBED and any(p.fit for p in e.params().values())
+]
 
 # What a mirror at the boat's plane of symmetry does. A parameter that points to starboard or clockwise changes its
 # sign: name it here when an effect brings a new one, with its effect where others mean something else by it. Pairs
 # named port and starboard change places.
 TO_STARBOARD = {
-    "thruster.y", "propeller.y",
-    "toward", "east", "list", "side_force_per_thrust", "thrust_imbalance.fraction", "Y_0", "Y_0u", "Y_0uu", "N_0",
-    "N_0u", "N_0uu", "steering_offset.middle", "steering_offset.gain", "steering_asymmetry.gain",
-}  # fmt: skip
+    "thruster.y",
+    "propeller.y",
+    "toward",
+    "east",
+    "list",
+    "side_force_per_thrust",
+    "thrust_imbalance.fraction",
+    "Y_0",
+    "Y_0u",
+    "Y_0uu",
+    "N_0",
+    "N_0u",
+    "N_0uu",
+    "steering_offset.middle",
+    "steering_offset.gain",
+    "steering_asymmetry.gain",
+}
 TO_STARBOARD |= {
     f"mmg_low_speed_propeller.{axis}_{form}"
     for axis in "YN"
     for form in ("low", "low_J", "mid", "mid_J", "high", "braked", "braked_J", "braked_JJ")
 }
-TO_STARBOARD |= {f"{name}.{axis}" for name in ("push", "steady_force") for axis in ("sway", "yaw", "roll")}
+TO_STARBOARD |= {
+    f"{name}.{axis}" for name in ("push", "steady_force") for axis in ("sway", "yaw", "roll")
+}
 TURNS_SIGN = {"y", "phi", "psi", "v", "p", "r", "vr", "sin_psi"}  # of motions and signals
 TURNS_SIGN |= {"angle", "sin_angle", "comes_from", "sin_comes_from"}
 MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])  # of a wrench
@@ -90,17 +122,26 @@ SI = {"rad", "m", "kg", "s", "N"}
 def drawn(kind: type[Effect], seed: int) -> Any:
     """An effect with random parameters, none of them zero."""
     rng = np.random.default_rng(seed)
-    bounds = {n: (max(p.low, min(p.high, -1.5)), min(p.high, 2.0)) for n, p in kind.params().items()}
-    values = {n: low if low >= high else float(rng.uniform(low, high)) for n, (low, high) in bounds.items()}
+    bounds = {
+        n: (max(p.low, min(p.high, -1.5)), min(p.high, 2.0)) for n, p in kind.params().items()
+    }
+    values = {
+        n: low if low >= high else float(rng.uniform(low, high))
+        for n, (low, high) in bounds.items()
+    }
     if "dead" in values and "span" in values:
-        values["dead"] *= values["span"] / 2.5  # a drive that is dead over all of its span is refused
+        values["dead"] *= (
+            values["span"] / 2.5
+        )  # a drive that is dead over all of its span is refused
     return kind(**values)
 
 
 def drawn_motion(seed: int) -> dict[str, float]:
     """A random motion in all six freedoms."""
     names = ("z", "phi", "theta", "psi", "u", "v", "w", "p", "q", "r")
-    return dict(zip(names, np.random.default_rng(seed).uniform(-1.0, 1.0, len(names)).tolist(), strict=True))
+    return dict(
+        zip(names, np.random.default_rng(seed).uniform(-1.0, 1.0, len(names)).tolist(), strict=True)
+    )
 
 
 RANGES = {
@@ -158,7 +199,9 @@ def mirrored(effect: Any) -> Any:
     image = {}
     for name in kind.params():
         steers = swapped(name) != name and getattr(kind, "acts_on", "") == "angle"
-        turns = steers or name in WALLS or not TO_STARBOARD.isdisjoint({name, f"{kind.idea()}.{name}"})
+        turns = (
+            steers or name in WALLS or not TO_STARBOARD.isdisjoint({name, f"{kind.idea()}.{name}"})
+        )
         image[swapped(name)] = (-1.0 if turns else 1.0) * getattr(effect, name)
     return replace(effect, **image)
 
@@ -173,13 +216,20 @@ def on_a_vessel(effect: Effect) -> Any:
     raise AssertionError(f"no vessel can take {effect.name}")
 
 
-def courses(effect: Any, commands: list[float], dt: float, side: float = 0.0, source: float = 0.0) -> list[Course]:
+def courses(
+    effect: Any, commands: list[float], dt: float, side: float = 0.0, source: float = 0.0
+) -> list[Course]:
     """What a channel makes of commands held for dt [s] each, from a memory at zero."""
     memory, values = np.zeros(max(type(effect).slots, 1)), effect.values()
-    return [Course(*type(effect).channel(Course(x, x, x), side, source, memory, 0, dt, values)) for x in commands]
+    return [
+        Course(*type(effect).channel(Course(x, x, x), side, source, memory, 0, dt, values))
+        for x in commands
+    ]
 
 
-def stepped(effect: Any, commands: list[float], dt: float, side: float = 0.0, source: float = 0.0) -> list[float]:
+def stepped(
+    effect: Any, commands: list[float], dt: float, side: float = 0.0, source: float = 0.0
+) -> list[float]:
     """The same as means over each step."""
     return [mean_of(x) for x in courses(effect, commands, dt, side, source)]
 
@@ -189,7 +239,9 @@ def stepped(effect: Any, commands: list[float], dt: float, side: float = 0.0, so
 
 @pytest.mark.parametrize("name", FORCES)
 @pytest.mark.parametrize("seed", range(5))
-def test_mirror_image_of_the_motion_gives_the_mirror_image_of_the_force(name: str, seed: int) -> None:
+def test_mirror_image_of_the_motion_gives_the_mirror_image_of_the_force(
+    name: str, seed: int
+) -> None:
     effect, given = drawn(SHELF[name], seed), drawn_motion(seed)
     seen = effect.wrench(motion(current=(0.2, 0.1), **given), *arguments(SHELF[name], seed))
     turned = motion(current=(0.2, -0.1), **mirrored_motion(given))
@@ -200,12 +252,16 @@ def test_mirror_image_of_the_motion_gives_the_mirror_image_of_the_force(name: st
 
 @pytest.mark.parametrize("name", REACTIONS)
 @pytest.mark.parametrize("seed", range(5))
-def test_mirror_image_of_motion_and_forces_gives_the_mirror_image_of_the_reaction(name: str, seed: int) -> None:
+def test_mirror_image_of_motion_and_forces_gives_the_mirror_image_of_the_reaction(
+    name: str, seed: int
+) -> None:
     effect, given = drawn(SHELF[name], seed), drawn_motion(seed)
     others = np.random.default_rng(seed).uniform(-1.0, 1.0, 6)
     seen = type(effect).reaction(motion(**given), Wrench(*others), effect.values())
     turned = Wrench(*(MIRROR * others))
-    image = type(effect).reaction(motion(**mirrored_motion(given)), turned, mirrored(effect).values())
+    image = type(effect).reaction(
+        motion(**mirrored_motion(given)), turned, mirrored(effect).values()
+    )
     assert any(seen)
     assert image == pytest.approx(MIRROR * seen, rel=1e-12, abs=1e-12)
 
@@ -217,16 +273,26 @@ def in_a_current(given: dict[str, float], north: float, east: float) -> dict[str
     """The same motion through water that flows: carried along over the ground since t = 0."""
     c, s = cos(given["psi"]), sin(given["psi"])
     moved = {"x": given["x"] + north * given["t"], "y": given["y"] + east * given["t"]}
-    return given | moved | {"u": given["u"] + c * north + s * east, "v": given["v"] + c * east - s * north}
+    return (
+        given
+        | moved
+        | {"u": given["u"] + c * north + s * east, "v": given["v"] + c * east - s * north}
+    )
 
 
 @pytest.mark.parametrize(
     "name", [n for n, e in SHELF.items() if issubclass(e, Force | Reaction) and n not in DESCRIBED]
 )
 @pytest.mark.parametrize("seed", range(3))
-def test_a_uniform_current_changes_no_force_but_of_what_holds_on_to_the_world(name: str, seed: int) -> None:
+def test_a_uniform_current_changes_no_force_but_of_what_holds_on_to_the_world(
+    name: str, seed: int
+) -> None:
     """Inertia over ground feels the current turn in body axes: its Coriolis force changes by -M (omega x v_c)."""
-    kind, effect, given = SHELF[name], drawn(SHELF[name], seed), drawn_motion(seed) | {"t": 3.0, "x": 0.4, "y": -0.3}
+    kind, effect, given = (
+        SHELF[name],
+        drawn(SHELF[name], seed),
+        drawn_motion(seed) | {"t": 3.0, "x": 0.4, "y": -0.3},
+    )
     if "course_kept" in kind.params():  # then the waves are met as on a course laid down beforehand
         effect = replace(effect, course_kept=0.0)
     still, carried = motion(**given), motion(current=(0.7, -0.4), **in_a_current(given, 0.7, -0.4))
@@ -240,7 +306,9 @@ def test_a_uniform_current_changes_no_force_but_of_what_holds_on_to_the_world(na
     wanted = np.zeros(6)
     if getattr(kind, "moves_with", "") == "hull":
         flow = np.array([carried.u - still.u, carried.v - still.v, 0.0])
-        wanted = effect.matrix() @ np.append(-np.cross([still.p, still.q, still.r], flow), np.zeros(3))
+        wanted = effect.matrix() @ np.append(
+            -np.cross([still.p, still.q, still.r], flow), np.zeros(3)
+        )
     same = after - before == pytest.approx(wanted, abs=1e-12 * max(1.0, np.abs(before).max()))
     anchor = getattr(kind, "anchored", "")
     assert same != bool(anchor), anchor or after - before
@@ -248,7 +316,9 @@ def test_a_uniform_current_changes_no_force_but_of_what_holds_on_to_the_world(na
 
 @pytest.mark.parametrize("name", CHANNELS)
 @pytest.mark.parametrize("seed", range(5))
-def test_mirror_image_of_a_command_gives_the_mirror_image_of_the_signal(name: str, seed: int) -> None:
+def test_mirror_image_of_a_command_gives_the_mirror_image_of_the_signal(
+    name: str, seed: int
+) -> None:
     effect = drawn(SHELF[name], seed)
     sign = -1.0 if type(effect).acts_on == "angle" else 1.0
     rng = np.random.default_rng(seed)
@@ -281,7 +351,9 @@ def test_inertia_is_symmetric_and_takes_no_energy(name: str) -> None:
 def test_coriolis_force_of_an_inertia_does_no_work(name: str, seed: int) -> None:
     m = motion(current=(0.0, 0.0), **drawn_motion(seed))
     effect = drawn(SHELF[name], seed)
-    force = np.array(effect.wrench(m)) - np.array(effect.wrench(motion()))  # less the weight of what has one
+    force = np.array(effect.wrench(m)) - np.array(
+        effect.wrench(motion())
+    )  # less the weight of what has one
     assert hypot(force[0], force[1]) > 1e-6
     power = np.dot(force, (m.ur, m.vr, m.wr, m.p, m.q, m.r))
     assert power == pytest.approx(0.0, abs=1e-12)
@@ -333,15 +405,25 @@ def test_parameters_lie_inside_their_bounds_and_say_what_they_are(name: str) -> 
         kind(**start)
 
 
-MACHINES = {"thrust", "throttle", "shaft", "bucket", "angle"}  # roles of what a machine or a rudder does
+MACHINES = {
+    "thrust",
+    "throttle",
+    "shaft",
+    "bucket",
+    "angle",
+}  # roles of what a machine or a rudder does
 DRIVES = [n for n, e in SHELF.items() if issubclass(e, Force) and not MACHINES.isdisjoint(e.roles)]
 
 
-CORRECTIONS = {"speed_scaled_steering"}  # what the vessel's own rudder and hull lack: zero unless it is fitted itself
+CORRECTIONS = {
+    "speed_scaled_steering"
+}  # what the vessel's own rudder and hull lack: zero unless it is fitted itself
 
 
 @pytest.mark.parametrize("name", [n for n in DRIVES if n not in CORRECTIONS])
-def test_every_thruster_jet_and_rudder_has_a_coefficient_of_thrust_that_may_be_off(name: str) -> None:
+def test_every_thruster_jet_and_rudder_has_a_coefficient_of_thrust_that_may_be_off(
+    name: str,
+) -> None:
     assert any(p.calibrates == "thrust" for p in SHELF[name].params().values())
 
 
@@ -354,9 +436,13 @@ def test_a_correction_of_a_rudder_is_fitted_itself_and_absent_otherwise(name: st
 def test_a_setting_out_of_bounds_or_misspelt_is_refused_in_words(name: str) -> None:
     kind = SHELF[name]
     key, about = next(iter(kind.params().items()))
-    with pytest.raises(BadInput, match=re.escape(f"; allowed {about.low:g} to {about.high:g}")) as refused:
+    with pytest.raises(
+        BadInput, match=re.escape(f"; allowed {about.low:g} to {about.high:g}")
+    ) as refused:
         kind.from_settings({key: 2.0 * about.high + 1.0})
-    assert str(refused.value).startswith(f"{kind.__name__}.{key} = ") and about.words in str(refused.value)
+    assert str(refused.value).startswith(f"{kind.__name__}.{key} = ") and about.words in str(
+        refused.value
+    )
     with pytest.raises(BadInput, match=f"did you mean '{key}'"):
         kind.from_settings({f"{key}_": about.low})
     for wrong in (float("nan"), "1", True):
@@ -368,14 +454,16 @@ def test_a_setting_out_of_bounds_or_misspelt_is_refused_in_words(name: str) -> N
 
 
 def test_linear_damping_is_a_matrix_times_the_velocity() -> None:
-    force = LinearDamping(surge=3, sway=10, yaw=0.8, roll=2, sway_by_yaw=0.5, yaw_by_sway=-0.3).wrench(
-        motion(u=0.2, v=0.1, p=0.3, r=-0.4)
-    )
+    force = LinearDamping(
+        surge=3, sway=10, yaw=0.8, roll=2, sway_by_yaw=0.5, yaw_by_sway=-0.3
+    ).wrench(motion(u=0.2, v=0.1, p=0.3, r=-0.4))
     assert force == pytest.approx(Wrench(X=-0.6, Y=-1.0 + 0.2, K=-0.6, N=0.32 + 0.03))
 
 
 @pytest.mark.parametrize(("kind", "power"), [(QuadraticDamping, 2), (CubicDamping, 3)])
-def test_damping_grows_with_a_power_of_the_speed_and_opposes_it(kind: type[Force], power: int) -> None:
+def test_damping_grows_with_a_power_of_the_speed_and_opposes_it(
+    kind: type[Force], power: int
+) -> None:
     effect = kind(surge=2, sway=3, yaw=5, roll=7)  # type: ignore[call-arg]
     one = effect.wrench(motion(u=0.3, v=-0.3, p=0.3, r=-0.3))
     assert one == pytest.approx([k * 0.3**power for k in (-2, 3, 0, -7, 0, 5)])
@@ -384,16 +472,22 @@ def test_damping_grows_with_a_power_of_the_speed_and_opposes_it(kind: type[Force
 
 
 def test_surge_drag() -> None:
-    assert SurgeDrag(linear=0.5, quadratic=2).wrench(motion(u=-0.4, v=1.0)) == pytest.approx(Wrench(X=0.2 + 0.32))
+    assert SurgeDrag(linear=0.5, quadratic=2).wrench(motion(u=-0.4, v=1.0)) == pytest.approx(
+        Wrench(X=0.2 + 0.32)
+    )
 
 
 def test_damping_error_multiplies_the_vessels_own_damping() -> None:
     boat = vessel.load("trial_boat")
     own, m = boat.effect("linear_damping"), motion(u=0.3, v=-0.2, r=0.5)
     assert isinstance(own, LinearDamping)
-    off = vessel.added(boat, DampingError(surge_factor=1.4, sway_factor=0.7, yaw_factor=2.0)).effect("linear_damping")
+    off = vessel.added(
+        boat, DampingError(surge_factor=1.4, sway_factor=0.7, yaw_factor=2.0)
+    ).effect("linear_damping")
     assert isinstance(off, LinearDamping)
-    assert off.wrench(m) == replace(own, surge=1.4 * own.surge, sway=0.7 * own.sway, yaw=2.0 * own.yaw).wrench(m)
+    assert off.wrench(m) == replace(
+        own, surge=1.4 * own.surge, sway=0.7 * own.sway, yaw=2.0 * own.yaw
+    ).wrench(m)
 
 
 def test_righting_arm_rests_at_its_list() -> None:
@@ -411,9 +505,15 @@ def test_righting_arm_stiffening_bends_the_vessels_own_curve() -> None:
 
 @pytest.mark.parametrize(
     ("kind", "boat"),
-    [(ThrustGainError, "mariner"), (RightingArmStiffening, "trial_boat"), (ShallowWater, "mariner")],
+    [
+        (ThrustGainError, "mariner"),
+        (RightingArmStiffening, "trial_boat"),
+        (ShallowWater, "mariner"),
+    ],
 )
-def test_an_effect_that_changes_another_says_which_one_is_missing(kind: type[Effect], boat: str) -> None:
+def test_an_effect_that_changes_another_says_which_one_is_missing(
+    kind: type[Effect], boat: str
+) -> None:
     with pytest.raises(BadInput, match=f"{boat}: {kind.idea()} needs a vessel with"):
         kind().completed(vessel.load(boat))
 
@@ -448,7 +548,10 @@ def test_coriolis_force_is_the_published_matrix() -> None:
 def test_a_current_moves_the_water_and_pushes_a_boat_only_through_it() -> None:
     assert Current.flow(Current(north=0.3, east=-0.1).values()) == (0.3, -0.1)
     drifting = motion(
-        current=(0.3, -0.1), psi=0.7, u=0.3 * cos(0.7) - 0.1 * sin(0.7), v=-0.1 * cos(0.7) - 0.3 * sin(0.7)
+        current=(0.3, -0.1),
+        psi=0.7,
+        u=0.3 * cos(0.7) - 0.1 * sin(0.7),
+        v=-0.1 * cos(0.7) - 0.3 * sin(0.7),
     )
     assert LinearDamping(surge=3, sway=10).wrench(drifting) == pytest.approx(Wrench(), abs=1e-15)
 
@@ -494,7 +597,9 @@ def test_fan_wind_ahead_and_abeam() -> None:
     astern = FanWind(speed=3.0, toward=0.0, front=0.02, side=0.1, arm=-0.05)
     assert astern.wrench(motion()) == pytest.approx(Wrench(X=0.5 * AIR_DENSITY * 9 * 0.02))
     Y = 0.5 * AIR_DENSITY * 9 * 0.1
-    assert replace(astern, toward=pi / 2).wrench(motion()) == pytest.approx(Wrench(Y=Y, N=-0.05 * Y))
+    assert replace(astern, toward=pi / 2).wrench(motion()) == pytest.approx(
+        Wrench(Y=Y, N=-0.05 * Y)
+    )
 
 
 @pytest.mark.parametrize("psi", [0.0, 0.8, -2.0])
@@ -520,13 +625,17 @@ def signals(kind: type[Effect], **given: float) -> Any:
 @pytest.mark.parametrize("angle", [0.0, 0.3, -2.0, pi])
 def test_a_thruster_is_a_force_at_its_place(angle: float) -> None:
     force = 1.2 * -0.5 * np.array([cos(angle), sin(angle), 0.0])
-    seen = Thruster(x=-0.5, y=0.2, z=0.1, gain=1.2).wrench(motion(), signals(Thruster, thrust=-0.5, angle=angle))
+    seen = Thruster(x=-0.5, y=0.2, z=0.1, gain=1.2).wrench(
+        motion(), signals(Thruster, thrust=-0.5, angle=angle)
+    )
     assert seen == pytest.approx([*force, *np.cross([-0.5, 0.2, 0.1], force)], abs=1e-15)
 
 
 def test_pwm_curve() -> None:
     curve = PwmThrust(at_span=0.6, span=150.0, dead=30.0, exponent=2.0)
-    thrust = [stepped(curve, [0.0], 0.02, 1.0, pwm)[0] for pwm in (0.0, 30.0, 90.0, 150.0, 255.0, -150.0)]
+    thrust = [
+        stepped(curve, [0.0], 0.02, 1.0, pwm)[0] for pwm in (0.0, 30.0, 90.0, 150.0, 255.0, -150.0)
+    ]
     assert thrust == pytest.approx([0.0, 0.0, 0.15, 0.6, 0.6 * 1.875**2, -0.6])
     assert stepped(curve, [0.4], 0.02, 1.0, 150.0) == [1.0]
 
@@ -538,14 +647,18 @@ def test_weak_reverse(command: float, thrust: float) -> None:
 
 def test_imbalance_and_gain_error() -> None:
     uneven = ThrustImbalance(fraction=0.1)
-    assert [stepped(uneven, [2.0], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx([2.2, 1.8])
+    assert [stepped(uneven, [2.0], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx(
+        [2.2, 1.8]
+    )
     gained = vessel.added(vessel.load("trial_boat"), ThrustGainError(factor=1.3))
     assert [e.gain for e in gained.all_of("thruster")] == [1.3, 1.3]  # type: ignore[attr-defined]
 
 
 def test_steering_offset_of_each_side() -> None:
     offset = SteeringOffset(port=0.1, starboard=-0.2)
-    assert [stepped(offset, [0.3], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx([0.4, 0.1])
+    assert [stepped(offset, [0.3], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx(
+        [0.4, 0.1]
+    )
 
 
 @pytest.mark.parametrize("dt", [0.02, 0.1, 1.0])
@@ -588,7 +701,9 @@ def test_servo_turns_at_its_rate_until_the_lag_takes_over() -> None:
     angles = positions(Servo(range=1.0, rate=0.5, lag=0.2), [1.0] * 400, 0.01)
     turning = np.diff(angles) / 0.01
     assert turning.max() <= 0.5 + 1e-9
-    assert turning[:100] == pytest.approx(0.5)  # the lag alone would turn faster: (1 - angle) / lag > rate
+    assert turning[:100] == pytest.approx(
+        0.5
+    )  # the lag alone would turn faster: (1 - angle) / lag > rate
     assert angles[-1] == pytest.approx(1.0, abs=1e-3)
 
 
@@ -597,7 +712,9 @@ def test_servo_lag_alone_is_the_first_order_response() -> None:
     assert angles == pytest.approx(0.5 * (1.0 - np.exp(-0.01 * np.arange(21) / 0.06)), abs=1e-12)
 
 
-@pytest.mark.parametrize("limit", [SteeringRateLimit(rate=0.3), Servo(range=0.8, rate=0.3, lag=0.0)], ids=repr)
+@pytest.mark.parametrize(
+    "limit", [SteeringRateLimit(rate=0.3), Servo(range=0.8, rate=0.3, lag=0.0)], ids=repr
+)
 def test_what_has_reached_its_command_asks_for_no_shorter_step(limit: Any) -> None:
     for x in np.random.default_rng(0).uniform(-0.8, 0.8, 1000).tolist():
         assert mean_of(Course(x, x, x)) == x
@@ -613,7 +730,9 @@ def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
     values, on = program.values(), program.switches()
     for _ in range(3):
-        program.module.actuate_in_place(program.command_array(commands), memory, 1e4, values, on, act)
+        program.module.actuate_in_place(
+            program.command_array(commands), memory, 1e4, values, on, act
+        )
     return dict(zip(boat.actuators, act.tolist(), strict=False))
 
 
@@ -621,11 +740,16 @@ def actuated(boat: vessel.Vessel, commands: dict[str, float]) -> dict[str, float
 def test_maps_from_raw_commands_act_first_wherever_they_stand(tmp_path: Any, first: str) -> None:
     order = [first, "pwm_thrust" if first == "weak_reverse" else "weak_reverse"]
     fed = {"on": "thrust_port_N", "fed_by": "pwm_port"}
-    values = {"weak_reverse": {"astern_factor": 0.5}, "pwm_thrust": {"at_span": 1.0, "span": 150.0} | fed}
+    values = {
+        "weak_reverse": {"astern_factor": 0.5},
+        "pwm_thrust": {"at_span": 1.0, "span": 150.0} | fed,
+    }
     pwm = "[channels]\npwm_port = { low = -255.0, high = 255.0 }"
     folder = boats.written(tmp_path, "ordered", boats.PLANAR.replace("[channels]", pwm))
     boat = vessel.load(str(folder), extra=[{"use": name} | values[name] for name in order])
-    settled = actuated(boat, {"thrust_port_N": -1.0, "pwm_port": -150.0, "thrust_starboard_N": -1.0})
+    settled = actuated(
+        boat, {"thrust_port_N": -1.0, "pwm_port": -150.0, "thrust_starboard_N": -1.0}
+    )
     # the thrust beside what the PWM gives, weakened together
     assert settled["thrust_port_N"] == pytest.approx(0.5 * -2.0)
     assert settled["thrust_starboard_N"] == -0.5

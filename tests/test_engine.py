@@ -20,9 +20,9 @@ from boatsim.physics.base import Array
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State, installed
 from boatsim.simulate.run import run
-from boatsim.simulate.twin import Twin
 from boatsim.simulate.world import Tank
 
 EXTRA: dict[str, dict[str, float]] = {
@@ -33,7 +33,10 @@ EXTRA: dict[str, dict[str, float]] = {
 }
 NEUTRAL = {"current": {"north": 0.0, "east": 0.0}, "fan_wind": {"front": 0.0, "side": 0.0}}
 VESSELS = [
-    *(("joystick_boat", loads) for loads in [("light",), ("heavy",), ("light", "wide"), ("heavy", "wide")]),
+    *(
+        ("joystick_boat", loads)
+        for loads in [("light",), ("heavy",), ("light", "wide"), ("heavy", "wide")]
+    ),
     *((name, ()) for name in content.names("vessel") if name != "joystick_boat"),
 ]
 START = State(x=0.1, y=-0.2, psi=0.4, phi=0.1, u=0.2, v=-0.1, p=0.05, r=0.3)
@@ -45,7 +48,9 @@ def on_water(name: str, loads: tuple[str, ...] = (), *without: str) -> Vessel:
     if name != "joystick_boat":
         return vessel.load(name, loads)
     return vessel.load(
-        name, loads, extra=[{"use": n, **v, **(NEUTRAL[n] if n in without else {})} for n, v in EXTRA.items()]
+        name,
+        loads,
+        extra=[{"use": n, **v, **(NEUTRAL[n] if n in without else {})} for n, v in EXTRA.items()],
     )
 
 
@@ -76,7 +81,9 @@ def sailed(engine: Engine, rows: Array, steps: int, start: State = START) -> Arr
 
 
 @pytest.mark.parametrize(("name", "loads"), few(VESSELS, 5))
-def test_native_and_python_callback_give_the_same_numbers(name: str, loads: tuple[str, ...]) -> None:
+def test_native_and_python_callback_give_the_same_numbers(
+    name: str, loads: tuple[str, ...]
+) -> None:
     boat = on_water(name, loads)
     fast, plain = Engine(boat), Engine(boat, callback="python")
     assert isinstance(plain.callback, FunctionType)
@@ -86,7 +93,9 @@ def test_native_and_python_callback_give_the_same_numbers(name: str, loads: tupl
 
 
 @pytest.mark.parametrize(("name", "loads"), few(VESSELS, 5))
-def test_engine_and_twin_agree_over_20_s_of_random_commands(name: str, loads: tuple[str, ...]) -> None:
+def test_engine_and_twin_agree_over_20_s_of_random_commands(
+    name: str, loads: tuple[str, ...]
+) -> None:
     boat = on_water(name, loads)
     rows = held_commands(boat, 200, seed=2)
     engine = sailed(Engine(boat), rows, 5)
@@ -99,7 +108,9 @@ def test_engine_and_twin_agree_over_20_s_of_random_commands(name: str, loads: tu
 def test_what_is_only_looked_at_changes_no_number() -> None:
     boat = on_water("joystick_boat")
     rows = held_commands(boat, 20, seed=3)
-    seen, bare = (sailed(Engine(boat, Tank(20, 20, 0.1), show=show), rows, 5) for show in (True, False))
+    seen, bare = (
+        sailed(Engine(boat, Tank(20, 20, 0.1), show=show), rows, 5) for show in (True, False)
+    )
     assert (seen == bare).all()
 
 
@@ -129,9 +140,14 @@ def test_accelerometer_feels_the_acceleration_over_ground(tmp_path: Path) -> Non
 
 # Walls
 
-ELASTIC: dict[str, Any] = {"wall_solref": (-2000.0, 0.0), "friction": 0.0}  # [1/s^2] stiffness, no damping
+ELASTIC: dict[str, Any] = {
+    "wall_solref": (-2000.0, 0.0),
+    "friction": 0.0,
+}  # [1/s^2] stiffness, no damping
 ADDED = {"added_mass": {"surge": 0.6, "sway": 3.0, "yaw": 0.3, "sway_at": 0.1}}
-MASS = np.array([[6.6, 0.0, 0.0], [0.0, 9.0, 0.3], [0.0, 0.3, 0.8 + 3.0 * 0.1**2]])  # M_RB + M_A of that boat
+MASS = np.array(
+    [[6.6, 0.0, 0.0], [0.0, 9.0, 0.3], [0.0, 0.3, 0.8 + 3.0 * 0.1**2]]
+)  # M_RB + M_A of that boat
 
 
 def momentum(s: State) -> Array:
@@ -149,7 +165,11 @@ def energy(s: State) -> float:
 
 def contact_force(engine: Engine, probe: Any) -> tuple[Array, int]:
     """MuJoCo's own contact force now, SNAME, moment about the earth's origin; and the number of contacts."""
-    probe.qpos[:], probe.qvel[:], probe.userdata[:] = engine.data.qpos, engine.data.qvel, engine.data.userdata
+    probe.qpos[:], probe.qvel[:], probe.userdata[:] = (
+        engine.data.qpos,
+        engine.data.qvel,
+        engine.data.userdata,
+    )
     with installed(engine.callback):
         mujoco.mj_forward(engine.model, probe)
     X, Y, N = probe.qfrc_constraint * (1.0, -1.0, -1.0)
@@ -184,7 +204,9 @@ def test_impulse_of_an_elastic_wall(tmp_path: Path, start: State, callback: str)
     change = momentum(engine.state) - momentum(start)
     assert abs(change[0]) > 1.0  # [N s]
     assert impulse == pytest.approx(change, abs=0.01 * float(np.abs(change).max()))
-    assert change[1] == pytest.approx(0.0, abs=1e-3)  # a frictionless wall across x pushes along x only
+    assert change[1] == pytest.approx(
+        0.0, abs=1e-3
+    )  # a frictionless wall across x pushes along x only
     assert energy(engine.state) == pytest.approx(energy(start), rel=0.01)
 
 
@@ -208,7 +230,10 @@ MIRROR = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 def mirror_commands(boat: Vessel, rows: Array) -> Array:
     """Port and starboard change places; angles change sign."""
     names = list(boat.commands)
-    other = [n.replace("starboard", "port") if "starboard" in n else n.replace("port", "starboard") for n in names]
+    other = [
+        n.replace("starboard", "port") if "starboard" in n else n.replace("port", "starboard")
+        for n in names
+    ]
     sign = [-1.0 if n in boat.angles else 1.0 for n in names]
     return rows[:, [names.index(n) for n in other]] * sign
 
@@ -217,7 +242,10 @@ def test_mirror_image_of_commands_and_weather_gives_the_mirror_image_of_the_run(
     boat = on_water("joystick_boat")
     image = vessel.load(
         "joystick_boat",
-        extra=[{"use": n} | v | {k: -v[k] for k in ("toward", "east") if k in v} for n, v in EXTRA.items()],
+        extra=[
+            {"use": n} | v | {k: -v[k] for k in ("toward", "east") if k in v}
+            for n, v in EXTRA.items()
+        ],
     )
     rows = held_commands(boat, 100, seed=4)
     mirrored_start = START._replace(y=-START.y, psi=-START.psi, v=-START.v, r=-START.r)
@@ -226,7 +254,10 @@ def test_mirror_image_of_commands_and_weather_gives_the_mirror_image_of_the_run(
 
 
 def test_a_uniform_current_only_carries_the_boat_along() -> None:
-    still, moving = on_water("joystick_boat", (), "current", "fan_wind"), on_water("joystick_boat", (), "fan_wind")
+    still, moving = (
+        on_water("joystick_boat", (), "current", "fan_wind"),
+        on_water("joystick_boat", (), "fan_wind"),
+    )
     north, east = EXTRA["current"]["north"], EXTRA["current"]["east"]
     c, s = cos(START.psi), sin(START.psi)
     carried = START._replace(u=START.u + c * north + s * east, v=START.v + c * east - s * north)
@@ -248,23 +279,38 @@ def test_joints_are_z_up_and_states_are_sname(tmp_path: Path) -> None:
     assert engine.state == pytest.approx(START)
 
 
-def test_positive_heading_is_clockwise_and_positive_y_is_to_starboard_in_mujoco(tmp_path: Path) -> None:
+def test_positive_heading_is_clockwise_and_positive_y_is_to_starboard_in_mujoco(
+    tmp_path: Path,
+) -> None:
     engine = Engine(boats.planar(tmp_path))
     engine.reset(State(x=1.0, y=2.0, psi=0.5, u=0.3))
     mujoco.mj_forward(engine.model, engine.data)
     hull = engine.data.body("hull")
     assert hull.xpos == pytest.approx([1.0, -2.0, 0.0])
-    assert hull.xmat.reshape(3, 3)[:, 0] == pytest.approx([cos(0.5), -sin(0.5), 0.0])  # where the bow points
+    assert hull.xmat.reshape(3, 3)[:, 0] == pytest.approx(
+        [cos(0.5), -sin(0.5), 0.0]
+    )  # where the bow points
     assert hull.xmat.reshape(3, 3)[:, 2] == pytest.approx([0.0, 0.0, 1.0])
 
 
-def test_more_port_thrust_turns_to_starboard_and_steering_to_starboard_pushes_there(tmp_path: Path) -> None:
+def test_more_port_thrust_turns_to_starboard_and_steering_to_starboard_pushes_there(
+    tmp_path: Path,
+) -> None:
     engine = Engine(boats.planar(tmp_path))
     engine.reset(None, {"thrust_port_N": 1.0, "thrust_starboard_N": -1.0})
     engine.advance(10)
     assert engine.state.r > 0 and engine.data.qvel[2] < 0
     engine.reset(
-        None, {n: 1.5 for n in ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")}
+        None,
+        {
+            n: 1.5
+            for n in (
+                "thrust_port_N",
+                "thrust_starboard_N",
+                "steer_port_rad",
+                "steer_starboard_rad",
+            )
+        },
     )
     engine.advance(10)
     assert engine.state.v > 0 and engine.data.body("hull").xpos[1] < 0
@@ -302,7 +348,9 @@ def test_the_callback_is_there_only_while_stepping(tmp_path: Path, callback: str
     assert mujoco.get_mjcb_passive() is None
 
 
-def test_the_callback_is_taken_out_after_an_exception(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_callback_is_taken_out_after_an_exception(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     engine = Engine(boats.planar(tmp_path))
     inside: list[bool] = []
 
@@ -347,7 +395,9 @@ def test_a_run_works_out_its_state_once_a_step(monkeypatch: pytest.MonkeyPatch) 
     assert len(asked) == done.steps == 100
 
 
-def test_a_motion_that_is_no_longer_finite_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_motion_that_is_no_longer_finite_is_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)  # MuJoCo writes its warning into the working directory
     engine = Engine(boats.planar(tmp_path))
     engine.reset(State(u=1e200))

@@ -29,10 +29,19 @@ from boatsim.simulate.scenario import Scenario
 from dm_control import mujoco as dm_mujoco
 from dm_control.rl.control import PhysicsError
 
-CHANNELS = ["thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad", "pwm_port", "pwm_starboard"]
+CHANNELS = [
+    "thrust_port_N",
+    "thrust_starboard_N",
+    "steer_port_rad",
+    "steer_starboard_rad",
+    "pwm_port",
+    "pwm_starboard",
+]
 AHEAD = np.array([0.0, 0.0, 0.3, -0.2, 150.0, 120.0])  # outboards at different angles
 POSE = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
-NO_DISPLAY = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "MUJOCO_GL")}
+NO_DISPLAY = {
+    k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "MUJOCO_GL")
+}
 
 
 @pytest.fixture(autouse=True)
@@ -78,7 +87,10 @@ class TestFlatConformance(test_utils.EnvironmentTestMixin, unittest.TestCase):  
     [
         ("joystick_boat/sway_1", {}),
         ("joystick_boat/yaw_1_as_published", {}),  # begins with its servos parked at an angle
-        ("joystick_boat/sway_1", {"tank": {"length": 1.5, "width": 1.0, "centre": [0.1, 0.0]}}),  # runs into the wall
+        (
+            "joystick_boat/sway_1",
+            {"tank": {"length": 1.5, "width": 1.0, "centre": [0.1, 0.0]}},
+        ),  # runs into the wall
         ("joystick_boat/sway_1", {"start": {"x": 0.1, "psi": 0.3, "u": 0.1, "v": -0.1, "r": 0.2}}),
     ],
     ids=["sway", "as published", "into the wall", "moving start"],
@@ -86,7 +98,9 @@ class TestFlatConformance(test_utils.EnvironmentTestMixin, unittest.TestCase):  
 def test_commands_of_a_scenario_give_its_trajectory(name: str, more: dict[str, Any]) -> None:
     one = short(name, 12.0, **more)
     rows = run(one).recording
-    actions = taken_rows(one.vessel, rows.signals, len(rows))[:600:4]  # steps of 20 ms, a new command every 80 ms
+    actions = taken_rows(one.vessel, rows.signals, len(rows))[
+        :600:4
+    ]  # steps of 20 ms, a new command every 80 ms
     expected = np.column_stack([rows[n] for n in POSE])[:601:4]
     found = played(env.load(one), actions)
     assert np.ptp(expected, axis=0).max() > 0.1
@@ -102,7 +116,9 @@ def test_actuators_follow_as_in_the_scenario() -> None:
     for k, action in enumerate(taken_rows(one.vessel, rows.signals, len(rows))[:200:4]):
         step = boat.step(action)
         for name in one.vessel.actuators:
-            assert step.observation[f"actual_{name}"] == pytest.approx(rows[f"actual_{name}"][4 * (k + 1)], abs=1e-12)
+            assert step.observation[f"actual_{name}"] == pytest.approx(
+                rows[f"actual_{name}"][4 * (k + 1)], abs=1e-12
+            )
 
 
 def test_environments_and_an_engine_side_by_side_do_not_disturb_each_other() -> None:
@@ -130,7 +146,9 @@ def test_models_of_others_compile_and_move_as_ever_between_steps() -> None:
     boat = env.load(short())
     boat.reset()
     boat.step(AHEAD)
-    ball = dm_mujoco.Physics.from_xml_string(xml)  # compiling fails where a Python callback is left installed
+    ball = dm_mujoco.Physics.from_xml_string(
+        xml
+    )  # compiling fails where a Python callback is left installed
     boat.step(AHEAD)
     ball.step(100)
     fall = -9.81 * 0.002**2 * 100 * 101 / 2  # semi-implicit Euler: g dt^2 n (n + 1) / 2
@@ -154,7 +172,9 @@ def test_every_observation_has_a_unit_in_its_name_and_actions_have_the_vessels_l
     assert {"x_m", "r_radps", "actual_steer_port_rad", "goal_yaw_radps"} <= set(observations)
     assert actions.name.split("\t") == CHANNELS
     limits = boat.task.scenario.vessel.limits()
-    assert [tuple(pair) for pair in zip(actions.minimum, actions.maximum, strict=True)] == [limits[n] for n in CHANNELS]
+    assert [tuple(pair) for pair in zip(actions.minimum, actions.maximum, strict=True)] == [
+        limits[n] for n in CHANNELS
+    ]
     assert boat.control_timestep() == pytest.approx(0.08)
 
 
@@ -195,7 +215,11 @@ def test_an_action_beyond_the_limits_acts_as_the_limit() -> None:
 def test_an_episode_begins_with_the_actuators_where_the_scenario_has_them() -> None:
     one = short("joystick_boat/sway_1", 4.0, start={"commands": {"steer_port_rad": 0.3}})
     boat = env.load(one)
-    assert boat.reset().observation["actual_steer_port_rad"] == run(one).recording["actual_steer_port_rad"][0] != 0.0
+    assert (
+        boat.reset().observation["actual_steer_port_rad"]
+        == run(one).recording["actual_steer_port_rad"][0]
+        != 0.0
+    )
 
 
 def test_observations_are_sname() -> None:
@@ -203,7 +227,9 @@ def test_observations_are_sname() -> None:
     boat.reset()
     for _ in range(8):
         step = boat.step(np.array([1.0, -1.0, 0.0, 0.0, 0.0, 0.0]))
-    assert step.observation["r_radps"] > 0 and step.observation["psi_rad"] > 0  # port thrust ahead: to starboard
+    assert (
+        step.observation["r_radps"] > 0 and step.observation["psi_rad"] > 0
+    )  # port thrust ahead: to starboard
     assert boat.physics.data.qvel[2] < 0  # MuJoCo's z is up
 
 
@@ -212,10 +238,16 @@ def test_reward_is_minus_the_squared_error_of_velocity() -> None:
     boat = env.load(short(goal=goals))
     first, rest = boat.reset(), [boat.step(AHEAD) for _ in range(3)]
     assert first.reward is None
-    for step, (surge, sway, yaw) in zip(rest, [(0, 0.1, 0.2), (0.3, 0, 0), (0.3, 0, 0)], strict=True):
+    for step, (surge, sway, yaw) in zip(
+        rest, [(0, 0.1, 0.2), (0.3, 0, 0), (0.3, 0, 0)], strict=True
+    ):
         o = step.observation
         assert (o["goal_surge_mps"], o["goal_sway_mps"], o["goal_yaw_radps"]) == (surge, sway, yaw)
-        error = [o["u_mps"] - surge, o["v_mps"] - sway, 0.6 * (o["r_radps"] - yaw)]  # 0.6 m: half the boat
+        error = [
+            o["u_mps"] - surge,
+            o["v_mps"] - sway,
+            0.6 * (o["r_radps"] - yaw),
+        ]  # 0.6 m: half the boat
         assert step.reward == pytest.approx(-sum(e * e for e in error))
 
 
@@ -226,13 +258,17 @@ def test_start_is_scattered_by_the_seed_only() -> None:
     }
     again = env.load(short(), seed=1, scatter=0.05)
     assert (played(again, [AHEAD] * 3) == starts[1, 0.05]).all()
-    assert (played(again, [AHEAD] * 3) != starts[1, 0.05]).any()  # the next episode starts elsewhere
+    assert (
+        played(again, [AHEAD] * 3) != starts[1, 0.05]
+    ).any()  # the next episode starts elsewhere
     assert (starts[1, 0.05][0, :3] != starts[2, 0.05][0, :3]).all()
     assert (starts[1, 0.0] == starts[2, 0.0]).all()
     assert (np.abs(starts[1, 0.05][0, :3]) <= 0.05 * np.array([1.2, 1.2, 1.0])).all()
 
 
-@pytest.mark.parametrize("duplicate", [copy.deepcopy, lambda p: pickle.loads(pickle.dumps(p)), lambda p: p.copy()])
+@pytest.mark.parametrize(
+    "duplicate", [copy.deepcopy, lambda p: pickle.loads(pickle.dumps(p)), lambda p: p.copy()]
+)
 def test_a_copy_goes_on_as_the_original_does(duplicate: Any) -> None:
     boat = env.load(short("joystick_boat/sway_1", 8.0))
     boat.reset()
@@ -272,7 +308,9 @@ def test_outboards_are_drawn_at_their_actual_angle() -> None:
         angle = float(step.observation[f"actual_steer_{side}_rad"])
         assert abs(angle) > 0.1
         ahead = boat.physics.named.data.xmat[f"outboard_{side}"].reshape(3, 3)[:, 0]
-        assert ahead == pytest.approx([cos(psi + angle), -sin(psi + angle), 0.0])  # z up: y is to port
+        assert ahead == pytest.approx(
+            [cos(psi + angle), -sin(psi + angle), 0.0]
+        )  # z up: y is to port
 
 
 @pytest.mark.parametrize("camera", ["above", "oblique"])
@@ -295,7 +333,9 @@ def test_pictures_show_boat_and_motion_without_a_display(camera: str) -> None:
 
 def without_a_display(code: str) -> tuple[int, str, str]:
     """Exit code and output; every warning is printed (as an error, GLFW's would be caught by dm_control)."""
-    done = subprocess.run([sys.executable, "-W", "always", "-c", code], env=NO_DISPLAY, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-W", "always", "-c", code], env=NO_DISPLAY, capture_output=True, text=True
+    )
     return done.returncode, done.stdout, done.stderr
 
 
@@ -320,7 +360,9 @@ print(boat.step(boat.action_spec().generate_value()).mid())
     assert without_a_display(code) == (0, "True\n", "")
 
 
-@pytest.mark.parametrize("action", [np.zeros(5), np.full(6, np.nan), 0.0], ids=["short", "nan", "scalar"])
+@pytest.mark.parametrize(
+    "action", [np.zeros(5), np.full(6, np.nan), 0.0], ids=["short", "nan", "scalar"]
+)
 def test_an_action_that_is_none_is_refused_in_a_line(action: Any) -> None:
     boat = env.load(short())
     boat.reset()
@@ -329,7 +371,12 @@ def test_an_action_that_is_none_is_refused_in_a_line(action: Any) -> None:
 
 
 def test_what_can_be_no_environment_is_refused_in_a_line() -> None:
-    rolling = {"about": "", "vessel": "kvlcc2_roll", "duration": 1.0, "controller": {"use": "open_loop"}}
+    rolling = {
+        "about": "",
+        "vessel": "kvlcc2_roll",
+        "duration": 1.0,
+        "controller": {"use": "open_loop"},
+    }
     with pytest.raises(BadInput, match="kvlcc2_roll is not free in surge, sway and yaw"):
         env.load(scenario.from_table(rolling, Place(Path("rolling.toml"))))
     with pytest.raises(BadInput, match=r"period 0.08 s is not a whole number of steps of 0.03 s"):

@@ -24,8 +24,12 @@ from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.run import run
 
-there = pytest.mark.skipif(not written.SOURCE.is_file(), reason="no ../shared/recordings/esso_osaka")
-QUADRANTS = list(product((0.4, 0.05, -0.3), (12.0, 2.0, -3.0, -15.0), (0.5, -0.3)))  # u [m/s], n [1/s], delta [rad]
+there = pytest.mark.skipif(
+    not written.SOURCE.is_file(), reason="no ../shared/recordings/esso_osaka"
+)
+QUADRANTS = list(
+    product((0.4, 0.05, -0.3), (12.0, 2.0, -3.0, -15.0), (0.5, -0.3))
+)  # u [m/s], n [1/s], delta [rad]
 
 # A ship that there is not: round numbers of the right kind
 SHIP: dict[str, Any] = {
@@ -70,7 +74,9 @@ def thrust(c: dict[str, Any], u: float, v: float, r: float, n: float) -> tuple[f
     D, J_s = c["D"], u / (n * c["D"])
     if n > 0:
         J = wake(c, u, v, r) * J_s
-        K_T = c["k"][0] + c["k"][1] * J + c["k"][2] * J * abs(J)  # ahead J^2; see mmg_propeller.open_water
+        K_T = (
+            c["k"][0] + c["k"][1] * J + c["k"][2] * J * abs(J)
+        )  # ahead J^2; see mmg_propeller.open_water
         return (1 - c["t"]) * c["rho"] * D**4 * n**2 * K_T, K_T
     C = c["C"]
     X = c["rho"] * D**4 * n**2 * (C[1] + C[2] * J_s if J_s >= C[3] else C[0])
@@ -109,7 +115,10 @@ def rudder(c: dict[str, Any], u: float, v: float, r: float, n: float, delta: flo
     f = 6.13 * c["A"] / (c["A"] + 2.25)
     F = 0.5 * c["rho"] * c["A_R"] * (u_R**2 + v_R**2) * f * sin(delta - atan2(v_R, u_R))
     lever = (c["x_R"] + c["a_H"] * c["x_H"]) * c["L"]
-    return np.array([-(1 - c["t_R"]) * sin(delta), -(1 + c["a_H"]) * cos(delta), -lever * cos(delta)]) * F
+    return (
+        np.array([-(1 - c["t_R"]) * sin(delta), -(1 + c["a_H"]) * cos(delta), -lever * cos(delta)])
+        * F
+    )
 
 
 def effects(c: dict[str, Any]) -> tuple[Force, Force, Force]:
@@ -117,25 +126,58 @@ def effects(c: dict[str, Any]) -> tuple[Force, Force, Force]:
     water = {"length": c["L"], "density": c["rho"]}
     names = ("X_0F", "X_0A", "X_vr", "Y_v", "Y_r", "N_v", "N_r", "C_D", "C_rY", "C_rN")
     of_hull = MmgLowSpeedHull(**water, draught=c["d"], m_x=0.0, m_y=0.0, **{n: c[n] for n in names})
-    k, C, forms = c["k"], c["C"], ("mid", "mid_J", "low", "low_J", "high", "braked_JJ", "braked_J", "braked")
+    k, C, forms = (
+        c["k"],
+        c["C"],
+        ("mid", "mid_J", "low", "low_J", "high", "braked_JJ", "braked_J", "braked"),
+    )
     shaft = {
-        "diameter": c["D"], "thrust_deduction": c["t"], "wake": c["w0"], "wake_tau": c["tau"], "wake_C_P": c["C_P"],
-        "propeller_at": c["x_P"], "k0": k[0], "k1": k[1], "k2": k[2], "astern_stop": C[0], "astern_C1": C[1],
-        "astern_C2": C[2], "astern_from": C[3],
-    }  # fmt: skip
+        "diameter": c["D"],
+        "thrust_deduction": c["t"],
+        "wake": c["w0"],
+        "wake_tau": c["tau"],
+        "wake_C_P": c["C_P"],
+        "propeller_at": c["x_P"],
+        "k0": k[0],
+        "k1": k[1],
+        "k2": k[2],
+        "astern_stop": C[0],
+        "astern_C1": C[1],
+        "astern_C2": C[2],
+        "astern_from": C[3],
+    }
     aside = {
-        f"{axis}_{form}": x for axis, xs in (("Y", c["a"]), ("N", c["b"])) for form, x in zip(forms, xs, strict=True)
+        f"{axis}_{form}": x
+        for axis, xs in (("Y", c["a"]), ("N", c["b"]))
+        for form, x in zip(forms, xs, strict=True)
     }
     of_propeller = MmgLowSpeedPropeller(
-        **water, **shaft, **aside, draught=c["d"], pitch_ratio=c["P"] / c["D"], aside_low=c["J_low"],
+        **water,
+        **shaft,
+        **aside,
+        draught=c["d"],
+        pitch_ratio=c["P"] / c["D"],
+        aside_low=c["J_low"],
         aside_high=c["J_high"],
-    )  # fmt: skip
+    )
     of_rudder = MmgLowSpeedRudder(
-        **water, **shaft, area=c["A_R"], span=sqrt(c["A_R"] * c["A"]), slope=6.13 * c["A"] / (c["A"] + 2.25),
-        steering_deduction=c["t_R"], hull_share=c["a_H"], hull_at=c["x_H"], rudder_at=c["x_R"], flow_at=c["l_R"],
-        straightening_starboard=c["g_p"], straightening_port=c["g_n"], epsilon=c["eps"], k_x=c["k_x"],
-        k_x_astern=c["k_a"], c_pr=c["c_pr"],
-    )  # fmt: skip
+        **water,
+        **shaft,
+        area=c["A_R"],
+        span=sqrt(c["A_R"] * c["A"]),
+        slope=6.13 * c["A"] / (c["A"] + 2.25),
+        steering_deduction=c["t_R"],
+        hull_share=c["a_H"],
+        hull_at=c["x_H"],
+        rudder_at=c["x_R"],
+        flow_at=c["l_R"],
+        straightening_starboard=c["g_p"],
+        straightening_port=c["g_n"],
+        epsilon=c["eps"],
+        k_x=c["k_x"],
+        k_x_astern=c["k_a"],
+        c_pr=c["c_pr"],
+    )
     return of_hull, of_propeller, of_rudder
 
 
@@ -155,7 +197,9 @@ def test_low_speed_laws_are_the_published_formulas_in_every_quadrant(
     of_hull, of_propeller, of_rudder = effects(SHIP)
     m = motion(u=u, v=v, r=r)
     assert planar(of_hull.wrench(m)) == pytest.approx(hull(SHIP, u, v, r), rel=1e-6)
-    assert planar(of_propeller.wrench(m, shaft=n)) == pytest.approx(propeller(SHIP, u, v, r, n), rel=1e-9)
+    assert planar(of_propeller.wrench(m, shaft=n)) == pytest.approx(
+        propeller(SHIP, u, v, r, n), rel=1e-9
+    )
     found = planar(of_rudder.wrench(m, angle=delta, shaft=n))
     assert found == pytest.approx(rudder(SHIP, u, v, r, n, delta), rel=1e-9)
 
@@ -165,7 +209,9 @@ def test_a_hull_that_turns_on_the_spot_is_held_by_its_sections_alone() -> None:
     L, k = SHIP["L"], 0.5 * SHIP["rho"] * SHIP["d"] * SHIP["C_D"]
     turned = planar(of_hull.wrench(motion(r=r)))
     assert turned == pytest.approx([0.0, 0.0, -k * SHIP["C_rN"] ** 2 * L**4 / 32 * r**2], abs=1e-9)
-    assert planar(of_hull.wrench(motion(v=0.2))) == pytest.approx([0.0, -k * L * 0.04, 0.0], abs=1e-9)
+    assert planar(of_hull.wrench(motion(v=0.2))) == pytest.approx(
+        [0.0, -k * L * 0.04, 0.0], abs=1e-9
+    )
     assert not any(of_hull.wrench(motion()))
 
 
@@ -178,7 +224,11 @@ def test_a_shaft_that_stands_still_or_turns_ahead_on_a_ship_ahead_pushes_nothing
     of_propeller = effects(SHIP)[1]
     assert not any(of_propeller.wrench(motion(), shaft=0.0))
     assert of_propeller.wrench(motion(u=0.3), shaft=10.0).Y == 0.0
-    assert of_propeller.wrench(motion(u=0.3), shaft=0.0).X < 0.0 < of_propeller.wrench(motion(u=-0.3), shaft=0.0).X
+    assert (
+        of_propeller.wrench(motion(u=0.3), shaft=0.0).X
+        < 0.0
+        < of_propeller.wrench(motion(u=-0.3), shaft=0.0).X
+    )
     assert of_propeller.wrench(motion(), shaft=-10.0).Y != 0.0
 
 
@@ -209,24 +259,55 @@ def published() -> dict[str, Any]:
     h, s, b = (p["mmg"][part] for part in ("hull", "propeller", "rudder"))
     D = p["propeller"]["D_m"]
     return {
-        "L": p["Lpp_m"], "d": p["draught_m"], "rho": p["density_water_kgm3"], "D": D,
-        "P": D * p["propeller"]["P_over_D"], "A_R": p["rudder"]["area_m2"], "A": p["rudder"]["aspect_ratio"], **h,
-        "w0": s["wake_w0"], "tau": s["wake_tau"], "C_P": s["wake_C_P"], "x_P": s["x_P"], "t": s["thrust_deduction"],
-        "k": (s["k0"], s["k1_later_version"], s["k2"]), "C": s["astern_thrust_C"], "a": s["side_force_A"],
-        "b": s["yaw_moment_B"], "J_low": s["J_syn"], "J_high": s["J_syn0"], "t_R": b["t_R"], "a_H": b["a_H"],
-        "x_H": b["x_H"], "x_R": b["x_R"], "l_R": b["l_R"], "k_x": b["k_x"], "k_a": b["k_x_astern"],
-        "eps": b["epsilon"], "c_pr": b["c_pr"], "g_p": b["gamma_v_plus_xr_positive"],
-        "g_n": b["gamma_v_plus_xr_negative"], "mass": p["mass_kg"], "x_G": p["x_G_m"], **p["mmg"]["added_mass"],
-    }  # fmt: skip
+        "L": p["Lpp_m"],
+        "d": p["draught_m"],
+        "rho": p["density_water_kgm3"],
+        "D": D,
+        "P": D * p["propeller"]["P_over_D"],
+        "A_R": p["rudder"]["area_m2"],
+        "A": p["rudder"]["aspect_ratio"],
+        **h,
+        "w0": s["wake_w0"],
+        "tau": s["wake_tau"],
+        "C_P": s["wake_C_P"],
+        "x_P": s["x_P"],
+        "t": s["thrust_deduction"],
+        "k": (s["k0"], s["k1_later_version"], s["k2"]),
+        "C": s["astern_thrust_C"],
+        "a": s["side_force_A"],
+        "b": s["yaw_moment_B"],
+        "J_low": s["J_syn"],
+        "J_high": s["J_syn0"],
+        "t_R": b["t_R"],
+        "a_H": b["a_H"],
+        "x_H": b["x_H"],
+        "x_R": b["x_R"],
+        "l_R": b["l_R"],
+        "k_x": b["k_x"],
+        "k_a": b["k_x_astern"],
+        "eps": b["epsilon"],
+        "c_pr": b["c_pr"],
+        "g_p": b["gamma_v_plus_xr_positive"],
+        "g_n": b["gamma_v_plus_xr_negative"],
+        "mass": p["mass_kg"],
+        "x_G": p["x_G_m"],
+        **p["mmg"]["added_mass"],
+    }
 
 
 def test_the_project_holds_none_of_the_coefficients() -> None:
     """Their licence is non-commercial: blanks alone are in the project."""
-    effects_only = (written.BLANKS / "vessel.toml.in").read_text(encoding="utf-8").split("[[effect]]", 1)[1]
-    numbers = [line for line in effects_only.split("[manoeuvring]")[0].splitlines() if "=" in line.split("#")[0]]
-    assert {n.split("#")[0].strip() for n in numbers if "$" not in n.split("#")[0] and '"' not in n} == {
-        "coriolis = 0.0"
-    }
+    effects_only = (
+        (written.BLANKS / "vessel.toml.in").read_text(encoding="utf-8").split("[[effect]]", 1)[1]
+    )
+    numbers = [
+        line
+        for line in effects_only.split("[manoeuvring]")[0].splitlines()
+        if "=" in line.split("#")[0]
+    ]
+    assert {
+        n.split("#")[0].strip() for n in numbers if "$" not in n.split("#")[0] and '"' not in n
+    } == {"coriolis = 0.0"}
 
 
 @there
@@ -239,10 +320,15 @@ def test_the_vessels_forces_are_those_of_the_captive_tests(
     m = motion(u=u, v=v, r=r)
     k = 0.5 * c["rho"] * c["L"] ** 2 * c["d"]
     added = np.array([c["m_y"] * k * v * r, -c["m_x"] * k * u * r, 0.0])
-    found = [e.wrench(m, **s) for e, s in zip(parts, ({}, {"shaft": n}, {"shaft": n, "angle": delta}), strict=True)]  # type: ignore[union-attr]
+    found = [
+        e.wrench(m, **s)
+        for e, s in zip(parts, ({}, {"shaft": n}, {"shaft": n, "angle": delta}), strict=True)
+    ]  # type: ignore[union-attr]
     expected = [hull(c, u, v, r) + added, propeller(c, u, v, r, n), rudder(c, u, v, r, n, delta)]
     for seen, stated in zip(found, expected, strict=True):
-        assert planar(seen) == pytest.approx(stated, rel=2e-3, abs=1e-4)  # the rudder's span is printed to 0.1 mm
+        assert planar(seen) == pytest.approx(
+            stated, rel=2e-3, abs=1e-4
+        )  # the rudder's span is printed to 0.1 mm
 
 
 def by_scipy(c: dict[str, Any], start: list[float], n: float, delta: float, until: float) -> Array:
@@ -269,7 +355,8 @@ def test_the_vessel_sails_as_by_an_independent_integrator(
     start = [0.0, 0.0, 0.3, 0.3, 0.02, -0.01]
     engine = Engine(ship, step=0.05)
     engine.reset(
-        State(**dict(zip(("x", "y", "psi", "u", "v", "r"), start, strict=True))), {"delta_rad": delta, "n_rps": n}
+        State(**dict(zip(("x", "y", "psi", "u", "v", "r"), start, strict=True))),
+        {"delta_rad": delta, "n_rps": n},
     )
     engine.advance(800)
     s = engine.state
@@ -283,4 +370,6 @@ def test_its_turning_circle_runs_and_ends_in_the_turn_of_the_published_equations
 ) -> None:
     made = run(scenario.load(str(folder / "turn.toml")))
     turning = by_scipy(published, [0.0, 0.0, 0.0, 0.35, 0.0, 0.0], 10.0, radians(20.0), 240.0)[3:]
-    assert [made.recording[n][-1] for n in ("u_mps", "v_mps", "r_radps")] == pytest.approx(turning, rel=0.01)
+    assert [made.recording[n][-1] for n in ("u_mps", "v_mps", "r_radps")] == pytest.approx(
+        turning, rel=0.01
+    )

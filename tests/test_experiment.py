@@ -11,14 +11,14 @@ from boats import PLANAR, ROLL, written
 from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
-from boatsim.diagnose.filter import Levels, nominal_levels, track
-from boatsim.diagnose.fit import converge, descend, fit
-from boatsim.diagnose.next import experiment, manoeuvres
-from boatsim.diagnose.next.course import laid
-from boatsim.diagnose.next.manoeuvres import Manoeuvre, menu
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.screen import screen
-from boatsim.diagnose.tried import absent, library_for
+from boatsim.diagnosis.candidates import absent, library_for
+from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
+from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, menu
+from boatsim.diagnosis.experiment_design.simulated_manoeuvre import laid
+from boatsim.diagnosis.filter import Levels, nominal_levels, track
+from boatsim.diagnosis.fit import converge, descend, fit
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.screening import screen
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.content import load_class
@@ -35,8 +35,18 @@ TURNS = ((1, 0.4), (-1, -0.4), (1, -0.4), (-1, 0.4))
 LIVELY = tuple((2.0, 0.5 * s, 0.5 * s, angle, angle) for s, angle in TURNS) * 4
 CONFUSABLE = {  # truth with its values, rival, first recording in which the two look alike
     "wind at constant heading": ("wind", {"force": 0.06, "toward": 0.6}, "current", STRAIGHT),
-    "deadband at one thrust level": ("thrust_deadband", {"width": 0.06}, "thrust_gain_error", ONE_LEVEL),
-    "steering offset in crab": ("steering_offset", {"port": 0.03, "starboard": 0.03}, "thrust_imbalance", CRAB),
+    "deadband at one thrust level": (
+        "thrust_deadband",
+        {"width": 0.06},
+        "thrust_gain_error",
+        ONE_LEVEL,
+    ),
+    "steering offset in crab": (
+        "steering_offset",
+        {"port": 0.03, "starboard": 0.03},
+        "thrust_imbalance",
+        CRAB,
+    ),
 }
 
 
@@ -46,7 +56,9 @@ def program() -> Program:
     return Program(boat, library_for(boat).compiled)
 
 
-def recorded(name: str, settings: dict[str, float], script: tuple[manoeuvres.Step, ...]) -> Recording:
+def recorded(
+    name: str, settings: dict[str, float], script: tuple[manoeuvres.Step, ...]
+) -> Recording:
     """The boat with one entry acting, driven through a script of (seconds, commands), seen by a noisy camera."""
     rng = np.random.default_rng(4)
     code, values, on = program().module, program().values(), program().switches([name])
@@ -56,7 +68,19 @@ def recorded(name: str, settings: dict[str, float], script: tuple[manoeuvres.Ste
     memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
     code.settle(rows[0], memory, values, on, act)
     out = np.zeros((len(rows) + 1, 6))
-    code.rollout(0.0, np.zeros(6), rows, memory, 1 / RATE / 8, 8, program().body, values, on, np.zeros(3), out)
+    code.rollout(
+        0.0,
+        np.zeros(6),
+        rows,
+        memory,
+        1 / RATE / 8,
+        8,
+        program().body,
+        values,
+        on,
+        np.zeros(3),
+        out,
+    )
     pose = out[:-1, :3] + rng.standard_normal((len(rows), 3)) * [0.003, 0.003, 0.012]
     signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True))
     signals |= dict(zip(program().vessel.commands, rows.T, strict=True))
@@ -69,20 +93,22 @@ def tie(case: str) -> tuple[Problem, Fit, Fit]:
     name, settings, rival, script = CONFUSABLE[case]
     first = recorded(name, settings, script)
     boat = program().vessel
-    problem = Problem([track(first, program())], nominal_levels(boat, [first]), {"damping": 0.05, "thrust": 0.05})
+    problem = Problem(
+        [track(first, program())], nominal_levels(boat, [first]), {"damping": 0.05, "thrust": 0.05}
+    )
     nominal = descend(problem, problem.nominal(), 4, 0.1)
     winner, other = (converge(problem, f) for f in screen(problem, nominal, [name, rival]).values())
     return problem, winner, other
 
 
-def suggested(case: str) -> experiment.Plan:
+def suggested(case: str) -> next_experiment.Plan:
     problem, winner, rival = tie(case)
-    plan = experiment.next_experiment(problem, winner, {CONFUSABLE[case][2]: rival})
+    plan = next_experiment.next_experiment(problem, winner, {CONFUSABLE[case][2]: rival})
     assert plan is not None
     return plan
 
 
-def course(problem: Problem, winner: Fit, plan: experiment.Plan) -> Array:
+def course(problem: Problem, winner: Fit, plan: next_experiment.Plan) -> Array:
     """What a camera would see of a plan (N, 3)."""
     found = laid(problem, winner, Manoeuvre("", plan.times, plan.levels, plan.duration))
     assert found is not None
@@ -96,7 +122,7 @@ def test_suggestion_tells_more_than_the_first_manoeuvre_once_more(case):
     times = np.cumsum([0.0, *(step[0] for step in script)])
     levels = tuple(dict(zip(program().vessel.commands, step[1:], strict=True)) for step in script)
     found = laid(problem, winner, Manoeuvre("again", tuple(times[:-1]), levels, times[-1]))
-    again = experiment.expected(problem, found.track, winner, {other: rival})[other]
+    again = next_experiment.expected(problem, found.track, winner, {other: rival})[other]
     plan = suggested(case)
     assert plan.separates == (name, other)
     assert plan.expected_gain > max(3.0, 2.0 * again)  # 3 nats: no longer look-alikes
@@ -118,10 +144,10 @@ def test_the_worst_rival_counts():
     case = "wind at constant heading"
     problem, winner, rival = tie(case)
     both = {"current": rival, "twin": winner}  # no manoeuvre tells a hypothesis from itself
-    for plan in experiment.plans(problem, winner, both):
+    for plan in next_experiment.plans(problem, winner, both):
         assert plan.expected_gain == min(plan.gains.values()) == pytest.approx(0.0, abs=1e-6)
-    assert experiment.next_experiment(problem, winner, both) is None
-    assert experiment.next_experiment(problem, winner, {}) is None
+    assert next_experiment.next_experiment(problem, winner, both) is None
+    assert next_experiment.next_experiment(problem, winner, {}) is None
 
 
 def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_model():
@@ -144,7 +170,12 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
     def dense(theta: Array) -> tuple[Array, Array]:
         """Mean and covariance of all samples after the first at given parameters."""
         inertia, damping, stiffness = 115.6 + 19.8, 6.7 * theta[0], 822.3 * theta[1]
-        F = expm(h * np.array([[0, 1, 0], [-stiffness / inertia, -damping / inertia, 1 / inertia], [0, 0, 0]]))
+        F = expm(
+            h
+            * np.array(
+                [[0, 1, 0], [-stiffness / inertia, -damping / inertia, 1 / inertia], [0, 0, 0]]
+            )
+        )
         F[2, 2] = np.exp(-h / 0.5)
         block, centre, mean, big = P0, np.array([0.15, 0.0, 0.0]), np.zeros(n), np.zeros((n, n))
         for i in range(n):
@@ -163,10 +194,17 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
 
     (m1, S1), (m2, S2) = prediction(winner), prediction(rival)
     logs = np.linalg.slogdet(S2)[1] - np.linalg.slogdet(S1)[1]
-    divergence = 0.5 * (np.trace(np.linalg.solve(S2, S1)) + (m1 - m2) @ np.linalg.solve(S2, m1 - m2) - len(m1) + logs)
+    divergence = 0.5 * (
+        np.trace(np.linalg.solve(S2, S1))
+        + (m1 - m2) @ np.linalg.solve(S2, m1 - m2)
+        - len(m1)
+        + logs
+    )
     stretches = 1.0 + 24.0 / (2 * 0.5)
-    wanted = 0.5 * stretches * np.log1p(2.0 * divergence / stretches)  # ambient force of the rival refitted
-    got = experiment.expected(problem, found.track, winner, {"rival": rival})["rival"]
+    wanted = (
+        0.5 * stretches * np.log1p(2.0 * divergence / stretches)
+    )  # ambient force of the rival refitted
+    got = next_experiment.expected(problem, found.track, winner, {"rival": rival})["rival"]
     assert wanted > 1.0
     assert got == pytest.approx(wanted, rel=0.05)
 
@@ -175,8 +213,10 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
 def test_no_manoeuvre_is_expected_to_speak_against_the_truth(case):
     """A Kullback-Leibler divergence is never negative."""
     problem, winner, rival = tie(case)
-    for plan in experiment.plans(problem, winner, {"rival": rival}):
-        assert plan.expected_gain > -0.05, plan.manoeuvre  # noise and force levels of the two are taken for the same
+    for plan in next_experiment.plans(problem, winner, {"rival": rival}):
+        assert plan.expected_gain > -0.05, (
+            plan.manoeuvre
+        )  # noise and force levels of the two are taken for the same
 
 
 def test_suggestion_is_the_same_every_time_and_stays_inside_walls_and_limits():
@@ -186,14 +226,20 @@ def test_suggestion_is_the_same_every_time_and_stays_inside_walls_and_limits():
         assert plan == suggested(case)
         for level in plan.levels:
             for name, value in level.items():
-                assert program().vessel.commands[name].low <= value <= program().vessel.commands[name].high
-        reach = np.abs(course(problem, winner, plan)[:, :2]).max(axis=0) + 0.5 * program().vessel.length
+                assert (
+                    program().vessel.commands[name].low
+                    <= value
+                    <= program().vessel.commands[name].high
+                )
+        reach = (
+            np.abs(course(problem, winner, plan)[:, :2]).max(axis=0) + 0.5 * program().vessel.length
+        )
         assert (reach <= [4.0, 3.0]).all()  # [m] walls of the trials' tank
 
 
 @pytest.mark.slow
 def test_scenario_plays_the_plan_on_the_nominal_and_on_the_patched_vessel(tmp_path):
-    text = experiment.scenario_text(suggested("wind at constant heading"), program().vessel)
+    text = next_experiment.scenario_text(suggested("wind at constant heading"), program().vessel)
     address = 'vessel = "trial_boat"'
     source = program().vessel.file.read_text()
     (tmp_path / "patched.toml").write_text('based_on = "trial_boat"\n' + source)
@@ -232,7 +278,9 @@ def test_manoeuvres_keep_commands_inside_limits_and_times_to_froude_scale():
         boat = vessel.load(name)
         large = replace(boat, length=4.0 * boat.length)
         for small, big in zip(menu(boat, {}, 0.0, True), menu(large, {}, 0.0, True), strict=True):
-            assert big.duration == pytest.approx(2.0 * small.duration) and big.levels == small.levels
+            assert (
+                big.duration == pytest.approx(2.0 * small.duration) and big.levels == small.levels
+            )
             for level in small.levels:
                 for command, value in level.items():
                     assert boat.commands[command].low <= value <= boat.commands[command].high
@@ -241,23 +289,36 @@ def test_manoeuvres_keep_commands_inside_limits_and_times_to_froude_scale():
 
 def test_pwm_takes_the_place_of_the_thrust_it_feeds():
     boat = vessel.load("joystick_boat")
-    assert set(manoeuvres.commanded(boat)) == {"pwm_port", "pwm_starboard", "steer_port_rad", "steer_starboard_rad"}
+    assert set(manoeuvres.commanded(boat)) == {
+        "pwm_port",
+        "pwm_starboard",
+        "steer_port_rad",
+        "steer_starboard_rad",
+    }
 
 
 @pytest.mark.slow
 def test_hull_without_commands_is_released_at_another_angle(tmp_path):
     boat = vessel.load(str(written(tmp_path, "test_roller", ROLL)))
-    suspects = tuple(absent(k).completed(boat) for k in kinds("righting_arm_stiffening", "cubic_damping"))
+    suspects = tuple(
+        absent(k).completed(boat) for k in kinds("righting_arm_stiffening", "cubic_damping")
+    )
     t = 0.2 * np.arange(150)
-    first = Recording("first", t, {"phi_rad": 0.1 * np.cos(2.0 * t)})  # sqrt(stiffness 2 / inertia 0.5) = 2 rad/s
+    first = Recording(
+        "first", t, {"phi_rad": 0.1 * np.cos(2.0 * t)}
+    )  # sqrt(stiffness 2 / inertia 0.5) = 2 rad/s
     levels = Levels(np.array([1e-3]), 1.0, {"roll_sd_rad": 1e-3})
     problem = Problem([track(first, Program(boat, suspects))], levels, {})
     nominal = problem.nominal()
-    winner, rival = (fit(problem, f) for f in screen(problem, nominal, [e.name for e in suspects]).values())
-    plan = experiment.next_experiment(problem, winner, {"cubic_damping": rival})
-    assert plan is not None and plan.start == {"phi": pytest.approx(0.15)}  # the larger angle tells more
+    winner, rival = (
+        fit(problem, f) for f in screen(problem, nominal, [e.name for e in suspects]).values()
+    )
+    plan = next_experiment.next_experiment(problem, winner, {"cubic_damping": rival})
+    assert plan is not None and plan.start == {
+        "phi": pytest.approx(0.15)
+    }  # the larger angle tells more
     file = tmp_path / "next.toml"
-    file.write_text(experiment.scenario_text(plan, boat))
+    file.write_text(next_experiment.scenario_text(plan, boat))
     done = run(scenario.load(str(file))).recording
     assert done["phi_rad"][0] == pytest.approx(0.15) and done["phi_rad"].min() < -0.14
 
@@ -274,8 +335,15 @@ def test_zig_zag_of_a_ship_changes_over_where_its_heading_is_expected_to_be(tmp_
     steady = {"thrust_port_N": 5.0, "thrust_starboard_N": 5.0}
     rows = np.tile(code.command_array(steady), (240, 1))
     t = np.arange(240) / RATE
-    signals = {"x_m": 0.5 * t, "y_m": 0.0 * t, "psi_rad": 0.0 * t, **dict(zip(boat.commands, rows.T, strict=True))}
-    problem = Problem([track(Recording("first", t, signals), code)], Levels(np.full(3, 0.1), 1.0, NOISE), {})
+    signals = {
+        "x_m": 0.5 * t,
+        "y_m": 0.0 * t,
+        "psi_rad": 0.0 * t,
+        **dict(zip(boat.commands, rows.T, strict=True)),
+    }
+    problem = Problem(
+        [track(Recording("first", t, signals), code)], Levels(np.full(3, 0.1), 1.0, NOISE), {}
+    )
     zigzag = next(m for m in menu(boat, steady, 0.0, False) if m.words == "20/20 zig-zag")
     found = laid(problem, problem.nominal(), zigzag)
     assert found is not None

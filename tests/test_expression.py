@@ -37,7 +37,10 @@ DEG = math.pi / 180.0
 def test_an_expression_says_name_factor_and_offset(text, name, factor, offset):
     found = parse(text)
     assert found.signal == name
-    assert (found.factor, found.offset) == (pytest.approx(factor, rel=1e-15), pytest.approx(offset, rel=1e-15))
+    assert (found.factor, found.offset) == (
+        pytest.approx(factor, rel=1e-15),
+        pytest.approx(offset, rel=1e-15),
+    )
 
 
 def test_a_known_name_is_that_name_whatever_stands_in_it():
@@ -47,7 +50,9 @@ def test_a_known_name_is_that_name_whatever_stands_in_it():
 
 
 def test_words_of_units_are_what_they_say():
-    assert UNITS["rpm"] * 60 == pytest.approx(2 * math.pi) and UNITS["rps"] == pytest.approx(2 * math.pi)
+    assert UNITS["rpm"] * 60 == pytest.approx(2 * math.pi) and UNITS["rps"] == pytest.approx(
+        2 * math.pi
+    )
     assert UNITS["kn"] * 3600 == pytest.approx(1852) and UNITS["kmh"] * 3.6 == pytest.approx(1.0)
     assert UNITS["percent"] * 100 == pytest.approx(1.0) and UNITS["us"] * 1e6 == pytest.approx(1.0)
 
@@ -85,27 +90,37 @@ def test_code_in_an_expression_is_a_name_that_does_not_exist():
 
 
 def folder(path: Path, columns: str, header: str = "t_s,x_m,y_m,heading_deg,delta") -> Path:
-    rows = "".join(f"{0.1 * i:.1f},{0.1 * i:.2f},{0.01 * i:.3f},{350 + 0.5 * i:.2f},{0.1:.2f}\n" for i in range(40))
+    rows = "".join(
+        f"{0.1 * i:.1f},{0.1 * i:.2f},{0.01 * i:.3f},{350 + 0.5 * i:.2f},{0.1:.2f}\n"
+        for i in range(40)
+    )
     (path / "run.csv").write_text(header + "\n" + rows)
     (path / "recording.toml").write_text("[columns]\n" + columns)
     return path / "run.csv"
 
 
 def test_columns_of_a_recording_are_converted_by_their_expressions(tmp_path):
-    run = read(folder(tmp_path, 'psi_rad = "heading_deg * deg"\nrudder_rad = "-delta * deg + 0.5 * deg"\n'))
+    run = read(
+        folder(tmp_path, 'psi_rad = "heading_deg * deg"\nrudder_rad = "-delta * deg + 0.5 * deg"\n')
+    )
     np.testing.assert_allclose(run["psi_rad"], np.radians(350 + 0.5 * np.arange(40)), rtol=1e-12)
     np.testing.assert_allclose(run["rudder_rad"], math.radians(0.4), rtol=1e-12)
 
 
 def test_a_misspelt_column_is_named_with_the_nearest_right_one(tmp_path):
     with pytest.raises(
-        BadInput, match="columns.psi_rad = 'headng_deg.*no column 'headng_deg'; did you mean 'heading_deg'"
+        BadInput,
+        match="columns.psi_rad = 'headng_deg.*no column 'headng_deg'; did you mean 'heading_deg'",
     ):
         read(folder(tmp_path, 'psi_rad = "headng_deg * deg"\n'))
-    with pytest.raises(BadInput, match="columns.psi_rad.*no unit 'dgr'; did you mean 'degpmin'|'deg'"):
+    with pytest.raises(
+        BadInput, match="columns.psi_rad.*no unit 'dgr'; did you mean 'degpmin'|'deg'"
+    ):
         read(folder(tmp_path, 'psi_rad = "heading_deg * dgr"\n'))
 
 
 def test_a_column_that_other_runs_of_the_folder_have_is_a_remark(tmp_path):
     run = read(folder(tmp_path, 'psi_rad = "heading_deg * deg"\nn_rps = "shaft speed"\n'))
-    assert any("names columns that it has not: n_rps = 'shaft speed'" in line for line in run.remarks)
+    assert any(
+        "names columns that it has not: n_rps = 'shaft speed'" in line for line in run.remarks
+    )

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from boatsim.diagnose.filter import nominal_levels, track
-from boatsim.diagnose.free_runs import errors, free_runs
-from boatsim.diagnose.log.first_orders import begun
-from boatsim.diagnose.replaying import as_written
-from boatsim.diagnose.tried import composed
+from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.checks.initial_actuator_state import begun
+from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.replay import as_written
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.run import run

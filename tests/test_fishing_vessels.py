@@ -18,12 +18,12 @@ from benchmarks.martin_vessels import (
     random_waves,
     speed_of,
     zigzag,
-)  # fmt: skip
+)
 from boatsim.physics import particulars, vessel
 from boatsim.physics.base import Array
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 TONNE = 1000.0  # [kg]; the thesis counts in tonnes and kilonewtons
 
@@ -35,9 +35,20 @@ EXAMPLE: dict[str, Any] = {
     "beam": 28.67 * FOOT,
     "draught": 13.25 * FOOT,
     "body": {"mass": 572.05e3, "roll_inertia": 7011.333e3, "yaw_inertia": 33883.16e3},
-    "added_mass": {"spheroid": 0.0, "surge": 45.04215e3, "sway": 494.4331e3, "yaw": 19587.96e3, "roll": 1402.267e3},
+    "added_mass": {
+        "spheroid": 0.0,
+        "surge": 45.04215e3,
+        "sway": 494.4331e3,
+        "yaw": 19587.96e3,
+        "roll": 1402.267e3,
+    },
     "righting_arm": {"metacentric_height": 4.16 * FOOT},
-    "linear_hull": {"trim": 1.0731, "block": 0.513686, "ahead": -6.21 * FOOT, "above_keel": 11.08 * FOOT},
+    "linear_hull": {
+        "trim": 1.0731,
+        "block": 0.513686,
+        "ahead": -6.21 * FOOT,
+        "above_keel": 11.08 * FOOT,
+    },
     "rudder": {"inflow": 7.430879, "at": -12.509, "below": 2.36584},
 }
 A_C = np.array(  # of (psi, r, v, phi, p), printed
@@ -72,14 +83,38 @@ K_D = np.array(
 
 # Vessel, condition: V; -a_rr, -a_rv, -a_rphi, -a_vr, -a_vv, a_pr, a_pv, -a_pphi, b_r, b_v, b_p; T_phi, zeta
 TABLE = {
-    ("kynoc", 1): "5.659 .8135 .1550 .0283 .1237 .5305 -.6516 .0625 .8888 .3344 -.6948 .2814 6.66 .090",
-    ("kynoc", 2): "4.116 .5916 .1128 .0150 .0900 .3858 -.4739 .0454 .8888 .1113 -.2312 .0936 6.66 .090",
-    ("kynoc", 3): "5.659 .6875 .1710 .0270 .0354 .5464 -.4991 .0485 .6603 .2765 -.5903 .2392 7.73 .090",
-    ("kynoc", 4): "4.116 .5000 .1244 .0143 .0257 .3974 -.3630 .0353 .6603 .0920 -.1964 .0796 7.73 .090",
-    ("eastward_ho", 1): "6.688 .5212 .0566 .0131 1.0223 .2733 -.5990 .0289 .7744 .0764 -.3008 .0592 7.14 .051",
-    ("eastward_ho", 2): "5.144 .4009 .0435 .0077 .7864 .2102 -.4608 .0222 .7744 .0310 -.1220 .0240 7.14 .035",
-    ("eastward_ho", 3): "6.688 .4761 .0642 .0124 .8290 .2922 -.5417 .0270 .8457 .0598 -.2426 .0532 6.83 .044",
-    ("eastward_ho", 4): "4.630 .3296 .0444 .0059 .5739 .2023 -.3751 .0187 .8457 .0196 -.0797 .0175 6.83 .028",
+    (
+        "kynoc",
+        1,
+    ): "5.659 .8135 .1550 .0283 .1237 .5305 -.6516 .0625 .8888 .3344 -.6948 .2814 6.66 .090",
+    (
+        "kynoc",
+        2,
+    ): "4.116 .5916 .1128 .0150 .0900 .3858 -.4739 .0454 .8888 .1113 -.2312 .0936 6.66 .090",
+    (
+        "kynoc",
+        3,
+    ): "5.659 .6875 .1710 .0270 .0354 .5464 -.4991 .0485 .6603 .2765 -.5903 .2392 7.73 .090",
+    (
+        "kynoc",
+        4,
+    ): "4.116 .5000 .1244 .0143 .0257 .3974 -.3630 .0353 .6603 .0920 -.1964 .0796 7.73 .090",
+    (
+        "eastward_ho",
+        1,
+    ): "6.688 .5212 .0566 .0131 1.0223 .2733 -.5990 .0289 .7744 .0764 -.3008 .0592 7.14 .051",
+    (
+        "eastward_ho",
+        2,
+    ): "5.144 .4009 .0435 .0077 .7864 .2102 -.4608 .0222 .7744 .0310 -.1220 .0240 7.14 .035",
+    (
+        "eastward_ho",
+        3,
+    ): "6.688 .4761 .0642 .0124 .8290 .2922 -.5417 .0270 .8457 .0598 -.2426 .0532 6.83 .044",
+    (
+        "eastward_ho",
+        4,
+    ): "4.630 .3296 .0444 .0059 .5739 .2023 -.3751 .0187 .8457 .0196 -.0797 .0175 6.83 .028",
 }
 
 
@@ -97,7 +132,10 @@ def test_added_mass_is_that_of_a_spheroid_by_lambs_integrals() -> None:
     a, b = 15.4, 4.04
     alpha = a * b * b * quad(lambda x: 1.0 / ((a * a + x) ** 1.5 * (b * b + x)), 0, np.inf)[0]
     beta = a * b * b * quad(lambda x: 1.0 / ((a * a + x) ** 0.5 * (b * b + x) ** 2), 0, np.inf)[0]
-    over, under = (a * a - b * b) ** 2 * (beta - alpha), 2 * (a * a - b * b) + (b * b + a * a) * (alpha - beta)
+    over, under = (
+        (a * a - b * b) ** 2 * (beta - alpha),
+        2 * (a * a - b * b) + (b * b + a * a) * (alpha - beta),
+    )
     found = particulars.spheroid(2 * a, b)
     assert found.surge == pytest.approx(alpha / (2 - alpha), rel=1e-7)
     assert found.sway == pytest.approx(beta / (2 - beta), rel=1e-7)
@@ -110,8 +148,14 @@ def test_worked_example_coefficient_by_coefficient() -> None:
     d = particulars.derivatives(boat.length, boat.beam, boat.draught, 1.0731, 0.513686)
     assert d == pytest.approx((-0.72545, 0.249876, -0.21816, -0.07865), rel=3e-4)
     assert particulars.hull_share(0.513686) == pytest.approx(0.169081, abs=1e-6)
-    assert particulars.rudder_slope(2.787091, 1.875, 7.430879) == pytest.approx(219.7674e3, rel=1e-5)
-    mass, hull, roll = inertia(boat) / TONNE, -force(boat, v=1.0) / TONNE, boat.effect("roll_damping")
+    assert particulars.rudder_slope(2.787091, 1.875, 7.430879) == pytest.approx(
+        219.7674e3, rel=1e-5
+    )
+    mass, hull, roll = (
+        inertia(boat) / TONNE,
+        -force(boat, v=1.0) / TONNE,
+        boat.effect("roll_damping"),
+    )
     assert mass.diagonal() == pytest.approx([53471.11, 1066.479, 8413.6], rel=1e-5)
     assert hull[:2] == pytest.approx([3447.02, 309.136], rel=3e-4)
     assert -force(boat, r=1.0)[:2] / TONNE == pytest.approx([25557.17, 848.9842], rel=3e-4)
@@ -138,8 +182,12 @@ def test_worked_example_as_matrices_and_half_a_second_later() -> None:
     assert found_B[:, 0] == pytest.approx(B_D, abs=3.1e-4)
 
 
-@pytest.mark.parametrize(("coupling", "follows"), [(494.4331 * 1.35789 / 8413.6, True), (0.197267, False)])
-def test_the_printed_roll_by_sway_waves_does_not_give_the_printed_step(coupling: float, follows: bool) -> None:
+@pytest.mark.parametrize(
+    ("coupling", "follows"), [(494.4331 * 1.35789 / 8413.6, True), (0.197267, False)]
+)
+def test_the_printed_roll_by_sway_waves_does_not_give_the_printed_step(
+    coupling: float, follows: bool
+) -> None:
     """0.0798 is m_y z_H over the roll inertia; the continuous matrix prints 0.197267, the discrete one does not."""
     K = np.zeros((5, 3))
     K[1, 0] = K[2, 1] = K[4, 2] = 1.0
@@ -147,14 +195,28 @@ def test_the_printed_roll_by_sway_waves_does_not_give_the_printed_step(coupling:
     off = np.abs(held(A_C, K)[1] - K_D)
     assert (off.max() < 2e-3) == follows
     own, mass = example(), inertia(example())
-    assert own.effect("linear_hull").arm * mass[1, 1] / mass[2, 2] == pytest.approx(0.0798, abs=1e-4)  # type: ignore[union-attr]
+    assert own.effect("linear_hull").arm * mass[1, 1] / mass[2, 2] == pytest.approx(
+        0.0798, abs=1e-4
+    )  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize(("name", "condition"), TABLE)
 def test_every_condition_is_the_table(name: str, condition: int) -> None:
     boat = vessel.load(name, [f"condition_{condition}"])
     A, B, _ = linear(boat)
-    found = [-A[1, 1], -A[1, 2], -A[1, 3], -A[2, 1], -A[2, 2], A[4, 1], A[4, 2], -A[4, 3], B[1], B[2], B[4]]
+    found = [
+        -A[1, 1],
+        -A[1, 2],
+        -A[1, 3],
+        -A[2, 1],
+        -A[2, 2],
+        A[4, 1],
+        A[4, 2],
+        -A[4, 3],
+        B[1],
+        B[2],
+        B[4],
+    ]
     speed, *wanted, period, ratio = map(float, TABLE[name, condition].split())
     assert speed_of(boat) == pytest.approx(speed, abs=6e-4)
     assert found == pytest.approx(wanted, abs=7e-5)
@@ -182,7 +244,13 @@ def test_a_rudder_to_starboard_heels_inwards_first_and_outwards_in_the_turn() ->
 
 
 def roll_ratio_at_rest(
-    length: float, beam: float, mass: float, bilge: float, amplitude: float, keels: float = 0.0, shape: float = 1.0
+    length: float,
+    beam: float,
+    mass: float,
+    bilge: float,
+    amplitude: float,
+    keels: float = 0.0,
+    shape: float = 1.0,
 ) -> float:
     """Roll damping per critical without headway, of a round bilge.
 
@@ -195,14 +263,19 @@ def roll_ratio_at_rest(
     return 0.55 * area * d * d * sqrt(d) * sqrt(amplitude) / (tons * B * B)
 
 
-@pytest.mark.parametrize(("at_rest", "least", "most"), [(0.0119, 133.0, 143.0), (0.0437, 18.0, 19.0)])
+@pytest.mark.parametrize(
+    ("at_rest", "least", "most"), [(0.0119, 133.0, 143.0), (0.0437, 18.0, 19.0)]
+)
 def test_area_of_bilge_keels_that_the_damping_measured_in_the_tank_asks_for(
     at_rest: float, least: float, most: float
 ) -> None:
     """From each computed ratio to the measured 0.075, equal amplitude; turn of the bilge 13 to 15.1 ft deep."""
     areas = []
     for bilge in (13.0 * FOOT, 15.1 * FOOT):
-        hull, plate = (roll_ratio_at_rest(30.785, 8.7386, 572.05e3, bilge, 1.0, keels) for keels in (0.0, FOOT**2))
+        hull, plate = (
+            roll_ratio_at_rest(30.785, 8.7386, 572.05e3, bilge, 1.0, keels)
+            for keels in (0.0, FOOT**2)
+        )
         share = plate / hull - 1.0  # what a square foot adds, at any amplitude
         areas.append((0.075 / at_rest - 1.0) / share)
     assert areas == pytest.approx([least, most], abs=0.6)

@@ -40,14 +40,24 @@ def test_each_boat_sails_as_a_run_with_its_seed_does(case) -> None:
         alone = run(case, seed=int(fleet.seeds[i]))
         rows = np.searchsorted(alone.recording.t, voyages.t - 1e-6)
         for name in voyages.columns:
-            np.testing.assert_allclose(voyages[name][:, i], alone.recording.signals[name][rows], rtol=1e-7, atol=1e-9)
+            np.testing.assert_allclose(
+                voyages[name][:, i], alone.recording.signals[name][rows], rtol=1e-7, atol=1e-9
+            )
         counted = dict(zip(voyages.inputs, fleet.saturated[i].tolist(), strict=True))
-        assert {n: k for n, k in counted.items() if k} == {n: k for n, k in alone.saturated.items() if k}
-    assert case.sensors.ideal or np.ptp(voyages.states[-1], axis=0).max() > 0 or not type(case.controller).goals
+        assert {n: k for n, k in counted.items() if k} == {
+            n: k for n, k in alone.saturated.items() if k
+        }
+    assert (
+        case.sensors.ideal
+        or np.ptp(voyages.states[-1], axis=0).max() > 0
+        or not type(case.controller).goals
+    )
 
 
 @pytest.mark.parametrize("controller", [None, by_hand], ids=["law", "function"])
-def test_a_boat_sails_to_the_last_bit_alike_alone_and_among_others_on_any_number_of_threads(controller) -> None:
+def test_a_boat_sails_to_the_last_bit_alike_alone_and_among_others_on_any_number_of_threads(
+    controller,
+) -> None:
     def sailed(n: int, threads: int, first: int = 0) -> Voyages:
         seeds = range(first, first + n)
         return Fleet(SWAY, n, seeds=seeds, controller=controller, threads=threads).run(2.0, log=0.4)
@@ -99,7 +109,8 @@ def test_a_controller_that_does_more_than_its_law_is_refused() -> None:
 
 def test_a_scenario_that_lets_go_of_the_boat_is_refused() -> None:
     let_go = scenario.load(
-        "joystick_boat/berth", {"tank": None, "goal": [{"yaw_radps": 0.1}, {"from": 5.0, "off": True}]}
+        "joystick_boat/berth",
+        {"tank": None, "goal": [{"yaw_radps": 0.1}, {"from": 5.0, "off": True}]},
     )
     with pytest.raises(BadInput, match="says off"):
         Fleet(let_go, 2)

@@ -7,13 +7,13 @@ import pytest
 
 from benchmarks.real import kvlcc2_mmg as bench
 from benchmarks.real.common import RECORDINGS, runs_of
-from boatsim.diagnose import rules
-from boatsim.diagnose.problem import scale_of
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.problem import scale_of
 from boatsim.physics import vessel
 from boatsim.physics.effects.mmg_hull import MmgHull
 from boatsim.recordings.table import Recording
 from boatsim.simulate import manoeuvre, scenario
-from boatsim.simulate.norms import norms
+from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import Run, run
 
 MODEL, SHIP = vessel.load("kvlcc2_mmg"), vessel.load("kvlcc2_mmg_full_scale")
@@ -31,9 +31,13 @@ def test_every_number_of_the_ship_is_the_models_by_froudes_law() -> None:
         scaled = SHIP.effect(own.name)
         assert scaled is not None, own.name
         for name, about in type(own).params().items():
-            unscaled = about.unit == "kg/m^3" or name == "instant"  # the water, and what is so large that it never acts
+            unscaled = (
+                about.unit == "kg/m^3" or name == "instant"
+            )  # the water, and what is so large that it never acts
             wanted = getattr(own, name) * (1.0 if unscaled else grows(about.unit))
-            assert getattr(scaled, name) == pytest.approx(wanted, rel=1e-6, nan_ok=True), f"{own.name}.{name}"
+            assert getattr(scaled, name) == pytest.approx(wanted, rel=1e-6, nan_ok=True), (
+                f"{own.name}.{name}"
+            )
     assert MODEL.scale == pytest.approx(RATIO, rel=1e-4) == SHIP.scales[MODEL.name]
     assert {e.name for e in SHIP.effects} - {e.name for e in MODEL.effects} == {"shaft_rpm"}
     assert SHIP.body.mass == pytest.approx(MODEL.body.mass * RATIO**3)
@@ -74,12 +78,20 @@ def test_the_model_turns_back_sooner_than_the_tanks_measured(published: Run) -> 
 def test_a_recalibration_moves_every_derivative_of_the_hull_and_the_flow_at_the_rudder() -> None:
     """What is called recalibrated is the published structure at its best, not at its gains alone."""
     derivatives = {n for n in MmgHull.params() if n[:2] in ("X_", "Y_", "N_")}
-    free = {(type(e).idea(), n) for e in MODEL.effects for n, about in type(e).params().items() if about.calibrates}
+    free = {
+        (type(e).idea(), n)
+        for e in MODEL.effects
+        for n, about in type(e).params().items()
+        if about.calibrates
+    }
     assert {n for idea, n in free if idea == "mmg_hull"} == derivatives | {"R_0"}
     assert {n for idea, n in free if idea == "mmg_rudder"} == {
-        "gain", "hull_share", "straightening_port", "straightening_starboard",
-    }  # fmt: skip
-    assert rules.uncertainty(MODEL) == rules.uncertainty(SHIP) == {"damping": 0.5, "thrust": 0.5}
+        "gain",
+        "hull_share",
+        "straightening_port",
+        "straightening_starboard",
+    }
+    assert priors.uncertainty(MODEL) == priors.uncertainty(SHIP) == {"damping": 0.5, "thrust": 0.5}
 
 
 # ---- the benchmark's helpers
@@ -89,7 +101,9 @@ def test_reversals_and_overshoots_of_a_zigzag_are_those_of_its_norms(published: 
     log, made = published.recording, norms(published)
     at = bench.reversals(log["delta_rad"])
     found = bench.overshoots(log["psi_rad"], log["delta_rad"], at)
-    assert np.abs(log["psi_rad"][at]) == pytest.approx(np.full(len(at), np.radians(10.0)), abs=np.radians(0.3))
+    assert np.abs(log["psi_rad"][at]) == pytest.approx(
+        np.full(len(at), np.radians(10.0)), abs=np.radians(0.3)
+    )
     wanted = [made[f"{n}_overshoot"].value for n in bench.COUNT]
     assert found[:2] == pytest.approx(wanted, abs=0.3)  # the log has ten rows a second
 
@@ -99,12 +113,14 @@ def test_a_swing_that_the_rows_cut_off_is_no_overshoot() -> None:
     rising = np.linspace(0.0, 1.0, 100)
     assert bench.reversals(delta) == [49]
     assert bench.overshoots(rising, delta, [49]) == []
-    assert bench.overshoots(rising - np.maximum(rising - 0.8, 0.0) * 2.0, delta, [49]) == pytest.approx(
-        [np.degrees(0.8 - rising[49])], abs=1.0
-    )
+    assert bench.overshoots(
+        rising - np.maximum(rising - 0.8, 0.0) * 2.0, delta, [49]
+    ) == pytest.approx([np.degrees(0.8 - rising[49])], abs=1.0)
 
 
-@pytest.mark.skipif(not (RECORDINGS / "kvlcc2_marin_free").is_dir(), reason="needs ../shared/recordings")
+@pytest.mark.skipif(
+    not (RECORDINGS / "kvlcc2_marin_free").is_dir(), reason="needs ../shared/recordings"
+)
 def test_overshoots_read_of_marins_zigzags_are_the_published_ones() -> None:
     runs = bench.opened(runs_of("kvlcc2_marin_free"), SHIP.name)
     wanted = {"zz_m10": (8.2, 21.9), "zz_10": (9.5, 15.0), "zz_m20": (13.7, 14.9)}

@@ -9,8 +9,19 @@ import pytest
 from runs import found
 
 from benchmarks import golden
-from benchmarks.golden import REACH, TOLERANCE, drifts, kept, main, path_of, tracked, update, values, with_reason
-from boatsim.simulate.norms import Norm
+from benchmarks.golden import (
+    REACH,
+    TOLERANCE,
+    drifts,
+    kept,
+    main,
+    path_of,
+    tracked,
+    update,
+    values,
+    with_reason,
+)
+from boatsim.simulate.evaluation import Norm
 
 TRACKED = tracked()
 OLD = {
@@ -38,14 +49,18 @@ def test_norms_are_what_they_were_and_lie_within_their_bars(name: str) -> None:
     norms = found(name)[0]
     assert {n: (norm.value, norm.guard) for n, norm in norms.items() if norm.ok is False} == {}
     lines = drifts(name, kept(name), values(norms))
-    assert not lines, "\n".join([*lines, 'if this is wanted: python -m benchmarks.golden --update --reason "..."'])
+    assert not lines, "\n".join(
+        [*lines, 'if this is wanted: python -m benchmarks.golden --update --reason "..."']
+    )
 
 
 def test_nothing_is_kept_of_scenarios_that_are_gone() -> None:
     files = sorted(path_of("joystick_boat/sway_1").parent.iterdir())
     stored = {name for file in files for name in golden.table(file)}
     assert stored == set(TRACKED) and len(stored) >= 29
-    assert [file for file in files if any(path_of(name) != file for name in golden.table(file))] == []
+    assert [
+        file for file in files if any(path_of(name) != file for name in golden.table(file))
+    ] == []
 
 
 def test_a_drift_is_a_line_with_scenario_norm_old_new_and_paper() -> None:
@@ -65,13 +80,17 @@ def test_norms_that_come_go_or_lose_their_value_are_drifts() -> None:
 
 
 @pytest.mark.parametrize("reason", [[], ["--reason", ""], ["--reason", " \n"]])
-def test_an_update_without_a_reason_is_refused(reason: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_update_without_a_reason_is_refused(
+    reason: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["--update", *reason]) == 2
     assert capsys.readouterr().err == '--update needs --reason "why the norms changed"\n'
 
 
 def test_an_update_writes_the_values_and_the_reason(tmp_path: Path) -> None:
-    (tmp_path / "CHANGELOG.md").write_text("# Changelog\n\n## Norms\n\n- older reason\n\n## Other\n")
+    (tmp_path / "CHANGELOG.md").write_text(
+        "# Changelog\n\n## Norms\n\n- older reason\n\n## Other\n"
+    )
     new = with_today(0.7)
     update({"boat/one": (new, drifts("boat/one", OLD, new))}, "servo lag corrected", tmp_path)
     other = {"moved": OLD["yaw_rate_inf"]}
@@ -113,6 +132,9 @@ def test_of_a_loop_that_runs_away_only_what_goes_beyond_its_own_restlessness_is_
 
 def test_how_far_starts_beside_it_end_is_kept_where_it_is_more_than_arithmetic() -> None:
     norm = Norm(2.0, "m", None, None, None, None, None, None)
-    assert "moves" not in values({"moved": norm}, [{"moved": replace(norm, value=2.0 + 1e-9)}])["moved"]
+    assert (
+        "moves"
+        not in values({"moved": norm}, [{"moved": replace(norm, value=2.0 + 1e-9)}])["moved"]
+    )
     near = [{"moved": replace(norm, value=x)} for x in (2.1, 1.7)]
     assert values({"moved": norm}, near)["moved"]["moves"] == pytest.approx(0.3)

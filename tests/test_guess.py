@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boatsim.recordings.importing.guess import guess
 from boatsim.recordings.importing.log import Log, Signal
-from boatsim.recordings.importing.propose import Drive, proposal
+from boatsim.recordings.importing.mapping_proposal import Drive, proposal
+from boatsim.recordings.importing.signal_classification import guess
 
 T = np.linspace(0.0, 60.0, 600)
 NAMES = """
@@ -58,7 +58,9 @@ wind_speed 0 9 - nothing -
 
 
 def log_of(frame: str = "", **signals: tuple[float, float]) -> Log:
-    return Log(Path("log"), {n: Signal(T, np.linspace(*ends, 600)) for n, ends in signals.items()}, frame)
+    return Log(
+        Path("log"), {n: Signal(T, np.linspace(*ends, 600)) for n, ends in signals.items()}, frame
+    )
 
 
 @pytest.mark.parametrize("line", NAMES.strip().splitlines(), ids=lambda line: line.split()[0])
@@ -80,12 +82,16 @@ def test_a_compass_counts_from_north_in_a_log_of_ros_too():
     signals = {"/compass_hdg.data": Signal(T, np.linspace(0.0, 350.0, 600))}
     assert 'psi_rad = "/compass_hdg.data * deg"' in proposal(Log(Path("log"), signals, "ENU"))
     signals = {"/imu.orientation.yaw": Signal(T, np.linspace(0.0, 3.0, 600), "rad")}
-    assert 'psi_rad = "-/imu.orientation.yaw + 90 * deg"' in proposal(Log(Path("log"), signals, "ENU"))
+    assert 'psi_rad = "-/imu.orientation.yaw + 90 * deg"' in proposal(
+        Log(Path("log"), signals, "ENU")
+    )
 
 
 def test_channels_get_the_signals_of_their_side_and_per_cent_becomes_their_range():
     drives = [Drive("thrust_port_N", -27.7, 55.3), Drive("thrust_starboard_N", -27.7, 55.3)]
-    text = proposal(log_of(motor_right=(-80.0, 90.0), motor_left=(-80.0, 91.0), psi=(0.0, 3.0)), "v", drives)
+    text = proposal(
+        log_of(motor_right=(-80.0, 90.0), motor_left=(-80.0, 91.0), psi=(0.0, 3.0)), "v", drives
+    )
     ends = "low = -100, neutral = 0, high = 100, least = -27.7, most = 55.3"
     assert f'thrust_port_N = {{ signal = "motor_left", {ends} }}' in text
     assert f'thrust_starboard_N = {{ signal = "motor_right", {ends} }}' in text
@@ -104,13 +110,19 @@ def test_what_the_vessels_file_says_of_its_recordings_comes_before_any_guess():
     stated = {"thrust_port_N": "force_right", "y_m": "-port", "x_m": "none"}
     log = log_of(psi=(0.0, 3.0), force_right=(0.0, 1.0), port=(0.0, 9.0), y=(0.0, 3.0))
     text = proposal(log, "v", [Drive("thrust_port_N", -1.0, 1.0)], (), stated)
-    assert 'thrust_port_N = "force_right"  # as' in text and 'y_m = "-port"  # as' in text and "none" not in text
+    assert (
+        'thrust_port_N = "force_right"  # as' in text
+        and 'y_m = "-port"  # as' in text
+        and "none" not in text
+    )
     assert text.count("y_m = ") == 1
 
 
 def test_channels_that_no_name_fits_get_the_outputs_in_order_and_it_is_said():
     drives = [Drive("thrust_port_N", -1.0, 1.0), Drive("rudder_rad", -0.5, 0.5)]
-    text = proposal(log_of(psi=(0.0, 3.0), **{"rudder": (-0.4, 0.4), "motor 1": (-0.9, 0.9)}), "v", drives)
+    text = proposal(
+        log_of(psi=(0.0, 3.0), **{"rudder": (-0.4, 0.4), "motor 1": (-0.9, 0.9)}), "v", drives
+    )
     assert 'rudder_rad = "rudder"' in text and "CHECK: the only one that is left" in text
     text = proposal(log_of(psi=(0.0, 3.0)), "v", drives)
     assert '# rudder_rad = "..."' in text

@@ -11,10 +11,12 @@ from scipy.integrate import solve_ivp
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.twin import Twin
 
-HEELING = boats.PLANAR.replace('freedoms = ["surge", "sway", "yaw"]', 'freedoms = ["surge", "sway", "yaw", "roll"]')
+HEELING = boats.PLANAR.replace(
+    'freedoms = ["surge", "sway", "yaw"]', 'freedoms = ["surge", "sway", "yaw", "roll"]'
+)
 RIGHTING = '\n[[effect]]\nuse = "righting_arm"\nstiffness = 2.0\n'
 WATER = {"sway_at": 0.15, "sway_below": 0.08, "roll": 0.02}
 NAMES = ("x", "y", "phi", "psi", "u", "v", "p", "r")
@@ -29,15 +31,27 @@ def heeling(folder: Path, **settings: dict[str, float]) -> Vessel:
 
 
 def independent(
-    damping: Callable[[Array], Array], current: tuple[float, float], tau: tuple[float, float], seconds: float
+    damping: Callable[[Array], Array],
+    current: tuple[float, float],
+    tau: tuple[float, float],
+    seconds: float,
 ) -> Array:
     """State after a run of the same boat: momentum of a rigid body and of a sway mass at a point, in earth axes.
 
     Unknowns are pose and the velocities (u, v, p, r) over ground; the water's momentum belongs to the velocity
     through the water and is carried along by the turning axes (Kirchhoff).
     """
-    a_u, a_v, a_r, a_p, ahead, below = 0.6, 3.0, 0.3, WATER["roll"], WATER["sway_at"], WATER["sway_below"]
-    arm = np.array([0.0, 1.0, -below, ahead])  # velocity to starboard of the point at which the sway mass sits
+    a_u, a_v, a_r, a_p, ahead, below = (
+        0.6,
+        3.0,
+        0.3,
+        WATER["roll"],
+        WATER["sway_at"],
+        WATER["sway_below"],
+    )
+    arm = np.array(
+        [0.0, 1.0, -below, ahead]
+    )  # velocity to starboard of the point at which the sway mass sits
     water = np.diag([a_u, 0.0, a_p, a_r]) + a_v * np.outer(arm, arm)
     rigid = np.diag([MASS, MASS, IXX, IZZ])
 
@@ -45,11 +59,18 @@ def independent(
         phi, psi, (u, v, p, r) = s[2], s[3], s[4:]
         turn = np.array([[np.cos(psi), np.sin(psi)], [-np.sin(psi), np.cos(psi)]])
         through = s[4:] - np.array([*(turn @ current), 0.0, 0.0])
-        px, py, *_ = water @ through + rigid @ s[4:] * [1, 1, 0, 0]  # linear momentum, which turns with the axes
+        px, py, *_ = water @ through + rigid @ s[4:] * [
+            1,
+            1,
+            0,
+            0,
+        ]  # linear momentum, which turns with the axes
         wx, wy, *_ = water @ through
         force = damping(through) + [tau[0], 0.0, -2.0 * phi, tau[1]]
         force += [r * py, -r * px, 0.0, through[1] * wx - through[0] * wy]
-        drift = np.array([r * (turn @ current)[1], -r * (turn @ current)[0], 0.0, 0.0])  # d/dt of the current's part
+        drift = np.array(
+            [r * (turn @ current)[1], -r * (turn @ current)[0], 0.0, 0.0]
+        )  # d/dt of the current's part
         nu_dot = np.linalg.solve(water + rigid, force + water @ drift)
         return np.array([*(turn.T @ [u, v]), p, r, *nu_dot])
 
@@ -63,7 +84,9 @@ def damped(through: Array) -> Array:
 
 
 @pytest.mark.parametrize("current", [(0.0, 0.0), (0.1, -0.05)])
-def test_engine_twin_and_an_independent_integrator_agree(tmp_path: Path, current: tuple[float, float]) -> None:
+def test_engine_twin_and_an_independent_integrator_agree(
+    tmp_path: Path, current: tuple[float, float]
+) -> None:
     north, east = current
     boat = heeling(tmp_path, linear_damping={"roll": 0.4}, current={"north": north, "east": east})
     commands = boats.push(2.0, 0.3)

@@ -8,14 +8,16 @@ import pytest
 from answers import diagnosed
 from real_boat import Real, recorded
 
-from boatsim.diagnose.log.held_fixes import repeats, without_repeats
+from boatsim.diagnosis.checks.repeated_positions import repeats, without_repeats
 from boatsim.recordings.table import Recording
 
 
 def held(run: Recording, rows: int) -> Recording:
     """A fix in every so many rows, repeated in between."""
     last = np.arange(len(run)) // rows * rows
-    return replace(run, signals={n: v[last] if n in ("x_m", "y_m") else v for n, v in run.signals.items()})
+    return replace(
+        run, signals={n: v[last] if n in ("x_m", "y_m") else v for n, v in run.signals.items()}
+    )
 
 
 def test_repetitions_are_found_and_nothing_else() -> None:
@@ -42,4 +44,7 @@ def test_a_diagnosis_of_repeated_fixes_is_that_of_the_fixes(tmp_path: Path) -> N
     assert said["verdict"] == "named" and effect["name"] == "thrust_imbalance", said["sentence"]
     fraction = effect["parameters"]["fraction"]
     assert abs(fraction["value"] - 0.15) < 3.0 * fraction["sd"]
-    assert said["fit"]["position_rms_m"]["patched"] < 0.5 * said["fit"]["position_rms_m"]["recalibrated"]
+    assert (
+        said["fit"]["position_rms_m"]["patched"]
+        < 0.5 * said["fit"]["position_rms_m"]["recalibrated"]
+    )

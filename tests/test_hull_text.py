@@ -7,7 +7,7 @@ import pytest
 
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
-from boatsim.simulate.hull_text import check_text
+from boatsim.simulate.hull_xml_check import check_text
 from boatsim.simulate.world import build
 
 BEGIN = '<mujoco><worldbody><body name="hull"><geom {} type="box" size="1 1 1"/></body></worldbody>{}</mujoco>'
@@ -26,14 +26,21 @@ BEGIN = '<mujoco><worldbody><body name="hull"><geom {} type="box" size="1 1 1"/>
 )
 def test_what_would_end_the_process_is_refused(tmp_path: Path, text: str, said: str) -> None:
     (tmp_path / "hull.xml").write_text(text)
-    (tmp_path / "more.xml").write_text('<mujocoinclude><include file="hull.xml"/><a class="%n"/></mujocoinclude>')
+    (tmp_path / "more.xml").write_text(
+        '<mujocoinclude><include file="hull.xml"/><a class="%n"/></mujocoinclude>'
+    )
     with pytest.raises(BadInput, match=said):
         check_text(tmp_path / "hull.xml")
 
 
 @pytest.mark.parametrize(
     "hiding",
-    ["<![CDATA[ > <!-- ]]>", '<![CDATA[ " ]]>', '<!DOCTYPE a [ <!ENTITY b "> <!--"> ]>', "<!DOCTYPE a>"],
+    [
+        "<![CDATA[ > <!-- ]]>",
+        '<![CDATA[ " ]]>',
+        '<!DOCTYPE a [ <!ENTITY b "> <!--"> ]>',
+        "<!DOCTYPE a>",
+    ],
 )
 def test_what_could_hide_a_tag_is_refused(tmp_path: Path, hiding: str) -> None:
     (tmp_path / "hull.xml").write_text(hiding + BEGIN.format('class="%n"', ""))
@@ -42,7 +49,9 @@ def test_what_could_hide_a_tag_is_refused(tmp_path: Path, hiding: str) -> None:
 
 
 def test_an_instruction_hides_no_tag(tmp_path: Path) -> None:
-    (tmp_path / "hull.xml").write_text('<?xml version="1.0" encoding="utf-8"?>' + BEGIN.format("", ""))
+    (tmp_path / "hull.xml").write_text(
+        '<?xml version="1.0" encoding="utf-8"?>' + BEGIN.format("", "")
+    )
     check_text(tmp_path / "hull.xml")
     (tmp_path / "hull.xml").write_text("<?odd ' ?>" + BEGIN.format('class="%n"', ""))
     with pytest.raises(BadInput, match="has a %"):
@@ -55,7 +64,9 @@ def test_a_comment_may_say_anything(tmp_path: Path, comment: str) -> None:
     check_text(tmp_path / "hull.xml")
 
 
-@pytest.mark.parametrize("text", ["<" * 10**6, '<"' * 10**6, "<!--" * 10**6, "<a b='" * 10**6, "<include " * 10**5])
+@pytest.mark.parametrize(
+    "text", ["<" * 10**6, '<"' * 10**6, "<!--" * 10**6, "<a b='" * 10**6, "<include " * 10**5]
+)
 def test_rubbish_takes_no_time(tmp_path: Path, text: str) -> None:
     (tmp_path / "hull.xml").write_text(text)
     check_text(tmp_path / "hull.xml")

@@ -21,13 +21,17 @@ class Case:
     entry: str
     real: Real
     true: Mapping[str, float]
-    hold: int = 5  # rows of a random step: long ones reach the speeds at which damping is not linear
+    hold: int = (
+        5  # rows of a random step: long ones reach the speeds at which damping is not linear
+    )
     start: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m], [m], [rad]
     more: bool = False  # the boat's law differs from the entry's by more than the tolerated force
 
 
 CASES = (
-    Case("current", Real(stream=(0.03, -0.05)), {"north_mps": 0.03, "east_mps": -0.05}, more=True),  # it ebbs
+    Case(
+        "current", Real(stream=(0.03, -0.05)), {"north_mps": 0.03, "east_mps": -0.05}, more=True
+    ),  # it ebbs
     Case("thrust_lag", Real(lag=0.45), {"time_constant_s": 0.45}, more=True),
     Case("thrust_deadband", Real(dead=0.12), {"width_N": 0.12}),
     Case("thrust_imbalance", Real(power=(1.15, 0.85)), {"fraction": 0.15}),
@@ -54,12 +58,31 @@ CASES = (
         hold=20,
     ),
     # in sway the boat is too slow for the cube of its speed
-    Case("cubic_damping", Real(cube=(10.0, 0.0, 1.5)), {"surge_Ns3pm3": 10.0, "yaw_Nms3": 1.5}, hold=20),
-    Case("forward_speed_damping", Real(lift=(20.0, 3.0)), {"sway_Ns2pm2": 20.0, "yaw_Ns2": 3.0}, hold=20),
+    Case(
+        "cubic_damping",
+        Real(cube=(10.0, 0.0, 1.5)),
+        {"surge_Ns3pm3": 10.0, "yaw_Nms3": 1.5},
+        hold=20,
+    ),
+    Case(
+        "forward_speed_damping",
+        Real(lift=(20.0, 3.0)),
+        {"sway_Ns2pm2": 20.0, "yaw_Ns2": 3.0},
+        hold=20,
+    ),
     Case("sway_yaw_coupling", Real(way=(-6.0, 10.0)), {"sway_kg": -6.0, "yaw_kg": 10.0}, hold=20),
-    Case("wall_effect", Real(walls=(1.5, 0.1)), {"damping_rise": 1.5, "pull_N": 0.1}, start=(-3.0, -2.0, 0.0)),
+    Case(
+        "wall_effect",
+        Real(walls=(1.5, 0.1)),
+        {"damping_rise": 1.5, "pull_N": 0.1},
+        start=(-3.0, -2.0, 0.0),
+    ),
     # a short stiff line; it is as long as stated to within the 2 cm over which the entry's law becomes taut
-    Case("tether", Real(line=(2.0, 0.3, 0.5, 0.5)), {"stiffness_Npm": 2.0, "north_m": 0.5, "east_m": 0.5}),
+    Case(
+        "tether",
+        Real(line=(2.0, 0.3, 0.5, 0.5)),
+        {"stiffness_Npm": 2.0, "north_m": 0.5, "east_m": 0.5},
+    ),
 )
 
 

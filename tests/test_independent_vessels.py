@@ -16,10 +16,10 @@ from scipy.optimize import brentq
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Force, Wrench, motion
 from boatsim.simulate import scenario
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.norms import norms
+from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import run
-from boatsim.simulate.twin import Twin
 
 Rates = Callable[[Array, float], Array]  # (x, y, psi, u, v, r), rudder [rad] -> their derivatives
 
@@ -28,11 +28,13 @@ def sailed(rates: Rates, start: list[float], rudder: float, until: float) -> Arr
     """State (6,) with the rudder held."""
     found = solve_ivp(
         lambda t, s: rates(s, rudder), (0.0, until), start, "DOP853", rtol=1e-10, atol=1e-10
-    )  # fmt: skip
+    )
     return np.asarray(found.y[:, -1])
 
 
-def on_engine(name: str, start: list[float], commands: dict[str, float], until: float, step: float) -> Array:
+def on_engine(
+    name: str, start: list[float], commands: dict[str, float], until: float, step: float
+) -> Array:
     """The same on MuJoCo, its actuators settled from the start."""
     engine = Engine(vessel.load(name), step=step)
     x, y, psi, u, v, r = start
@@ -52,7 +54,11 @@ def earth(s: Array) -> list[float]:
 
 L, D, RHO = 7.0, 0.46, 1000.0  # [m], [m], [kg/m^3]
 MASS, X_G = 3270.0, 0.25  # [kg], [m]
-M_X, M_Y, J_Z = 0.022 * 0.5 * RHO * L**2 * D, 0.223 * 0.5 * RHO * L**2 * D, 0.011 * 0.5 * RHO * L**4 * D
+M_X, M_Y, J_Z = (
+    0.022 * 0.5 * RHO * L**2 * D,
+    0.223 * 0.5 * RHO * L**2 * D,
+    0.011 * 0.5 * RHO * L**4 * D,
+)
 HULL_X = {"R": 0.022, "vv": -0.040, "vr": 0.002, "rr": 0.011, "vvvv": 0.771}
 HULL_Y = (-0.315, 0.083, -1.607, 0.379, -0.391, 0.008)  # v, r, vvv, vvr, vrr, rrr
 HULL_N = (-0.137, -0.049, -0.030, -0.294, 0.055, -0.013)
@@ -73,7 +79,12 @@ def mmg_forces(u: float, v: float, r: float, delta: float, n: float) -> tuple[fl
     J = u * w / (n * D_P)
     K_T = 0.2931 - 0.2753 * J - 0.1385 * J**2
     eta = D_P / H_R
-    u_R = EPSILON * u * w * sqrt(eta * (1 + KAPPA * (sqrt(1 + 8 * K_T / (pi * J**2)) - 1)) ** 2 + 1 - eta)
+    u_R = (
+        EPSILON
+        * u
+        * w
+        * sqrt(eta * (1 + KAPPA * (sqrt(1 + 8 * K_T / (pi * J**2)) - 1)) ** 2 + 1 - eta)
+    )
     beta_R = beta - L_R * r_
     v_R = U * (0.640 if beta_R > 0 else 0.395) * beta_R
     F_N = 0.5 * RHO * A_R * (u_R**2 + v_R**2) * F_A * sin(delta - atan2(v_R, u_R))
@@ -100,9 +111,15 @@ def mmg(s: Array, delta: float) -> Array:
 def mmg_wrench(angle: float, shaft: float, **given: float) -> Array:
     """X, Y, N of the three effects together, without the Coriolis force of the added mass."""
     boat, m = vessel.load("kvlcc2_mmg"), motion(**given)
-    hull, propeller, rudder = (boat.effect(f"mmg_{part}") for part in ("hull", "propeller", "rudder"))
+    hull, propeller, rudder = (
+        boat.effect(f"mmg_{part}") for part in ("hull", "propeller", "rudder")
+    )
     assert isinstance(hull, Force) and isinstance(propeller, Force) and isinstance(rudder, Force)
-    forces = hull.wrench(m), propeller.wrench(m, shaft=shaft), rudder.wrench(m, angle=angle, shaft=shaft)
+    forces = (
+        hull.wrench(m),
+        propeller.wrench(m, shaft=shaft),
+        rudder.wrench(m, angle=angle, shaft=shaft),
+    )
     total = np.sum(forces, axis=0)[[0, 1, 5]]
     return np.asarray(total - (M_Y * m.v * m.r, -M_X * m.u * m.r, 0.0))
 
@@ -112,12 +129,16 @@ def test_mmg_effects_are_the_published_formulas(seed: int) -> None:
     rng = np.random.default_rng(seed)
     u, v, r = rng.uniform(0.3, 1.5), rng.uniform(-0.3, 0.3), rng.uniform(-0.1, 0.1)
     delta, n = rng.uniform(-0.6, 0.6), rng.uniform(2.0, 15.0)
-    assert mmg_wrench(delta, n, u=u, v=v, r=r) == pytest.approx(mmg_forces(u, v, r, delta, n), rel=1e-5)
+    assert mmg_wrench(delta, n, u=u, v=v, r=r) == pytest.approx(
+        mmg_forces(u, v, r, delta, n), rel=1e-5
+    )
 
 
 def test_mmg_propeller_that_stands_still_drags_and_a_ship_at_rest_feels_its_race() -> None:
     boat = vessel.load("kvlcc2_mmg")
-    propeller, rudder, hull = (boat.effect(f"mmg_{part}") for part in ("propeller", "rudder", "hull"))
+    propeller, rudder, hull = (
+        boat.effect(f"mmg_{part}") for part in ("propeller", "rudder", "hull")
+    )
     assert propeller is not None and rudder is not None and hull is not None
     stopped = propeller.wrench(motion(u=1.0), shaft=0.0).X  # type: ignore[attr-defined]
     assert stopped == pytest.approx(0.78 * RHO * D_P**2 * -0.1385 * 0.6**2, rel=1e-9)
@@ -129,17 +150,24 @@ def test_mmg_propeller_that_stands_still_drags_and_a_ship_at_rest_feels_its_race
 def test_mmg_resistance_is_against_the_way_through_the_water() -> None:
     hull = vessel.load("kvlcc2_mmg").effect("mmg_hull")
     ahead, astern = (hull.wrench(motion(u=u)).X for u in (0.8, -0.8))  # type: ignore[union-attr]
-    assert ahead == pytest.approx(-0.5 * RHO * L * D * 0.022 * 0.8**2) and astern == pytest.approx(-ahead)
+    assert ahead == pytest.approx(-0.5 * RHO * L * D * 0.022 * 0.8**2) and astern == pytest.approx(
+        -ahead
+    )
     drifting = [hull.wrench(motion(u=u, v=0.5)).X for u in (-1e-9, 1e-9)]  # type: ignore[union-attr]
     assert drifting[0] == pytest.approx(drifting[1], rel=1e-6)  # it turns round without a jump
-    still, flowing = motion(u=-0.5), motion(current=(0.5, 0.0))  # at rest over ground, the water comes from astern
+    still, flowing = (
+        motion(u=-0.5),
+        motion(current=(0.5, 0.0)),
+    )  # at rest over ground, the water comes from astern
     assert hull.wrench(flowing).X == hull.wrench(still).X > 0.0  # type: ignore[union-attr]
 
 
 def test_mmg_propeller_and_rudder_amidships_do_not_drive_a_ship_that_goes_straight_astern() -> None:
     boat, astern = vessel.load("kvlcc2_mmg"), motion(u=-0.8)
     stopped = boat.effect("mmg_propeller").wrench(astern, shaft=0.0).X  # type: ignore[union-attr]
-    assert stopped == pytest.approx(0.78 * RHO * D_P**2 * 0.1385 * (0.6 * 0.8) ** 2)  # astern the wake is that of ahead
+    assert stopped == pytest.approx(
+        0.78 * RHO * D_P**2 * 0.1385 * (0.6 * 0.8) ** 2
+    )  # astern the wake is that of ahead
     assert boat.effect("mmg_rudder").wrench(astern, angle=0.0, shaft=0.0) == Wrench()  # type: ignore[union-attr]
 
 
@@ -166,11 +194,20 @@ def test_propeller_balances_the_resistance_at_the_published_rate() -> None:
 def test_kvlcc2_mmg_sails_as_by_an_independent_integrator(rudder: float) -> None:
     start = [0.0, 0.0, 0.3, 1.0, 0.05, -0.02]
     found = on_engine("kvlcc2_mmg", start, {"delta_rad": rudder, "n_rps": BALANCED}, 60.0, 0.05)
-    assert found == pytest.approx(sailed(mmg, start, rudder, 60.0), rel=1e-5)  # data are rounded to six digits
+    assert found == pytest.approx(
+        sailed(mmg, start, rudder, 60.0), rel=1e-5
+    )  # data are rounded to six digits
 
 
 MEASURED = {  # scenario -> published numbers its norms are held against
-    "turning_circle_35": {"advance", "transfer", "tactical_diameter", "steady_speed", "steady_rate", "steady_drift"},
+    "turning_circle_35": {
+        "advance",
+        "transfer",
+        "tactical_diameter",
+        "steady_speed",
+        "steady_rate",
+        "steady_drift",
+    },
     "turning_circle_35_port": {"advance", "transfer", "tactical_diameter"},
     "turning_circle_35_614_rpm": {"advance", "tactical_diameter"},
     "zigzag_10": {"first_overshoot", "second_overshoot"},
@@ -199,17 +236,51 @@ def mariner(s: Array, delta: float) -> Array:
     U = hypot(s[3], s[4])
     u, v, r, d = (s[3] - MARINER_U0) / U, s[4] / U, s[5] * MARINER_L / U, -delta
     X = (
-        -184 * u - 110 * u**2 - 215 * u**3 - 899 * v**2 + 18 * r**2 - 95 * d**2 - 190 * u * d**2 + 798 * r * v
-        + 93 * v * d + 93 * u * v * d
-    )  # fmt: skip
+        -184 * u
+        - 110 * u**2
+        - 215 * u**3
+        - 899 * v**2
+        + 18 * r**2
+        - 95 * d**2
+        - 190 * u * d**2
+        + 798 * r * v
+        + 93 * v * d
+        + 93 * u * v * d
+    )
     Y = (
-        -1160 * v - 499 * r - 8078 * v**3 + 15356 * v**2 * r - 1160 * v * u - 499 * r * u + 278 * d - 90 * d**3
-        + 556 * u * d + 278 * u**2 * d - 4 * v * d**2 + 1190 * v**2 * d - 4 - 8 * u - 4 * u**2
-    )  # fmt: skip
+        -1160 * v
+        - 499 * r
+        - 8078 * v**3
+        + 15356 * v**2 * r
+        - 1160 * v * u
+        - 499 * r * u
+        + 278 * d
+        - 90 * d**3
+        + 556 * u * d
+        + 278 * u**2 * d
+        - 4 * v * d**2
+        + 1190 * v**2 * d
+        - 4
+        - 8 * u
+        - 4 * u**2
+    )
     N = (
-        -264 * v - 166 * r + 1636 * v**3 - 5483 * v**2 * r - 264 * v * u - 166 * r * u - 139 * d + 45 * d**3
-        - 278 * u * d - 139 * u**2 * d + 13 * v * d**2 - 489 * v**2 * d + 3 + 6 * u + 3 * u**2
-    )  # fmt: skip
+        -264 * v
+        - 166 * r
+        + 1636 * v**3
+        - 5483 * v**2 * r
+        - 264 * v * u
+        - 166 * r * u
+        - 139 * d
+        + 45 * d**3
+        - 278 * u * d
+        - 139 * u**2 * d
+        + 13 * v * d**2
+        - 489 * v**2 * d
+        + 3
+        + 6 * u
+        + 3 * u**2
+    )
     m, x_G = 798.0, -0.023
     du = X / (m + 42.0) * U**2 / MARINER_L
     sway_yaw = [[m + 748.0, m * x_G + 9.354], [m * x_G - 4.646, 39.2 + 43.8]]
@@ -247,7 +318,9 @@ def overshoots(helm: float) -> list[float]:
         reached.terminal = True  # type: ignore[attr-defined]
         s = sail(side * rate, (angle - side * s[6]) / rate).y[:, -1]
         leg = sail(0.0, 400.0, events=(turned, reached))
-        found += [degrees(-side * peak[2] - angle) for peak in leg.y_events[0][:1]]  # none on the first leg
+        found += [
+            degrees(-side * peak[2] - angle) for peak in leg.y_events[0][:1]
+        ]  # none on the first leg
         s = leg.y[:, -1]
     return found
 

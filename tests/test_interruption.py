@@ -24,9 +24,9 @@ from boatsim.physics.content import load_class, names
 from boatsim.physics.signals import STATE as OF_HULLS
 from boatsim.quiet import SIGNALS
 from boatsim.recordings.table import Notes, Recording, read
-from boatsim.simulate.film import Film, FilmMeasure
-from boatsim.simulate.log import PIECE, FiledLog, Log
-from boatsim.simulate.measure import TooShort
+from boatsim.simulate.camera_log import Film, FilmMeasure
+from boatsim.simulate.metric import TooShort
+from boatsim.simulate.run_log import PIECE, FiledLog, Log
 from boatsim.view.outputs import filling
 
 FILES = {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"}
@@ -68,7 +68,9 @@ def heeding() -> None:
 def begin(*arguments: object, before: Callable[[], None] = heeding) -> "subprocess.Popen[str]":
     command = [sys.executable, "-m", "boatsim", *map(str, arguments)]
     pipe = subprocess.PIPE
-    return subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, start_new_session=True, preexec_fn=before)
+    return subprocess.Popen(
+        command, stdout=pipe, stderr=pipe, text=True, start_new_session=True, preexec_fn=before
+    )
 
 
 def end(running: "subprocess.Popen[str]", within: float = 60.0) -> tuple[int, str]:
@@ -78,7 +80,9 @@ def end(running: "subprocess.Popen[str]", within: float = 60.0) -> tuple[int, st
     except subprocess.TimeoutExpired:
         os.killpg(running.pid, signal.SIGKILL)
         raise
-    return running.returncode, "".join(x for x in said.splitlines(True) if not x.startswith("progress: "))
+    return running.returncode, "".join(
+        x for x in said.splitlines(True) if not x.startswith("progress: ")
+    )
 
 
 def wait_for(there: Callable[[], object], within: float = 60.0) -> None:
@@ -103,7 +107,9 @@ def endless(tmp_path: Path) -> Path:
 # A run that somebody ends ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", pytest.param("SIGHUP", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name", ["SIGINT", "SIGTERM", pytest.param("SIGHUP", marks=pytest.mark.slow)]
+)
 def test_a_signal_ends_a_run_and_what_was_logged_is_kept_with_its_norms_so_far(
     name: str, endless: Path, tmp_path: Path
 ) -> None:
@@ -117,13 +123,18 @@ def test_a_signal_ends_a_run_and_what_was_logged_is_kept_with_its_norms_so_far(
     content = json.loads((out / "norms.json").read_text())
     assert content["complete"] is False
     assert content["norms"]["u_mps_inf"]["value"] < 9.0  # so far
-    assert content["norms"]["peak"]["value"] is None and content["norms"]["peak"]["lacking"] == "too short"
+    assert (
+        content["norms"]["peak"]["value"] is None
+        and content["norms"]["peak"]["lacking"] == "too short"
+    )
     table, log = read(out / "recording.csv"), read(out / "run.rrd")
     np.testing.assert_allclose(log.t, table.t, atol=1e-9)
     assert table.t[-1] > 1.0 and len(table) == content["steps"] + 1
 
 
-def test_a_process_that_is_killed_leaves_all_but_the_last_second(endless: Path, tmp_path: Path) -> None:
+def test_a_process_that_is_killed_leaves_all_but_the_last_second(
+    endless: Path, tmp_path: Path
+) -> None:
     out = tmp_path / "out"
     running = begin("run", endless, "--out", out)
     wait_for(lambda: logged(out) and list(tmp_path.glob("out.part-*/norms.json")))
@@ -132,9 +143,15 @@ def test_a_process_that_is_killed_leaves_all_but_the_last_second(endless: Path, 
     running.kill()
     end(running)
     (left,) = tmp_path.glob("out.part-*")
-    assert {f.name for f in left.iterdir()} - {f.name for f in left.glob("*.part-*")} == FILES and not out.exists()
+    assert {f.name for f in left.iterdir()} - {
+        f.name for f in left.glob("*.part-*")
+    } == FILES and not out.exists()
     content = json.loads((left / "norms.json").read_text())
-    assert content["complete"] is False and content["steps"] > 0 and content["norms"]["u_mps_inf"]["value"] < 9.0
+    assert (
+        content["complete"] is False
+        and content["steps"] > 0
+        and content["norms"]["u_mps_inf"]["value"] < 9.0
+    )
     assert content["norms"]["peak"]["lacking"] == "too short"
     for name in ("recording.csv", "camera.csv", "run.rrd"):
         assert begun - (left / name).stat().st_mtime < 1.0
@@ -154,7 +171,9 @@ def test_ctrl_c_in_the_first_moments_is_quiet(wait: float, endless: Path, tmp_pa
     if code == -signal.SIGINT:  # before the first line of ours
         assert wait < 0.1
         return
-    assert code == 130 and said.count("\n") <= 1 and re.fullmatch("(boatsim: interrupted.*\n)?", said), said
+    assert (
+        code == 130 and said.count("\n") <= 1 and re.fullmatch("(boatsim: interrupted.*\n)?", said)
+    ), said
     assert not list(tmp_path.glob("out.part-*"))
 
 
@@ -169,7 +188,9 @@ def test_a_compiler_at_work_does_not_swallow_a_ctrl_c(
         os.kill(running.pid, signal.SIGINT)
         begun = time.monotonic()
         code, said = end(running)
-        assert code == 130 and said.startswith("boatsim: interrupted") and said.count("\n") == 1, said
+        assert code == 130 and said.startswith("boatsim: interrupted") and said.count("\n") == 1, (
+            said
+        )
         assert time.monotonic() - begun < 10.0
 
 
@@ -215,7 +236,9 @@ def test_signals_wait_while_files_are_moved_and_count_afterwards(tmp_path: Path)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "all_of_them"), [("SIGTERM", True), ("SIGHUP", True), ("SIGINT", False)])
+@pytest.mark.parametrize(
+    ("name", "all_of_them"), [("SIGTERM", True), ("SIGHUP", True), ("SIGINT", False)]
+)
 def test_workers_keep_what_they_have_when_a_signal_comes(
     name: str, all_of_them: bool, endless: Path, tmp_path: Path
 ) -> None:
@@ -227,7 +250,9 @@ def test_workers_keep_what_they_have_when_a_signal_comes(
 
 
 @pytest.mark.slow
-def test_workers_end_with_a_parent_that_is_killed_and_keep_what_they_have(endless: Path, tmp_path: Path) -> None:
+def test_workers_end_with_a_parent_that_is_killed_and_keep_what_they_have(
+    endless: Path, tmp_path: Path
+) -> None:
     running, out = _two(endless, tmp_path)
     running.kill()
     end(running)  # they hold its pipes as long as they live
@@ -252,7 +277,9 @@ def _small(most: int) -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
 
 
-def test_a_run_on_a_full_disk_ends_with_one_line_and_keeps_what_was_whole(endless: Path, tmp_path: Path) -> None:
+def test_a_run_on_a_full_disk_ends_with_one_line_and_keeps_what_was_whole(
+    endless: Path, tmp_path: Path
+) -> None:
     running = begin("run", endless, "--out", tmp_path / "out", before=partial(_small, 2_000_000))
     code, said = end(running)
     (left,) = tmp_path.glob("out.part-*")
@@ -265,7 +292,9 @@ def test_a_run_on_a_full_disk_ends_with_one_line_and_keeps_what_was_whole(endles
     np.testing.assert_allclose(table["u_mps"][:together], log["u_mps"][:together], atol=1e-9)
 
 
-def test_a_comparison_on_a_full_disk_ends_with_one_line_and_leaves_what_was_there(tmp_path: Path) -> None:
+def test_a_comparison_on_a_full_disk_ends_with_one_line_and_leaves_what_was_there(
+    tmp_path: Path,
+) -> None:
     t = 0.2 * np.arange(75)
     rows = [f"{a:.3f},{0.15 * np.exp(-0.03 * a) * np.cos(2.46 * a):.6f}" for a in t]
     (tmp_path / "run.csv").write_text("\n".join(["t_s,phi_rad", *rows]) + "\n")
@@ -273,7 +302,9 @@ def test_a_comparison_on_a_full_disk_ends_with_one_line_and_leaves_what_was_ther
     (tmp_path / "out" / "compare.csv").write_text("earlier")
     boat = ["--vessel", "kvlcc2_roll", "--out", tmp_path / "out"]
     code, said = end(begin("compare", tmp_path / "run.csv", *boat, before=partial(_small, 10_000)))
-    said = "".join(line for line in said.splitlines(keepends=True) if not line.startswith("progress: "))
+    said = "".join(
+        line for line in said.splitlines(keepends=True) if not line.startswith("progress: ")
+    )
     assert code == 2 and said.count("\n") == 1 and "File too large" in said, said
     assert [f.name for f in (tmp_path / "out").iterdir()] == ["compare.csv"]
     assert (tmp_path / "out" / "compare.csv").read_text() == "earlier"
@@ -345,7 +376,12 @@ def test_a_log_in_a_file_is_the_one_in_memory(count: int, tmp_path: Path) -> Non
                 log.rows(0, log.count)
                 log.amend(2, np.array([-1.0]))
             log.add(row)
-    for start, stop in ((0, count), (count // 2, count), (max(count - 3, 0), count), (0, count // 3)):
+    for start, stop in (
+        (0, count),
+        (count // 2, count),
+        (max(count - 3, 0), count),
+        (0, count // 3),
+    ):
         np.testing.assert_array_equal(logs[0].rows(start, stop), logs[1].rows(start, stop))
     assert not list(tmp_path.iterdir())  # it has no name
 
@@ -355,15 +391,28 @@ MEASURES = names("measure")
 
 @pytest.mark.parametrize("rows", [0, 1, 2, 5])
 @pytest.mark.parametrize("name", MEASURES)
-def test_a_measure_of_a_short_log_has_numbers_or_says_that_it_is_too_short(name: str, rows: int) -> None:
+def test_a_measure_of_a_short_log_has_numbers_or_says_that_it_is_too_short(
+    name: str, rows: int
+) -> None:
     """Of boats that move and of such that lie still; no warning, no infinite number, no other error."""
     made = load_class("measure", name)()
     for slope in (0.0, 0.3, -0.3):
         t = 0.02 * np.arange(rows)
         signals = [s.column for s in OF_HULLS] + [
-            "jet_rad", "delta_rad", "rudder_rad", "thrust_N", "reference_helm_rad", "steer_port_rad", "contacts",
-        ]  # fmt: skip
-        log = Recording("short", t, {n: slope * (1.0 + np.sin(i + 9.0 * t)) for i, n in enumerate(signals)}, Notes())
+            "jet_rad",
+            "delta_rad",
+            "rudder_rad",
+            "thrust_N",
+            "reference_helm_rad",
+            "steer_port_rad",
+            "contacts",
+        ]
+        log = Recording(
+            "short",
+            t,
+            {n: slope * (1.0 + np.sin(i + 9.0 * t)) for i, n in enumerate(signals)},
+            Notes(),
+        )
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             if isinstance(made, FilmMeasure):
@@ -376,10 +425,14 @@ def test_a_measure_of_a_short_log_has_numbers_or_says_that_it_is_too_short(name:
             except TooShort:
                 continue
         assert rows > 0 or not found
-        assert found.keys() <= type(made).units.keys() and np.isfinite(list(found.values())).all(), found
+        assert (
+            found.keys() <= type(made).units.keys() and np.isfinite(list(found.values())).all()
+        ), found
 
 
-@pytest.mark.parametrize("name", ["activity", "heading_hold", "tracking", "zigzag_swings", "step_response"])
+@pytest.mark.parametrize(
+    "name", ["activity", "heading_hold", "tracking", "zigzag_swings", "step_response"]
+)
 def test_a_log_that_ends_before_a_measure_begins_is_too_short(name: str) -> None:
     signals = ("psi_rad", "delta_rad", "jet_rad", "u_mps", "v_mps", "r_radps")
     log = Recording("early", np.arange(5.0), {n: np.arange(5.0) for n in signals}, Notes())

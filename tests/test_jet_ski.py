@@ -31,19 +31,23 @@ from boatsim.physics.effects.steering_offset import SteeringAsymmetry
 from boatsim.physics.effects.water_jet import WaterJet
 from boatsim.physics.signals import signals_of
 from boatsim.simulate import scenario
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.norms import norms
+from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import run
-from boatsim.simulate.twin import Twin
 
-CRAFT = vessel.load("jet_ski", settings={"throttle_rate_limit": {"rate": 1e6}, "servo": {"rate": 1e3}})
+CRAFT = vessel.load(
+    "jet_ski", settings={"throttle_rate_limit": {"rate": 1e6}, "servo": {"rate": 1e3}}
+)
 MASS, ROLL, YAW = CRAFT.body.mass, CRAFT.body.roll_inertia, CRAFT.body.yaw_inertia
 
 
 # ---- effects
 
 
-@pytest.mark.parametrize(("throttle", "wanted"), [(1.0, 0.80), (2.0, 12.90), (4.0, 194.9), (7.0, 224.9)])
+@pytest.mark.parametrize(
+    ("throttle", "wanted"), [(1.0, 0.80), (2.0, 12.90), (4.0, 194.9), (7.0, 224.9)]
+)
 def test_power_curve_has_the_published_corners(throttle: float, wanted: float) -> None:
     jet = WaterJet(mass=1.0)
     for h in (throttle - 1e-9, throttle):  # both sides
@@ -60,7 +64,9 @@ def test_power_rises_with_the_throttle_and_its_inverse_gives_the_throttle_back()
 
 
 def test_printed_q2_makes_the_power_jump_at_4() -> None:
-    jump = [WaterJet(mass=1.0, q2=164.5).wrench(motion(u=1.0), throttle=h).X for h in (4.0 - 1e-9, 4.0)]
+    jump = [
+        WaterJet(mass=1.0, q2=164.5).wrench(motion(u=1.0), throttle=h).X for h in (4.0 - 1e-9, 4.0)
+    ]
     assert jump[1] - jump[0] == pytest.approx(9.6, abs=1e-5)
 
 
@@ -73,7 +79,9 @@ def test_sway_roll_and_yaw_of_the_craft_are_the_printed_matrix() -> None:
     jet, m = 0.15, motion(u=20.0, v=-0.7, p=0.3, r=0.5, phi=0.2)
     seen = {"angle": jet, "throttle": 3.0, "bucket": 0.0}
     forces = [e for e in CRAFT.effects if isinstance(e, Force)]
-    total = np.sum([e.wrench(m, **{role: seen[role] for role in type(e).roles}) for e in forces], axis=0)
+    total = np.sum(
+        [e.wrench(m, **{role: seen[role] for role in type(e).roles}) for e in forces], axis=0
+    )
     accelerations = total[1] / MASS - m.u * m.r, total[3] / ROLL, total[5] / YAW
     assert accelerations == pytest.approx(STEERING @ [m.v, m.p, m.r, m.phi, jet], rel=1e-9)
 
@@ -87,27 +95,52 @@ def test_roll_coupling_and_jet_are_linear() -> None:
 
 
 def test_first_order_yaw_changes_in_a_straight_line() -> None:
-    law = NomotoYaw(gain=1.0, gain_later=4.0, time_constant=1.5, time_constant_later=0.5, duration=40.0, inertia=2.0)
+    law = NomotoYaw(
+        gain=1.0,
+        gain_later=4.0,
+        time_constant=1.5,
+        time_constant_later=0.5,
+        duration=40.0,
+        inertia=2.0,
+    )
     for t, gain, lag in ((0.0, 1.0, 1.5), (20.0, 2.5, 1.0), (50.0, 4.0, 0.5)):
-        assert law.wrench(motion(t=t, r=0.2), angle=0.1).N == pytest.approx(2.0 * (gain * 0.1 - 0.2) / lag)
+        assert law.wrench(motion(t=t, r=0.2), angle=0.1).N == pytest.approx(
+            2.0 * (gain * 0.1 - 0.2) / lag
+        )
 
 
 def test_a_push_begins_and_ends() -> None:
-    push, there = Push(surge=1.0, sway=2.0, yaw=3.0, begin=5.0, end=15.0), Wrench(X=1.0, Y=2.0, N=3.0)
-    assert [push.wrench(motion(t=t)) for t in (4.9, 5.0, 14.9, 15.0)] == [Wrench(), there, there, Wrench()]
+    push, there = (
+        Push(surge=1.0, sway=2.0, yaw=3.0, begin=5.0, end=15.0),
+        Wrench(X=1.0, Y=2.0, N=3.0),
+    )
+    assert [push.wrench(motion(t=t)) for t in (4.9, 5.0, 14.9, 15.0)] == [
+        Wrench(),
+        there,
+        there,
+        Wrench(),
+    ]
 
 
 def test_throttle_follows_a_ramp_and_its_mean_is_exact() -> None:
     memory, limit, full = np.zeros(1), RateLimit(rate=3.0).values(), Course(1.0, 1.0, 1.0)
     courses = [RateLimit.channel(full, 0.0, 0.0, memory, 0, 0.2, limit) for _ in range(3)]
-    assert [mean_of(c) for c in courses] == pytest.approx([0.3, 1.0 - 0.5 * 0.4 * (0.4 / 3.0) / 0.2, 1.0])
-    assert [(c.begin, c.end) for c in courses] == [(0.0, pytest.approx(0.6)), (pytest.approx(0.6), 1.0), (1.0, 1.0)]
+    assert [mean_of(c) for c in courses] == pytest.approx(
+        [0.3, 1.0 - 0.5 * 0.4 * (0.4 / 3.0) / 0.2, 1.0]
+    )
+    assert [(c.begin, c.end) for c in courses] == [
+        (0.0, pytest.approx(0.6)),
+        (pytest.approx(0.6), 1.0),
+        (1.0, 1.0),
+    ]
 
 
 def test_asymmetric_steering_is_even_in_the_angle() -> None:
     values = SteeringAsymmetry(gain=0.05).values()
     held = [Course(x, x, x) for x in (0.2, -0.2)]
-    right, left = (SteeringAsymmetry.channel(x, 0.0, 0.0, np.zeros(1), 0, 0.1, values) for x in held)
+    right, left = (
+        SteeringAsymmetry.channel(x, 0.0, 0.0, np.zeros(1), 0, 0.1, values) for x in held
+    )
     assert right == pytest.approx([0.21] * 3) and left == pytest.approx([-0.19] * 3)
 
 
@@ -126,11 +159,17 @@ def test_kappa_scales_the_whole_surge_acceleration(u: float, kappa: float) -> No
 # ---- the craft
 
 
-@pytest.mark.parametrize(("throttle", "jet"), [(1.0, 0.0), (4.0, radians(15.0)), (7.0, radians(-8.0))])
-def test_engine_and_twin_follow_an_integration_of_the_printed_equations(throttle: float, jet: float) -> None:
+@pytest.mark.parametrize(
+    ("throttle", "jet"), [(1.0, 0.0), (4.0, radians(15.0)), (7.0, radians(-8.0))]
+)
+def test_engine_and_twin_follow_an_integration_of_the_printed_equations(
+    throttle: float, jet: float
+) -> None:
     names = ("x", "y", "psi", "phi", "u", "v", "p", "r")
     start = dict(zip(names, (0.0, 0.0, 0.3, 0.05, 20.0, 0.2, 0.1, -0.1), strict=True))
-    truth = solved(Craft(), throttle, jet, np.array(list(start.values())), np.array([0.0, 10.0]))[-1]
+    truth = solved(Craft(), throttle, jet, np.array(list(start.values())), np.array([0.0, 10.0]))[
+        -1
+    ]
     engine = Engine(CRAFT, step=0.01)
     engine.reset(State(**start), {"throttle": throttle, "jet_rad": jet})
     engine.advance(1000)
@@ -144,9 +183,13 @@ def test_engine_and_twin_follow_an_integration_of_the_printed_equations(throttle
 
 
 def test_eigenvalues_of_the_steering_are_the_published_ones() -> None:
-    whole = np.vstack([np.insert(STEERING[:, :4], 4, 0.0, axis=1), [0, 1, 0, 0, 0], [0, 0, 1, 0, 0]])
+    whole = np.vstack(
+        [np.insert(STEERING[:, :4], 4, 0.0, axis=1), [0, 1, 0, 0, 0], [0, 0, 1, 0, 0]]
+    )
     poles = sorted(np.linalg.eigvals(whole), key=lambda z: (z.real, z.imag))
-    assert poles[0] == pytest.approx(-0.674 - 1.256j, abs=1e-3) and poles[2] == pytest.approx(-0.314 - 0.228j, abs=1e-3)
+    assert poles[0] == pytest.approx(-0.674 - 1.256j, abs=1e-3) and poles[2] == pytest.approx(
+        -0.314 - 0.228j, abs=1e-3
+    )
 
 
 # ---- the loops
@@ -154,7 +197,9 @@ def test_eigenvalues_of_the_steering_are_the_published_ones() -> None:
 
 def test_compiled_projection_is_the_textbook_one() -> None:
     for value, rate in ((0.3, 2.0), (0.98, 2.0), (0.98, -2.0), (-0.99, -3.0), (1.0, 1.0)):
-        assert projected(value, rate, -1.0, 1.0) == pytest.approx(project_interval(value, rate, -1.0, 1.0, 0.1))
+        assert projected(value, rate, -1.0, 1.0) == pytest.approx(
+            project_interval(value, rate, -1.0, 1.0, 0.1)
+        )
 
 
 def test_adaptive_loop_equals_the_textbook_example_with_a_known_reference_system() -> None:
@@ -192,9 +237,23 @@ def test_predictor_told_the_truth_learns_nothing() -> None:
     estimates, predicted = np.array([0.5, 0.2, 2.0]), np.array([1.0])
     x1 = 1.0 + 0.01 * (-1.4 + 0.5 + 0.2 + 2.0 * 0.3)  # one sub-step: exact
     adapt(
-        predicted, estimates, np.full(3, -9.0), np.full(3, 9.0), 1e4, np.array([[-1.4]]), np.array([0.357]),
-        np.zeros(1), np.arange(3), np.array([1.0]), np.array([x1]), 0.3, 0.01, 1, np.zeros(3), np.zeros(1),
-    )  # fmt: skip
+        predicted,
+        estimates,
+        np.full(3, -9.0),
+        np.full(3, 9.0),
+        1e4,
+        np.array([[-1.4]]),
+        np.array([0.357]),
+        np.zeros(1),
+        np.arange(3),
+        np.array([1.0]),
+        np.array([x1]),
+        0.3,
+        0.01,
+        1,
+        np.zeros(3),
+        np.zeros(1),
+    )
     assert estimates.tolist() == pytest.approx([0.5, 0.2, 2.0], abs=1e-9)
 
 
@@ -230,10 +289,14 @@ def test_a_control_step_ten_times_finer_changes_no_time_of_the_staircase() -> No
     for period in (0.002, 0.0005):
         base = scenario.load("jet_ski/staircase").file
         overrides = {
-            "controller": base.controller | {"period": period}, "step": period, "duration": 20.0,
+            "controller": base.controller | {"period": period},
+            "step": period,
+            "duration": 20.0,
             "goal": [dict(g) for g in base.goal[:2]],
-        }  # fmt: skip
-        found.append(norms(run(scenario.load("jet_ski/staircase", overrides), 0))["time_95_1"].value)
+        }
+        found.append(
+            norms(run(scenario.load("jet_ski/staircase", overrides), 0))["time_95_1"].value
+        )
     assert found[0] == pytest.approx(found[1], abs=0.01)
 
 

@@ -15,9 +15,9 @@ from gymnasium.utils.env_checker import check_env  # noqa: E402
 from boatsim.control.approach import Approach  # noqa: E402
 from boatsim.control.base import Sense  # noqa: E402
 from boatsim.errors import BadInput  # noqa: E402
-from boatsim.learn import chance, registration  # noqa: E402
+from boatsim.learn import episode_random, registration  # noqa: E402
 from boatsim.learn.actions import controls  # noqa: E402
-from boatsim.learn.game import play  # noqa: E402
+from boatsim.learn.environment_options import play  # noqa: E402
 from boatsim.learn.pilot import piloted  # noqa: E402
 from boatsim.learn.play import Play  # noqa: E402
 from boatsim.physics import vessel  # noqa: E402
@@ -40,9 +40,15 @@ def game(task: str, n: int, **more: Any) -> Play:
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_gymnasium_finds_nothing_to_complain_of(name: str, recwarn: pytest.WarningsRecorder) -> None:
+def test_gymnasium_finds_nothing_to_complain_of(
+    name: str, recwarn: pytest.WarningsRecorder
+) -> None:
     check_env(single(name), skip_render_check=True)
-    assert not [str(w.message) for w in recwarn if "gymnasium" in str(w.category).lower() or "Box" in str(w.message)]
+    assert not [
+        str(w.message)
+        for w in recwarn
+        if "gymnasium" in str(w.category).lower() or "Box" in str(w.message)
+    ]
 
 
 @pytest.mark.parametrize("name", IDS)
@@ -63,7 +69,9 @@ def test_a_boat_of_many_plays_the_episodes_that_it_plays_alone(name: str) -> Non
             if e or t:
                 ends += 1
                 assert (info["final_obs"][i] == own).all()
-                assert {n: info["final_info"][n][i] for n in norms} == norms and "is_success" in norms
+                assert {
+                    n: info["final_info"][n][i] for n in norms
+                } == norms and "is_success" in norms
                 own, _ = env.reset()
             assert (own == seen[i]).all()
     assert ends >= 8  # every boat in two episodes or more
@@ -99,7 +107,9 @@ def test_mujoco_and_the_batch_play_the_same_episode() -> None:
     actions = np.random.default_rng(2).uniform(-0.5, 0.5, (40, 3))
     for action in actions:
         a, b = (env.step(action) for env in both)
-        assert a[0] == pytest.approx(b[0], abs=1e-5) and a[1] == pytest.approx(b[1], abs=1e-6)  # float32
+        assert a[0] == pytest.approx(b[0], abs=1e-5) and a[1] == pytest.approx(
+            b[1], abs=1e-6
+        )  # float32
     one, other = (np.ravel(env.play.motion) for env in both)
     assert one == pytest.approx(other, abs=1e-9)
 
@@ -133,7 +143,9 @@ def test_boats_that_are_over_begin_when_the_mode_says_so() -> None:
         ("blueboat", "underway", ("thrust", "turn")),
     ],
 )
-def test_actions_follow_from_the_channels_of_a_boat(boat: str, use: Any, names: tuple[str, ...]) -> None:
+def test_actions_follow_from_the_channels_of_a_boat(
+    boat: str, use: Any, names: tuple[str, ...]
+) -> None:
     found = controls(vessel.load(boat), use)
     assert found.names == names
     assert np.linalg.matrix_rank(found.pattern) == len(names)  # none is there twice
@@ -142,7 +154,9 @@ def test_actions_follow_from_the_channels_of_a_boat(boat: str, use: Any, names: 
     assert (ends >= limits[:, 0]).all() and (ends <= limits[:, 1]).all()
 
 
-@pytest.mark.parametrize(("boat", "action"), [("joystick_boat", "helm"), ("catamaran", "helm"), ("otter", "turn")])
+@pytest.mark.parametrize(
+    ("boat", "action"), [("joystick_boat", "helm"), ("catamaran", "helm"), ("otter", "turn")]
+)
 def test_a_positive_helm_or_turn_brings_the_bow_to_starboard(boat: str, action: str) -> None:
     sea = game("follow_path", 1, vessel=boat)
     sea.begin(np.zeros(1, dtype=np.uint64), np.array([0]))
@@ -181,11 +195,18 @@ def test_a_joystick_controller_with_its_outer_loop_berths_in_calm_water() -> Non
 
     sea = game("berth", 8, period=0.08, step=0.04, duration=90.0)
     norms = piloted(sea, np.arange(8, dtype=np.uint64), Berthing)
-    assert norms["is_success"].all() and (norms["distance_L"] < 0.1).all() and (norms["time_s"] < 90.0).all()
+    assert (
+        norms["is_success"].all()
+        and (norms["distance_L"] < 0.1).all()
+        and (norms["time_s"] < 90.0).all()
+    )
 
 
 def test_what_varies_differs_from_boat_to_boat_and_stays_within_what_is_said() -> None:
-    vary = {"load": ["light, narrow", "heavy, wide"], "weak_reverse.astern_factor": "uniform(0.5, 0.9)"}
+    vary = {
+        "load": ["light, narrow", "heavy, wide"],
+        "weak_reverse.astern_factor": "uniform(0.5, 0.9)",
+    }
     sea = game(
         "berth",
         400,
@@ -200,7 +221,9 @@ def test_what_varies_differs_from_boat_to_boat_and_stays_within_what_is_said() -
     factor, north = sea.world.get("weak_reverse.astern_factor"), sea.world.get("current.north")
     assert 0.5 <= factor.min() < 0.52 and 0.88 < factor.max() <= 0.9
     assert north.std() == pytest.approx(0.02, rel=0.15)
-    assert (sea.world.get("fan_wind.speed") == 0.5).all() and np.ptp(sea.world.get("body.yaw_inertia")) > 0.19
+    assert (sea.world.get("fan_wind.speed") == 0.5).all() and np.ptp(
+        sea.world.get("body.yaw_inertia")
+    ) > 0.19
     assert set(np.round(sea.world.get("port.y"), 3)) == {-0.19, -0.28}
     assert abs(np.corrcoef(factor, north)[0, 1]) < 0.15
 
@@ -228,8 +251,12 @@ shifts = { "linear_damping.surge" = 1.0 }
     sea.begin(np.arange(4000, dtype=np.uint64), np.arange(4000))
     gain, drag = sea.world.get("port.gain"), sea.world.get("linear_damping.surge")
     assert (gain == sea.world.get("starboard.gain")).all()
-    assert gain.mean() == pytest.approx(1.0, abs=0.005) and gain.std() == pytest.approx(0.05, rel=0.05)
-    assert drag.mean() == pytest.approx(3.0, abs=0.02) and drag.std() == pytest.approx(0.2, rel=0.05)
+    assert gain.mean() == pytest.approx(1.0, abs=0.005) and gain.std() == pytest.approx(
+        0.05, rel=0.05
+    )
+    assert drag.mean() == pytest.approx(3.0, abs=0.02) and drag.std() == pytest.approx(
+        0.2, rel=0.05
+    )
     assert np.corrcoef(gain, drag)[0, 1] == pytest.approx(-0.8, abs=0.03)
     known = game("hold_station", 10, vessel=str(patched), vary={"spread": 0.0})
     known.begin(np.arange(10, dtype=np.uint64), np.arange(10))
@@ -250,7 +277,11 @@ shifts = { "linear_damping.surge" = 1.0 }
         ("berth", {"duration": float("inf")}, "duration = inf s"),
         ("berth", {"vary": {"body.mass": -1.0}}, "vary body.mass = -1; allowed 1e-09 to 1e+18 kg"),
         ("berth", {"vary": {"fan_wind.speed": 99.0}}, "allowed 0 to 40"),
-        ("joystick", {"vessel": "otter"}, "otter can be moved by shaft, turn only; Joystick needs 3 actions"),
+        (
+            "joystick",
+            {"vessel": "otter"},
+            "otter can be moved by shaft, turn only; Joystick needs 3 actions",
+        ),
         ("berth", {"vessel": "martin_tank_model"}, "has no drive"),
         ("berth", {"duraton": 3.0}, "did you mean 'duration'"),
     ],
@@ -262,7 +293,11 @@ def test_what_does_not_fit_is_told_in_one_line(task: str, told: dict[str, Any], 
 
 
 def test_other_boats_play_too() -> None:
-    for boat, task in (("otter", "follow_path"), ("blueboat", "hold_station"), ("catamaran", "follow_path")):
+    for boat, task in (
+        ("otter", "follow_path"),
+        ("blueboat", "hold_station"),
+        ("catamaran", "follow_path"),
+    ):
         sea = game(task, 2, vessel=boat)
         sea.begin(np.arange(2, dtype=np.uint64), np.arange(2))
         for _ in range(20):
@@ -271,16 +306,24 @@ def test_other_boats_play_too() -> None:
 
 
 def test_numbers_drawn_by_lot_are_uniform_and_independent() -> None:
-    rows = chance.shares(chance.episode(np.arange(20000, dtype=np.uint64), np.zeros(20000, dtype=np.uint64)), 3)
+    rows = episode_random.shares(
+        episode_random.episode(np.arange(20000, dtype=np.uint64), np.zeros(20000, dtype=np.uint64)),
+        3,
+    )
     assert rows.min() > 0.0 and rows.max() < 1.0
-    assert rows.mean(axis=0) == pytest.approx(0.5, abs=0.01) and rows.var(axis=0) == pytest.approx(1 / 12, rel=0.03)
+    assert rows.mean(axis=0) == pytest.approx(0.5, abs=0.01) and rows.var(axis=0) == pytest.approx(
+        1 / 12, rel=0.03
+    )
     assert np.abs(np.corrcoef(rows.T) - np.eye(3)).max() < 0.03
     assert np.abs(np.corrcoef(rows[:-1, 0], rows[1:, 0])[0, 1]) < 0.03
 
 
 def test_learning_without_gymnasium_can_still_be_imported() -> None:
-    code = "import sys; sys.modules['gymnasium'] = None; import boatsim.learn, boatsim.learn.game; print('yes')"
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "yes\n"
+    code = "import sys; sys.modules['gymnasium'] = None; import boatsim.learn, boatsim.learn.environment_options; print('yes')"
+    assert (
+        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
+        == "yes\n"
+    )
 
 
 def test_stable_baselines_takes_the_boats() -> None:

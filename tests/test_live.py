@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from boatsim.cli import app
 from boatsim.simulate import scenario
-from boatsim.simulate.pace import Pace
+from boatsim.simulate.real_time_pace import Pace
 from boatsim.simulate.run import Runner
 from boatsim.view import viewer
 
@@ -67,7 +67,9 @@ def test_a_paced_run_is_the_same_run() -> None:
     plain, paced, clock = Runner(made), Runner(made), Clock()
     paced.pace = Pace(1.0, clock, clock.sleep)
     whole, other = plain.run().recording, paced.run().recording
-    assert (whole["x_m"] == other["x_m"]).all() and clock.now - 100.0 == pytest.approx(other.t[-1], abs=0.1)
+    assert (whole["x_m"] == other["x_m"]).all() and clock.now - 100.0 == pytest.approx(
+        other.t[-1], abs=0.1
+    )
 
 
 def boatsim(*arguments: object):
@@ -83,7 +85,9 @@ def test_without_a_display_it_is_said_in_one_line_where_the_run_can_be_seen(
     done = boatsim("run", "joystick_boat/sway_1", "--live", "--out", tmp_path / "out")
     assert done.exit_code == 0 and (tmp_path / "out" / "run.rrd").is_file()
     (line,) = done.stderr.splitlines()
-    assert line.startswith("boatsim: no viewer") and "--serve" in line and "http://127.0.0.1:" in line
+    assert (
+        line.startswith("boatsim: no viewer") and "--serve" in line and "http://127.0.0.1:" in line
+    )
 
 
 @pytest.mark.parametrize(
@@ -96,7 +100,9 @@ def test_without_a_display_it_is_said_in_one_line_where_the_run_can_be_seen(
         (["--serve", "--jobs", "2", "joystick_boat/sway_2"], "one run at a time"),
     ],
 )
-def test_what_can_not_be_shown_is_refused_before_it_runs(tmp_path: Path, options: list[str], said: str) -> None:
+def test_what_can_not_be_shown_is_refused_before_it_runs(
+    tmp_path: Path, options: list[str], said: str
+) -> None:
     done = boatsim("run", "joystick_boat/sway_1", *options, "--out", tmp_path / "out")
     assert done.exit_code == 2 and said in done.stderr and done.stderr.count("\n") == 1
     assert not (tmp_path / "out").exists()
@@ -106,9 +112,13 @@ def served(tmp_path: Path, *options: str) -> tuple["subprocess.Popen[str]", str]
     """A run with --serve under way, and the address of its page."""
     command = [sys.executable, "-m", "boatsim", "run", "joystick_boat/sway_1", "--serve", *options]
     running = subprocess.Popen(
-        [*command, "--out", str(tmp_path / "out")], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        start_new_session=True, preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),  # whatever started us
-    )  # fmt: skip
+        [*command, "--out", str(tmp_path / "out")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),  # whatever started us
+    )
     assert running.stderr is not None
     page = re.search(r"http://127\.0\.0\.1:\d+/\?url=\S+", running.stderr.readline())
     assert page, running.communicate()
@@ -131,7 +141,9 @@ def test_the_page_is_there_while_the_run_is_and_gone_with_it(tmp_path: Path) -> 
     with urlopen(page, timeout=10) as answer:
         assert answer.status == 200 and b"erun" in answer.read()
     assert running.wait(60) == 0 and not listens(port_of(page))
-    assert {"recording.csv", "run.rrd", "norms.json"} <= {f.name for f in (tmp_path / "out").iterdir()}
+    assert {"recording.csv", "run.rrd", "norms.json"} <= {
+        f.name for f in (tmp_path / "out").iterdir()
+    }
 
 
 def test_ctrl_c_ends_a_watched_run_at_once_keeps_it_and_takes_the_page_away(tmp_path: Path) -> None:

@@ -11,19 +11,19 @@ from scipy.integrate import odeint
 from scipy.linalg import expm
 from scipy.stats import kstest
 
-from boatsim.diagnose.filter import nominal_levels, track
-from boatsim.diagnose.levels import fit_time_constant
-from boatsim.diagnose.locate.forces import BAND, force_left, intervals, missing_force
-from boatsim.diagnose.locate.region_ideas import walls_of
-from boatsim.diagnose.locate.region_tests import Evidence, joint
-from boatsim.diagnose.locate.regions import Region, regions
-from boatsim.diagnose.locate.rhythm import rhythm
-from boatsim.diagnose.locate.smoothing import information, running_average, variance_of_average
-from boatsim.diagnose.locate.structure import features, structure
-from boatsim.diagnose.problem import Problem
-from boatsim.diagnose.search.evidence import UNKNOWN, left_over
-from boatsim.diagnose.search.rank import baseline
-from boatsim.diagnose.tried import library_for
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.locate.missing_force import BAND, force_left, intervals, missing_force
+from boatsim.diagnosis.locate.periodicity import rhythm
+from boatsim.diagnosis.locate.region_candidates import walls_of
+from boatsim.diagnosis.locate.region_tests import Evidence, joint
+from boatsim.diagnosis.locate.regions import Region, regions
+from boatsim.diagnosis.locate.residual_structure import features, structure
+from boatsim.diagnosis.locate.smoothing import information, running_average, variance_of_average
+from boatsim.diagnosis.noise_levels import fit_time_constant
+from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.search.evidence import UNKNOWN, left_over
+from boatsim.diagnosis.search.ranking import baseline
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -73,7 +73,9 @@ def chain() -> Chain:
     covariances = np.array([posterior[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] for i in range(N)])
     gains = np.zeros((N, 3, 3))
     for i in range(N - 1):  # cov(z_i, z_i+1) = G_i P_i+1
-        gains[i] = np.linalg.solve(covariances[i + 1].T, posterior[3 * i : 3 * i + 3, 3 * i + 3 : 3 * i + 6].T).T
+        gains[i] = np.linalg.solve(
+            covariances[i + 1].T, posterior[3 * i : 3 * i + 3, 3 * i + 3 : 3 * i + 6].T
+        ).T
     responds = np.zeros((N, N))
     for i in range(N - 1):
         z = moved[:, 2].copy()
@@ -81,7 +83,9 @@ def chain() -> Chain:
         for j in range(i + 1, N):
             responds[j, i] = z[0]
             z = moved @ z
-    return Chain(DT * np.arange(N), covariances, gains, K[2::3], responds, spread, posterior[2::3, 2::3])
+    return Chain(
+        DT * np.arange(N), covariances, gains, K[2::3], responds, spread, posterior[2::3, 2::3]
+    )
 
 
 CHAIN = chain()
@@ -103,7 +107,9 @@ def test_running_average_of_a_straight_line_is_the_line_inside() -> None:
 
 def shapes() -> Array:
     t = CHAIN.times
-    return np.stack([np.sin(1.1 * t), np.where(np.sin(2.0 * t) > 0, 1.0, 0.0), np.exp(-t)], axis=-1)[:, None, :]
+    return np.stack(
+        [np.sin(1.1 * t), np.where(np.sin(2.0 * t) > 0, 1.0, 0.0), np.exp(-t)], axis=-1
+    )[:, None, :]
 
 
 def test_information_on_a_known_force_is_that_of_the_measurements() -> None:
@@ -111,7 +117,9 @@ def test_information_on_a_known_force_is_that_of_the_measurements() -> None:
     S = shapes()
     found = (CHAIN.finds @ y)[:, None]
     prior = np.array([RMS]), np.array([FIRST]), TAU
-    learnt, score = information(S, found, CHAIN.times, CHAIN.covariances, CHAIN.gains, LATENT, *prior)
+    learnt, score = information(
+        S, found, CHAIN.times, CHAIN.covariances, CHAIN.gains, LATENT, *prior
+    )
     seen = CHAIN.responds @ S[:, 0]  # what each shape does to the positions
     weight = np.linalg.inv(CHAIN.spread)
     assert learnt == pytest.approx(seen.T @ weight @ seen, rel=1e-6, abs=1e-9)
@@ -121,7 +129,15 @@ def test_information_on_a_known_force_is_that_of_the_measurements() -> None:
 def evidence(y: Array) -> Evidence:
     S = shapes()
     named = {n: (S[..., k],) for k, n in enumerate(("sine", "square", "decay"))}
-    arguments = CHAIN.times, CHAIN.covariances, CHAIN.gains, LATENT, np.array([RMS]), np.array([FIRST]), TAU
+    arguments = (
+        CHAIN.times,
+        CHAIN.covariances,
+        CHAIN.gains,
+        LATENT,
+        np.array([RMS]),
+        np.array([FIRST]),
+        TAU,
+    )
     return Evidence.of(named, (CHAIN.finds @ y)[:, None], *arguments)
 
 
@@ -130,7 +146,10 @@ def test_p_values_are_uniform_where_nothing_acts_and_small_where_it_does() -> No
     y = rng.multivariate_normal(np.zeros(N), CHAIN.spread, size=400)
     p = [evidence(row).test("square", ["sine", "decay"]).p_value for row in y]
     assert kstest(p, "uniform").pvalue > 0.01
-    acts = joint([evidence(row + 3.0 * CHAIN.responds @ shapes()[:, 0, 1]) for row in y[:20]], ["square", "sine"])
+    acts = joint(
+        [evidence(row + 3.0 * CHAIN.responds @ shapes()[:, 0, 1]) for row in y[:20]],
+        ["square", "sine"],
+    )
     result = acts.test("square", ["sine"])
     assert result.p_value < 1e-6 and result.factors[0] == pytest.approx(3.0, rel=0.1)
     assert result.rms[0] == pytest.approx(3.0 * np.sqrt(np.mean(shapes()[:, 0, 1] ** 2)), rel=0.1)
@@ -153,10 +172,14 @@ def test_rhythm_has_the_period_that_was_put_in_and_white_or_rough_errors_have_no
 
     swell = 0.6 * np.sin(2 * np.pi * t / 1.9)[:, None]
     found = rhythm(runs(lambda white: white + swell))
-    assert found is not None and found.p_value < 1e-6 and found.period == pytest.approx(1.9, rel=0.05)
+    assert (
+        found is not None and found.p_value < 1e-6 and found.period == pytest.approx(1.9, rel=0.05)
+    )
     p = np.array([rhythm(runs(lambda white: white)).p_value for _ in range(300)])  # type: ignore[union-attr]
     assert np.mean(p < 0.05) < 0.09 and np.mean(p < 0.01) < 0.03
-    coloured = [rhythm(runs(lambda white: white + 0.3 * np.roll(white, 1, axis=0))) for _ in range(100)]
+    coloured = [
+        rhythm(runs(lambda white: white + 0.3 * np.roll(white, 1, axis=0))) for _ in range(100)
+    ]
     assert np.mean([r.p_value < 0.01 for r in coloured if r]) < 0.06
     assert rhythm([(t[:6], np.zeros((6, 1)))]) is None
 
@@ -191,12 +214,18 @@ def test_the_band_holds_a_force_that_was_put_there_and_flags_it_where_it_is() ->
     assert np.mean(flagged[np.abs(true) > 2 * ambient]) > 0.6
     assert np.mean(np.abs(true)[flagged] < np.broadcast_to(ambient, true.shape)[flagged]) < 0.05
     assert (sd >= ambient / BAND).all()
-    sway = [i for i in intervals(problem, forces) if i.axis == "sway" and i.to_s > 22.0]  # the step is at 20 s
-    assert sum(i.to_s - max(i.from_s, 22.0) for i in sway) > 0.8 * len(forces) * (ROWS / RATE - 22.0)
+    sway = [
+        i for i in intervals(problem, forces) if i.axis == "sway" and i.to_s > 22.0
+    ]  # the step is at 20 s
+    assert sum(i.to_s - max(i.from_s, 22.0) for i in sway) > 0.8 * len(forces) * (
+        ROWS / RATE - 22.0
+    )
     # what the recalibrated vessel itself leaves over has no part of the thrust that is 6 % more
     thrust = np.concatenate([push_of(r) for r, _ in runs])
     left = np.concatenate([f.mean for f in force_left(problem, found, problem.tracks)])
-    of_true, of_mean, of_left = (np.sum(f[:, 0] * thrust) / np.sum(thrust**2) for f in (true, mean, left))
+    of_true, of_mean, of_left = (
+        np.sum(f[:, 0] * thrust) / np.sum(thrust**2) for f in (true, mean, left)
+    )
     assert of_mean == pytest.approx(of_true, abs=0.01) and of_true > 0.06 and abs(of_left) < 0.02
 
 
@@ -211,7 +240,11 @@ def test_correlation_time_is_that_of_the_force_that_was_put_there() -> None:
         rng, decay = np.random.default_rng(7), np.exp(-1 / RATE / tau)
         course = np.zeros((ROWS + 1, 3))
         for i in range(ROWS):
-            course[i + 1] = decay * course[i] + np.sqrt(1 - decay**2) * rng.standard_normal(3) * [0.08, 0.1, 0.04]
+            course[i + 1] = decay * course[i] + np.sqrt(1 - decay**2) * rng.standard_normal(3) * [
+                0.08,
+                0.1,
+                0.04,
+            ]
         return lambda t, y, command: course[min(int(t * RATE + 1e-6), ROWS)]
 
     times = []
@@ -288,7 +321,9 @@ def test_walls_pull_and_drag_where_the_recording_says_they_are() -> None:
 
 def test_walls_stated_in_a_recording_are_those_of_the_library_entry_too() -> None:
     still = {n: np.zeros(30) for n in ("x_m", "y_m", "psi_rad", *COMMANDS)}
-    stated = Recording("stated", np.arange(30) / RATE, still, Notes(facts={"walls_m": [-1.0, 2.0, -3.0, 5.0]}))
+    stated = Recording(
+        "stated", np.arange(30) / RATE, still, Notes(facts={"walls_m": [-1.0, 2.0, -3.0, 5.0]})
+    )
     program = Program(BOAT, library_for(BOAT).entries)
     own, other = track(replace(stated, notes=Notes()), program), track(stated, program)
     at = [program.index("wall_effect", n) for n in ("x_low", "x_high", "y_low", "y_high")]
@@ -301,7 +336,11 @@ def test_walls_stated_in_a_recording_are_those_of_the_library_entry_too() -> Non
 
 @pytest.mark.parametrize(
     ("name", "more"),
-    [("roll angle", lambda phi, p: -1800.0 * phi**3), ("roll rate", lambda phi, p: -40.0 * p * abs(p)), ("", None)],
+    [
+        ("roll angle", lambda phi, p: -1800.0 * phi**3),
+        ("roll rate", lambda phi, p: -40.0 * p * abs(p)),
+        ("", None),
+    ],
 )
 def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: Any) -> None:
     ship = vessel.load("kvlcc2_roll")
@@ -312,19 +351,28 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
     def slope(y: Array, _: float) -> list[float]:
         return [y[1], (-damping * y[1] - stiffness * y[0] + (more(*y) if more else 0.0)) / inertia]
 
-    phi = odeint(slope, [0.25, 0.0], t, rtol=1e-9, atol=1e-11)[:, 0] + 1e-3 * rng.standard_normal(len(t))
+    phi = odeint(slope, [0.25, 0.0], t, rtol=1e-9, atol=1e-11)[:, 0] + 1e-3 * rng.standard_normal(
+        len(t)
+    )
     rec = Recording("decay", t, {"phi_rad": phi})
     program = Program(ship)
-    problem = Problem([track(rec, program)], nominal_levels(ship, [rec]), {"damping": 0.05, "restoring": 0.02})
+    problem = Problem(
+        [track(rec, program)], nominal_levels(ship, [rec]), {"damping": 0.05, "restoring": 0.02}
+    )
     found = baseline(problem)[1]
-    assert [r.variable for r in regions(problem, found)][: 1 if name else None] == ([name] if name else [])
+    assert [r.variable for r in regions(problem, found)][: 1 if name else None] == (
+        [name] if name else []
+    )
 
 
 # ---- structure in what is left over
 
 
 def test_what_is_left_of_a_boat_that_lacks_nothing_goes_with_nothing() -> None:
-    p = [structure(*laid(*(sail(f"run_{k}", seed + k, nothing)[0] for k in range(2)))) for seed in range(60, 72, 2)]
+    p = [
+        structure(*laid(*(sail(f"run_{k}", seed + k, nothing)[0] for k in range(2))))
+        for seed in range(60, 72, 2)
+    ]
     assert all(not s.likely and s.tried > 100 for s in p)
 
 
@@ -336,9 +384,14 @@ def test_what_is_left_of_a_boat_that_lacks_nothing_goes_with_nothing() -> None:
         ("surge", "it acts in 24.9 to 29.9 s of run_0", lambda t, y: 0.045 * (25.0 < t < 30.0)),
     ],
 )
-def test_a_force_below_the_tolerated_one_is_seen_by_what_it_goes_with(axis: str, goes_with: str, weak: Any) -> None:
+def test_a_force_below_the_tolerated_one_is_seen_by_what_it_goes_with(
+    axis: str, goes_with: str, weak: Any
+) -> None:
     i = ("surge", "sway", "yaw").index(axis)
-    runs = [sail(f"run_{k}", 80 + k, lambda t, y, c, k=k: np.eye(3)[i] * weak(t + 100.0 * k, y))[0] for k in range(2)]
+    runs = [
+        sail(f"run_{k}", 80 + k, lambda t, y, c, k=k: np.eye(3)[i] * weak(t + 100.0 * k, y))[0]
+        for k in range(2)
+    ]
     problem, found = laid(*runs)
     seen = structure(problem, found)
     assert seen.axis == axis and goes_with in seen.goes_with and seen.p_value < 1e-3
@@ -351,4 +404,7 @@ def test_stretches_are_told_by_the_clock_of_the_recording() -> None:
     problem, _ = laid(replace(recording, t=recording.t + 100.0))
     (followed,) = problem.tracks
     told = dict(features(followed, np.ones((ROWS, 6)), 1.0))
-    assert "time: it acts in 100 to 105 s of run_0" in told and "time: it acts in 135 to 140 s of run_0" in told
+    assert (
+        "time: it acts in 100 to 105 s of run_0" in told
+        and "time: it acts in 135 to 140 s of run_0" in told
+    )

@@ -15,9 +15,9 @@ from typer.testing import CliRunner
 
 from benchmarks.log_faults import FAULTS, Columns, sailed, write
 from boatsim.cli.commands import app
-from boatsim.diagnose.analysis import check, diagnose, vessel_for
-from boatsim.diagnose.log.finding import Change, applied, lines
-from boatsim.diagnose.log.leaps import leaps
+from boatsim.diagnosis.checks.finding import Change, applied, lines
+from boatsim.diagnosis.checks.position_jumps import leaps
+from boatsim.diagnosis.pipeline import check, diagnose, vessel_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -26,8 +26,18 @@ from boatsim.recordings.table import Recording, read, write_csv
 
 TRIALS = Path(__file__).parent / "data" / "trials"
 BOAT = vessel.load("trial_boat")
-QUICK = ("y to port, heading too", "heading in degrees", "latitude as metres", "commands in per cent", "time in ms")
-LINES = [name for name in FAULTS if name not in ("position held", "outliers in bursts", "gaps bridged", "clock stalls")]
+QUICK = (
+    "y to port, heading too",
+    "heading in degrees",
+    "latitude as metres",
+    "commands in per cent",
+    "time in ms",
+)
+LINES = [
+    name
+    for name in FAULTS
+    if name not in ("position held", "outliers in bursts", "gaps bridged", "clock stalls")
+]
 
 
 def columns_of(recording: Recording) -> Columns:
@@ -66,7 +76,9 @@ def test_each_fault_is_found_and_named(title: str, tmp_path: Path) -> None:
     assert any(c.isdigit() for c in found[0]["evidence"])
 
 
-@pytest.mark.parametrize("title", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in LINES])
+@pytest.mark.parametrize(
+    "title", [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in LINES]
+)
 def test_the_line_written_into_the_recording_toml_puts_it_right(title: str, tmp_path: Path) -> None:
     logs = good()
     paths = files(tmp_path, [FAULTS[title].apply(log, BOAT) for log in logs])
@@ -88,7 +100,9 @@ def test_the_line_written_into_the_recording_toml_puts_it_right(title: str, tmp_
 @pytest.mark.parametrize(
     "title", ["heading in degrees", pytest.param("y to port, heading too", marks=pytest.mark.slow)]
 )
-def test_the_diagnosis_of_the_corrected_log_is_that_of_the_good_one(title: str, tmp_path: Path) -> None:
+def test_the_diagnosis_of_the_corrected_log_is_that_of_the_good_one(
+    title: str, tmp_path: Path
+) -> None:
     true = diagnose(files(tmp_path / "good", good(3)), vessel="trial_boat").findings.answer
     paths = files(tmp_path / "bad", [FAULTS[title].apply(log, BOAT) for log in good(3)])
     corrected(tmp_path / "bad", next(e for e in found_in(paths) if e["lines"]))
@@ -138,10 +152,13 @@ def test_a_mirrored_log_is_the_first_thing_that_a_diagnosis_says(tmp_path: Path)
     fault = FAULTS["y to port, heading too"]
     logs = [fault.apply(log, BOAT) for log in good(3)]
     runs = [
-        Recording(f"run_{k}", log["t_s"], {n: v for n, v in log.items() if n != "t_s"}) for k, log in enumerate(logs)
+        Recording(f"run_{k}", log["t_s"], {n: v for n, v in log.items() if n != "t_s"})
+        for k, log in enumerate(logs)
     ]
     answer = diagnosed(runs, tmp_path, "trial_boat")
-    assert answer["sentence"].startswith("Probably your log, not your boat: y and the heading are counted to port")
+    assert answer["sentence"].startswith(
+        "Probably your log, not your boat: y and the heading are counted to port"
+    )
     assert [e["name"] for e in answer["log"]] == ["mirrored"]
     assert answer["log"][0]["lines"] == ["[columns]", 'y_m = "-y_m"', 'psi_rad = "-psi_rad"']
 
@@ -153,11 +170,16 @@ def test_the_command_leaves_with_its_codes_and_one_line(tmp_path: Path) -> None:
     ill = files(tmp_path / "ill", [FAULTS["heading in degrees"].apply(good()[0], BOAT)])[0]
     told = ask.invoke(app, ["check", str(ill), "--vessel", "trial_boat"])
     assert told.exit_code == 1
-    assert "probably your log, not your boat" in told.output and 'psi_rad = "psi_rad * deg"' in told.output
+    assert (
+        "probably your log, not your boat" in told.output
+        and 'psi_rad = "psi_rad * deg"' in told.output
+    )
     bad = tmp_path / "bad.csv"
     bad.write_text("a,b\n1,2\n")
     assert ask.invoke(app, ["check", str(bad), "--vessel", "trial_boat"]).exit_code == 2
-    refused = ask.invoke(app, ["diagnose", str(ill), "--vessel", "trial_boat", "--out", str(tmp_path / "out")])
+    refused = ask.invoke(
+        app, ["diagnose", str(ill), "--vessel", "trial_boat", "--out", str(tmp_path / "out")]
+    )
     assert refused.exit_code == 2 and 'psi_rad = "psi_rad * deg"' in refused.stderr
 
 
@@ -198,7 +220,9 @@ RATES = {
 
 
 @pytest.mark.parametrize("name", RATES)
-def test_recorded_velocities_that_contradict_the_positions_are_found(name: str, tmp_path: Path) -> None:
+def test_recorded_velocities_that_contradict_the_positions_are_found(
+    name: str, tmp_path: Path
+) -> None:
     log = rated(good()[0], np.random.default_rng(1))
     path = files(tmp_path, [log])[0]
     assert not found_in([path])
@@ -226,14 +250,18 @@ def test_hard_turns_and_crash_stops_are_no_leaps() -> None:
     rng, t = np.random.default_rng(3), np.arange(0.0, 60.0, 0.1)
     heading = 0.8 * np.cumsum(np.where(np.sin(0.6 * t) > 0.0, 1.0, -1.0)) * 0.1
     speed = np.where((t > 20.0) & (t < 40.0), 1.0, 0.0)
-    path = 0.1 * np.cumsum(speed[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0)
+    path = 0.1 * np.cumsum(
+        speed[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0
+    )
     path += 0.003 * rng.standard_normal(path.shape)
     assert not len(leaps(t, path))
     moved = path + np.where(t[:, None] > 30.0, [[1.0, 0.0]], 0.0)
     assert leaps(t, moved).tolist() == [int(np.flatnonzero(t <= 30.0)[-1])]
 
 
-@pytest.mark.parametrize("change", [Change("psi_rad", "psi_rad", -1.0, np.pi / 2), Change("x_m", "y_m", 0.01, -12.5)])
+@pytest.mark.parametrize(
+    "change", [Change("psi_rad", "psi_rad", -1.0, np.pi / 2), Change("x_m", "y_m", 0.01, -12.5)]
+)
 def test_a_line_says_what_the_change_does(change: Change) -> None:
     """On top of what the column is made of already."""
     t = np.linspace(0.0, 1.0, 30)
@@ -249,16 +277,29 @@ def test_a_line_says_what_the_change_does(change: Change) -> None:
 
 def test_all_mistakes_of_a_file_are_said_at_once(tmp_path: Path) -> None:
     path = files(tmp_path, good())[0]
-    (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\nuse = [5, 1]\nscale = "big"\ncolumns = 3\n')
+    (tmp_path / "recording.toml").write_text(
+        'vessel = "trial_boat"\nuse = [5, 1]\nscale = "big"\ncolumns = 3\n'
+    )
     with pytest.raises(BadInput) as told:
         read(path)
     assert all(key in str(told.value) for key in ("use = [5, 1]", "scale = 'big'", "columns = 3"))
     (tmp_path / "recording.toml").unlink()
     log = good()[0]
-    write(log | {"psi_rad": np.degrees(log["psi_rad"]) % 360.0, "thrust_port_N": 5.0 + log["thrust_port_N"]}, path)
+    write(
+        log
+        | {
+            "psi_rad": np.degrees(log["psi_rad"]) % 360.0,
+            "thrust_port_N": 5.0 + log["thrust_port_N"],
+        },
+        path,
+    )
     with pytest.raises(BadInput) as told:
         read(path, BOAT.limits())
-    assert "psi_rad" in str(told.value) and "thrust_port_N" in str(told.value) and "\n" not in str(told.value)
+    assert (
+        "psi_rad" in str(told.value)
+        and "thrust_port_N" in str(told.value)
+        and "\n" not in str(told.value)
+    )
 
 
 def test_the_vessel_of_a_recording_toml_lies_where_that_file_says(
@@ -269,7 +310,9 @@ def test_the_vessel_of_a_recording_toml_lies_where_that_file_says(
     path = files(tmp_path / "runs", good())[0]
     (tmp_path / "runs" / "recording.toml").write_text('vessel = "../boats/mine"\n')
     monkeypatch.chdir(Path(__file__).parent)
-    assert vessel_for(path, None, []).file == (tmp_path / "boats" / "mine" / "vessel.toml").resolve()
+    assert (
+        vessel_for(path, None, []).file == (tmp_path / "boats" / "mine" / "vessel.toml").resolve()
+    )
 
 
 def test_columns_under_other_names_are_found_again(tmp_path: Path) -> None:
@@ -280,7 +323,10 @@ def test_columns_under_other_names_are_found_again(tmp_path: Path) -> None:
     found = found_in(paths)
     assert [e["name"] for e in found] == ["column_names"]
     assert set(found[0]["lines"]) == {
-        "[columns]", 'psi_rad = "heading_deg * deg"', 'x_m = "north"', 'thrust_port_N = "thrust_left"'
-    }  # fmt: skip
+        "[columns]",
+        'psi_rad = "heading_deg * deg"',
+        'x_m = "north"',
+        'thrust_port_N = "thrust_left"',
+    }
     corrected(tmp_path, found[0])
     assert not found_in(paths)

@@ -8,7 +8,7 @@ import pytest
 
 from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.mapping import map_of
-from boatsim.recordings.importing.propose import Drive, proposal
+from boatsim.recordings.importing.mapping_proposal import Drive, proposal
 
 T = np.arange(0.0, 120.0, 0.1)
 OUTBOARD = [Drive("thrust_motor_N", -830.0, 1300.0), Drive("steer_motor_rad", -0.7, 0.7, turns=-1)]
@@ -50,22 +50,32 @@ def pulses(share: np.ndarray) -> Signal:
 
 @pytest.mark.parametrize("helm_first", [True, False])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_outputs_without_names_are_told_by_what_the_boat_does(helm_first: bool, sign: float) -> None:
+def test_outputs_without_names_are_told_by_what_the_boat_does(
+    helm_first: bool, sign: float
+) -> None:
     both = [pulses(HELM), pulses(THROTTLE)]
     outputs = {f"servo.output[{k}]": s for k, s in enumerate(both if helm_first else both[::-1])}
     log = log_of(sign * 0.3 * follows(HELM, 0.8), 3.0 * follows(THROTTLE, 3.0), outputs)
     text, columns = proposed(log, OUTBOARD)
     helm, throttle = ("servo.output[0]", "servo.output[1]")[:: 1 if helm_first else -1]
-    assert (columns["steer_motor_rad"]["signal"], columns["thrust_motor_N"]["signal"]) == (helm, throttle)
+    assert (columns["steer_motor_rad"]["signal"], columns["thrust_motor_N"]["signal"]) == (
+        helm,
+        throttle,
+    )
     assert columns["steer_motor_rad"]["most"] == -sign * 0.7  # what is positive of it turns to port
     line = next(line for line in text.splitlines() if line.startswith("steer_motor_rad"))
-    assert "CHECK: taken for it as the boat turns by it" in line and "full helm is taken for 40 deg" in line
+    assert (
+        "CHECK: taken for it as the boat turns by it" in line
+        and "full helm is taken for 40 deg" in line
+    )
     assert ("sign turned" in line) == (sign > 0.0)
 
 
 def test_where_the_boat_shows_nothing_order_decides_and_it_is_said() -> None:
     still = np.zeros(len(T))
-    log = log_of(still, still + 1.0, {"servo.output[0]": pulses(HELM), "servo.output[1]": pulses(THROTTLE)})
+    log = log_of(
+        still, still + 1.0, {"servo.output[0]": pulses(HELM), "servo.output[1]": pulses(THROTTLE)}
+    )
     text, columns = proposed(log, OUTBOARD)
     assert columns["steer_motor_rad"]["most"] == 0.7  # no sign is turned on no evidence
     assert text.count("CHECK: by its order alone") == 2
@@ -87,7 +97,10 @@ def test_shaft_and_rudder_of_a_network_are_proposed_and_what_is_assumed_is_said(
     text, columns = proposed(log, OUTBOARD)
     assert columns["thrust_motor_N"]["signal"] == "RPM[1].shaft"
     assert columns["steer_motor_rad"] == "-RSA.rudder_starboard * deg"
-    assert "what was measured is taken for what was ordered" in text and "goes with their square" in text
+    assert (
+        "what was measured is taken for what was ordered" in text
+        and "goes with their square" in text
+    )
 
 
 @pytest.mark.parametrize("first", ["port", "starboard"])
@@ -95,7 +108,9 @@ def test_engines_with_numbers_get_the_side_that_the_boat_turns_by(first: str) ->
     port, starboard = steps(3, 0.1, 0.9), steps(4, 0.1, 0.9)
     pair = [port, starboard] if first == "port" else [starboard, port]
     outputs = {f"RPM[{k}].shaft": Signal(T, 1800.0 * s, "rpm") for k, s in enumerate(pair, 1)}
-    log = log_of(0.4 * follows(port - starboard, 0.8), 2.0 * follows(port + starboard, 3.0), outputs)
+    log = log_of(
+        0.4 * follows(port - starboard, 0.8), 2.0 * follows(port + starboard, 3.0), outputs
+    )
     text, columns = proposed(log, TWIN)
     number = 1 if first == "port" else 2
     assert columns["thrust_port_N"]["signal"] == f"RPM[{number}].shaft"
@@ -107,15 +122,27 @@ def test_the_sign_of_a_thrust_is_never_turned_for_what_it_does_alone() -> None:
     port, starboard = steps(3, 0.1, 0.9), steps(4, 0.1, 0.9)
     outputs = {"thrust_left": pulses(port), "thrust_right": pulses(starboard)}
     log = log_of(-0.4 * follows(port, 0.8), 2.0 * follows(port + starboard, 3.0), outputs)
-    text, columns = proposed(log, [Drive(d.name, d.low, d.high, turns) for d, turns in zip(TWIN, (1, -1), strict=True)])
-    assert all(columns[d.name]["least"] < columns[d.name]["most"] for d in TWIN) and "sign turned" not in text
+    text, columns = proposed(
+        log, [Drive(d.name, d.low, d.high, turns) for d, turns in zip(TWIN, (1, -1), strict=True)]
+    )
+    assert (
+        all(columns[d.name]["least"] < columns[d.name]["most"] for d in TWIN)
+        and "sign turned" not in text
+    )
 
 
 def test_one_helm_steers_both_motors_where_there_is_but_one() -> None:
     outputs = {"servo.output[0]": pulses(HELM)}
-    outputs |= {f"servo.output[{k}]": pulses(THROTTLE + 0.1 * steps(4 + k, -1.0, 1.0)) for k in (1, 2)}
-    drives = [*TWIN, *(Drive(f"steer_{side}_rad", -0.5, 0.5, turns=-1) for side in ("port", "starboard"))]
+    outputs |= {
+        f"servo.output[{k}]": pulses(THROTTLE + 0.1 * steps(4 + k, -1.0, 1.0)) for k in (1, 2)
+    }
+    drives = [
+        *TWIN,
+        *(Drive(f"steer_{side}_rad", -0.5, 0.5, turns=-1) for side in ("port", "starboard")),
+    ]
     log = log_of(0.3 * follows(HELM, 0.8), 3.0 * follows(THROTTLE, 3.0), outputs)
     text, columns = proposed(log, drives)
-    assert {columns[f"steer_{side}_rad"]["signal"] for side in ("port", "starboard")} == {"servo.output[0]"}
+    assert {columns[f"steer_{side}_rad"]["signal"] for side in ("port", "starboard")} == {
+        "servo.output[0]"
+    }
     assert {columns[d.name]["signal"] for d in TWIN} == {"servo.output[1]", "servo.output[2]"}

@@ -11,14 +11,14 @@ from typer.testing import CliRunner
 
 from benchmarks.log_faults import Columns, write
 from boatsim.cli.commands import app
-from boatsim.diagnose.analysis import check
-from boatsim.diagnose.log.way import aside
+from boatsim.diagnosis.checks.course_over_ground import aside
+from boatsim.diagnosis.pipeline import check
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.convert import notes_of
 from boatsim.recordings.table import Recording
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 FULL = 1300.0  # [N]
 RATE = 5.0  # [Hz] of rows
@@ -39,11 +39,17 @@ def rib(tmp_path_factory: pytest.TempPathFactory) -> Vessel:
 
 def sailed(boat: Vessel, share: float = 1.0, current: complex = 0.0) -> Columns:
     """The plan with a share of its thrust; the drag is a half more than the vessel's, as particulars miss it."""
-    orders = np.concatenate([np.tile([share * FULL * a, b], (round(s * RATE), 1)) for s, a, b in PLAN])
+    orders = np.concatenate(
+        [np.tile([share * FULL * a, b], (round(s * RATE), 1)) for s, a, b in PLAN]
+    )
     felt = orders * [1.0 / 1.5, 1.0]
     states = Twin(boat, 0.02).rollout(np.zeros(6), felt, 1.0 / RATE)[: len(orders)]
     t = np.arange(len(orders)) / RATE
-    seen = states[:, :3] + np.random.default_rng(3).standard_normal((len(t), 3)) * [0.02, 0.02, 0.01]
+    seen = states[:, :3] + np.random.default_rng(3).standard_normal((len(t), 3)) * [
+        0.02,
+        0.02,
+        0.01,
+    ]
     seen[:, :2] += np.outer(t, [current.real, current.imag])
     pose = dict(zip(("x_m", "y_m", "psi_rad"), seen.T, strict=True))
     return {"t_s": t, **pose, **dict(zip(boat.commands, orders.T, strict=True))}
@@ -71,11 +77,15 @@ def test_per_cent_within_the_range_of_newtons_are_found(rib: Vessel, tmp_path: P
 
 
 @pytest.mark.parametrize("share", [1.0, 0.1])
-def test_a_boat_that_is_driven_with_little_thrust_is_left_in_peace(rib: Vessel, share: float, tmp_path: Path) -> None:
+def test_a_boat_that_is_driven_with_little_thrust_is_left_in_peace(
+    rib: Vessel, share: float, tmp_path: Path
+) -> None:
     assert not found_in(sailed(rib, share), rib, tmp_path)
 
 
-def test_a_compass_turned_by_an_odd_angle_is_found_to_the_degree(rib: Vessel, tmp_path: Path) -> None:
+def test_a_compass_turned_by_an_odd_angle_is_found_to_the_degree(
+    rib: Vessel, tmp_path: Path
+) -> None:
     entry = found_in(turned(sailed(rib), -35.0), rib, tmp_path)[0]
     assert entry["name"] == "heading_turned"
     (degrees,) = re.findall(r"psi_rad \+ ([\d.]+) \* deg", entry["lines"][-1])
@@ -84,7 +94,9 @@ def test_a_compass_turned_by_an_odd_angle_is_found_to_the_degree(rib: Vessel, tm
 
 @pytest.mark.parametrize("current", [0.0, 0.6j, 0.7 - 0.5j])
 @pytest.mark.parametrize("degrees", [0.0, -35.0, 120.0])
-def test_way_and_bow_tell_a_turned_compass_from_a_current(rib: Vessel, current: complex, degrees: float) -> None:
+def test_way_and_bow_tell_a_turned_compass_from_a_current(
+    rib: Vessel, current: complex, degrees: float
+) -> None:
     log = turned(sailed(rib, current=current), degrees)
     angle = aside([Recording("run", log["t_s"], {n: v for n, v in log.items() if n != "t_s"})], rib)
     assert angle is not None
@@ -98,7 +110,9 @@ def test_on_one_course_nobody_can_tell_a_current_from_a_compass(rib: Vessel) -> 
 
 
 @pytest.mark.parametrize("imported", [False, True])
-def test_what_is_advised_may_be_written_at_the_end_of_the_file(rib: Vessel, imported: bool, tmp_path: Path) -> None:
+def test_what_is_advised_may_be_written_at_the_end_of_the_file(
+    rib: Vessel, imported: bool, tmp_path: Path
+) -> None:
     notes = tmp_path / "recording.toml"
     if imported:
         notes.write_text(notes_of(tmp_path / "run.csv", str(Path(str(rib.file)).parent), "gnss"))

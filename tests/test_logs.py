@@ -22,10 +22,10 @@ from boatsim.cli.importing import import_log
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import load
 from boatsim.recordings.importing.convert import convert
-from boatsim.recordings.importing.guess import guesses
 from boatsim.recordings.importing.log import known_suffixes, open_log
 from boatsim.recordings.importing.mapping import map_of, read_map
-from boatsim.recordings.importing.propose import Drive, listing, proposal
+from boatsim.recordings.importing.mapping_proposal import Drive, listing, proposal
+from boatsim.recordings.importing.signal_classification import guesses
 from boatsim.recordings.table import read
 
 LOGS = Path(__file__).parent / "data" / "logs"
@@ -34,7 +34,9 @@ FULL = 104.0
 CHANNELS = {"n_port_radps": (-FULL, FULL), "n_starboard_radps": (-FULL, FULL)}
 DRIVES = [Drive(name, *ends) for name, ends in CHANNELS.items()]
 FREEDOMS = ("surge", "sway", "yaw")
-ATT_CLOCK = 0.0013  # [s] by which rows of the .BIN are off: its gyro comes so much behind the attitude
+ATT_CLOCK = (
+    0.0013  # [s] by which rows of the .BIN are off: its gyro comes so much behind the attitude
+)
 # log -> most by which x and y [m], psi [rad], r [rad/s], commands [rad/s] may be off: the resolution of the format
 RESOLUTION = {
     "rover.BIN": (0.012, 4e-4, 1e-4, 1e-9),  # 1e-7 deg of latitude; times of the streams by 2 ms
@@ -57,7 +59,10 @@ def proposed(name: str) -> str:
 
 def converted(name: str, **changes: object):
     return convert(
-        open_log(LOGS / name), map_of(tomllib.loads(proposed(name)) | changes, "map.toml"), "map.toml", CHANNELS
+        open_log(LOGS / name),
+        map_of(tomllib.loads(proposed(name)) | changes, "map.toml"),
+        "map.toml",
+        CHANNELS,
     )
 
 
@@ -77,9 +82,14 @@ def true(name: str, t):
 def test_what_was_simulated_comes_back_from_every_log_by_the_map_that_is_proposed(name):
     run = converted(name)
     place, heading, rate, command = RESOLUTION[name]
-    begin = 0.1 if name.startswith(("ros", "stacked")) else 0.0  # the first row behind the first command
+    begin = (
+        0.1 if name.startswith(("ros", "stacked")) else 0.0
+    )  # the first row behind the first command
     t = run.t + begin
-    first = {n: run[n][np.isfinite(run[n])][0] - true(n, t[np.isfinite(run[n])])[0] for n in ("x_m", "y_m")}
+    first = {
+        n: run[n][np.isfinite(run[n])][0] - true(n, t[np.isfinite(run[n])])[0]
+        for n in ("x_m", "y_m")
+    }
     for n, most in (("x_m", place), ("y_m", place), ("r_radps", rate)):
         if n in run.signals:  # the origin of latitudes is the first fix
             assert np.nanmax(np.abs(run[n] - true(n, t) - first.get(n, 0.0))) < most, n
@@ -87,17 +97,26 @@ def test_what_was_simulated_comes_back_from_every_log_by_the_map_that_is_propose
     assert np.nanmax(np.abs(off)) < heading
     for n in CHANNELS:
         between = np.array([0.5 * sum(pair) for pair in zip(t[:-1], t[1:], strict=True)])
-        steady = np.all([np.abs(np.remainder(between + 2.5, 5.0) - 2.5) > 0.25, np.abs(between - 2.0) > 0.25], axis=0)
+        steady = np.all(
+            [np.abs(np.remainder(between + 2.5, 5.0) - 2.5) > 0.25, np.abs(between - 2.0) > 0.25],
+            axis=0,
+        )
         there = TRUTH[n][np.searchsorted(TRUTH["t_s"], between) - 1]
         assert np.abs(run[n][:-1] - there)[steady].max() < command, n
-        area = float(run[n][:-1] @ np.diff(t))  # a command that came between two rows counts from its own time
+        area = float(
+            run[n][:-1] @ np.diff(t)
+        )  # a command that came between two rows counts from its own time
         within = (TRUTH["t_s"] >= t[0] - 1e-9) & (TRUTH["t_s"] < t[-1] - 1e-9)
         assert area == pytest.approx(float(TRUTH[n][within].sum() * 0.02), rel=2e-3)
 
 
 def test_all_samples_of_a_slow_signal_are_there_and_no_others():
     run = converted("rover.BIN")
-    assert [int(np.isfinite(run[n]).sum()) for n in ("x_m", "psi_rad", "r_radps")] == [151, 301, 751]
+    assert [int(np.isfinite(run[n]).sum()) for n in ("x_m", "psi_rad", "r_radps")] == [
+        151,
+        301,
+        751,
+    ]
     assert np.median(np.diff(run.t[np.isfinite(run["x_m"])])) == pytest.approx(0.2)
     run = converted("table.csv")  # fixes come twice a second and are repeated between
     assert int(np.isfinite(run["x_m"]).sum()) == 61
@@ -119,9 +138,15 @@ def test_part_of_a_log_is_used():
 
 def test_the_origin_of_the_map_is_where_positions_are_counted_from():
     table = tomllib.loads(proposed("instruments.nmea"))
-    table["position"]["origin"] = list(geodetic(-111.0, -50.0))  # of a place so far south and west of the start
-    run = convert(open_log(LOGS / "instruments.nmea"), map_of(table, "map.toml"), "map.toml", CHANNELS)
-    assert run["x_m"][0] == pytest.approx(111.0, abs=2e-3) and run["y_m"][0] == pytest.approx(50.0, abs=2e-3)
+    table["position"]["origin"] = list(
+        geodetic(-111.0, -50.0)
+    )  # of a place so far south and west of the start
+    run = convert(
+        open_log(LOGS / "instruments.nmea"), map_of(table, "map.toml"), "map.toml", CHANNELS
+    )
+    assert run["x_m"][0] == pytest.approx(111.0, abs=2e-3) and run["y_m"][0] == pytest.approx(
+        50.0, abs=2e-3
+    )
 
 
 def test_outputs_are_commands_and_the_stick_stays_beside_them():
@@ -136,8 +161,13 @@ def test_a_proposal_without_a_vessel_names_the_drives_by_what_the_log_says_of_th
     text = proposal(open_log(LOGS / "rover.BIN"))
     table = tomllib.loads(text)
     assert table["columns"]["throttle_port"] == {
-        "signal": "RCOU.C1", "low": 1100, "neutral": 1500, "high": 1900, "least": -1, "most": 1
-    }  # fmt: skip
+        "signal": "RCOU.C1",
+        "low": 1100,
+        "neutral": 1500,
+        "high": 1900,
+        "least": -1,
+        "most": 1,
+    }
     assert {"throttle_starboard", "psi_rad", "r_radps"} <= table["columns"].keys()
     map_of(table, "map.toml")
 
@@ -183,13 +213,17 @@ def test_a_log_becomes_a_recording_that_can_be_read_and_knows_its_vessel(tmp_pat
 def test_without_a_map_nothing_is_written(tmp_path):
     ran(LOGS / "px4.ulg", tmp_path / "run.csv", None, None, None)
     assert not list(tmp_path.iterdir())
-    assert "--out" in line_of(import_log, LOGS / "px4.ulg", None, tmp_path / "m.toml", None, None, [])
+    assert "--out" in line_of(
+        import_log, LOGS / "px4.ulg", None, tmp_path / "m.toml", None, None, []
+    )
 
 
 def test_the_log_itself_is_never_written_over(tmp_path):
     log = tmp_path / "t.csv"
     shutil.copy(LOGS / "truth.csv", log)
-    assert "that is what is read" in line_of(import_log, log, log, tmp_path / "m.toml", None, None, [])
+    assert "that is what is read" in line_of(
+        import_log, log, log, tmp_path / "m.toml", None, None, []
+    )
 
 
 ENDS = {"signal": "RCOU.C1", "low": 1, "neutral": 2, "high": 3}
@@ -201,7 +235,10 @@ PLACE = {"latitude": "GPS.Lat * deg", "longitude": "GPS.Lng * deg"}
 @pytest.mark.parametrize(
     "changes, said",
     [
-        ({"columns": {"psi_rad": "ATT.Ywa * deg"}}, "rover.BIN has no signal 'ATT.Ywa'; did you mean 'ATT.Yaw'?"),
+        (
+            {"columns": {"psi_rad": "ATT.Ywa * deg"}},
+            "rover.BIN has no signal 'ATT.Ywa'; did you mean 'ATT.Yaw'?",
+        ),
         ({"columns": {"psi_rad": "ATT.Ywa * deg"}}, "map.toml: columns.psi_rad = 'ATT.Ywa * deg'"),
         ({"columns": {"psi_rad": "ATT.Yaw * dge"}}, "there is no unit 'dge'; did you mean 'deg'?"),
         ({"columns": {"psi_rad": 3}}, "psi_rad is 3; allowed is"),
@@ -230,9 +267,13 @@ def test_a_map_without_poses_says_so(tmp_path):
 
 
 LIBRARIES = {
-    "rover.BIN": ("pymavlink", "ardupilot"), "px4.ulg": ("pyulog", "px4"), "ros2.mcap": ("mcap", "ros"),
-    "ros1.bag": ("rosbags", "ros"), "ros2_bag": ("rosbags", "ros"), "instruments.nmea": ("pynmea2", "nmea"),
-}  # fmt: skip
+    "rover.BIN": ("pymavlink", "ardupilot"),
+    "px4.ulg": ("pyulog", "px4"),
+    "ros2.mcap": ("mcap", "ros"),
+    "ros1.bag": ("rosbags", "ros"),
+    "ros2_bag": ("rosbags", "ros"),
+    "instruments.nmea": ("pynmea2", "nmea"),
+}
 
 
 @pytest.mark.parametrize("name", LIBRARIES)
@@ -246,7 +287,9 @@ def test_a_library_that_is_not_installed_is_named_with_the_extra_that_brings_it(
         return whole(module, *rest, **more)  # type: ignore[arg-type]
 
     monkeypatch.setattr(builtins, "__import__", without)
-    assert f"needs {library}; install it with: pip install 'boatsim[{extra}]'" in line_of(open_log, LOGS / name)
+    assert f"needs {library}; install it with: pip install 'boatsim[{extra}]'" in line_of(
+        open_log, LOGS / name
+    )
 
 
 def test_a_suffix_that_nobody_reads_and_a_file_that_is_not_there_are_named(tmp_path):
@@ -254,11 +297,23 @@ def test_a_suffix_that_nobody_reads_and_a_file_that_is_not_there_are_named(tmp_p
     message = line_of(open_log, tmp_path / "log.xyz")
     assert "its suffix '.xyz' is of no known format" in message and ".mcap" in message
     assert "there is no such file" in line_of(open_log, tmp_path / "none.bin")
-    assert "is a folder; a log is a file, or the folder of a ROS 2 bag" in line_of(open_log, tmp_path)
+    assert "is a folder; a log is a file, or the folder of a ROS 2 bag" in line_of(
+        open_log, tmp_path
+    )
 
 
 def test_every_suffix_belongs_to_one_format():
-    assert {".bin", ".ulg", ".mcap", ".bag", ".db3", ".nmea", ".csv", ".parquet", "/"} <= known_suffixes().keys()
+    assert {
+        ".bin",
+        ".ulg",
+        ".mcap",
+        ".bag",
+        ".db3",
+        ".nmea",
+        ".csv",
+        ".parquet",
+        "/",
+    } <= known_suffixes().keys()
 
 
 def damaged(folder: Path, name: str, change) -> Path:
@@ -277,7 +332,11 @@ def damaged(folder: Path, name: str, change) -> Path:
 @pytest.mark.parametrize("name", RESOLUTION)
 def test_a_log_that_is_cut_anywhere_is_shorter_or_refused_in_one_line(tmp_path, name):
     whole, chance = len(open_log(LOGS / name).signals), random.Random(name)
-    size = len(next((LOGS / name).glob("*.db3")).read_bytes() if (LOGS / name).is_dir() else (LOGS / name).read_bytes())
+    size = len(
+        next((LOGS / name).glob("*.db3")).read_bytes()
+        if (LOGS / name).is_dir()
+        else (LOGS / name).read_bytes()
+    )
     for cut in [0, 1, 7, 100, size - 1, *(chance.randrange(size) for _ in range(12))]:
         path = damaged(tmp_path, name, lambda data, cut=cut: data[:cut])
         try:
@@ -307,8 +366,16 @@ def test_a_log_with_bytes_changed_is_read_or_refused_in_one_line(tmp_path, name)
 
 
 def test_what_libraries_print_of_a_damaged_log_is_not_passed_on(tmp_path, capfd):
-    open_log(damaged(tmp_path, "rover.BIN", lambda data: data[:40000] + bytes(range(256)) * 8 + data[40000:]))
-    open_log(damaged(tmp_path, "px4.ulg", lambda data: data[:30000] + bytes(range(256)) * 8 + data[30000:]))
+    open_log(
+        damaged(
+            tmp_path, "rover.BIN", lambda data: data[:40000] + bytes(range(256)) * 8 + data[40000:]
+        )
+    )
+    open_log(
+        damaged(
+            tmp_path, "px4.ulg", lambda data: data[:30000] + bytes(range(256)) * 8 + data[30000:]
+        )
+    )
     assert capfd.readouterr() == ("", "")
 
 
@@ -320,7 +387,10 @@ def test_a_chunk_that_would_unpack_to_more_than_is_stated_is_refused(monkeypatch
 
 @pytest.mark.parametrize(
     "key, value, said",
-    [("compression_mode", "FILE", "is compressed; unpack it"), ("storage_identifier", "mcap", "give the .mcap in it")],
+    [
+        ("compression_mode", "FILE", "is compressed; unpack it"),
+        ("storage_identifier", "mcap", "give the .mcap in it"),
+    ],
 )
 def test_a_bag_that_is_compressed_or_holds_mcap_says_what_to_do(tmp_path, key, value, said):
     path = tmp_path / "bag"
@@ -333,7 +403,9 @@ def test_a_bag_that_is_compressed_or_holds_mcap_says_what_to_do(tmp_path, key, v
 def test_names_from_a_log_reach_neither_terminal_nor_map_as_they_are(tmp_path):
     path = tmp_path / "t.csv"
     header = 't_s,psi\x1b[31m,"he said ""x"" \\ y",heading'
-    path.write_text(header + "\n" + "".join(f"{0.1 * i:.1f},{i},{i},{0.01 * i}\n" for i in range(40)))
+    path.write_text(
+        header + "\n" + "".join(f"{0.1 * i:.1f},{i},{i},{0.01 * i}\n" for i in range(40))
+    )
     log = open_log(path)
     assert "\x1b" not in "\n".join(listing(log)) + proposal(log)
     tomllib.loads(proposal(log))
@@ -418,7 +490,12 @@ NUMBERS = "uint8 a\nfloat64 b\n"
         ("uint16[] c\n", b"\x02\0\0\0\x01\0\x02\0", False, {"c[0]": 1.0, "c[1]": 2.0}),
         ("time t\n", b"\x01\0\0\0\x02\0\0\0", False, {"t.sec": 1.0, "t.nanosec": 2.0}),
         ("int8 K=3\nint8 a # note\n", b"\xff", False, {"a": -1.0}),
-        ("Part[2] p\n===\nMSG: m/Part\nint8 a\n", b"\x01\x02", False, {"p[0].a": 1.0, "p[1].a": 2.0}),
+        (
+            "Part[2] p\n===\nMSG: m/Part\nint8 a\n",
+            b"\x01\x02",
+            False,
+            {"p[0].a": 1.0, "p[1].a": 2.0},
+        ),
     ],
 )
 def test_messages_are_decoded_by_their_definitions(text, data, cdr, found):
@@ -438,7 +515,12 @@ def test_messages_of_no_size_in_many_ways_within_each_other_take_no_time():
     text = ("\n" + "=" * 80 + "\n").join(["L0 a\n", *levels, "MSG: p/L18\n"])  # 3^18 of them
     with pytest.raises(ValueError, match="more messages in the message than it has bytes"):
         Decoder(text, "p/Root", cdr=False)(b"")
-    deeper = text.replace("MSG: p/L18\n", "MSG: p/L18\nL19 a\n") + "\n" + "=" * 80 + "\nMSG: p/L19\nL18 a\n"
+    deeper = (
+        text.replace("MSG: p/L18\n", "MSG: p/L18\nL19 a\n")
+        + "\n"
+        + "=" * 80
+        + "\nMSG: p/L19\nL18 a\n"
+    )
     with pytest.raises(ValueError, match="too deep"):
         Decoder(deeper, "p/Root", cdr=False)
 
@@ -447,7 +529,10 @@ def test_messages_of_no_size_in_many_ways_within_each_other_take_no_time():
 def test_a_log_whose_end_is_damaged_does_not_hold_up_the_reader(tmp_path, size):
     header = (LOGS / "px4.ulg").read_bytes()[:16]
     (tmp_path / "log.ulg").write_bytes(
-        header + (struct.pack("<HB", 100, ord("Z")) + bytes(100)) * 300 + struct.pack("<HB", size, 0) + bytes(5)
+        header
+        + (struct.pack("<HB", 100, ord("Z")) + bytes(100)) * 300
+        + struct.pack("<HB", size, 0)
+        + bytes(5)
     )
     line_of(open_log, tmp_path / "log.ulg")
 
@@ -457,7 +542,9 @@ def test_messages_of_no_length_do_not_hold_up_the_reader(tmp_path, monkeypatch, 
     monkeypatch.setenv("PYMAVLINK_FAST_INDEX", quick)
     format = lambda n, size, *texts: b"\xa3\x95\x80" + struct.pack("<BB4s16s64s", n, size, *texts)  # noqa: E731
     begin = format(128, 89, b"FMT", b"BBnNZ", b"Type,Length,Name,Format,Columns")
-    (tmp_path / "log.BIN").write_bytes(begin + format(144, 0, b"AAA", b"Q", b"TimeUS") + b"\xa3\x95\x90" + bytes(8))
+    (tmp_path / "log.BIN").write_bytes(
+        begin + format(144, 0, b"AAA", b"Q", b"TimeUS") + b"\xa3\x95\x90" + bytes(8)
+    )
     line_of(open_log, tmp_path / "log.BIN")
 
 
@@ -467,7 +554,11 @@ def test_a_table_beyond_the_limits_is_refused_by_what_it_says_of_itself_or_as_so
 ):
     table = pa.table({f"c{i}": np.zeros(100) for i in range(columns)})
     parquet.write_table(table, tmp_path / "log.parquet")
-    text = ",".join(table.column_names) + "\n" + ("1," * (columns - 1) + "1\n") * 20_000 * (columns < 100)
+    text = (
+        ",".join(table.column_names)
+        + "\n"
+        + ("1," * (columns - 1) + "1\n") * 20_000 * (columns < 100)
+    )
     (tmp_path / "log.csv").write_text(text + "1\n")
     monkeypatch.setattr("boatsim.recordings.importing.log.MOST_VALUES", 499)
     for name in ("log.parquet", "log.csv"):
@@ -488,7 +579,9 @@ def test_the_logs_are_what_their_script_writes(tmp_path, monkeypatch):
     run = {n: TRUTH[n] for n in TRUTH.dtype.names}
     for name in ("rover.BIN", "px4.ulg", "instruments.nmea", "table.csv"):
         make_logs.LOGS[name](run, tmp_path / name)
-        assert abs(len((tmp_path / name).read_bytes()) - len((LOGS / name).read_bytes())) < 100, name
+        assert abs(len((tmp_path / name).read_bytes()) - len((LOGS / name).read_bytes())) < 100, (
+            name
+        )
         assert (tmp_path / name).stat().st_size < 200_000
     assert re.search(r"Otter", (LOGS / "README.md").read_text())
 
@@ -499,7 +592,9 @@ def test_the_map_that_the_documents_show_is_one():
     assert map_of(shown, "map.toml").columns.keys() == shown["columns"].keys()
 
 
-@pytest.mark.parametrize("name", ["yaw_rate_deg_s", "yaw_rate_deg_per_s", "gyro_z deg_s", "yaw_rate_degps"])
+@pytest.mark.parametrize(
+    "name", ["yaw_rate_deg_s", "yaw_rate_deg_per_s", "gyro_z deg_s", "yaw_rate_degps"]
+)
 def test_a_rate_whose_name_says_degrees_per_second_is_one(tmp_path, name):
     rows = [f"{0.1 * k:.1f},{0.01 * k:.3f},{0.4 * k % 30.0:.2f}" for k in range(60)]
     (tmp_path / "log.csv").write_text("\n".join([f"time_s,psi_rad,{name}", *rows]) + "\n")

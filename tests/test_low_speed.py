@@ -14,9 +14,9 @@ from scipy.signal import cont2discrete
 
 from benchmarks.low_speed_margins import LAWS, channel, margins
 from boatsim.control.adaptive import held
-from boatsim.measures.crossing import Crossing
-from boatsim.measures.heading_hold import HeadingHold
-from boatsim.measures.step_response import StepResponse
+from boatsim.metrics.crossing import Crossing
+from boatsim.metrics.heading_hold import HeadingHold
+from boatsim.metrics.step_response import StepResponse
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench, motion
 from boatsim.physics.content import load_class, names
@@ -26,7 +26,7 @@ from boatsim.physics.effects.yaw_rate_waves import WAVES, YawRateWaves, componen
 from boatsim.recordings.table import Notes, Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.norms import Norm, norms
+from boatsim.simulate.evaluation import Norm, norms
 from boatsim.simulate.run import Run, run
 
 Heading = load_class("controller", "l1_heading_discrete")
@@ -91,18 +91,24 @@ def test_nozzle_and_bucket_turn_with_30_deg_per_second() -> None:
     engine = craft()
     engine.command({"elevator_rad": ASTERN, "jet_rad": 0.2618})
     engine.advance(40)
-    assert engine.actuators["jet_rad"] == pytest.approx(radians(30.0) * 0.395, rel=1e-3)  # mean over the last step
+    assert engine.actuators["jet_rad"] == pytest.approx(
+        radians(30.0) * 0.395, rel=1e-3
+    )  # mean over the last step
     assert engine.actuators["elevator_rad"] == pytest.approx(radians(30.0) * 0.395, rel=1e-3)
 
 
 @pytest.mark.parametrize("beta", [0.0, 0.5, pi / 4, 0.9])
-def test_leak_and_time_constant_astern_are_the_nomoto_model_with_another_gain_or_time(beta: float) -> None:
+def test_leak_and_time_constant_astern_are_the_nomoto_model_with_another_gain_or_time(
+    beta: float,
+) -> None:
     own = ReversingJet(thrust=185.0, yaw=275.0)
     m, seen = motion(u=-0.5, r=0.1), {"angle": 0.2, "bucket": beta}
     boat = vessel.load("jet_ski", ["low_speed"])
     leaking: Any = vessel.added(replace(boat, effects=(own,)), JetLeak(fraction=0.25)).effects[0]
     share = cos(2 * beta) + 0.25
-    assert leaking.wrench(m, **seen) == pytest.approx(Wrench(X=185.0 * share, N=275.0 * share * 0.2))
+    assert leaking.wrench(m, **seen) == pytest.approx(
+        Wrench(X=185.0 * share, N=275.0 * share * 0.2)
+    )
     moment = own.wrench(m, **seen).N - 270.0 * 0.1
     law: Any = AsternTimeConstant.law.py_func
     others = AsternTimeConstant(factor=0.7, yaw=270.0).values(), own.signals(**seen), own.values()
@@ -128,7 +134,9 @@ def test_waves_have_the_autocorrelation_of_the_filter(frequency: float) -> None:
     wanted = np.exp(-slope * lag) * (np.cos(damped * lag) - slope / damped * np.sin(damped * lag))
     found = 0.5 * size**2 @ np.cos(np.outer(w, lag)) / rms**2
     assert found[0] == pytest.approx(1.0)
-    assert found == pytest.approx(wanted, abs=0.08)  # 64 components; white noise has infinitely many
+    assert found == pytest.approx(
+        wanted, abs=0.08
+    )  # 64 components; white noise has infinitely many
 
 
 @pytest.mark.parametrize("seed", [0, 7])
@@ -157,7 +165,10 @@ def test_seed_draws_the_waves_and_still_water_stays_still() -> None:
     sea = YawRateWaves(rms=0.05, inertia=460.0, drag=275.0)
     first, again, other = (sea.seeded(n).wrench(motion(t=3.0)).N for n in (1, 1, 2))
     assert first == again != other
-    assert YawRateWaves(rms=0.05, inertia=460.0, realisation=0.0).seeded(3).wrench(motion(t=3.0)).N == 0.0
+    assert (
+        YawRateWaves(rms=0.05, inertia=460.0, realisation=0.0).seeded(3).wrench(motion(t=3.0)).N
+        == 0.0
+    )
 
 
 # ---- the controller
@@ -168,7 +179,9 @@ def test_wave_filter_and_low_pass_are_the_reconstructed_ones() -> None:
     assert h.numerator[1] == pytest.approx(0.2754, abs=1e-4)
     assert [float(f.at(np.array(1.0))) for f in (h, c)] == pytest.approx([1.0, 1.0], abs=1e-3)
     assert np.sort(np.roots(h.denominator)) == pytest.approx([0.22313, 0.49659, 0.87372], abs=1e-5)
-    assert np.polymul([0.27545, -0.27545 * 1.55748], [1.0]) == pytest.approx(h.numerator[1:3], abs=1e-4)
+    assert np.polymul([0.27545, -0.27545 * 1.55748], [1.0]) == pytest.approx(
+        h.numerator[1:3], abs=1e-4
+    )
     assert h.numerator[3] == pytest.approx(0.27545 * 0.73678, abs=1e-4)
     assert c.numerator[1:] == pytest.approx([7.830e-4, 7.830e-4 * 0.9789], abs=1e-6)
     assert c.denominator == pytest.approx([1.0, -1.93722, 0.93877], abs=1e-5)
@@ -177,7 +190,9 @@ def test_wave_filter_and_low_pass_are_the_reconstructed_ones() -> None:
 def test_printed_low_pass_is_the_held_integrator_with_a_lag() -> None:
     d = held([1.0], [1.0, 0.640, 0.0], T_S)
     assert d.numerator[1] == pytest.approx(4.894e-3, abs=2e-6)
-    assert d.numerator[2] / d.numerator[1] == pytest.approx(0.9789, abs=1e-4)  # z_1, which the table leaves out
+    assert d.numerator[2] / d.numerator[1] == pytest.approx(
+        0.9789, abs=1e-4
+    )  # z_1, which the table leaves out
     assert np.roots(d.denominator) == pytest.approx([1.0, 0.938], abs=1e-4)
 
 
@@ -203,7 +218,10 @@ def test_held_filters_are_those_of_scipy_and_step_as_their_difference_equation()
 def alone(adaptive: bool, pushed: float, steps: int, late: int = 0) -> Array:
     """Headings [rad] of the sampled loop on equations of its own, F and g written out: a step of 20 deg."""
     f12, g1, g2 = T_N * (1.0 - F22), T_N**2 * (T_S / T_N - 1.0 + F22), T_N * (1.0 - F22)
-    h_top, h_bottom = 0.2754465 * np.array([0.0, 1.0, -1.557476, 0.736779]), np.poly([0.8737159, 0.4965853, 0.2231302])
+    h_top, h_bottom = (
+        0.2754465 * np.array([0.0, 1.0, -1.557476, 0.736779]),
+        np.poly([0.8737159, 0.4965853, 0.2231302]),
+    )
     g = 0.16 * 4.894e-3
     c_top, c_bottom = np.array([0.0, g, g * 0.9789]), np.array([1.0, g - 1.938, 0.938 + g * 0.9789])
     psi, r, r_hat, seen = 0.0, 0.0, 0.0, []
@@ -233,7 +251,8 @@ def test_engine_and_a_loop_written_out_here_agree(name: str, adaptive: bool) -> 
 
 
 @pytest.mark.parametrize(
-    ("name", "largest"), [("step_pd", 10.8), ("step_l1", 10.8), ("step_unfiltered", 14.6), ("step_astern", 15.0)]
+    ("name", "largest"),
+    [("step_pd", 10.8), ("step_l1", 10.8), ("step_unfiltered", 14.6), ("step_astern", 15.0)],
 )
 def test_nozzle_angle_of_a_step(name: str, largest: float) -> None:
     assert degrees(abs(done(name)["actual_jet_rad"]).max()) == pytest.approx(largest, abs=0.3)
@@ -244,8 +263,12 @@ def test_printed_sign_of_the_pd_runs_to_the_opposite_heading() -> None:
     assert off > 160.0
 
 
-@pytest.mark.parametrize(("begin", "to", "time_90"), [(30, 30, 4.1), (60, 0, 10.4), (90, -30, 10.4), (120, 0, 4.1)])
-def test_heading_steps_while_the_bucket_goes_up_and_down(begin: float, to: float, time_90: float) -> None:
+@pytest.mark.parametrize(
+    ("begin", "to", "time_90"), [(30, 30, 4.1), (60, 0, 10.4), (90, -30, 10.4), (120, 0, 4.1)]
+)
+def test_heading_steps_while_the_bucket_goes_up_and_down(
+    begin: float, to: float, time_90: float
+) -> None:
     log_ = done("turns_l1")
     found = StepResponse(target=radians(to), since=begin, until=begin + 30.0).values(log_)
     assert found["time_90"] == pytest.approx(time_90, abs=0.2)
@@ -263,7 +286,10 @@ def test_constant_push_leaves_the_pd_its_offset_and_l1_what_its_adaptation_forge
 @pytest.mark.parametrize("sea", ["4p5", "2p5", "1p5"])
 def test_l1_takes_the_mean_error_out_in_waves_and_no_rms(sea: str) -> None:
     pd, filtered, l1 = (f"waves_{sea}_{n}" for n in ("pd", "filter", "l1"))
-    assert mean_of(f"jet_ski/low_{l1}")["psi_mean"] / mean_of(f"jet_ski/low_{filtered}")["psi_mean"] < 0.1
+    assert (
+        mean_of(f"jet_ski/low_{l1}")["psi_mean"] / mean_of(f"jet_ski/low_{filtered}")["psi_mean"]
+        < 0.1
+    )
     assert 0.95 < value(l1, "psi_rms") / value(filtered, "psi_rms") < 1.2
     assert 1.05 < value(l1, "steering_rms") / value(filtered, "steering_rms") < 1.35
     assert value(filtered, "steering_rms") < value(pd, "steering_rms")
@@ -276,7 +302,8 @@ def test_filter_spares_the_nozzle_near_its_frequency_and_costs_accuracy_below() 
 
 
 @pytest.mark.parametrize(
-    ("name", "grows"), few([("l1_0p8", False), ("l1_1p0", True), ("pd_1p2", False), ("pd_1p5", True)], 2)
+    ("name", "grows"),
+    few([("l1_0p8", False), ("l1_1p0", True), ("pd_1p2", False), ("pd_1p5", True)], 2),
 )
 def test_delay_that_the_loop_bears(name: str, grows: bool) -> None:
     log_ = done(f"delay_{name}")
@@ -323,22 +350,33 @@ def test_fifty_times_real_time() -> None:
         ("L1 + filter", 0.705, 40.0, 0.99),
     ],
 )
-def test_margins_of_the_sampled_loop(law: str, crossover: float, phase: float, delay: float) -> None:
+def test_margins_of_the_sampled_loop(
+    law: str, crossover: float, phase: float, delay: float
+) -> None:
     m = margins(channel(**LAWS[law]))
-    assert (m.crossover, degrees(m.phase), m.delay) == pytest.approx((crossover, phase, delay), abs=0.06)
+    assert (m.crossover, degrees(m.phase), m.delay) == pytest.approx(
+        (crossover, phase, delay), abs=0.06
+    )
     assert m.crossover == pytest.approx(crossover, abs=1e-3) and m.stable
 
 
 @pytest.mark.parametrize(
     ("case", "l1", "pd"),
     [
-        ({"gain": 0.5}, 1.73, 3.01), ({"gain": 0.7}, 1.37, 2.05), ({"gain": 1.3}, 0.74, 0.99),
-        ({"gain": 1.6}, 0.58, 0.77), ({"gain": 2.0}, 0.44, 0.58), ({"time_constant": 0.5}, 3.12, 6.02),
-        ({"time_constant": 0.8}, 2.27, 3.37), ({"time_constant": 2.5}, 0.64, 0.91),
+        ({"gain": 0.5}, 1.73, 3.01),
+        ({"gain": 0.7}, 1.37, 2.05),
+        ({"gain": 1.3}, 0.74, 0.99),
+        ({"gain": 1.6}, 0.58, 0.77),
+        ({"gain": 2.0}, 0.44, 0.58),
+        ({"time_constant": 0.5}, 3.12, 6.02),
+        ({"time_constant": 0.8}, 2.27, 3.37),
+        ({"time_constant": 2.5}, 0.64, 0.91),
         ({"time_constant": 4.0}, 0.40, 0.63),
     ],
-)  # fmt: skip
-def test_delay_margin_of_another_craft_than_assumed(case: dict[str, float], l1: float, pd: float) -> None:
+)
+def test_delay_margin_of_another_craft_than_assumed(
+    case: dict[str, float], l1: float, pd: float
+) -> None:
     assert margins(channel(), **case).delay == pytest.approx(l1, abs=0.015)
     assert margins(channel(adaptive=0.0), **case).delay == pytest.approx(pd, abs=0.015)
 
@@ -382,7 +420,9 @@ def test_step_response_of_a_second_order_system() -> None:
 def test_step_that_is_never_made_has_no_times() -> None:
     t = np.arange(0.0, 5.0, 0.1)
     found = StepResponse(signal="y", target=1.0).values(logged(t, y=0.1 * t))
-    assert set(found) == {"overshoot", "end_error", "end"} and found["end_error"] == pytest.approx(51.0)
+    assert set(found) == {"overshoot", "end_error", "end"} and found["end_error"] == pytest.approx(
+        51.0
+    )
 
 
 def test_holding_a_heading_is_measured_about_its_mean() -> None:
@@ -397,5 +437,7 @@ def test_holding_a_heading_is_measured_about_its_mean() -> None:
 
 def test_crossing_is_found_between_rows_or_not_at_all() -> None:
     t = np.arange(0.0, 10.0, 0.3)
-    assert Crossing("u_mps", 2.0, 1.0).values(logged(t, u_mps=5.0 - t))["time"] == pytest.approx(2.0)
+    assert Crossing("u_mps", 2.0, 1.0).values(logged(t, u_mps=5.0 - t))["time"] == pytest.approx(
+        2.0
+    )
     assert Crossing("u_mps", 20.0).values(logged(t, u_mps=5.0 - t)) == {}

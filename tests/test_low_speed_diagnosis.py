@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from low_speed_boat import Real, recorded
 
-from boatsim.diagnose import analysis
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import track
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.filter import track
+from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.recordings import table as recording
 from boatsim.simulate import scenario
 from boatsim.view.outputs import run_into
@@ -24,14 +24,16 @@ ambient = { axes = ["surge", "sway", "roll", "yaw"], force_rms = { surge = 20.0,
 YAW_RATE = 7  # of the channels of a free run: x, y, phi, psi, u, v, p, r
 
 
-def diagnosed(folder: Path, real: Real, unseen: Real | None = None, without: tuple[str, ...] = ()) -> Diagnosis:
+def diagnosed(
+    folder: Path, real: Real, unseen: Real | None = None, without: tuple[str, ...] = ()
+) -> Diagnosis:
     """Two runs of the real craft fitted, a third held out."""
     runs = [recorded(real, 1), recorded(real, 2), recorded(unseen or real, 3)]
     files = [folder / f"{r.name}.csv" for r in runs]
     for file, r in zip(files, runs, strict=True):
         recording.write_csv(r, file)
     (folder / "recording.toml").write_text(NOTES)
-    return analysis.diagnose(files[:2], files[2:], without=without)
+    return pipeline.diagnose(files[:2], files[2:], without=without)
 
 
 def named(found: Diagnosis) -> dict[str, Any]:
@@ -51,18 +53,29 @@ def yaw_rate_error(found: Diagnosis, seed: int, real: Real, patched: bool) -> fl
 
 def test_leak_and_delay_are_named_together_and_recovered(tmp_path: Path) -> None:
     real = Real(leak=0.25, late=0.4)
-    found = diagnosed(tmp_path, real, without=("clock_offset",))  # which is the same data in open loop
+    found = diagnosed(
+        tmp_path, real, without=("clock_offset",)
+    )  # which is the same data in open loop
     effects = named(found)
-    assert found.findings.answer["verdict"] == "named" and set(effects) == {"jet_leak", "command_delay"}
+    assert found.findings.answer["verdict"] == "named" and set(effects) == {
+        "jet_leak",
+        "command_delay",
+    }
     # a raised bucket leaks nothing, so that less of the whole jet is left for the steering; a lowered one leaks 0.25
     best = found.ranking.best
-    (jet,) = (x for f, x in zip(best.free, best.theta, strict=True) if (f.effect, f.name) == ("reversing_jet", "yaw"))
+    (jet,) = (
+        x
+        for f, x in zip(best.free, best.theta, strict=True)
+        if (f.effect, f.name) == ("reversing_jet", "yaw")
+    )
     assert jet * effects["jet_leak"]["fraction"]["value"] == pytest.approx(0.25, abs=0.02)
     assert effects["command_delay"]["delay_s"]["value"] == pytest.approx(0.40, abs=0.02)
     for seed in (1, 3):  # fitted and held out
         before, after = (yaw_rate_error(found, seed, real, patched) for patched in (False, True))
         assert before > 1.5
-        assert after**2 - 0.5**2 < 0.1 * (before**2 - 0.5**2)  # of its power beyond the gyro's noise [deg/s]
+        assert after**2 - 0.5**2 < 0.1 * (
+            before**2 - 0.5**2
+        )  # of its power beyond the gyro's noise [deg/s]
 
 
 def test_another_time_constant_astern_is_named(tmp_path: Path) -> None:
@@ -97,4 +110,7 @@ def test_craft_as_modelled_has_nothing_missing(tmp_path: Path) -> None:
 
 def test_own_run_has_nothing_missing(tmp_path: Path) -> None:
     run_into(tmp_path / "own", scenario.load("jet_ski/low_turns_l1"))
-    assert analysis.diagnose([tmp_path / "own" / "camera.csv"]).findings.answer["verdict"] == "nothing_missing"
+    assert (
+        pipeline.diagnose([tmp_path / "own" / "camera.csv"]).findings.answer["verdict"]
+        == "nothing_missing"
+    )

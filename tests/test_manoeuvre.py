@@ -14,19 +14,19 @@ from typer.testing import CliRunner
 
 from boatsim.cli import app
 from boatsim.control.base import Sense
-from boatsim.measures.crash_stop import CrashStop
-from boatsim.measures.pull_out import PullOut
-from boatsim.measures.roll_decay import RollDecay
-from boatsim.measures.spiral import Spiral
-from boatsim.measures.turning_circle import TurningCircle
-from boatsim.measures.zigzag import Zigzag
+from boatsim.metrics.crash_stop import CrashStop
+from boatsim.metrics.pull_out import PullOut
+from boatsim.metrics.roll_decay import RollDecay
+from boatsim.metrics.spiral import Spiral
+from boatsim.metrics.turning_circle import TurningCircle
+from boatsim.metrics.zigzag import Zigzag
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array
 from boatsim.physics.content import load_class
 from boatsim.recordings.table import Recording
 from boatsim.simulate import imo
+from boatsim.simulate.evaluation import norms
 from boatsim.simulate.manoeuvre import handled, scenario_of
-from boatsim.simulate.norms import norms
 from boatsim.simulate.run import run
 
 LENGTH = 2.0  # [m] of the ships here
@@ -46,7 +46,10 @@ def circle(side: float, radius: float, speed: float, drift: float, course: float
     t = np.arange(0.0, 60.0, 0.02)
     s = speed * (t - EXECUTE)
     turned = np.maximum(s, 0.0) / radius
-    ahead, aside = np.where(s < 0.0, s, radius * np.sin(turned)), side * radius * (1.0 - np.cos(turned))
+    ahead, aside = (
+        np.where(s < 0.0, s, radius * np.sin(turned)),
+        side * radius * (1.0 - np.cos(turned)),
+    )
     c, n, still = cos(course), sin(course), s < 0.0
     return logged(
         t,
@@ -64,11 +67,17 @@ def test_turning_circle_of_a_ship_that_goes_round_a_circle(side: float) -> None:
     found = TurningCircle(execute=EXECUTE, length=LENGTH).values(circle(side, 6.0, 1.5, 0.2, 0.7))
     assert found == pytest.approx(
         {
-            "advance": 3.0, "transfer": 3.0, "tactical_diameter": 6.0, "steady_radius": 3.0, "steady_speed": 1.5,
-            "steady_rate": degrees(1.5 / 6.0), "steady_drift": degrees(0.2), "time_to_90": 0.5 * pi * 6.0 / 1.5,
+            "advance": 3.0,
+            "transfer": 3.0,
+            "tactical_diameter": 6.0,
+            "steady_radius": 3.0,
+            "steady_speed": 1.5,
+            "steady_rate": degrees(1.5 / 6.0),
+            "steady_drift": degrees(0.2),
+            "time_to_90": 0.5 * pi * 6.0 / 1.5,
         },
         rel=2e-3,
-    )  # fmt: skip
+    )
 
 
 def test_turning_circle_that_was_not_finished() -> None:
@@ -105,7 +114,11 @@ def test_roll_decay_of_a_linear_oscillator(zeta: float) -> None:
     own = 2.5  # [rad/s] undamped
     damped = own * sqrt(1.0 - zeta**2)
     t = np.arange(0.0, 12 * 2 * pi / own, 0.01)
-    phi = 0.2 * np.exp(-zeta * own * t) * (np.cos(damped * t) + zeta * own / damped * np.sin(damped * t))
+    phi = (
+        0.2
+        * np.exp(-zeta * own * t)
+        * (np.cos(damped * t) + zeta * own / damped * np.sin(damped * t))
+    )
     found = RollDecay().values(logged(t, phi_rad=phi))
     assert found["period"] == pytest.approx(2 * pi / damped, rel=1e-4)
     for part in ("first", "mean", "last"):
@@ -121,7 +134,9 @@ def test_a_roll_that_does_not_swing_has_no_period() -> None:
 def test_helm_never_used_or_not_brought_back_measures_nothing() -> None:
     t = np.arange(40.0)
     still = logged(t, reference_helm_rad=np.zeros(40), r_radps=np.full(40, 0.01))
-    cut = logged(t, reference_helm_rad=np.repeat([0.0, 0.2, 0.1, 0.0], 10), r_radps=np.full(40, 0.01))
+    cut = logged(
+        t, reference_helm_rad=np.repeat([0.0, 0.2, 0.1, 0.0], 10), r_radps=np.full(40, 0.01)
+    )
     assert PullOut().values(still) == Spiral().values(still) == Spiral().values(cut) == {}
 
 
@@ -150,7 +165,9 @@ class Nomoto:
             psi, r = psi + self.K * delta * self.dt + self.T * (r - gone), gone
         t, x_, y_, psi_, r_, helm = np.array(rows).T
         u, v = np.full(len(t), self.U), np.zeros(len(t))
-        self.log = logged(t, x_m=x_, y_m=y_, psi_rad=psi_, r_radps=r_, u_mps=u, v_mps=v, reference_helm_rad=helm)
+        self.log = logged(
+            t, x_m=x_, y_m=y_, psi_rad=psi_, r_radps=r_, u_mps=u, v_mps=v, reference_helm_rad=helm
+        )
 
 
 def controller(name: str, period: float = 0.01, **settings: Any) -> Any:
@@ -163,7 +180,9 @@ def test_steady_turn_of_a_first_order_ship(side: float) -> None:
     found = TurningCircle(execute=5.0, length=LENGTH).values(ship.log)
     assert found["steady_radius"] == pytest.approx(Nomoto.U / (Nomoto.K * 0.3) / LENGTH, rel=1e-6)
     assert found["steady_rate"] == pytest.approx(degrees(Nomoto.K * 0.3), rel=1e-6)
-    late = brentq(lambda t: Nomoto.K * 0.3 * (t - Nomoto.T * (1.0 - exp(-t / Nomoto.T))) - pi / 2, 1.0, 50.0)
+    late = brentq(
+        lambda t: Nomoto.K * 0.3 * (t - Nomoto.T * (1.0 - exp(-t / Nomoto.T))) - pi / 2, 1.0, 50.0
+    )
     assert found["time_to_90"] == pytest.approx(late, abs=1e-3)
     assert found["transfer"] > 0.0
 
@@ -178,9 +197,13 @@ def test_zigzag_of_a_first_order_ship(side: float) -> None:
     until = T * log(1.0 + rate / (K * angle))  # the ship turns no more
     assert found["time_to_reversal"] == pytest.approx(late, abs=1e-3)
     assert found["track_to_reversal"] == pytest.approx(Nomoto.U * late / LENGTH, abs=1e-3)
-    assert found["first_overshoot"] == pytest.approx(degrees(T * rate - K * angle * until), abs=0.05)
+    assert found["first_overshoot"] == pytest.approx(
+        degrees(T * rate - K * angle * until), abs=0.05
+    )
     assert found["first_overshoot_at"] == pytest.approx(late + until, abs=0.03)
-    assert "second_overshoot" in found and "third_overshoot" not in found  # which needs a fourth reversal
+    assert (
+        "second_overshoot" in found and "third_overshoot" not in found
+    )  # which needs a fourth reversal
 
 
 def test_zigzag_without_a_reversal_measures_nothing() -> None:
@@ -217,7 +240,9 @@ def test_spiral_of_a_ship_that_is_not_course_stable(side: float) -> None:
 
 @SIDES
 def test_spiral_of_a_first_order_ship_has_no_loop(side: float) -> None:
-    ship = Nomoto(controller("spiral", 0.05, angle=0.3 * side, hold=30.0, execute=5.0), 5.0 + 17 * 30.0)
+    ship = Nomoto(
+        controller("spiral", 0.05, angle=0.3 * side, hold=30.0, execute=5.0), 5.0 + 17 * 30.0
+    )
     steps = ship.log["reference_helm_rad"][round((5.0 + 15.0) / 0.05) :: round(30.0 / 0.05)]
     assert steps == pytest.approx(side * 0.3 * np.array([*range(4, -5, -1), *range(-3, 5)]) / 4)
     found = Spiral().values(ship.log)
@@ -226,14 +251,20 @@ def test_spiral_of_a_first_order_ship_has_no_loop(side: float) -> None:
 
 
 def test_crash_stop_goes_astern_until_there_is_no_way_on() -> None:
-    stopping = load_class("controller", "crash_stop")(execute=2.0, ahead={"n": 5.0}, astern={"n": -4.0})
+    stopping = load_class("controller", "crash_stop")(
+        execute=2.0, ahead={"n": 5.0}, astern={"n": -4.0}
+    )
     stopping.reset()
 
     def sent(t: float, u: float) -> dict[str, float]:
         found: dict[str, float] = stopping.step(Sense(t, 0.0, 0.0, 0.0, 0.0, u, 0.0, 0.0, 0.0), {})
         return found
 
-    assert [sent(1.0, 1.0), sent(2.0, 1.0), sent(3.0, 0.5)] == [{"n": 5.0}, {"n": -4.0}, {"n": -4.0}]
+    assert [sent(1.0, 1.0), sent(2.0, 1.0), sent(3.0, 0.5)] == [
+        {"n": 5.0},
+        {"n": -4.0},
+        {"n": -4.0},
+    ]
     assert not stopping.done
     sent(4.0, -0.01)
     assert stopping.done
@@ -248,7 +279,10 @@ def test_limits_of_the_10_10_zigzag_meet_at_their_boundaries() -> None:
             assert imo.first_overshoot_10(beside, 1.0) == pytest.approx(first)
             assert imo.second_overshoot_10(beside, 1.0) == pytest.approx(second)
     assert (imo.first_overshoot_10(1.2, 0.5), imo.second_overshoot_10(1.2, 0.5)) == (10.0, 25.0)
-    assert (imo.first_overshoot_10(400.0, 10.0), imo.second_overshoot_10(400.0, 10.0)) == (20.0, 40.0)
+    assert (imo.first_overshoot_10(400.0, 10.0), imo.second_overshoot_10(400.0, 10.0)) == (
+        20.0,
+        40.0,
+    )
     assert imo.first_overshoot_10(160.0, 8.0) == pytest.approx(15.0)
 
 
@@ -256,7 +290,11 @@ def test_limits_of_the_10_10_zigzag_meet_at_their_boundaries() -> None:
     ("manoeuvre", "angle", "wanted"),
     [
         ("turning_circle", -35.0, {"advance": 4.5, "tactical_diameter": 5.0}),
-        ("zigzag", 10.0, {"track_to_reversal": 2.5, "first_overshoot": 15.0, "second_overshoot": 32.5}),
+        (
+            "zigzag",
+            10.0,
+            {"track_to_reversal": 2.5, "first_overshoot": 15.0, "second_overshoot": 32.5},
+        ),
         ("zigzag", -20.0, {"first_overshoot": 25.0}),
         ("crash_stop", 0.0, {"track_reach": 15.0}),
         ("turning_circle", 20.0, {}),
@@ -278,11 +316,15 @@ STEERED = [name for name in content.names("vessel") if "yaw" in vessel.load(name
 def test_every_vessel_that_can_turn_does_a_short_zigzag_and_a_turning_circle(name: str) -> None:
     zigzag, turn = scenario_of("zigzag", name, angle=10.0), scenario_of("turning_circle", name)
     boat, unit = zigzag.vessel, zigzag.vessel.length / zigzag.file.start.u
-    seen = run(replace(zigzag, file=zigzag.file.model_copy(update={"duration": 12.0 * unit}))).recording
+    seen = run(
+        replace(zigzag, file=zigzag.file.model_copy(update={"duration": 12.0 * unit}))
+    ).recording
     begun = seen.t > turn.controller.execute + unit  # type: ignore[attr-defined]
     assert set(np.sign(seen["reference_helm_rad"][begun])) == {1.0, -1.0}
     assert degrees(seen["psi_rad"].max()) > 10.0
-    assert seen["psi_rad"][np.argmax(seen["reference_helm_rad"] > 0.0) :][3] > -1e-4  # a positive angle is to starboard
+    assert (
+        seen["psi_rad"][np.argmax(seen["reference_helm_rad"] > 0.0) :][3] > -1e-4
+    )  # a positive angle is to starboard
     for command, channel in boat.commands.items():
         assert channel.low <= seen[command].min() and seen[command].max() <= channel.high
     made = run(replace(turn, file=turn.file.model_copy(update={"duration": 100.0 * unit})))
@@ -296,7 +338,10 @@ def test_every_vessel_that_can_turn_does_a_short_zigzag_and_a_turning_circle(nam
 @pytest.mark.parametrize("manoeuvre", ["turning_circle", "zigzag"])
 def test_a_symmetric_boat_does_the_same_to_both_sides(manoeuvre: str) -> None:
     one, other = (
-        {k: n.value for k, n in norms(run(scenario_of(manoeuvre, "trial_boat", angle=angle))).items()}
+        {
+            k: n.value
+            for k, n in norms(run(scenario_of(manoeuvre, "trial_boat", angle=angle))).items()
+        }
         for angle in (20.0, -20.0)
     )
     assert one == pytest.approx(other, rel=1e-6)
@@ -326,7 +371,9 @@ def test_a_20_10_zigzag_puts_20_degrees_of_helm_on_and_reverses_at_10(angle: flo
     helm, psi = done.recording["reference_helm_rad"], done.recording["psi_rad"]
     turned = np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0) + 1
     assert np.abs(helm).max() == pytest.approx(radians(20.0))
-    assert np.degrees(psi[turned]) == pytest.approx(np.sign(angle) * np.resize([10.0, -10.0], len(turned)), abs=1e-4)
+    assert np.degrees(psi[turned]) == pytest.approx(
+        np.sign(angle) * np.resize([10.0, -10.0], len(turned)), abs=1e-4
+    )
 
 
 def test_roll_decay_of_a_vessel_shows_its_damping() -> None:
@@ -346,7 +393,10 @@ def test_a_hull_that_also_turns_is_heeled_before_it_is_released() -> None:
 
 def test_a_tunnel_across_the_bow_drives_no_boat_ahead(tmp_path: Path) -> None:
     bow = '[[effect]]\nuse = "thruster"\nname = "bow"\non = { thrust = "bow_N", angle = 1.5708 }\nx = 0.4\n'
-    text = boats.PLANAR.replace("[channels]\n", "[channels]\nbow_N = { low = -8.0, high = 8.0 }\n") + bow
+    text = (
+        boats.PLANAR.replace("[channels]\n", "[channels]\nbow_N = { low = -8.0, high = 8.0 }\n")
+        + bow
+    )
     table = handled(vessel.load(str(boats.written(tmp_path, "test_boat", text) / "vessel.toml")))
     assert set(table.ahead) == set(table.astern) == {"thrust_port_N", "thrust_starboard_N"}
 
@@ -355,7 +405,10 @@ def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
     table = handled(vessel.load("trial_boat"))
     assert table.ahead == {"thrust_port_N": 0.5, "thrust_starboard_N": 0.5}
     assert table.astern == {"thrust_port_N": -0.5, "thrust_starboard_N": -0.5}
-    assert table.steer == {"steer_port_rad": -1.0, "steer_starboard_rad": -1.0}  # to port, so that the bow swings right
+    assert table.steer == {
+        "steer_port_rad": -1.0,
+        "steer_starboard_rad": -1.0,
+    }  # to port, so that the bow swings right
 
 
 # Mistakes
@@ -364,23 +417,57 @@ def test_a_boat_without_a_table_is_handled_by_its_channels() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("zigzig", "--vessel", "mariner"), "manoeuvre 'zigzig' does not exist; did you mean 'zigzag'"),
-        (("zigzag", "--vessel", "marinor"), "vessel 'marinor' does not exist; did you mean 'mariner'"),
+        (
+            ("zigzig", "--vessel", "mariner"),
+            "manoeuvre 'zigzig' does not exist; did you mean 'zigzag'",
+        ),
+        (
+            ("zigzag", "--vessel", "marinor"),
+            "vessel 'marinor' does not exist; did you mean 'mariner'",
+        ),
         (("zigzag", "--vessel", "kvlcc2_roll"), "kvlcc2_roll is not free to turn"),
-        (("roll_decay", "--vessel", "mariner"), "mariner does not roll; its freedoms are surge, sway, yaw"),
-        (("crash_stop", "--vessel", "kvlcc2"), "kvlcc2: nothing to go astern with; [manoeuvring] astern = "),
-        (("zigzag", "--vessel", "mariner", "--angle", "50"), "means delta_rad = 0.872665; allowed -0.6981 to 0.6981"),
-        (("zigzag", "--vessel", "mariner", "--angle", "0"), "angle = 0 deg; a zigzag needs another"),
+        (
+            ("roll_decay", "--vessel", "mariner"),
+            "mariner does not roll; its freedoms are surge, sway, yaw",
+        ),
+        (
+            ("crash_stop", "--vessel", "kvlcc2"),
+            "kvlcc2: nothing to go astern with; [manoeuvring] astern = ",
+        ),
+        (
+            ("zigzag", "--vessel", "mariner", "--angle", "50"),
+            "means delta_rad = 0.872665; allowed -0.6981 to 0.6981",
+        ),
+        (
+            ("zigzag", "--vessel", "mariner", "--angle", "0"),
+            "angle = 0 deg; a zigzag needs another",
+        ),
         (("zigzag", "--vessel", "mariner", "--angle", "nan"), "mariner: nan deg of helm means"),
-        (("turning_circle", "--vessel", "mariner", "--heading", "10"), "heading = 10 deg; only a zigzag reverses"),
-        (("zigzag", "--vessel", "mariner", "--heading", "-10"), "heading = -10 deg; allowed 0.1 to 170 deg"),
-        (("zigzag", "--vessel", "mariner", "--heading", "nan"), "heading = nan deg; allowed 0.1 to 170 deg"),
-        (("zigzag", "--vessel", "mariner", "--speed", "inf"), "speed = inf m/s; allowed is more than 0 m/s"),
+        (
+            ("turning_circle", "--vessel", "mariner", "--heading", "10"),
+            "heading = 10 deg; only a zigzag reverses",
+        ),
+        (
+            ("zigzag", "--vessel", "mariner", "--heading", "-10"),
+            "heading = -10 deg; allowed 0.1 to 170 deg",
+        ),
+        (
+            ("zigzag", "--vessel", "mariner", "--heading", "nan"),
+            "heading = nan deg; allowed 0.1 to 170 deg",
+        ),
+        (
+            ("zigzag", "--vessel", "mariner", "--speed", "inf"),
+            "speed = inf m/s; allowed is more than 0 m/s",
+        ),
         (("zigzag", "--vessel", "mariner", "--load", "light"), "load 'light' does not exist"),
     ],
 )
-def test_a_mistake_is_one_line_and_leaves_nothing(arguments: tuple[str, ...], message: str, tmp_path: Path) -> None:
-    result = CliRunner().invoke(app, ["manoeuvre", *arguments, "--out", str(tmp_path / "out")], catch_exceptions=False)
+def test_a_mistake_is_one_line_and_leaves_nothing(
+    arguments: tuple[str, ...], message: str, tmp_path: Path
+) -> None:
+    result = CliRunner().invoke(
+        app, ["manoeuvre", *arguments, "--out", str(tmp_path / "out")], catch_exceptions=False
+    )
     assert result.exit_code == 2
     assert message in result.stderr and len(result.stderr.strip().splitlines()) == 1
     assert not list(tmp_path.iterdir())

@@ -12,7 +12,13 @@ from boatsim.physics.content import load_class
 
 PERIOD, SERVO = 0.08, 0.06  # [s]
 YAW = LoopChannel(
-    "yaw", pole=1.4, bandwidth=2.0, heading_gain=0.2, input_gain=(0.5, 1.0, 1.8), hold_s=0.5 * PERIOD, servo_lag_s=SERVO
+    "yaw",
+    pole=1.4,
+    bandwidth=2.0,
+    heading_gain=0.2,
+    input_gain=(0.5, 1.0, 1.8),
+    hold_s=0.5 * PERIOD,
+    servo_lag_s=SERVO,
 )
 
 
@@ -45,7 +51,9 @@ def test_l1_norm_falls_with_the_bandwidth(bandwidth: float, value: float) -> Non
     t = log(p / q) / (p - q)
     norm = LoopChannel("yaw", pole=p, bandwidth=bandwidth).norm(0.5)
     assert norm == pytest.approx(2.0 * (exp(-q * t) - exp(-p * t)) / (p - q), rel=1e-9)
-    assert norm == pytest.approx(value, abs=8e-4)  # the source prints 0.983 where the closed form gives 0.9823
+    assert norm == pytest.approx(
+        value, abs=8e-4
+    )  # the source prints 0.983 where the closed form gives 0.9823
 
 
 def largest_late_heading(gain: float, extra_periods: int) -> float:
@@ -107,7 +115,9 @@ def test_damping_of_the_boat_lowers_the_slope_needed() -> None:
 
 
 def test_controller_without_channels_names_those_that_have() -> None:
-    with pytest.raises(BadInput, match=r"'open_loop' describes no loop_channels \(these do: .*l1_joystick"):
+    with pytest.raises(
+        BadInput, match=r"'open_loop' describes no loop_channels \(these do: .*l1_joystick"
+    ):
         margins.table(load_class("controller", "open_loop")())
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from boatsim.diagnose import analysis
+from boatsim.diagnosis import pipeline
 from boatsim.physics.base import Array
 from boatsim.recordings import table as recording
 from boatsim.recordings.table import Recording
@@ -21,7 +21,11 @@ pytestmark = pytest.mark.slow
 
 # ---- A, B: the tank model rolls at rest
 
-PERIOD, AT_REST, KEEL = 1.49, 0.0119, 1.065  # [s]; damping ratio of the simulation; quadratic damping per inertia
+PERIOD, AT_REST, KEEL = (
+    1.49,
+    0.0119,
+    1.065,
+)  # [s]; damping ratio of the simulation; quadratic damping per inertia
 INERTIA = 102.0 * (3.50094 / 15.0) ** 2 * 1.2  # [kg m^2] water included
 
 
@@ -38,17 +42,25 @@ def release(heel: float, stiffer: float, noise: float, seed: int) -> Recording:
         return [s[1], -2.0 * AT_REST * w * s[1] - eddies(KEEL, s[1], 1.0) - stiffer * w * w * s[0]]
 
     phi = solve_ivp(rates, (0.0, 12.0), [radians(heel), 0.0], t_eval=t, rtol=1e-10, atol=1e-12).y[0]
-    return Recording("decay", t, {"phi_rad": phi + radians(noise) * np.random.default_rng(seed).standard_normal(1201)})
+    return Recording(
+        "decay",
+        t,
+        {"phi_rad": phi + radians(noise) * np.random.default_rng(seed).standard_normal(1201)},
+    )
 
 
 def answer(
-    folder: Path, runs: list[Recording], kept: list[Recording], vessel: str | None = None, **given: Any
+    folder: Path,
+    runs: list[Recording],
+    kept: list[Recording],
+    vessel: str | None = None,
+    **given: Any,
 ) -> dict[str, Any]:
     """The diagnosis of recordings, as it is written."""
     files = [folder / f"run_{i}.csv" for i in range(len(runs) + len(kept))]
     for file, run in zip(files, [*runs, *kept], strict=True):
         recording.write_csv(run, file)
-    found = analysis.diagnose(files[: len(runs)], files[len(runs) :], vessel, **given)
+    found = pipeline.diagnose(files[: len(runs)], files[len(runs) :], vessel, **given)
     return dict(found.findings.answer)
 
 
@@ -78,10 +90,16 @@ def test_a_concealed_bilge_keel_is_told_from_a_wrong_metacentric_height(
 G, RHO, STEP = 9.81, 1025.0, 0.5  # [m/s^2], [kg/m^3], [s] of the autopilot
 NEAR = radians(0.2)  # [rad] from its demand within which the machine's valve closes
 L, T, MASS, GM = 30.8, 4.04, 572e3, 1.268  # Eastward Ho, full load: [m], [m], [kg], [m]
-SWAY, YAW, ROLL = 1.851 * MASS, 1.586 * MASS * (L / 4) ** 2, 1.2 * MASS * 3.50094**2  # water included
+SWAY, YAW, ROLL = (
+    1.851 * MASS,
+    1.586 * MASS * (L / 4) ** 2,
+    1.2 * MASS * 3.50094**2,
+)  # water included
 ARM = (3.38 - T / 2) * 0.851 * MASS  # [kg m] m_y z_H
 CALM = (0.0, 0.0, 0.0)
-Push = Callable[[float, Array], tuple[float, float, float]]  # sway force, roll and yaw moment at (t, state)
+Push = Callable[
+    [float, Array], tuple[float, float, float]
+]  # sway force, roll and yaw moment at (t, state)
 Steer = Callable[[float, float, float], float]  # demanded rudder angle at (psi, r, the last one)
 
 
@@ -96,19 +114,30 @@ def at_speed(speed: float, inflow: float) -> dict[str, float]:
     zeta = 0.011913 + 0.00085 * L / beam * sqrt(L / GM) * f * (1 + f + 2 * f * f)
     blade = (1 + 0.627 * block - 0.153) * 0.5 * RHO * 6.13 * 1.875 / 4.125 * 2.787091 * inflow**2
     return {
-        "yv": q * yv, "yr": q * L * yr - 0.0874 * MASS * speed, "nv": q * (L * nv + yv * x),
-        "nr": q * L * (L * nr + yr * x), "np": -0.0076 * q * L * speed, "b": 2 * zeta * sqrt(G * MASS * GM * ROLL),
-        "y": -blade, "n": 12.509 * blade, "k": 2.369 * blade, "V": speed,
-    }  # fmt: skip
+        "yv": q * yv,
+        "yr": q * L * yr - 0.0874 * MASS * speed,
+        "nv": q * (L * nv + yv * x),
+        "nr": q * L * (L * nr + yr * x),
+        "np": -0.0076 * q * L * speed,
+        "b": 2 * zeta * sqrt(G * MASS * GM * ROLL),
+        "y": -blade,
+        "n": 12.509 * blade,
+        "k": 2.369 * blade,
+        "V": speed,
+    }
 
 
-def rates(c: dict[str, float], delta: float, push: tuple[float, float, float], s: Array) -> list[float]:
+def rates(
+    c: dict[str, float], delta: float, push: tuple[float, float, float], s: Array
+) -> list[float]:
     """Slopes of (x, y, psi, phi, v, r, p)."""
     psi, phi, v, r, p = s[2:]
     Y = c["yv"] * v + c["yr"] * r
     dv = (Y - MASS * c["V"] * r + c["y"] * delta + push[0]) / SWAY
     dr = (c["nv"] * v + c["nr"] * r + c["np"] * phi + c["n"] * delta + push[2]) / YAW
-    dp = (ARM * dv - (3.38 - T / 2) * Y - c["b"] * p - G * MASS * GM * phi + c["k"] * delta + push[1]) / ROLL
+    dp = (
+        ARM * dv - (3.38 - T / 2) * Y - c["b"] * p - G * MASS * GM * phi + c["k"] * delta + push[1]
+    ) / ROLL
     return [c["V"] * cos(psi) - v * sin(psi), c["V"] * sin(psi) + v * cos(psi), r, p, dv, dr, dp]
 
 
@@ -128,10 +157,17 @@ def sailed(
         s = solve_ivp(slopes, (STEP * i, STEP * (i + 1)), s, "LSODA", rtol=1e-8, atol=1e-9).y[:, -1]
     table = np.array(rows)
     table[:, [1, 2, 3, 4, 6, 7]] += np.random.default_rng(seed).standard_normal((len(rows), 6)) * [
-        0.5, 0.5, 2e-3, 2e-3, 1e-3, 1e-3
-    ]  # fmt: skip
+        0.5,
+        0.5,
+        2e-3,
+        2e-3,
+        1e-3,
+        1e-3,
+    ]
     names = ("x_m", "y_m", "psi_rad", "phi_rad", "r_radps", "p_radps", "rudder_rad")
-    return Recording("run", table[:, 0], dict(zip(names, table[:, [1, 2, 3, 4, 6, 7, 8]].T, strict=True)))
+    return Recording(
+        "run", table[:, 0], dict(zip(names, table[:, [1, 2, 3, 4, 6, 7, 8]].T, strict=True))
+    )
 
 
 def zigzag(angle: float, rate: float) -> Steer:
@@ -198,7 +234,10 @@ def named(said: dict[str, Any]) -> dict[str, Any]:
 def test_a_slow_servo_is_named_and_a_sound_one_is_not(tmp_path: Path, slow: float | None) -> None:
     """Zig-zags whose demand turns at 5 deg/s: the machine follows at once, or at 4 deg/s."""
     ship, machine = at_speed(13 * 0.514444, 7.430879), radians(slow or 500.0)
-    runs = [sailed(ship, 240, zigzag(a, 5.0), lambda t, s: CALM, machine, i) for i, a in enumerate((20, 10, 15))]
+    runs = [
+        sailed(ship, 240, zigzag(a, 5.0), lambda t, s: CALM, machine, i)
+        for i, a in enumerate((20, 10, 15))
+    ]
     said = answer(tmp_path, runs[:2], runs[2:], "eastward_ho", load=["condition_3"])
     if slow is None:
         assert said["verdict"] == "nothing_missing" and not said["effects"]
@@ -218,12 +257,17 @@ def test_cross_flow_at_four_knots_is_seen_and_its_look_alike_told(tmp_path: Path
         f"[set.speed_hold]\nspeed = {speed}\n[set.rudder]\ninflow = {0.92 * speed}\n"
     )
     ship = at_speed(speed, 0.92 * speed)
-    runs = [sailed(ship, 360, zigzag(a, 5.0), strips(1.0), seed=i) for i, a in enumerate((10, 20, 15))]
-    said = answer(tmp_path, runs[:2], runs[2:], horizon=60.0)  # long enough for the square of so slow a drift to count
+    runs = [
+        sailed(ship, 360, zigzag(a, 5.0), strips(1.0), seed=i) for i, a in enumerate((10, 20, 15))
+    ]
+    said = answer(
+        tmp_path, runs[:2], runs[2:], horizon=60.0
+    )  # long enough for the square of so slow a drift to count
     (found,) = said["effects"]
     assert said["verdict"] == "ambiguous" and {found["name"], *found["tied_with"]} == {
-        "cross_flow_drag", "quadratic_damping",
-    }  # fmt: skip
+        "cross_flow_drag",
+        "quadratic_damping",
+    }
     heading = said["fit"]["heading_rms_rad"]
     assert heading["patched"] < 1.5 * 2e-3 and heading["patched"] < 0.35 * heading["recalibrated"]
 
@@ -243,6 +287,9 @@ def test_in_a_known_seaway_quadratic_damping_is_told_from_a_weak_controller(tmp_
     said = answer(tmp_path, runs[:2], runs[2:])
     assert said["verdict"] == "named" and set(named(said)) == {"quadratic_damping"}
     found = named(said)["quadratic_damping"]["roll_Nms2"]
-    assert found["value"] == pytest.approx(quadratic, abs=3 * found["sd"]) and found["sd"] < 0.15 * quadratic
+    assert (
+        found["value"] == pytest.approx(quadratic, abs=3 * found["sd"])
+        and found["sd"] < 0.15 * quadratic
+    )
     roll = said["fit"]["roll_rms_rad"]
     assert roll["patched"] < 1.2 * 2e-3 < roll["recalibrated"]

@@ -6,15 +6,17 @@ import numpy as np
 import pytest
 from pushed_boat import laid, sail
 
-from boatsim.diagnose.locate.mean_force import mean_left
-from boatsim.diagnose.locate.smoothing import variance_of_average, variance_of_mean
+from boatsim.diagnosis.locate.mean_force import mean_left
+from boatsim.diagnosis.locate.smoothing import variance_of_average, variance_of_mean
 from boatsim.physics.base import Array
 
 FULL_THRUST = 2.0  # [N] of the two thrusters
 
 
 def left(force: Callable[[float], tuple[float, float, float]]) -> dict[str, float]:
-    problem, best = laid(*(sail(f"run_{seed}", seed, lambda t, y, c: np.array(force(t)))[0] for seed in (1, 2)))
+    problem, best = laid(
+        *(sail(f"run_{seed}", seed, lambda t, y, c: np.array(force(t)))[0] for seed in (1, 2))
+    )
     return mean_left(problem, best, problem.tracks)
 
 
@@ -22,7 +24,10 @@ def left(force: Callable[[float], tuple[float, float, float]]) -> dict[str, floa
 def test_a_steady_push_is_told_with_its_size_side_and_share(sway: float) -> None:
     found = left(lambda t: (0.0, sway, 0.0))
     assert set(found) == {"sway"} and found["sway"]["unit"] == "N"
-    assert found["sway"]["mean"] == pytest.approx(sway, abs=3 * found["sway"]["sd"]) and found["sway"]["sd"] < 0.06
+    assert (
+        found["sway"]["mean"] == pytest.approx(sway, abs=3 * found["sway"]["sd"])
+        and found["sway"]["sd"] < 0.06
+    )
     assert found["sway"]["share_of_full_thrust"] == pytest.approx(0.1, rel=0.3)
 
 
@@ -41,7 +46,9 @@ def test_a_moment_has_no_share_of_a_thrust() -> None:
     ],
     ids=["nothing", "comes and goes", "less than is tolerated"],
 )
-def test_what_has_no_mean_worth_the_name_is_not_told(force: Callable[[float], tuple[float, float, float]]) -> None:
+def test_what_has_no_mean_worth_the_name_is_not_told(
+    force: Callable[[float], tuple[float, float, float]],
+) -> None:
     assert left(force) == {}
 
 

@@ -11,10 +11,10 @@ import pytest
 from answers import diagnosed
 from scipy.integrate import solve_ivp
 
-from boatsim.diagnose.analysis import open_recording
-from boatsim.diagnose.filter import track
-from boatsim.diagnose.next.manoeuvres import commanded, menu
-from boatsim.diagnose.tried import library_for
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.experiment_design.manoeuvres import commanded, menu
+from boatsim.diagnosis.filter import track
+from boatsim.diagnosis.pipeline import open_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, motion
@@ -64,9 +64,15 @@ def by_hand(speed: float, comes_from: float, psi: float, u: float, v: float) -> 
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_push_is_quadratic_in_the_air_past_the_hull_with_a_moment_of_two_harmonics(seed: int) -> None:
-    speed, comes_from, psi, u, v = np.random.default_rng(seed).uniform([0, -3, -3, -1, -1], [9, 3, 3, 1, 1]).tolist()
-    force = MeasuredWind(**HULL).wrench(motion(psi=psi, u=u, v=v), speed=speed, comes_from=comes_from)
+def test_the_push_is_quadratic_in_the_air_past_the_hull_with_a_moment_of_two_harmonics(
+    seed: int,
+) -> None:
+    speed, comes_from, psi, u, v = (
+        np.random.default_rng(seed).uniform([0, -3, -3, -1, -1], [9, 3, 3, 1, 1]).tolist()
+    )
+    force = MeasuredWind(**HULL).wrench(
+        motion(psi=psi, u=u, v=v), speed=speed, comes_from=comes_from
+    )
     assert np.array(force)[[0, 1, 5]] == pytest.approx(by_hand(speed, comes_from, psi, u, v))
 
 
@@ -92,7 +98,9 @@ def test_a_boat_at_rest_takes_it_as_a_fan_or_a_steady_wind(psi: float) -> None:
 
 def test_no_wind_on_a_boat_that_drifts_with_it() -> None:
     drifting = motion(psi=0.0, u=-2.0 * cos(1.0), v=-2.0 * sin(1.0))
-    assert MeasuredWind(**HULL).wrench(drifting, speed=2.0, comes_from=1.0) == pytest.approx([0.0] * 6, abs=1e-12)
+    assert MeasuredWind(**HULL).wrench(drifting, speed=2.0, comes_from=1.0) == pytest.approx(
+        [0.0] * 6, abs=1e-12
+    )
 
 
 # ---- what is no command
@@ -107,11 +115,17 @@ def boat(tmp_path_factory: pytest.TempPathFactory) -> Vessel:
 def test_nothing_that_acts_on_commands_acts_on_what_is_measured(boat: Vessel) -> None:
     measured = {"wind_mps", "wind_from_rad"}
     assert boat.inputs == (*boat.commands, "wind_mps", "wind_from_rad")
-    assert set(boat.readings) == measured and not measured & {*boat.commands, *boat.actuators, *boat.angles}
+    assert set(boat.readings) == measured and not measured & {
+        *boat.commands,
+        *boat.actuators,
+        *boat.angles,
+    }
     everything = (*boat.effects, *library_for(boat).compiled)
     assert not measured & {n for e in everything for n in boat.targets(e)}
     assert not measured & {*commanded(boat), *handled(boat).steer, *handled(boat).ahead}
-    assert not measured & {n for m in menu(boat, {}, 0.0, False) for level in m.levels for n in level}
+    assert not measured & {
+        n for m in menu(boat, {}, 0.0, False) for level in m.levels for n in level
+    }
 
 
 def test_a_reading_is_in_force_at_once_where_commands_are_late(boat: Vessel) -> None:
@@ -133,8 +147,14 @@ def test_a_reading_is_in_force_at_once_where_commands_are_late(boat: Vessel) -> 
     ("more", "line"),
     [
         ('[[effect]]\nuse = "thrust_lag"\non = "wind_mps"\n', "wind_mps"),
-        ('[[effect]]\nuse = "measured_relative_wind"\non = { speed = "wind_mps" }\n', "on.comes_from is missing"),
-        ('[[effect]]\nuse = "measured_wind"\nname = "b"\non = { speed = "wind_mp" }\n', "'wind_mps'"),
+        (
+            '[[effect]]\nuse = "measured_relative_wind"\non = { speed = "wind_mps" }\n',
+            "on.comes_from is missing",
+        ),
+        (
+            '[[effect]]\nuse = "measured_wind"\nname = "b"\non = { speed = "wind_mp" }\n',
+            "'wind_mps'",
+        ),
     ],
 )
 def test_a_wrong_binding_is_one_line(tmp_path: Path, more: str, line: str) -> None:
@@ -154,7 +174,9 @@ def test_a_channel_is_either_sent_or_measured(tmp_path: Path) -> None:
 
 def blown_scenario(folder: Path, **keys: Any) -> scenario.Scenario:
     with_anemometer(folder)
-    (folder / "adrift.toml").write_text('vessel = "blown/"\nduration = 4.0\ncontroller = { use = "open_loop" }\n')
+    (folder / "adrift.toml").write_text(
+        'vessel = "blown/"\nduration = 4.0\ncontroller = { use = "open_loop" }\n'
+    )
     return scenario.load(str(folder / "adrift.toml"), keys)
 
 
@@ -162,13 +184,18 @@ def test_a_scenario_says_what_is_measured_and_the_log_has_it(tmp_path: Path) -> 
     wind = {"wind_mps": 6.0, "wind_from_rad": -pi / 2}
     log = run(blown_scenario(tmp_path, measured=wind)).recording
     assert set(log["wind_mps"]) == {6.0} and log["wind_from_rad"][0] == pytest.approx(-pi / 2)
-    assert log["wind_Y_N"][0] == pytest.approx(by_hand(6.0, -pi / 2, 0.0, 0.0, 0.0)[1]) and log["y_m"][-1] > 0.1
+    assert (
+        log["wind_Y_N"][0] == pytest.approx(by_hand(6.0, -pi / 2, 0.0, 0.0, 0.0)[1])
+        and log["y_m"][-1] > 0.1
+    )
     still = run(blown_scenario(tmp_path)).recording
     assert not still["wind_mps"].any() and not still["y_m"].any()
     file = tmp_path / "adrift.csv"
     write_csv(log, file)
     recording, boat = open_recording(file, str(tmp_path / "blown/"), ())
-    assert track(recording, Program(boat)).commands[0].tolist() == pytest.approx([0.0] * 4 + list(wind.values()))
+    assert track(recording, Program(boat)).commands[0].tolist() == pytest.approx(
+        [0.0] * 4 + list(wind.values())
+    )
 
 
 def test_what_is_not_measured_can_not_be_set(tmp_path: Path) -> None:
@@ -193,7 +220,9 @@ def test_an_environment_has_no_action_on_the_weather(tmp_path: Path) -> None:
 
 def read_back(folder: Path, columns: dict[str, Array]) -> tuple[Recording, Vessel]:
     t = 0.1 * np.arange(60)
-    still = {n: 0.0 * t for n in ("x_m", "y_m", "psi_rad", *vessel.load(str(folder / "blown/")).commands)}
+    still = {
+        n: 0.0 * t for n in ("x_m", "y_m", "psi_rad", *vessel.load(str(folder / "blown/")).commands)
+    }
     file = folder / "log.csv"
     write_csv(Recording("log", t, still | columns), file)
     return open_recording(file, str(folder / "blown/"), ())
@@ -225,7 +254,9 @@ def weather(t: float) -> tuple[float, float]:
 def sailed(name: str, seed: int) -> Recording:
     """The trial boat in that wind from scipy's integrator; nothing here is the tool's."""
     rng, every, rows = np.random.default_rng(seed), 0.1, 500
-    levels = np.column_stack([rng.uniform(-0.9, 0.9, (rows // 25, 2)), rng.uniform(-0.6, 0.6, (rows // 25, 2))])
+    levels = np.column_stack(
+        [rng.uniform(-0.9, 0.9, (rows // 25, 2)), rng.uniform(-0.6, 0.6, (rows // 25, 2))]
+    )
     commands, t = np.repeat(levels, 25, axis=0), every * np.arange(rows)
     start = rng.uniform(0.0, 50.0)
 
@@ -245,9 +276,13 @@ def sailed(name: str, seed: int) -> Recording:
         y = solve_ivp(rates, (now, now + every), y, rtol=1e-8, atol=1e-10, args=(command,)).y[:, -1]
     seen = np.array(poses) + rng.normal(0.0, [0.003, 0.003, 0.01], (rows, 3))
     names = ("x_m", "y_m", "psi_rad", *vessel.load("trial_boat").commands)
-    wind = np.array([weather(start + now + 0.5 * every) for now in t])  # a reading holds until the next
+    wind = np.array(
+        [weather(start + now + 0.5 * every) for now in t]
+    )  # a reading holds until the next
     columns = np.column_stack([seen, commands, wind])
-    return Recording(name, t, dict(zip((*names, "wind_mps", "wind_from_rad"), columns.T, strict=True)))
+    return Recording(
+        name, t, dict(zip((*names, "wind_mps", "wind_from_rad"), columns.T, strict=True))
+    )
 
 
 def trial_boat(folder: Path, known: bool) -> str:
@@ -264,7 +299,12 @@ def test_with_the_wind_known_nothing_is_missing_and_without_it_something_is(tmp_
     with_it = diagnosed(runs, tmp_path, trial_boat(tmp_path, True))
     assert with_it["verdict"] == "nothing_missing" and not with_it["effects"], with_it["sentence"]
     (other := tmp_path / "unknown").mkdir()
-    bare = [replace(r, signals={k: x for k, x in r.signals.items() if not k.startswith("wind")}) for r in runs]
+    bare = [
+        replace(r, signals={k: x for k, x in r.signals.items() if not k.startswith("wind")})
+        for r in runs
+    ]
     without = diagnosed(bare, other, trial_boat(other, False))
     assert without["verdict"] != "nothing_missing", without["sentence"]
-    assert "wind" in [e["name"] for e in without["effects"]] or without["unknown"]["flag"], without["sentence"]
+    assert "wind" in [e["name"] for e in without["effects"]] or without["unknown"]["flag"], without[
+        "sentence"
+    ]

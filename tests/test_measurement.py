@@ -12,7 +12,7 @@ from real_boat import FURTHER, Real, recorded, waves
 from scipy import signal
 from scipy.interpolate import CubicSpline
 
-from boatsim.diagnose import analysis
+from boatsim.diagnosis import pipeline
 from boatsim.physics.base import Shown, motion
 from boatsim.physics.effects.camera_scale import CameraScale
 from boatsim.physics.effects.heading_deviation import HeadingDeviation, HeadingOffset
@@ -21,7 +21,9 @@ from boatsim.physics.effects.position_frame_error import PositionFrameError
 from boatsim.physics.effects.wave_forcing import WaveForcing, law
 from boatsim.recordings import table as recording
 
-TRUE = Shown(x=1.2, y=-0.7, z=0.0, phi=0.1, theta=0.0, psi=0.8, u=0.5, v=-0.2, w=0.0, p=0.0, q=0.0, r=0.3)
+TRUE = Shown(
+    x=1.2, y=-0.7, z=0.0, phi=0.1, theta=0.0, psi=0.8, u=0.5, v=-0.2, w=0.0, p=0.0, q=0.0, r=0.3
+)
 
 
 def shown(effect: Any, m: Shown) -> Shown:
@@ -33,7 +35,9 @@ def north_east(m: Shown) -> tuple[float, float]:
     return m.u * cos(m.psi) - m.v * sin(m.psi), m.u * sin(m.psi) + m.v * cos(m.psi)
 
 
-@pytest.mark.parametrize("effect", [HeadingOffset(offset=0.2), HeadingDeviation(cos=0.1, sin=-0.2)], ids=str)
+@pytest.mark.parametrize(
+    "effect", [HeadingOffset(offset=0.2), HeadingDeviation(cos=0.1, sin=-0.2)], ids=str
+)
 def test_a_wrong_heading_leaves_the_velocity_over_ground_as_it_is(effect: Any) -> None:
     assert north_east(shown(effect, TRUE)) == pytest.approx(north_east(TRUE))
 
@@ -46,7 +50,9 @@ def test_shown_rates_are_the_derivatives_of_the_shown_pose(effect: Any) -> None:
         """The pose a moment later on a circle."""
         psi = TRUE.psi + TRUE.r * dt
         rate = north_east(TRUE._replace(psi=0.5 * (psi + TRUE.psi)))
-        return shown(effect, TRUE._replace(x=TRUE.x + rate[0] * dt, y=TRUE.y + rate[1] * dt, psi=psi))
+        return shown(
+            effect, TRUE._replace(x=TRUE.x + rate[0] * dt, y=TRUE.y + rate[1] * dt, psi=psi)
+        )
 
     dt = 1e-4
     now, ahead, behind = shown(effect, TRUE), after(dt), after(-dt)
@@ -61,7 +67,9 @@ def test_camera_scale_stretches_about_the_origin_of_the_tank() -> None:
     assert (seen.x, seen.y) == pytest.approx((1.32, -0.665)) and seen[2:] == TRUE[2:]
 
 
-def test_a_realisation_of_waves_has_the_rms_and_the_frequency_it_states_and_independent_axes() -> None:
+def test_a_realisation_of_waves_has_the_rms_and_the_frequency_it_states_and_independent_axes() -> (
+    None
+):
     sea = WaveForcing(surge=0.2, sway=0.1, yaw=0.03, frequency=2.0, damping=0.05)
     t = np.arange(0.0, 4000.0, 0.2)
     force = np.array([law(motion(t=float(x)), sea.values()) for x in t])[:, [0, 1, 5]]
@@ -74,7 +82,9 @@ def test_a_realisation_of_waves_has_the_rms_and_the_frequency_it_states_and_inde
     for one, other in combinations(force.T, 2):
         assert abs(np.corrcoef(one, other)[0, 1]) < 0.15  # 0.05 is the error over 4000 s
         frequency, coherence = signal.coherence(one, other, fs=5.0, nperseg=512)
-        assert coherence[abs(2 * pi * frequency - 2.0) < 0.3].mean() < 0.1  # of 77 half-overlapping parts: 0.02
+        assert (
+            coherence[abs(2 * pi * frequency - 2.0) < 0.3].mean() < 0.1
+        )  # of 77 half-overlapping parts: 0.02
     assert not np.any(law(motion(t=3.0), sea.values()._replace(realisation=0.0)))
 
 
@@ -84,28 +94,37 @@ def diagnosed(folder: Path, real: Real) -> dict[str, Any]:
     for seed in (1, 2, 3):
         files.append(folder / f"{seed}.csv")
         recording.write_csv(recorded(real, seed), files[-1])
-    return analysis.diagnose(files[:2], files[2:], "trial_boat", library=FURTHER).findings.answer
+    return pipeline.diagnose(files[:2], files[2:], "trial_boat", library=FURTHER).findings.answer
 
 
 @pytest.mark.parametrize(
     ("real", "wanted"),
     [
         (Real(scale=(1.06, 0.95)), {"camera_scale": {"x_fraction": 0.06, "y_fraction": -0.05}}),
-        (Real(compass=(0.0, 0.1, -0.08)), {"heading_deviation": {"cos_rad": 0.1, "sin_rad": -0.08}}),
+        (
+            Real(compass=(0.0, 0.1, -0.08)),
+            {"heading_deviation": {"cos_rad": 0.1, "sin_rad": -0.08}},
+        ),
         (Real(clock=-0.3), {"clock_offset": {"pose_late_s": -0.3}}),
     ],
     ids=lambda case: "" if isinstance(case, Real) else "+".join(case),
 )
-def test_a_measurement_error_is_named_as_such_and_undone(tmp_path: Path, real: Real, wanted: dict[str, Any]) -> None:
+def test_a_measurement_error_is_named_as_such_and_undone(
+    tmp_path: Path, real: Real, wanted: dict[str, Any]
+) -> None:
     answer = diagnosed(tmp_path, real)
     assert {e["name"] for e in answer["effects"]} == set(wanted)
     for effect in answer["effects"]:
         assert effect["kind"] == "measurement" and "not physics" in effect["words"]
         for key, true in wanted[effect["name"]].items():
             found = effect["parameters"][key]
-            assert abs(found["value"] - true) < 3.5 * found["sd"] and found["sd"] < 0.3 * abs(true), key
+            assert abs(found["value"] - true) < 3.5 * found["sd"] and found["sd"] < 0.3 * abs(
+                true
+            ), key
     rms = answer["fit"]["position_rms_m"]
-    assert rms["patched"] < 0.7 * rms["recalibrated"] and rms["patched"] < 0.02  # replays show what the camera shows
+    assert (
+        rms["patched"] < 0.7 * rms["recalibrated"] and rms["patched"] < 0.02
+    )  # replays show what the camera shows
 
 
 def test_an_antenna_off_the_mass_centre_and_a_turned_compass_are_told_apart(tmp_path: Path) -> None:
@@ -127,7 +146,7 @@ def test_fixes_older_than_their_headings_are_named_with_their_age(tmp_path: Path
         signals = run.signals | {n: CubicSpline(run.t, run[n])(was) for n in ("x_m", "y_m")}
         files.append(tmp_path / f"{seed}.csv")
         recording.write_csv(replace(run, signals=signals), files[-1])
-    answer = analysis.diagnose(files[:2], files[2:], "trial_boat").findings.answer
+    answer = pipeline.diagnose(files[:2], files[2:], "trial_boat").findings.answer
     assert answer["verdict"] == "named", answer["sentence"]
     (effect,) = answer["effects"]
     found = effect["parameters"]["latency_s"]
@@ -139,7 +158,10 @@ def test_fixes_of_a_steady_turn_are_shown_where_she_was() -> None:
     radius, speed, late = 2.0, 1.0, 0.4
     rate = speed / radius
     now = TRUE._replace(x=0.0, y=0.0, psi=0.3, u=speed, v=0.0, r=rate)
-    was = [radius * (sin(0.3 - rate * late) - sin(0.3)), -radius * (cos(0.3 - rate * late) - cos(0.3))]
+    was = [
+        radius * (sin(0.3 - rate * late) - sin(0.3)),
+        -radius * (cos(0.3 - rate * late) - cos(0.3)),
+    ]
     seen = shown(LateFixes(latency=late), now)
     assert [seen.x, seen.y] == pytest.approx(was, abs=2e-3 * speed * late) and seen[2:] == now[2:]
 

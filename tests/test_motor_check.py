@@ -37,16 +37,28 @@ class Boat:
         for _ in range(10):
             self.motor += (1.0 - exp(-0.1 * PERIOD / LAG)) * (setting - self.motor)
             f = self.force()
-            moment = sum(-ARM * f * sin(a) - y * f * cos(a) for a, y in ((port, -SPACING), (starboard, SPACING)))
+            moment = sum(
+                -ARM * f * sin(a) - y * f * cos(a)
+                for a, y in ((port, -SPACING), (starboard, SPACING))
+            )
             self.u += 0.1 * PERIOD * f * (cos(port) + cos(starboard)) / self.mass
             self.r += 0.1 * PERIOD * (moment + self.wind) / self.inertia
 
 
 def new_check(**changed: float) -> MotorCheck:
     settings = dict(
-        period=PERIOD, rest=0.8, reach=0.05, shortest=0.32, longest=0.64, lag=LAG, drift=Drift(0.0, 0.0), power=1.25,
-        enough=1e-9, most=4, straight=2.0 / (1.0 + cos(ANGLE)),
-    )  # fmt: skip
+        period=PERIOD,
+        rest=0.8,
+        reach=0.05,
+        shortest=0.32,
+        longest=0.64,
+        lag=LAG,
+        drift=Drift(0.0, 0.0),
+        power=1.25,
+        enough=1e-9,
+        most=4,
+        straight=2.0 / (1.0 + cos(ANGLE)),
+    )
     return MotorCheck(**{**settings, **changed})  # type: ignore[arg-type]
 
 
@@ -55,7 +67,9 @@ def tried(boat: Boat, check: MotorCheck, noise: float = 0.0) -> list[Pulse]:
     rng, played = np.random.default_rng(1), []
     for _ in range(2000):
         felt = boat.force() * (1.0 + cos(ANGLE)) / boat.mass
-        pulse = check.step(boat.r + noise * rng.standard_normal(), felt + 10 * noise * rng.standard_normal())
+        pulse = check.step(
+            boat.r + noise * rng.standard_normal(), felt + 10 * noise * rng.standard_normal()
+        )
         if check.done:
             return played
         played.append(pulse)
@@ -65,14 +79,20 @@ def tried(boat: Boat, check: MotorCheck, noise: float = 0.0) -> list[Pulse]:
 
 @pytest.mark.parametrize("reverse", [0.45, 0.6667, 0.85])
 @pytest.mark.parametrize(("power", "within"), [(1.0, 0.006), (1.6, 0.015)])
-def test_thrust_astern_is_as_thrust_ahead_afterwards(reverse: float, power: float, within: float) -> None:
+def test_thrust_astern_is_as_thrust_ahead_afterwards(
+    reverse: float, power: float, within: float
+) -> None:
     boat, check = Boat(reverse=reverse, power=power), new_check()
     tried(boat, check)
     assert reverse * (1.5 * check.astern) ** power == pytest.approx(1.0, abs=within)
 
 
-@pytest.mark.parametrize("changed", [{"inertia": 0.9}, {"mass": 10.0}, {"thrust": 0.15}, {"wind": 0.002}])
-def test_what_it_finds_does_not_depend_on_hull_or_a_lasting_moment(changed: dict[str, float]) -> None:
+@pytest.mark.parametrize(
+    "changed", [{"inertia": 0.9}, {"mass": 10.0}, {"thrust": 0.15}, {"wind": 0.002}]
+)
+def test_what_it_finds_does_not_depend_on_hull_or_a_lasting_moment(
+    changed: dict[str, float],
+) -> None:
     usual, other = new_check(), new_check()
     tried(Boat(), usual)
     tried(Boat(**changed), other)
@@ -93,7 +113,9 @@ def test_the_boat_is_left_as_it_says() -> None:
     tried(boat, check)
     assert check.push == pytest.approx(0.3 * (1.0 + cos(ANGLE)) / 5.0, rel=0.02)
     assert boat.u == pytest.approx(check.speed, abs=0.003)
-    assert abs(check.speed) < 0.5 * PERIOD * 2.0 * boat.thrust / boat.mass + 1e-9  # half a period of both motors
+    assert (
+        abs(check.speed) < 0.5 * PERIOD * 2.0 * boat.thrust / boat.mass + 1e-9
+    )  # half a period of both motors
 
 
 def test_noise_costs_as_much_as_it_says() -> None:
@@ -108,4 +130,8 @@ def test_a_pair_turns_in_one_motor_and_then_the_other_and_amends_straight() -> N
     played = tried(Boat(reverse=0.45), new_check(most=2))
     sides = [p.inward for p in played]
     assert sides[0] == PORT
-    assert {a: b for a, b in zip(sides, sides[1:], strict=False) if a != b}.keys() == {PORT, STARBOARD, NEITHER}
+    assert {a: b for a, b in zip(sides, sides[1:], strict=False) if a != b}.keys() == {
+        PORT,
+        STARBOARD,
+        NEITHER,
+    }

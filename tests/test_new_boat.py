@@ -21,7 +21,7 @@ from boatsim.physics.base import motion
 from boatsim.physics.content import names
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.forward_speed_damping import ForwardSpeedDamping
-from boatsim.physics.estimate import added_mass, inertia, sideways
+from boatsim.physics.estimate import added_mass, inertia, sway_yaw_damping
 from boatsim.physics.estimate.displacement import hull
 from boatsim.simulate import scenario, world
 from boatsim.simulate.run import run
@@ -65,7 +65,7 @@ def test_clarkes_regression_is_near_what_was_measured_on_the_mariner() -> None:
     unit = 0.5 * 1000 * 160.93**3
     # measured on a planar motion mechanism: M. S. Chislett, J. Stroem-Tejsen 1965, Y'_vdot = -748e-5, N'_r = -166e-5
     assert added_mass.sway(ship).value / unit == pytest.approx(748e-5, rel=0.4)
-    damping = sideways.clarke(ship)
+    damping = sway_yaw_damping.clarke(ship)
     assert damping.yaw / (0.5 * 1000 * 160.93**4) == pytest.approx(166e-5, rel=0.4)
     assert damping.sway / (0.5 * 1000 * 160.93**2) == pytest.approx(1160e-5, rel=0.4)
 
@@ -73,9 +73,9 @@ def test_clarkes_regression_is_near_what_was_measured_on_the_mariner() -> None:
 def test_the_lift_of_a_slender_hull_with_its_munk_moment_is_clarkes_regression() -> None:
     ship = hull(160.93, 23.17, 0.59 * 1000 * 160.93 * 23.17 * 8.23, 1, 8.23)
     water = AddedMass(surge=added_mass.surge(ship).value, sway=added_mass.sway(ship).value, yaw=0.0)
-    told = sideways.lift(ship)
+    told = sway_yaw_damping.lift(ship)
     lift = ForwardSpeedDamping(sway=told.sway.value, at=told.at.value, yaw=told.yaw.value)
-    of_ship, u, v, r = sideways.clarke(ship), 5.0, 0.1, 1e-3
+    of_ship, u, v, r = sway_yaw_damping.clarke(ship), 5.0, 0.1, 1e-3
     drifting = np.add(water.wrench(motion(u=u, v=v)), lift.wrench(motion(u=u, v=v)))
     assert drifting[[1, 5]] == pytest.approx([-of_ship.sway * u * v, -of_ship.yaw_by_sway * u * v])
     assert lift.wrench(motion(u=u, r=r)).N == pytest.approx(-of_ship.yaw * u * r)
@@ -88,14 +88,24 @@ def test_the_rules_for_a_catamaran_give_what_the_otter_is_said_to_have() -> None
     mass = otter.effect("added_mass")
     assert mass is not None
     assert inertia.yaw(made_by_rule).value == pytest.approx(otter.body.yaw_inertia)
-    one = added_mass.surge(hull(2.0, 1.08, 55.0, 1, None)).value * (1025.0 / 1000.0) ** (1.0 - 5.0 / 3.0)
+    one = added_mass.surge(hull(2.0, 1.08, 55.0, 1, None)).value * (1025.0 / 1000.0) ** (
+        1.0 - 5.0 / 3.0
+    )
     assert one == pytest.approx(mass.surge, rel=1e-6)  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("scale", [0.1, 10.0])
 def test_added_mass_goes_with_the_size_by_froudes_law(scale: float) -> None:
-    small, large = hull(3.0, 1.6, 90.0, 1, None), hull(3.0 * scale, 1.6 * scale, 90.0 * scale**3, 1, None)
-    for rule, power in ((added_mass.surge, 3), (added_mass.sway, 3), (added_mass.yaw, 5), (inertia.yaw, 5)):
+    small, large = (
+        hull(3.0, 1.6, 90.0, 1, None),
+        hull(3.0 * scale, 1.6 * scale, 90.0 * scale**3, 1, None),
+    )
+    for rule, power in (
+        (added_mass.surge, 3),
+        (added_mass.sway, 3),
+        (added_mass.yaw, 5),
+        (inertia.yaw, 5),
+    ):
         assert rule(large).value == pytest.approx(rule(small).value * scale**power)
 
 
@@ -111,7 +121,9 @@ def test_a_boat_of_any_kind_is_whole_and_runs_its_first_scenario(name: str, tmp_
     log = run(scenario.load(str(folder / "turn.toml"))).recording
     third = len(log.t) // 3
     assert log["u_mps"][third // 2] > 0.1  # ahead
-    assert log["r_radps"][third - 5] > 0.01  # then a turn to starboard, by rudder, outboard or thrust
+    assert (
+        log["r_radps"][third - 5] > 0.01
+    )  # then a turn to starboard, by rudder, outboard or thrust
     assert log["r_radps"][third + third // 2 - 5] < -0.01  # and one to port
 
 
@@ -127,7 +139,9 @@ def test_a_stated_top_speed_is_reached_at_full_thrust(tmp_path: Path) -> None:
     (folder / "full.toml").write_text(
         'vessel = "vessel.toml"\nduration = 120\ncontroller = { use = "open_loop" }\n[[goal]]\nthrust_motor_N = 900.0\n'
     )
-    assert run(scenario.load(str(folder / "full.toml"))).recording["u_mps"][-1] == pytest.approx(6.0, rel=0.01)
+    assert run(scenario.load(str(folder / "full.toml"))).recording["u_mps"][-1] == pytest.approx(
+        6.0, rel=0.01
+    )
 
 
 @pytest.mark.parametrize(
@@ -145,7 +159,9 @@ def test_a_stated_top_speed_is_reached_at_full_thrust(tmp_path: Path) -> None:
         ({"name": "a b"}, "allowed are letters"),
     ],
 )
-def test_what_can_not_be_a_boat_is_refused_in_one_line(changed: dict[str, object], said: str) -> None:
+def test_what_can_not_be_a_boat_is_refused_in_one_line(
+    changed: dict[str, object], said: str
+) -> None:
     with pytest.raises(BadInput, match=re.escape(said)):
         boat(**changed)
 
@@ -162,7 +178,13 @@ def test_a_folder_that_is_there_stays_as_it_is_without_force(tmp_path: Path) -> 
 
 def test_nothing_is_left_of_a_boat_whose_log_can_not_be_read(tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text("t_s,x_m\n0,a\n")
-    args = ["new", str(tmp_path / "b"), *shlex.split(BOATS["twin"]), "--from-log", str(tmp_path / "run.csv")]
+    args = [
+        "new",
+        str(tmp_path / "b"),
+        *shlex.split(BOATS["twin"]),
+        "--from-log",
+        str(tmp_path / "run.csv"),
+    ]
     assert CliRunner().invoke(app, args).exit_code == 2
     assert [p.name for p in tmp_path.iterdir()] == ["run.csv"]
 
@@ -171,13 +193,17 @@ def test_nothing_is_left_of_a_boat_whose_log_can_not_be_read(tmp_path: Path) -> 
 
 
 @pytest.mark.slow
-def test_a_log_of_an_independent_boat_gives_its_lag_weak_reverse_and_current(tmp_path: Path) -> None:
+def test_a_log_of_an_independent_boat_gives_its_lag_weak_reverse_and_current(
+    tmp_path: Path,
+) -> None:
     folder = made(tmp_path / "b", BOATS["twin"] + " --thrust 60")
     pushed_three_metre.write(tmp_path / "run.csv", 1)
     found = fitted(folder / "vessel.toml", [tmp_path / "run.csv"])
     told = {(f.effect, f.name): x for f, x in zip(found.best.free, found.best.theta, strict=True)}
     assert told["thrust_lag", "time_constant"] == pytest.approx(pushed_three_metre.LAG, abs=0.03)
-    assert told["weak_reverse", "astern_factor"] == pytest.approx(pushed_three_metre.ASTERN, abs=0.03)
+    assert told["weak_reverse", "astern_factor"] == pytest.approx(
+        pushed_three_metre.ASTERN, abs=0.03
+    )
     current = [told["current", "north"], told["current", "east"]]
     assert np.allclose(current, pushed_three_metre.CURRENT, atol=0.01)
     for family, before in found.before.items():
@@ -193,7 +219,14 @@ def test_a_log_of_an_independent_boat_gives_its_lag_weak_reverse_and_current(tmp
 
 
 def test_all_that_has_a_name_can_be_shown() -> None:
-    for name in ("weak_reverse", "thruster", "pid_autopilot", "turning_circle", "blueboat", "joystick_boat/sway_1"):
+    for name in (
+        "weak_reverse",
+        "thruster",
+        "pid_autopilot",
+        "turning_circle",
+        "blueboat",
+        "joystick_boat/sway_1",
+    ):
         result = CliRunner().invoke(app, ["show", name])
         assert result.exit_code == 0, result.output
         assert "to paste:" in result.output
@@ -202,7 +235,9 @@ def test_all_that_has_a_name_can_be_shown() -> None:
 def test_an_effect_says_what_is_fitted_and_what_rules_it_out() -> None:
     lines = CliRunner().invoke(app, ["show", "tether"]).output.splitlines()
     assert "  ruled out by: moored = false" in lines
-    assert ["tension", "0", "N", "0", "to", "1e+06", "yes", "steady", "pull"] in [line.split() for line in lines]
+    assert ["tension", "0", "N", "0", "to", "1e+06", "yes", "steady", "pull"] in [
+        line.split() for line in lines
+    ]
 
 
 def test_an_example_of_an_effect_can_be_pasted() -> None:
@@ -212,8 +247,12 @@ def test_an_example_of_an_effect_can_be_pasted() -> None:
     assert vessel.load("blueboat", extra=[table]).effect("weak_reverse") is not None
 
 
-@pytest.mark.parametrize("command", [["show", "blueboot"], ["list", "scenarios", "kynok"], ["run", "jet_ski/heding"]])
-def test_a_misspelt_name_is_answered_by_the_nearest_ones_in_one_short_line(command: list[str]) -> None:
+@pytest.mark.parametrize(
+    "command", [["show", "blueboot"], ["list", "scenarios", "kynok"], ["run", "jet_ski/heding"]]
+)
+def test_a_misspelt_name_is_answered_by_the_nearest_ones_in_one_short_line(
+    command: list[str],
+) -> None:
     result = CliRunner().invoke(app, command)
     assert result.exit_code == 2
     assert len(result.output) < 300

@@ -9,11 +9,11 @@ import pytest
 
 from benchmarks.real.thesis_score import J
 from boatsim.errors import BadInput
-from boatsim.measures.sway import Sway
-from boatsim.measures.yaw import Yaw
+from boatsim.metrics.sway import Sway
+from boatsim.metrics.yaw import Yaw
 from boatsim.recordings.table import Recording
 from boatsim.simulate.camera import Camera
-from boatsim.simulate.norms import Norm, norms, signal_norm, to_json
+from boatsim.simulate.evaluation import Norm, norms, signal_norm, to_json
 from boatsim.simulate.run import Run
 from boatsim.simulate.scenario import Scenario, load
 
@@ -21,16 +21,41 @@ CAMERA = Camera(marks={"led": (0.183, 0.0), "button": (-0.117, 0.0)})
 CIRCLE = 0.183  # [m] on which the light is to stay (appendix F)
 Pose = tuple[float, float, float]
 # section 7 and 11 of the thesis review; T22, T23: inf, two, one, heading and inf, rms, one, moved
-T22 = [(2.8, 8.1, 42.8, 12.2), (2.5, 6.2, 32.7, 10.7), (2.9, 7.1, 38.9, 8.7), (3.6, 10.0, 54.1, 16.0)]
-T23 = [(0.07, 0.05, 3.39, 0.06), (0.13, 0.09, 5.91, 0.09), (0.07, 0.03, 4.49, 0.02), (0.20, None, 7.68, 0.14)]
+T22 = [
+    (2.8, 8.1, 42.8, 12.2),
+    (2.5, 6.2, 32.7, 10.7),
+    (2.9, 7.1, 38.9, 8.7),
+    (3.6, 10.0, 54.1, 16.0),
+]
+T23 = [
+    (0.07, 0.05, 3.39, 0.06),
+    (0.13, 0.09, 5.91, 0.09),
+    (0.07, 0.03, 4.49, 0.02),
+    (0.20, None, 7.68, 0.14),
+]
 SET_B = (
     [(2.0, 6.6, 33.0, 7.9), (2.4, 7.5, 36.0, 14.9), (2.2, 7.1, 38.0, 7.7), (2.4, 7.8, 39.0, 14.7)],
-    [(0.11, 0.07, 6.4, 0.06), (0.13, 0.10, 8.9, 0.13), (0.14, 0.10, 10.4, 0.06), (0.18, 0.12, 12.0, 0.06)],
+    [
+        (0.11, 0.07, 6.4, 0.06),
+        (0.13, 0.10, 8.9, 0.13),
+        (0.14, 0.10, 10.4, 0.06),
+        (0.18, 0.12, 12.0, 0.06),
+    ],
     [32.0, 32.0, 35.0, 35.0],
 )
 IDEAL_REVERSE = (
-    [(2.9, 10.5, 52.0, 16.8), (3.1, 12.6, 66.0, 25.8), (2.8, 11.0, 58.0, 17.1), (3.1, 13.0, 72.0, 27.1)],
-    [(0.93, 0.62, 48.0, 0.17), (0.89, 0.59, 46.0, 0.12), (0.85, 0.57, 45.0, 0.19), (0.83, 0.54, 43.0, 0.11)],
+    [
+        (2.9, 10.5, 52.0, 16.8),
+        (3.1, 12.6, 66.0, 25.8),
+        (2.8, 11.0, 58.0, 17.1),
+        (3.1, 13.0, 72.0, 27.1),
+    ],
+    [
+        (0.93, 0.62, 48.0, 0.17),
+        (0.89, 0.59, 46.0, 0.12),
+        (0.85, 0.57, 45.0, 0.19),
+        (0.83, 0.54, 43.0, 0.11),
+    ],
     [29.0, 29.0, 30.0, 31.0],
 )
 
@@ -39,23 +64,36 @@ def scenario(measure: str, **changes: Any) -> Scenario:
     return load(f"joystick_boat/{measure}_1", changes)
 
 
-def filmed(measure: str, pose: Callable[[float], Pose], until: float, marks: float = 0.0, **changes: Any) -> Run:
+def filmed(
+    measure: str, pose: Callable[[float], Pose], until: float, marks: float = 0.0, **changes: Any
+) -> Run:
     """A run that moves as told, filmed at 6 Hz with marking noise of `marks` [m] (none: nobody's hand shakes)."""
     told = scenario(measure, **changes)
     t = np.linspace(0.0, until, round(until / 0.02) + 1)
-    truth = Recording("told", t, dict(zip(("x_m", "y_m", "psi_rad"), np.array([pose(a) for a in t]).T, strict=True)))
+    truth = Recording(
+        "told",
+        t,
+        dict(zip(("x_m", "y_m", "psi_rad"), np.array([pose(a) for a in t]).T, strict=True)),
+    )
     noise = np.random.default_rng(5)
     camera = replace(told.camera, mark_sd=marks)
-    frames = [camera.shoot(k / 6, pose(k / 6), noise.standard_normal(4)) for k in range(int(6 * until) + 1)]
+    frames = [
+        camera.shoot(k / 6, pose(k / 6), noise.standard_normal(4))
+        for k in range(int(6 * until) + 1)
+    ]
     names = [f"camera_{mark}_{axis}_m" for mark in camera.marks for axis in "xy"]
     columns = dict(zip(names, np.array([f.marks for f in frames]).T, strict=True))
     film = Recording(
-        "camera", np.array([f.t for f in frames]), columns | {"psi_rad": np.array([f.psi for f in frames])}
+        "camera",
+        np.array([f.t for f in frames]),
+        columns | {"psi_rad": np.array([f.psi for f in frames])},
     )
     return Run(told, 0, truth, film, True)
 
 
-def swaying(rate: float, speed: float = 0.07, surge: float = 0.0, bow: float = 0.0) -> Callable[[float], Pose]:
+def swaying(
+    rate: float, speed: float = 0.07, surge: float = 0.0, bow: float = 0.0
+) -> Callable[[float], Pose]:
     """To starboard of the start heading `bow` at `speed` [m/s] while turning at `rate` [deg/s]."""
 
     def pose(t: float) -> Pose:
@@ -102,8 +140,12 @@ def test_twice_as_many_frames_make_the_sums_larger_and_the_largest_the_same() ->
 
 
 def test_sway_is_measured_in_start_axes() -> None:
-    ahead, turned = (values(filmed("sway", swaying(1.0, surge=0.01, bow=bow), 16.0, start={"psi": bow}, tank=None))
-                     for bow in (0.0, 2.5))  # fmt: skip
+    ahead, turned = (
+        values(
+            filmed("sway", swaying(1.0, surge=0.01, bow=bow), 16.0, start={"psi": bow}, tank=None)
+        )
+        for bow in (0.0, 2.5)
+    )
     assert turned == pytest.approx(ahead)
     assert ahead["surge_offset"] == pytest.approx(0.13)
 
@@ -122,7 +164,9 @@ def test_moving_average_halves_a_jump_of_five_frames() -> None:
 
 def test_what_was_never_reached_has_no_value_and_fails_its_bar() -> None:
     found = norms(filmed("sway", swaying(0.0, speed=0.03), 16.0))
-    assert all(norm.value is norm.at_reported is norm.noise_floor is None for norm in found.values())
+    assert all(
+        norm.value is norm.at_reported is norm.noise_floor is None for norm in found.values()
+    )
     assert found["heading_at_end"].ok is False
     assert found["yaw_rate_rms"].ok is None
 
@@ -151,7 +195,9 @@ def test_light_on_a_wider_circle_is_off_by_the_known_chord() -> None:
 
 def test_light_that_drifts_along_its_circle_has_moved() -> None:
     circle = turning(40.0, 0.265 - CIRCLE)
-    drifting = filmed("yaw", lambda t: (circle(t)[0] + 0.003 * t, circle(t)[1] - 0.004 * t, circle(t)[2]), 45.0)
+    drifting = filmed(
+        "yaw", lambda t: (circle(t)[0] + 0.003 * t, circle(t)[1] - 0.004 * t, circle(t)[2]), 45.0
+    )
     found = values(drifting)
     assert found["moved"] == pytest.approx(0.005 * found["turn_time"])
     assert found["position_inf"] == pytest.approx(found["moved"])
@@ -180,17 +226,26 @@ def test_noise_floor_of_a_sway_is_the_known_one(rate: float, published: dict[str
 
 def test_noise_floor_of_the_distance_moved_is_that_of_two_marks() -> None:
     """Two points with independent errors of sd s a coordinate are s sqrt(pi) apart in the mean."""
-    assert Yaw(mark="led", radius=CIRCLE).noise_floor(136, CAMERA)["moved"] == pytest.approx(0.002 * sqrt(pi), rel=0.1)
+    assert Yaw(mark="led", radius=CIRCLE).noise_floor(136, CAMERA)["moved"] == pytest.approx(
+        0.002 * sqrt(pi), rel=0.1
+    )
 
 
 @pytest.mark.parametrize(
-    ("measure", "pose"), [("sway", swaying(0.0)), ("yaw", turning(45.0, 0.265 - CIRCLE))], ids=["sway", "yaw"]
+    ("measure", "pose"),
+    [("sway", swaying(0.0)), ("yaw", turning(45.0, 0.265 - CIRCLE))],
+    ids=["sway", "yaw"],
 )
-def test_perfect_motion_measured_with_noise_lies_near_its_floor(measure: str, pose: Callable[[float], Pose]) -> None:
+def test_perfect_motion_measured_with_noise_lies_near_its_floor(
+    measure: str, pose: Callable[[float], Pose]
+) -> None:
     found = norms(filmed(measure, pose, 50.0, marks=0.002))
     floors = {name: norm for name, norm in found.items() if norm.noise_floor is not None}
     assert len(floors) >= 4
-    for name in floors.keys() - {"heading_at_end", "moved"}:  # single numbers scatter as much as they are large
+    for name in floors.keys() - {
+        "heading_at_end",
+        "moved",
+    }:  # single numbers scatter as much as they are large
         assert floors[name].value == pytest.approx(floors[name].noise_floor, rel=0.5)
 
 
@@ -238,13 +293,19 @@ def test_guards_of_a_mean_are_widened_by_the_noise_floor_for_one_run() -> None:
     guards = {"heading_at_end": {"guard": [5.0, 8.0]}, "time_to_end": {"guard": [0.0, 12.5]}}
     found = norms(filmed("sway", swaying(0.35), 16.0, norms=guards, noise_widens_guards=True))
     heading, time = found["heading_at_end"], found["time_to_end"]
-    assert heading.value == pytest.approx(4.55) and heading.noise_floor is not None and heading.noise_floor > 0.4
+    assert (
+        heading.value == pytest.approx(4.55)
+        and heading.noise_floor is not None
+        and heading.noise_floor > 0.4
+    )
     assert heading.guard == (5.0 - heading.noise_floor, 8.0 + heading.noise_floor) and heading.ok
     assert time.guard == (0.0, 12.5) and time.ok is False
 
 
 def test_a_norm_that_is_not_measured_can_not_be_judged() -> None:
-    with pytest.raises(BadInput, match=r"sway_1: \[norms\] key 'yaw_rate_ifn' .* did you mean 'yaw_rate_inf'"):
+    with pytest.raises(
+        BadInput, match=r"sway_1: \[norms\] key 'yaw_rate_ifn' .* did you mean 'yaw_rate_inf'"
+    ):
         scenario("sway", norms={"yaw_rate_ifn": {"guard": [0.0, 1.0]}})
 
 
@@ -259,7 +320,11 @@ def test_a_camera_that_misses_the_frames_of_a_norm_is_refused() -> None:
 def berthed(x: float, y: float, psi: float, contacts: list[float]) -> Run:
     told = load("joystick_boat/berth")
     n = len(contacts)
-    signals = {"x_m": np.linspace(0.0, x, n), "y_m": np.linspace(0.0, y, n), "psi_rad": np.linspace(0.0, psi, n)}
+    signals = {
+        "x_m": np.linspace(0.0, x, n),
+        "y_m": np.linspace(0.0, y, n),
+        "psi_rad": np.linspace(0.0, psi, n),
+    }
     log = Recording("told", np.arange(n) / 50, {**signals, "contacts": np.array(contacts)})
     return Run(told, 0, log, log, True)
 
@@ -284,25 +349,45 @@ def test_check_norms_do_not_depend_on_the_step() -> None:
         t = np.arange(0.0, 4.0, step)
         x = np.where(t < 3.0, -2.0, 0.0)
         found = {kind: signal_norm(t, x, kind) for kind in ("inf", "rms", "l2", "l1")}
-        assert found == pytest.approx({"inf": 2.0, "rms": sqrt(3.0), "l2": sqrt(12.0), "l1": 6.0}, rel=0.01)
+        assert found == pytest.approx(
+            {"inf": 2.0, "rms": sqrt(3.0), "l2": sqrt(12.0), "l1": 6.0}, rel=0.01
+        )
         x[::3] = np.nan
         assert signal_norm(t, x, "l1") == pytest.approx(6.0, rel=0.01)
 
 
 def test_checks_stand_among_the_norms() -> None:
-    check = [{"signal": "psi_rad", "norm": "inf", "below": 0.2}, {"signal": "psi_rad", "norm": "l1", "below": 1.0}]
+    check = [
+        {"signal": "psi_rad", "norm": "inf", "below": 0.2},
+        {"signal": "psi_rad", "norm": "l1", "below": 1.0},
+    ]
     found = norms(filmed("sway", swaying(1.0), 16.0, check=check))
-    assert found["psi_rad_inf"] == Norm(pytest.approx(radians(16.0)), "rad", guard=(0.0, 0.2), ok=False, kind="largest")
-    assert found["psi_rad_l1"].unit == "rad s" and found["psi_rad_l1"].value == pytest.approx(radians(128.0))
+    assert found["psi_rad_inf"] == Norm(
+        pytest.approx(radians(16.0)), "rad", guard=(0.0, 0.2), ok=False, kind="largest"
+    )
+    assert found["psi_rad_l1"].unit == "rad s" and found["psi_rad_l1"].value == pytest.approx(
+        radians(128.0)
+    )
     with pytest.raises(BadInput, match="'psi_red' does not exist; did you mean 'psi_rad'"):
-        norms(filmed("sway", swaying(1.0), 16.0, check=[{"signal": "psi_red", "norm": "inf", "below": 0.2}]))
+        norms(
+            filmed(
+                "sway",
+                swaying(1.0),
+                16.0,
+                check=[{"signal": "psi_red", "norm": "inf", "below": 0.2}],
+            )
+        )
 
 
 # norms.json -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("measure", "pose"), [("sway", swaying(0.0, speed=0.03)), ("yaw", turning(45.0, 0.1))])
-def test_json_has_the_fields_and_names_that_were_agreed(measure: str, pose: Callable[[float], Pose]) -> None:
+@pytest.mark.parametrize(
+    ("measure", "pose"), [("sway", swaying(0.0, speed=0.03)), ("yaw", turning(45.0, 0.1))]
+)
+def test_json_has_the_fields_and_names_that_were_agreed(
+    measure: str, pose: Callable[[float], Pose]
+) -> None:
     run = filmed(measure, pose, 50.0)
     content = json.loads(json.dumps(to_json(run, norms(run)), allow_nan=False))
     assert {k: v for k, v in content.items() if k != "norms"} == {
@@ -316,10 +401,18 @@ def test_json_has_the_fields_and_names_that_were_agreed(measure: str, pose: Call
     assert tuple(content["norms"]) == tuple(type(run.scenario.measure).units)
     for norm in content["norms"].values():
         assert set(norm) == {
-            "value", "unit", "published", "tolerance", "verdict", "guard", "ok", "at_reported", "noise_floor",
-                "lacking",
-                "kind",
-        }  # fmt: skip
+            "value",
+            "unit",
+            "published",
+            "tolerance",
+            "verdict",
+            "guard",
+            "ok",
+            "at_reported",
+            "noise_floor",
+            "lacking",
+            "kind",
+        }
         assert norm["guard"] is None or len(norm["guard"]) == 2
 
 
@@ -345,21 +438,42 @@ def test_score_of_the_published_columns_is_the_published_score(
     """Section 10 of the review: J by changing the reverse efficiency alone."""
     swings, turns, times = column
     of_sway = [(named(SWAY, a), named(SWAY, b)) for a, b in zip(swings, T22, strict=True)]
-    of_yaw = [(named(YAW, (*a, t)), named(YAW, (*b, 44.0))) for a, t, b in zip(turns, times, T23, strict=True)]
-    assert (J(of_sway), J(of_yaw), J([*of_sway, *of_yaw])) == pytest.approx((sway, yaw, both), abs=0.01)
+    of_yaw = [
+        (named(YAW, (*a, t)), named(YAW, (*b, 44.0)))
+        for a, t, b in zip(turns, times, T23, strict=True)
+    ]
+    assert (J(of_sway), J(of_yaw), J([*of_sway, *of_yaw])) == pytest.approx(
+        (sway, yaw, both), abs=0.01
+    )
 
 
 def test_one_wild_test_counts_three_at_most() -> None:
     wild = [({"moved": 9.0, "position_inf": 1e-9}, {"moved": 0.1, "position_inf": 0.1})]
     assert J(wild) == pytest.approx(3.0)
-    assert J([*wild, ({"position_inf": exp(1.0)}, {"position_inf": 1.0})]) == pytest.approx(sqrt(5.0))
+    assert J([*wild, ({"position_inf": exp(1.0)}, {"position_inf": 1.0})]) == pytest.approx(
+        sqrt(5.0)
+    )
 
 
 def test_every_norm_has_a_unit() -> None:
-    for run in (filmed("sway", swaying(1.0), 16.0), filmed("yaw", turning(40.0, 0.1), 45.0), berthed(0, 0, pi, [0.0])):
+    for run in (
+        filmed("sway", swaying(1.0), 16.0),
+        filmed("yaw", turning(40.0, 0.1), 45.0),
+        berthed(0, 0, pi, [0.0]),
+    ):
         for name, norm in norms(run).items():
-            expected = "" if name == "wall_contacts" else "s" if "time" in name else "deg/s" if "rate" in name else None
-            assert norm.unit == (expected if expected is not None else "deg" if "heading" in name else "m")
+            expected = (
+                ""
+                if name == "wall_contacts"
+                else "s"
+                if "time" in name
+                else "deg/s"
+                if "rate" in name
+                else None
+            )
+            assert norm.unit == (
+                expected if expected is not None else "deg" if "heading" in name else "m"
+            )
 
 
 @pytest.mark.parametrize("kind", ["inf", "rms", "l2", "l1"])
@@ -367,5 +481,5 @@ def test_a_norm_of_pieces_is_that_of_the_whole(kind, monkeypatch):
     t = np.arange(1000.0)
     x = np.where(t % 7 == 0, np.nan, np.sin(t))
     whole = signal_norm(t, x, kind)
-    monkeypatch.setattr("boatsim.simulate.norms.PIECE", 300)
+    monkeypatch.setattr("boatsim.simulate.evaluation.PIECE", 300)
     assert signal_norm(t, x, kind) == pytest.approx(whole, rel=1e-14)

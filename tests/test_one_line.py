@@ -30,19 +30,35 @@ def line_of(*arguments: object) -> str:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (STILL.format("joystick_boat", "l1_joystick") + "[[goal]]\nspeed = 1.0\n", "[[goal]] key 'speed' does not"),
-        (STILL.format("joystick_boat", "l1_joystick") + '[[goal]]\nsway_mps = "x"\n', "should be a valid number"),
+        (
+            STILL.format("joystick_boat", "l1_joystick") + "[[goal]]\nspeed = 1.0\n",
+            "[[goal]] key 'speed' does not",
+        ),
+        (
+            STILL.format("joystick_boat", "l1_joystick") + '[[goal]]\nsway_mps = "x"\n',
+            "should be a valid number",
+        ),
         ("step = 5e-4\n" + STILL.format("joystick_boat", "l1_thesis") + "power = 0.0\n", "power"),
         (
-            'measure = { use = "activity", signal = "rudder_rad" }\n' + STILL.format("joystick_boat", "open_loop"),
+            'measure = { use = "activity", signal = "rudder_rad" }\n'
+            + STILL.format("joystick_boat", "open_loop"),
             "rudder",
         ),
         ('measure = "roll_decay"\n' + STILL.format("joystick_boat", "open_loop"), "phi_rad"),
-        (STILL.format("joystick_boat", "open_loop") + "[tank]\nlength = 1e-300\nwidth = 1.0\n", "tank.length = 1e-300"),
-        (STILL.format("joystick_boat", "open_loop") + "[camera]\nrate = 1e9\n", "Camera.rate = 1e+09 Hz"),
+        (
+            STILL.format("joystick_boat", "open_loop") + "[tank]\nlength = 1e-300\nwidth = 1.0\n",
+            "tank.length = 1e-300",
+        ),
+        (
+            STILL.format("joystick_boat", "open_loop") + "[camera]\nrate = 1e9\n",
+            "Camera.rate = 1e+09 Hz",
+        ),
         ("seed = " + "9" * 400 + "\n", "seed is an integer of 400 digits"),
         ("step = 1e-12\n" + STILL.format("joystick_boat", "open_loop"), "step = 1e-12"),
-        ('[[effect]]\nuse = "\\u202e\\u001b[2J"\n' + STILL.format("joystick_boat", "open_loop"), ""),
+        (
+            '[[effect]]\nuse = "\\u202e\\u001b[2J"\n' + STILL.format("joystick_boat", "open_loop"),
+            "",
+        ),
     ],
 )
 def test_a_scenario_that_can_not_be_run(tmp_path: Path, text: str, said: str) -> None:
@@ -79,7 +95,9 @@ def pipe(folder: Path) -> Path:
     return folder / "pipe"
 
 
-@pytest.mark.parametrize("odd", [ring, pipe, lambda folder: folder / "none", lambda folder: Path("/dev/zero")])
+@pytest.mark.parametrize(
+    "odd", [ring, pipe, lambda folder: folder / "none", lambda folder: Path("/dev/zero")]
+)
 def test_what_is_no_file(tmp_path: Path, odd: Callable[[Path], Path]) -> None:
     path = odd(tmp_path)
     for name in ("x.toml", "x.csv", "x.nmea"):
@@ -91,7 +109,9 @@ def test_what_is_no_file(tmp_path: Path, odd: Callable[[Path], Path]) -> None:
 
 
 @pytest.mark.parametrize("out", ["", "\0", "dangling", "file", "o" * 300])
-def test_a_folder_that_can_not_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out: str) -> None:
+def test_a_folder_that_can_not_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out: str
+) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "dangling").symlink_to(tmp_path / "nowhere")
     (tmp_path / "file").touch()
@@ -114,9 +134,13 @@ def test_a_path_may_have_any_name(tmp_path: Path, name: str) -> None:
         place.mkdir()
     except OSError:
         pytest.skip("not on this file system")
-    (place / f"{name}.toml").write_text(STILL.format("joystick_boat", "open_loop").replace("0.1", "1.0"))
+    (place / f"{name}.toml").write_text(
+        STILL.format("joystick_boat", "open_loop").replace("0.1", "1.0")
+    )
     words = [sys.executable, "-m", "boatsim", "run", place / f"{name}.toml", "--out", place / "out"]
-    done = subprocess.run(words, capture_output=True, check=False, env=os.environ | {"PYTHONIOENCODING": "ascii"})
+    done = subprocess.run(
+        words, capture_output=True, check=False, env=os.environ | {"PYTHONIOENCODING": "ascii"}
+    )
     assert (done.returncode, done.stderr) == (0, b"")
     assert read(place / "out" / "recording.csv").notes.vessel == "joystick_boat"
 
@@ -124,5 +148,7 @@ def test_a_path_may_have_any_name(tmp_path: Path, name: str) -> None:
 def test_a_recording_in_a_path_of_any_name_is_replayed(tmp_path: Path) -> None:
     run = tmp_path / "x\udcff\n\u202e.csv"
     run.write_bytes(TRIAL.read_bytes())
-    done: Any = CliRunner().invoke(app, ["check", str(run), "--vessel", "trial_boat"], catch_exceptions=False)
+    done: Any = CliRunner().invoke(
+        app, ["check", str(run), "--vessel", "trial_boat"], catch_exceptions=False
+    )
     assert done.exit_code in (0, 1) and "\\udcff\\n\\u202e" in done.output

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boatsim.diagnose import analysis
-from boatsim.diagnose.rules import sensed_noise, tolerated_force
-from boatsim.diagnose.search.carries import grew, misfit
-from boatsim.diagnose.search.evidence import price, together
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.priors import sensed_noise, tolerated_force
+from boatsim.diagnosis.search.evidence import price, together
+from boatsim.diagnosis.search.generalization import grew, misfit
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording
 
@@ -60,12 +60,14 @@ def test_twenty_entries_that_explain_nothing_change_no_verdict(tmp_path: Path) -
     library = drawn(tmp_path, 20)
     for trial in sorted(p for p in TRIALS.iterdir() if p.is_dir()):
         runs, unseen = [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"]
-        usual = analysis.diagnose(runs, unseen).findings.answer
-        more = analysis.diagnose(runs, unseen, library=library).findings.answer
+        usual = pipeline.diagnose(runs, unseen).findings.answer
+        more = pipeline.diagnose(runs, unseen, library=library).findings.answer
         assert len(more["tried"]) == len(usual["tried"]) + 20
         assert more["rules"]["effect_gain_nats"] > usual["rules"]["effect_gain_nats"]
         assert more["verdict"] == usual["verdict"], trial.name
-        assert [e["name"] for e in more["effects"]] == [e["name"] for e in usual["effects"]], trial.name
+        assert [e["name"] for e in more["effects"]] == [e["name"] for e in usual["effects"]], (
+            trial.name
+        )
 
 
 def test_the_price_of_an_effect_grows_with_the_number_tried_and_look_alikes_pay_together() -> None:
@@ -76,18 +78,26 @@ def test_the_price_of_an_effect_grows_with_the_number_tried_and_look_alikes_pay_
 def test_an_error_has_grown_where_it_is_beyond_its_scatter_and_five_percent() -> None:
     before = {"position_rms_m": [1.0, 1.0, 1.0, 1.0]}
     assert grew(before, {"position_rms_m": [1.3, 1.25, 1.35, 1.3]}, 2.0)
-    assert not grew(before, {"position_rms_m": [1.02, 1.02, 1.02, 1.02]}, 2.0)  # by one percent of the rms
+    assert not grew(
+        before, {"position_rms_m": [1.02, 1.02, 1.02, 1.02]}, 2.0
+    )  # by one percent of the rms
     assert not grew(before, {"position_rms_m": [3.0, 0.5, 0.9, 1.0]}, 2.0)  # scatter
-    assert not grew({"position_rms_m": [1.0]}, {"position_rms_m": [9.0]}, 2.0)  # of one alone the scatter is not known
+    assert not grew(
+        {"position_rms_m": [1.0]}, {"position_rms_m": [9.0]}, 2.0
+    )  # of one alone the scatter is not known
     assert misfit({"a": [4.0], "b": [1.0]}, {"a": [1.0], "b": [1.0]}) == pytest.approx(2.0)
 
 
 def test_tolerated_forces_go_with_the_weight_and_their_moments_with_the_hull() -> None:
     boat, ship = vessel.load("trial_boat"), vessel.load("eastward_ho")
-    force, moment = (tolerated_force(ship)[axis] / tolerated_force(boat)[axis] for axis in ("surge", "yaw"))
+    force, moment = (
+        tolerated_force(ship)[axis] / tolerated_force(boat)[axis] for axis in ("surge", "yaw")
+    )
     assert force == pytest.approx(ship.body.mass / boat.body.mass)
     assert moment == pytest.approx(force * ship.length / boat.length)
-    assert tolerated_force(ship)["roll"] == pytest.approx(tolerated_force(ship)["sway"] * ship.draught)
+    assert tolerated_force(ship)["roll"] == pytest.approx(
+        tolerated_force(ship)["sway"] * ship.draught
+    )
 
 
 @pytest.mark.parametrize("noise", [0.002, 0.02])
@@ -95,6 +105,11 @@ def test_noise_that_nobody_states_is_found_in_a_moving_signal_with_outliers(nois
     t, rng = np.arange(0.0, 60.0, 0.15), np.random.default_rng(3)
     x = 2.0 * np.sin(0.5 * t) + 0.1 * t + noise * rng.standard_normal(len(t))
     x[::50] += 1.0
-    found = sensed_noise(vessel.load("trial_boat"), [Recording("r", t, {"x_m": x, "y_m": x})], "position_sd_m")
+    found = sensed_noise(
+        vessel.load("trial_boat"), [Recording("r", t, {"x_m": x, "y_m": x})], "position_sd_m"
+    )
     assert found == pytest.approx(noise, rel=0.25)
-    assert sensed_noise(vessel.load("trial_boat"), [Recording("r", t, {"x_m": x})], "heading_sd_rad") == 0.0
+    assert (
+        sensed_noise(vessel.load("trial_boat"), [Recording("r", t, {"x_m": x})], "heading_sd_rad")
+        == 0.0
+    )

@@ -7,8 +7,8 @@ import pytest
 from alike import slow
 from numpy.typing import NDArray
 
-from boatsim.diagnose import analysis
-from boatsim.diagnose.tried import called, library_for
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.candidates import called, library_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.effects.thrust_deadband import ThrustDeadband
@@ -38,7 +38,10 @@ def lagging(folder: Path) -> Vessel:
 def sent(rows: int, seed: int) -> dict[str, NDArray[np.float64]]:
     """Small thrusts ahead and astern in steps of a second, each side for itself; the thrusters turned now and then."""
     rng, each = np.random.default_rng(seed), round(1.0 / STEP)
-    thrust = {n: np.repeat(rng.choice([-0.5, -0.25, 0.0, 0.25, 0.5], rows // each + 1), each)[:rows] for n in DRIVES}
+    thrust = {
+        n: np.repeat(rng.choice([-0.5, -0.25, 0.0, 0.25, 0.5], rows // each + 1), each)[:rows]
+        for n in DRIVES
+    }
     turned = np.repeat(rng.uniform(-0.4, 0.4, rows // (3 * each) + 1), 3 * each)[:rows]
     return thrust | {"steer_port_rad": turned, "steer_starboard_rad": turned}
 
@@ -48,13 +51,26 @@ def sailed(boat: Vessel, fault: ThrustDeadband, seed: int) -> Recording:
     program, rows = Program(boat, suspects=(fault,)), 400
     code, given, rng = program.module, sent(rows, seed), np.random.default_rng(100 + seed)
     commands = np.column_stack([given[c] for c in boat.commands])
-    values, on, memory = program.values(), program.switches([fault.name]), np.zeros(program.memory_size)
+    values, on, memory = (
+        program.values(),
+        program.switches([fault.name]),
+        np.zeros(program.memory_size),
+    )
     path = np.zeros((rows + 1, 2 * code.NQ))
     code.settle(commands[0], memory, values, on, np.zeros(program.held_size))
     code.rollout(
-        0.0, np.zeros(2 * code.NQ), commands, memory, STEP / STEPS_A_ROW, STEPS_A_ROW, np.array(program.body), values,
-        on, np.zeros(code.NQ), path,
-    )  # fmt: skip
+        0.0,
+        np.zeros(2 * code.NQ),
+        commands,
+        memory,
+        STEP / STEPS_A_ROW,
+        STEPS_A_ROW,
+        np.array(program.body),
+        values,
+        on,
+        np.zeros(code.NQ),
+        path,
+    )
     noise = rng.standard_normal((rows, 3)) * (0.003, 0.003, 0.005)
     pose = dict(zip(("x_m", "y_m", "psi_rad"), (path[:rows, :3] + noise).T, strict=True))
     return Recording(f"run_{seed}", STEP * np.arange(rows), pose | given)
@@ -63,11 +79,18 @@ def sailed(boat: Vessel, fault: ThrustDeadband, seed: int) -> Recording:
 def test_each_order_is_the_composition_that_it_says(tmp_path: Path) -> None:
     """A step of 0.3 N: dead band then lag ends 0.12 N short of it, rising at once; lag then dead band rises later."""
     boat = lagging(tmp_path)
-    usual, other = ThrustDeadband(width=WIDTH), ThrustDeadband(width=WIDTH, name="behind", other_side=True)
+    usual, other = (
+        ThrustDeadband(width=WIDTH),
+        ThrustDeadband(width=WIDTH, name="behind", other_side=True),
+    )
     program = Program(boat, suspects=(usual, other))
     ends = {}
     for name in ("thrust_deadband", "behind"):
-        memory, act, on = np.zeros(program.memory_size), np.zeros(program.held_size), program.switches([name])
+        memory, act, on = (
+            np.zeros(program.memory_size),
+            np.zeros(program.held_size),
+            program.switches([name]),
+        )
         program.module.settle(np.zeros(len(boat.commands)), memory, program.values(), on, act)
         command = np.array([0.3 if c in DRIVES else 0.0 for c in boat.commands])
         shown = []
@@ -80,30 +103,44 @@ def test_each_order_is_the_composition_that_it_says(tmp_path: Path) -> None:
     assert ends["behind"] == pytest.approx(np.maximum(0.3 * built_up - WIDTH, 0.0))
 
 
-def test_both_orders_are_tried_where_a_lag_lies_between_them_and_nowhere_else(tmp_path: Path) -> None:
+def test_both_orders_are_tried_where_a_lag_lies_between_them_and_nowhere_else(
+    tmp_path: Path,
+) -> None:
     twice = [n for n in library_for(lagging(tmp_path)).tried if n.startswith("reordered_")]
     assert sorted(map(called, twice)) == ["thrust_deadband", "weak_reverse"]
-    assert not [n for n in library_for(vessel.load("trial_boat")).tried if n.startswith("reordered_")]
+    assert not [
+        n for n in library_for(vessel.load("trial_boat")).tried if n.startswith("reordered_")
+    ]
 
 
 def test_what_has_its_place_can_not_be_put_elsewhere() -> None:
-    with pytest.raises(BadInput, match=r"^thrust_imbalance: other_side = True; allowed is false: it has its place$"):
+    with pytest.raises(
+        BadInput, match=r"^thrust_imbalance: other_side = True; allowed is false: it has its place$"
+    ):
         ThrustImbalance(other_side=True)
 
 
 @pytest.mark.parametrize("behind", [slow(False), True], ids=["of the command", "of the shaft"])
-def test_a_diagnosis_tells_a_dead_band_of_the_shaft_from_one_of_the_command(tmp_path: Path, behind: bool) -> None:
+def test_a_diagnosis_tells_a_dead_band_of_the_shaft_from_one_of_the_command(
+    tmp_path: Path, behind: bool
+) -> None:
     boat = lagging(tmp_path)
-    fault = ThrustDeadband(width=WIDTH, name="behind", other_side=True) if behind else ThrustDeadband(width=WIDTH)
+    fault = (
+        ThrustDeadband(width=WIDTH, name="behind", other_side=True)
+        if behind
+        else ThrustDeadband(width=WIDTH)
+    )
     files = []
     for seed in (1, 2, 3):
         files.append(tmp_path / f"{seed}.csv")
         table.write_csv(sailed(boat, fault, seed), files[-1])
-    found = analysis.diagnose(files[:2], files[2:], str(boat.path))
+    found = pipeline.diagnose(files[:2], files[2:], str(boat.path))
     answer = found.findings.answer
     (effect,) = answer["effects"]
     assert answer["verdict"] == "named" and effect["name"] == "thrust_deadband", answer["sentence"]
     assert effect["words"].endswith("in the actuator and not in its command") == behind
     width = effect["parameters"]["width_N"]
     assert abs(width["value"] - WIDTH) < 3.0 * width["sd"] < 0.5 * WIDTH
-    assert found.ranking.best.suspects == ("reordered_thrust_deadband" if behind else "thrust_deadband",)
+    assert found.ranking.best.suspects == (
+        "reordered_thrust_deadband" if behind else "thrust_deadband",
+    )

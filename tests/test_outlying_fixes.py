@@ -8,7 +8,7 @@ import pytest
 from answers import diagnosed, nothing_missing
 from real_boat import Real, recorded
 
-from boatsim.diagnose.log.outlying_fixes import begins_astray, outlying, without_outliers
+from boatsim.diagnosis.checks.position_outliers import begins_astray, outlying, without_outliers
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording
 
@@ -18,14 +18,22 @@ BURST, POSITION = slice(100, 106), ("x_m", "y_m")
 
 def astray(run: Recording, off: float, rows: slice = BURST) -> Recording:
     """The recording with some of its fixes off to the north-east."""
-    moved = {n: run[n] + np.where(np.isin(np.arange(len(run)), np.arange(len(run))[rows]), off, 0.0) for n in POSITION}
+    moved = {
+        n: run[n] + np.where(np.isin(np.arange(len(run)), np.arange(len(run))[rows]), off, 0.0)
+        for n in POSITION
+    }
     return replace(run, signals={**run.signals, **moved})
 
 
-@pytest.mark.parametrize("rows", [slice(100, 101), slice(100, 103), BURST], ids=lambda s: f"{s.stop - s.start} rows")
+@pytest.mark.parametrize(
+    "rows", [slice(100, 101), slice(100, 103), BURST], ids=lambda s: f"{s.stop - s.start} rows"
+)
 def test_a_burst_of_any_length_is_found_and_nothing_else(rows: slice) -> None:
     run, boat = recorded(Real(), 1), vessel.load("trial_boat")
-    assert not without_outliers(run, boat).remarks and not without_outliers(recorded(Real(), 2), boat).remarks
+    assert (
+        not without_outliers(run, boat).remarks
+        and not without_outliers(recorded(Real(), 2), boat).remarks
+    )
     found = without_outliers(astray(run, 0.4, rows), boat)
     assert np.flatnonzero(np.isnan(found["x_m"])).tolist() == list(range(rows.start, rows.stop))
     assert np.isfinite(found["psi_rad"]).all() and "leap away and come back" in found.remarks[-1]
@@ -38,7 +46,9 @@ def test_what_a_boat_can_do_is_no_leap(noise: float) -> None:
     heading = 0.8 * np.cumsum(np.where(np.sin(0.6 * t) > 0.0, 1.0, -1.0)) * 0.1
     speed = np.where((t > 20.0) & (t < 40.0), 1.0, 0.0)
     speed = np.convolve(speed, np.ones(5) / 5.0, "same")
-    path = 0.1 * np.cumsum(speed[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0)
+    path = 0.1 * np.cumsum(
+        speed[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0
+    )
     path += noise * rng.standard_normal(path.shape)
     assert not outlying(t, path, FINEST, LONGEST).any()
     moved = path + np.where(t[:, None] > 30.0, 2.0, 0.0)

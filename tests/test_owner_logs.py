@@ -42,7 +42,9 @@ def test_the_simulator_imports_nothing_of_the_program_that_it_examines() -> None
 @pytest.mark.parametrize("kind", boats.KINDS)
 def test_a_hull_in_ideal_water_keeps_its_energy(kind) -> None:  # type: ignore[no-untyped-def]
     boat = kind(np.random.default_rng(5))
-    plant = replace(bare(boat), around=Around(load=0.2 * boat.plant.hull.mass, load_at=0.2 * boat.length))
+    plant = replace(
+        bare(boat), around=Around(load=0.2 * boat.plant.hull.mass, load_at=0.2 * boat.length)
+    )
     mx, my, mz, myz = plant.masses()
     s: State = (0.0, 0.0, 0.3, 1.5, 0.4, 0.3)
 
@@ -106,16 +108,25 @@ def example(boat: boats.Boat, form: str, number: int = 1, lasts: float = 30.0) -
 def test_what_was_written_is_what_a_recording_holds(form: str, kind, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     boat = kind(np.random.default_rng(3))
     rng = np.random.default_rng(7)
-    on = replace(fit(boat, rng), fix_sd=0.0, compass_sd=0.0, gyro_sd=0.0, gyro_bias=0.0, antenna=0.0)
+    on = replace(
+        fit(boat, rng), fix_sd=0.0, compass_sd=0.0, gyro_sd=0.0, gyro_bias=0.0, antenna=0.0
+    )
     voyage = sail(boat, Linkage(gains=(1.0, 1.0)), pilot(boat, rng, 40.0), 40.0, rng)
     seen = see(boat, voyage, on, rng)
     log = cases.write(example(boat, form), boat, seen, None, tmp_path, "log")
     assert boatsim("new", tmp_path / "boat", *boat.options).code == 0
-    proposed = boatsim("import", log.path, "--vessel", tmp_path / "boat", "--propose", tmp_path / "map.toml")
+    proposed = boatsim(
+        "import", log.path, "--vessel", tmp_path / "boat", "--propose", tmp_path / "map.toml"
+    )
     assert proposed.code == 0, proposed.err
-    text, _ = accept((tmp_path / "map.toml").read_text(), wanted(boat, tmp_path / "boat" / "vessel.toml", log.orders))
+    text, _ = accept(
+        (tmp_path / "map.toml").read_text(),
+        wanted(boat, tmp_path / "boat" / "vessel.toml", log.orders),
+    )
     (tmp_path / "map.toml").write_text(text)
-    made = boatsim("import", log.path, "--map", tmp_path / "map.toml", "--out", tmp_path / "run.csv")
+    made = boatsim(
+        "import", log.path, "--map", tmp_path / "map.toml", "--out", tmp_path / "run.csv"
+    )
     assert made.code == 0, made.err
     rows = np.genfromtxt(tmp_path / "run.csv", delimiter=",", names=True)
     for column, i in (("x_m", 0), ("y_m", 1), ("psi_rad", 2)):
@@ -123,7 +134,9 @@ def test_what_was_written_is_what_a_recording_holds(form: str, kind, tmp_path: P
         truth = np.interp(rows["t_s"][there], voyage.t, voyage.states[:, i])
         off = rows[column][there] - truth
         off = np.remainder(off + np.pi, 2 * np.pi) - np.pi if i == 2 else off - np.median(off)
-        assert np.abs(off).max() < (0.03 if i == 2 else 0.35), column  # a few tenths of a second at most
+        assert np.abs(off).max() < (0.03 if i == 2 else 0.35), (
+            column
+        )  # a few tenths of a second at most
     first = rows[boat.channels[0]]
     astern = voyage.throttles[:, 0] < 0.0
     assert np.sign(first[first != 0.0]).min() == (-1.0 if astern.any() else 1.0)
@@ -149,8 +162,14 @@ def test_a_third_of_the_logs_is_good_and_what_is_wrong_fits_the_boat(seed: int) 
     assert len({c.boat.name for c in found}) == 3
     assert len({c.form.replace("plain.", "").replace("ros1", "ros2") for c in found}) == 7
     for c in found:
-        assert bool(c.fault) == (c.kind in ("fault", "both")) and bool(c.cause) == (c.kind in ("cause", "both"))
-        assert not c.wrong or c.wrong.fits(c.boat) and (not c.wrong.formats or c.form in c.wrong.formats)
+        assert bool(c.fault) == (c.kind in ("fault", "both")) and bool(c.cause) == (
+            c.kind in ("cause", "both")
+        )
+        assert (
+            not c.wrong
+            or c.wrong.fits(c.boat)
+            and (not c.wrong.formats or c.form in c.wrong.formats)
+        )
         assert not c.cause or CAUSES[c.cause].fits(c.boat)
 
 
@@ -163,13 +182,19 @@ def test_every_name_that_counts_for_a_cause_is_an_entry_of_the_library() -> None
 def test_the_owner_puts_in_what_is_absent_and_turns_a_sign(tmp_path: Path) -> None:
     boat = boats.workboat(np.random.default_rng(3))
     assert boatsim("new", tmp_path / "boat", *boat.options).code == 0
-    scales = {n: cases.ardupilot.Scale(f"RCOU.C{i}", 1100, 1500, 1900) for i, n in enumerate(("helm", *names(boat)), 1)}
+    scales = {
+        n: cases.ardupilot.Scale(f"RCOU.C{i}", 1100, 1500, 1900)
+        for i, n in enumerate(("helm", *names(boat)), 1)
+    }
     lines = wanted(boat, tmp_path / "boat" / "vessel.toml", scales)
-    flipped = (
-        f'{boat.helms[0]} = {{ signal = "RCOU.C1", low = 1100, neutral = 1500, high = 1900, least = -0.7, most = 0.7 }}'
+    flipped = f'{boat.helms[0]} = {{ signal = "RCOU.C1", low = 1100, neutral = 1500, high = 1900, least = -0.7, most = 0.7 }}'
+    text, edits = accept(
+        f'# commands: what was sent to the drives\n{flipped}\n# {boat.channels[0]} = "..."\n', lines
     )
-    text, edits = accept(f'# commands: what was sent to the drives\n{flipped}\n# {boat.channels[0]} = "..."\n', lines)
-    assert edits == [f"absent {c}" for c in boat.channels] + [f"sign {boat.helms[0]}", f"absent {boat.helms[1]}"]
+    assert edits == [f"absent {c}" for c in boat.channels] + [
+        f"sign {boat.helms[0]}",
+        f"absent {boat.helms[1]}",
+    ]
     assert all(line.text in text.splitlines() for line in lines)
 
 
@@ -198,9 +223,21 @@ def test_findings_are_read_from_what_check_prints() -> None:
 
 
 def test_the_goals_count_what_they_ask_for() -> None:
-    good = Result(1, "good", "launch", "csv", "", "", "", read=True, verdict="nothing_missing", possible=True)
+    good = Result(
+        1, "good", "launch", "csv", "", "", "", read=True, verdict="nothing_missing", possible=True
+    )
     good.nominal_m, good.answer_m = 2.0, 0.9
-    both = Result(2, "both", "launch", "nmea", "time in ms", "wind", "", read=True, edits=["absent rudder_rad"])
+    both = Result(
+        2,
+        "both",
+        "launch",
+        "nmea",
+        "time in ms",
+        "wind",
+        "",
+        read=True,
+        edits=["absent rudder_rad"],
+    )
     both.fault_named, both.physics_named, both.called_physics = True, False, False
     rows = {row[:58].strip(): row[58:].split() for row in goals([good, both])}
     assert rows["log read, or its need said in one line"][:2] == ["2", "(100"]

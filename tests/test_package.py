@@ -17,16 +17,30 @@ TEST_COMMAND = "./setup.sh && .venv/bin/python -m pytest"
 
 
 def test_importing_boatsim_imports_nothing_heavy() -> None:
-    heavy = {"mujoco", "numba", "scipy", "rerun", "pyarrow", "dm_control", "pydantic", "jinja2", "typer"}
+    heavy = {
+        "mujoco",
+        "numba",
+        "scipy",
+        "rerun",
+        "pyarrow",
+        "dm_control",
+        "pydantic",
+        "jinja2",
+        "typer",
+    }
     code = "import sys, boatsim; print(*{name.partition('.')[0] for name in sys.modules})"
-    loaded = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
     assert "boatsim" in loaded.split()
     assert not heavy & set(loaded.split())
 
 
 def test_every_locked_requirement_has_a_hash_and_no_address() -> None:
     assert LOCKED and len(LOCKED) == len(set(LOCKED))
-    entry = re.compile(r"[a-z0-9-]+==[\w.]+( ; [\w '=!<>.]+)?( \\\n    --hash=sha256:[0-9a-f]{64})+")
+    entry = re.compile(
+        r"[a-z0-9-]+==[\w.]+( ; [\w '=!<>.]+)?( \\\n    --hash=sha256:[0-9a-f]{64})+"
+    )
     for text in re.split(r"\n(?=\S)", LOCK.strip()):
         assert entry.fullmatch(text), text
 

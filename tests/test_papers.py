@@ -55,7 +55,9 @@ def test_a_hundred_figures_and_more_are_judged() -> None:
         ("2.0", 'within = 0.1\nbecause = "diagnosed"', "not reproduced"),
     ],
 )
-def test_words_explain_a_verdict_and_do_not_make_it(tmp_path: Path, ours: str, more: str, verdict: str) -> None:
+def test_words_explain_a_verdict_and_do_not_make_it(
+    tmp_path: Path, ours: str, more: str, verdict: str
+) -> None:
     text = f'[[row]]\nwhat = "w"\nours = {ours}\ncommand = "c"\npublished = 1.0\nreason = "it is reproduced"\n{more}\n'
     assert [r.verdict for r in papers.rows(written(tmp_path, text))] == [verdict]
 
@@ -83,8 +85,14 @@ def test_published_words_are_judged_by_what_they_stand_for(
         ('norm = "speed"\npublished = 2.0', r"has \['norm'\]; allowed are"),
         ('scenario = "joystick_boat/sway_1"\nnorm = "speed"', "has no norm speed"),
         ('scenario = "joystick_boat/nowhere"\nnorm = "speed"', "no norms pinned"),
-        ('ours = 1.0\ncommand = "c"\npublished = 1.0\nverdict = "reproduced"', "'verdict'.*; allowed are"),
-        ('ours = 1.0\ncommand = "c"\npublished = 1.0\nbecause = "fine"', "allowed are corrected, can't be, diagnosed"),
+        (
+            'ours = 1.0\ncommand = "c"\npublished = 1.0\nverdict = "reproduced"',
+            "'verdict'.*; allowed are",
+        ),
+        (
+            'ours = 1.0\ncommand = "c"\npublished = 1.0\nbecause = "fine"',
+            "allowed are corrected, can't be, diagnosed",
+        ),
     ],
 )
 def test_a_mistake_gets_one_line(tmp_path: Path, row: str, line: str) -> None:

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from boatsim.diagnose.filter import MAX_STEP
-from boatsim.diagnose.tried import composed
+from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.filter import MAX_STEP
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array, Release
 from boatsim.simulate.engine import Engine
@@ -22,7 +22,15 @@ SMOOTH: list[dict[str, Any]] = [
     {"use": "extra_mass", "mass": 1.0, "x": 0.2},
     {"use": "added_mass_coriolis", "fraction": 0.6},
     {"use": "prop_walk", "side_force_per_thrust": 0.08},
-    {"use": "tether", "tension": 0.03, "stiffness": 0.05, "length": 1.0, "north": 2.0, "east": 1.0, "drag": 0.2},
+    {
+        "use": "tether",
+        "tension": 0.03,
+        "stiffness": 0.05,
+        "length": 1.0,
+        "north": 2.0,
+        "east": 1.0,
+        "drag": 0.2,
+    },
     {"use": "damping_error", "surge_factor": 1.3, "sway_factor": 0.8, "yaw_factor": 1.2},
 ]
 HELD: list[dict[str, Any]] = [
@@ -58,9 +66,13 @@ def commanded(names: list[str]) -> Array:
 
 
 @pytest.mark.parametrize(
-    ("extra", "within"), [(SMOOTH, 1e-6), (HELD, 1e-6), (DEAD, 1e-4)], ids=["smooth", "held", "dead"]
+    ("extra", "within"),
+    [(SMOOTH, 1e-6), (HELD, 1e-6), (DEAD, 1e-4)],
+    ids=["smooth", "held", "dead"],
 )
-def test_engine_and_filter_agree_over_six_seconds(extra: list[dict[str, Any]], within: float) -> None:
+def test_engine_and_filter_agree_over_six_seconds(
+    extra: list[dict[str, Any]], within: float
+) -> None:
     boat = vessel.load("trial_boat", extra=extra)
     commands = commanded(list(boat.commands))
     engine = Engine(boat, step=STEP)
@@ -70,14 +82,25 @@ def test_engine_and_filter_agree_over_six_seconds(extra: list[dict[str, Any]], w
         in_mujoco.append((engine.state.x, engine.state.y, engine.state.psi))
         engine.command(dict(zip(boat.commands, row.tolist(), strict=True)))
         engine.advance(round(ROW / STEP))
-    laws = {e["use"] for e in extra if not issubclass(content.load_class("effect", e["use"]), Release)}
+    laws = {
+        e["use"] for e in extra if not issubclass(content.load_class("effect", e["use"]), Release)
+    }
     program, acting = composed(replace(boat, found=tuple(laws)))
     assert set(acting) == laws  # a release is its coefficient's new value, in both
     times, out = ROW * np.arange(ROWS), np.full((1, ROWS, 6), np.nan)
     program.module.free_runs(
-        times, times, commands, MAX_STEP, program.body, program.values(), program.switches(acting), np.array([0]),
-        np.array([ROWS - 1]), np.zeros((1, 6)), out,
-    )  # fmt: skip
+        times,
+        times,
+        commands,
+        MAX_STEP,
+        program.body,
+        program.values(),
+        program.switches(acting),
+        np.array([0]),
+        np.array([ROWS - 1]),
+        np.zeros((1, 6)),
+        out,
+    )
     off = np.abs(np.array(in_mujoco) - out[0, :, :3]).max(axis=0)
     assert (off < within).all(), off
     assert np.ptp(out[0, :, :2], axis=0).max() > 0.3  # it did move

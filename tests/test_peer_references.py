@@ -17,8 +17,8 @@ from scipy.integrate import quad, solve_ivp
 
 from boatsim.physics.base import Array, motion
 from boatsim.physics.effects.cross_flow_drag import FRESH_WATER, CrossFlowDrag
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.twin import Twin
 
 MASS, YAW_INERTIA = 6.0, 0.5  # [kg], [kg m^2]
 ADDED = np.diag([0.6, 3.0, 0.3])  # [kg], [kg], [kg m^2]
@@ -28,7 +28,12 @@ STEP = 0.01  # [s]
 CLOSE = 1e-6  # relative; absolute where the value is 0
 
 AHEAD = boats.push(2.0, 0.1)
-SIDEWAYS = {"thrust_port_N": 2.5, "thrust_starboard_N": 2.5, "steer_port_rad": pi / 2, "steer_starboard_rad": pi / 2}
+SIDEWAYS = {
+    "thrust_port_N": 2.5,
+    "thrust_starboard_N": 2.5,
+    "steer_port_rad": pi / 2,
+    "steer_starboard_rad": pi / 2,
+}
 
 
 class Case(NamedTuple):
@@ -58,7 +63,9 @@ NAMES = ["P1-5s", "P1-20s", "P1-60s", "P2-20s", "P3-5s", "P3-20s", "P4-20s"]
 Runner = Callable[..., Array]  # case, until [s], further settings -> states (n, 6)
 
 
-def sampled(how: str, folder: Path, case: Case, until: float, more: Mapping[str, Any] = {}) -> Array:
+def sampled(
+    how: str, folder: Path, case: Case, until: float, more: Mapping[str, Any] = {}
+) -> Array:
     """States (n, 6) of our simulator, ten a second."""
     settings = {"current": {"north": case.current[0], "east": case.current[1]}} | dict(more)
     vessel = boats.planar(folder, settings if case.drag else boats.WITHOUT_DRAG | settings)
@@ -84,7 +91,9 @@ def run(request: pytest.FixtureRequest, tmp_path: Path) -> Runner:
 
 def turned(psi: float) -> Array:
     """Body axes to earth axes (Fossen 2021, eq. 2.34)."""
-    return np.array([[np.cos(psi), -np.sin(psi), 0.0], [np.sin(psi), np.cos(psi), 0.0], [0.0, 0.0, 1.0]])
+    return np.array(
+        [[np.cos(psi), -np.sin(psi), 0.0], [np.sin(psi), np.cos(psi), 0.0], [0.0, 0.0, 1.0]]
+    )
 
 
 def coriolis(momentum: Array) -> Array:
@@ -103,7 +112,12 @@ def fossen(t: float, state: Array, case: Case, added: Array) -> Array:
     current = turned(state[2]).T @ np.array([*case.current, 0.0])
     nr = nu - current
     turning = np.array([nu[2] * current[1], -nu[2] * current[0], 0.0])
-    force = np.array(case.tau) - coriolis(rigid_mass() @ nu) @ nu - coriolis(added @ nr) @ nr + added @ turning
+    force = (
+        np.array(case.tau)
+        - coriolis(rigid_mass() @ nu) @ nu
+        - coriolis(added @ nr) @ nr
+        + added @ turning
+    )
     if case.drag:
         force = force - (LINEAR + QUADRATIC * np.abs(nr)) @ nr
     return np.concatenate([turned(state[2]) @ nu, np.linalg.solve(rigid_mass() + added, force)])
@@ -113,7 +127,9 @@ def reference(case: Case, until: float, added: Array = ADDED) -> Array:
     """The same motion by scipy, ten a second."""
     times = np.linspace(0.0, until, round(10 * until) + 1)
     start = np.array(case.start, dtype=float)
-    found = solve_ivp(fossen, (0.0, until), start, "DOP853", times, args=(case, added), rtol=1e-12, atol=1e-12)
+    found = solve_ivp(
+        fossen, (0.0, until), start, "DOP853", times, args=(case, added), rtol=1e-12, atol=1e-12
+    )
     return np.asarray(found.y.T)
 
 
@@ -124,7 +140,9 @@ def assert_same_run(found: Array, expected: Array) -> None:
 
 @pytest.mark.parametrize(("case", "t", "published"), PUBLISHED, ids=NAMES)
 def test_published_cases(run: Runner, case: Case, t: int, published: tuple[float, ...]) -> None:
-    expected = [pytest.approx(value, rel=CLOSE, abs=None if value else CLOSE) for value in published]
+    expected = [
+        pytest.approx(value, rel=CLOSE, abs=None if value else CLOSE) for value in published
+    ]
     assert list(run(case, t)[-1]) == expected
 
 
@@ -154,7 +172,10 @@ def test_energy_and_momentum_last(run: Runner) -> None:
 
 def test_an_hour_loses_a_day_s_share_of_energy_at_most(tmp_path: Path) -> None:
     """A day at 10 ms is to lose less than a millionth; the integrator loses as much every hour."""
-    twin, mass = Twin(boats.planar(tmp_path, boats.WITHOUT_DRAG), STEP), np.diag(rigid_mass() + ADDED)
+    twin, mass = (
+        Twin(boats.planar(tmp_path, boats.WITHOUT_DRAG), STEP),
+        np.diag(rigid_mass() + ADDED),
+    )
     state = twin.coast(P3.start, {}, round(3600.0 / STEP))
     assert 0.5 * np.sum(mass * state[3:] ** 2) == pytest.approx(3.361, rel=1e-6 / 24)  # [J]
     momentum = turned(state[2])[:2, :2] @ (mass * state[3:])[:2]
@@ -189,7 +210,9 @@ def strips(v: float, r: float, centre: float = 0.0) -> tuple[float, float]:
     def drag(x: float, arm: int) -> float:
         return float(-DRAG * abs(v + x * r) * (v + x * r) * x**arm)
 
-    Y, N = (quad(drag, *ends, args=(arm,), points=turn, epsabs=1e-13, epsrel=1e-12)[0] for arm in (0, 1))
+    Y, N = (
+        quad(drag, *ends, args=(arm,), points=turn, epsabs=1e-13, epsrel=1e-12)[0] for arm in (0, 1)
+    )
     return Y, N
 
 

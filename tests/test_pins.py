@@ -10,8 +10,8 @@ import pytest
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.simulate.norms import Norm
-from boatsim.simulate.pins import TOLERANCE, Pin, PinsFile, drifts, pinned, read, text_of
+from boatsim.simulate.baselines import TOLERANCE, Pin, PinsFile, drifts, pinned, read, text_of
+from boatsim.simulate.evaluation import Norm
 
 SCENARIO = """
 vessel = "joystick_boat"
@@ -50,7 +50,9 @@ def test_the_same_folder_gives_the_same_pins_and_nothing_differs(folder: Path) -
     assert (folder / "pins.toml").read_bytes() == before
 
 
-def test_a_change_of_the_boat_is_named_with_old_and_new_value_and_leaves_with_1(folder: Path) -> None:
+def test_a_change_of_the_boat_is_named_with_old_and_new_value_and_leaves_with_1(
+    folder: Path,
+) -> None:
     old = read(folder)
     assert old is not None
     (folder / "sway.toml").write_text(SCENARIO.replace("light", "heavy"))
@@ -105,8 +107,9 @@ def test_junit_counts_its_cases_and_json_says_what_the_table_does(folder: Path) 
     for element in (top, suite):
         assert [element.get(k) for k in ("tests", "failures", "errors")] == ["2", "1", "1"]
     assert {case.get("name"): [child.tag for child in case] for case in suite} == {
-        "odd \\x01 <&>.toml": ["error"], "sway.toml": ["failure"],
-    }  # fmt: skip
+        "odd \\x01 <&>.toml": ["error"],
+        "sway.toml": ["failure"],
+    }
     said = json.loads(result.stdout)
     assert said["exit"] == result.exit_code == 2
     assert [one["exit"] for one in said["scenarios"]] == [2, 1]
@@ -116,7 +119,11 @@ def test_junit_counts_its_cases_and_json_says_what_the_table_does(folder: Path) 
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
-    [(["nowhere"], "nowhere: is no folder"), ([".", "--seeds", "3"], "needs --pin"), (["."], "no scenario")],
+    [
+        (["nowhere"], "nowhere: is no folder"),
+        ([".", "--seeds", "3"], "needs --pin"),
+        (["."], "no scenario"),
+    ],
 )
 def test_wrong_use_is_one_line(
     arguments: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -128,7 +135,11 @@ def test_wrong_use_is_one_line(
 
 def test_a_tolerance_spans_the_seeds_and_is_never_less_than_arithmetic() -> None:
     pins = pinned(
-        [{"a": norm(2.0), "b": norm(1.0)}, {"a": norm(2.3), "b": norm(1.0)}, {"a": norm(1.9), "b": norm(None)}]
+        [
+            {"a": norm(2.0), "b": norm(1.0)},
+            {"a": norm(2.3), "b": norm(1.0)},
+            {"a": norm(1.9), "b": norm(None)},
+        ]
     )
     assert pins["a"] == Pin(value=2.0, unit="m", tolerance=0.4)
     assert pins["b"] == Pin(value=1.0, unit="m", tolerance=TOLERANCE)
@@ -138,11 +149,18 @@ def test_drift_begins_at_the_tolerance_and_a_norm_that_is_lost_is_one() -> None:
     pins = {"a": Pin(value=2.0, unit="m", tolerance=0.4)}
     assert drifts(pins, {"a": norm(2.39)}) == []
     assert drifts(pins, {"a": norm(2.41)}) == ["a: 2 -> 2.41 m (+- 0.4)"]
-    assert drifts(pins, {"a": Norm(None, "m", lacking="not reached: why")}) == ["a: 2 -> not reached: why m (+- 0.4)"]
-    assert drifts(pins, {}) == ["a is pinned and gone"] and drifts({}, {"a": norm(1.0)}) == ["a is not pinned"]
+    assert drifts(pins, {"a": Norm(None, "m", lacking="not reached: why")}) == [
+        "a: 2 -> not reached: why m (+- 0.4)"
+    ]
+    assert drifts(pins, {}) == ["a is pinned and gone"] and drifts({}, {"a": norm(1.0)}) == [
+        "a is not pinned"
+    ]
 
 
 def test_pins_survive_their_file(tmp_path: Path) -> None:
-    pins = PinsFile(seeds=3, scenario={'a "b".toml:c': {"x_1": Pin(value=1e-12, unit="1/s"), "y": Pin(unit="°")}})
+    pins = PinsFile(
+        seeds=3,
+        scenario={'a "b".toml:c': {"x_1": Pin(value=1e-12, unit="1/s"), "y": Pin(unit="°")}},
+    )
     (tmp_path / "pins.toml").write_text(text_of(pins), encoding="utf-8")
     assert read(tmp_path) == pins

@@ -29,7 +29,9 @@ def drawn(folder: Path, geoms: str) -> Path:
     """A vessel folder with a hull as plain as can be."""
     place = folder / "plain_boat"
     place.mkdir()
-    (place / "hull.xml").write_text(f'<mujoco><worldbody><body name="hull">{geoms}</body></worldbody></mujoco>')
+    (place / "hull.xml").write_text(
+        f'<mujoco><worldbody><body name="hull">{geoms}</body></worldbody></mujoco>'
+    )
     (place / "vessel.toml").write_text(PLANAR)
     return place
 
@@ -43,7 +45,9 @@ def scene(place: Path) -> Scene:
 def test_every_hull_has_an_outline_of_its_size(geoms: str, tmp_path: Path) -> None:
     seen = scene(drawn(tmp_path, geoms))
     ring = seen.outline()
-    assert np.ptp(ring[:, 0]) == pytest.approx(1.0, abs=0.01) and np.ptp(ring[:, 1]) == pytest.approx(0.4, abs=0.01)
+    assert np.ptp(ring[:, 0]) == pytest.approx(1.0, abs=0.01) and np.ptp(
+        ring[:, 1]
+    ) == pytest.approx(0.4, abs=0.01)
 
 
 def coasting(folder: Path) -> Path:

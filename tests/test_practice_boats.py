@@ -10,7 +10,7 @@ from benchmarks.practice import motion
 from benchmarks.practice.boats import BOATS
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 COMMANDS = {  # seconds and rows of commands in the vessel's order
     "catamaran": (3.0, [[6.0, 0.4], [2.0, -0.9], [10.0, 0.1], [0.0, 0.0], [4.0, 1.2]]),
@@ -35,12 +35,23 @@ def sailed(name: str, dt: float) -> Array:
     for row in rows:
         goal = boat.drive.goals(np.array([row], dtype=float).T)
         for _ in range(round(held / dt)):
-            acts = tuple(np.where((boat.drive.lag > 0)[:, None], boat.drive.follow(y, goal, s), goal)
-                         for s in (0.0, dt / 2, dt))  # fmt: skip
+            acts = tuple(
+                np.where((boat.drive.lag > 0)[:, None], boat.drive.follow(y, goal, s), goal)
+                for s in (0.0, dt / 2, dt)
+            )
             q, nu = motion.step(
-                boat, t, run, q, nu, (acts[0], acts[1], acts[2]), dt, np.zeros((6, 1)), lambda m: np.zeros_like(m.nu),
-                lambda t, q, run: None, inverse,
-            )  # fmt: skip
+                boat,
+                t,
+                run,
+                q,
+                nu,
+                (acts[0], acts[1], acts[2]),
+                dt,
+                np.zeros((6, 1)),
+                lambda m: np.zeros_like(m.nu),
+                lambda t, q, run: None,
+                inverse,
+            )
             t, y = t + dt, acts[2]
         out.append(np.concatenate([q, nu])[:, 0])
     return np.array(out)
@@ -53,9 +64,13 @@ def test_a_boat_with_nothing_concealed_sails_as_the_tools_own(name: str) -> None
     free = BOATS[name]().free
     at = [*free, *(6 + i for i in free)]
     start = [STARTS.get(name, {}).get(SYMBOLS[i], 0.0) for i in at]
-    theirs = Twin(boat, step=held / 1000).rollout(start, np.array(rows, dtype=float).reshape(5, -1), held)[1:]
+    theirs = Twin(boat, step=held / 1000).rollout(
+        start, np.array(rows, dtype=float).reshape(5, -1), held
+    )[1:]
     ours = sailed(name, held / 150)[:, at]
-    size = np.array([boat.length if i % 6 < 3 else 1.0 for i in at])  # [m] or [rad], and a second for rates
+    size = np.array(
+        [boat.length if i % 6 < 3 else 1.0 for i in at]
+    )  # [m] or [rad], and a second for rates
     assert np.abs(ours - theirs).max(axis=0) / size == pytest.approx(0.0, abs=1e-4)
 
 

@@ -9,9 +9,16 @@ import pytest
 from benchmarks.practice import hulls
 from benchmarks.practice.make import Trial, evidence, make, sailed, trials
 from benchmarks.practice.plans import PLANS
-from boatsim.diagnose.analysis import open_recording
+from boatsim.diagnosis.pipeline import open_recording
 
-CHEAP = Trial("T001_martin_tank_model", "martin_tank_model", "single", False, False, (hulls.quadratic_damping,))
+CHEAP = Trial(
+    "T001_martin_tank_model",
+    "martin_tank_model",
+    "single",
+    False,
+    False,
+    (hulls.quadratic_damping,),
+)
 
 
 def test_the_same_seed_gives_the_same_files(tmp_path: Path) -> None:
@@ -20,7 +27,9 @@ def test_the_same_seed_gives_the_same_files(tmp_path: Path) -> None:
     files = sorted(p.name for p in (tmp_path / "one" / CHEAP.name).iterdir())
     assert files == ["answer.json", "recording.toml", "run_1.csv", "run_2.csv", "run_3.csv"]
     for name in files:
-        one, two = ((tmp_path / folder / CHEAP.name / name).read_bytes() for folder in ("one", "two"))
+        one, two = (
+            (tmp_path / folder / CHEAP.name / name).read_bytes() for folder in ("one", "two")
+        )
         assert one == two
 
 
@@ -34,15 +43,24 @@ def test_a_set_has_all_kinds_for_every_vessel_and_conceals_half_of_the_single_ef
 
 
 @pytest.mark.parametrize("vessel", PLANS)
-def test_the_tool_reads_a_trial_of_every_vessel_by_its_recording_toml(tmp_path: Path, vessel: str) -> None:
+def test_the_tool_reads_a_trial_of_every_vessel_by_its_recording_toml(
+    tmp_path: Path, vessel: str
+) -> None:
     made = make(Trial("T002_" + vessel, vessel, "none", False, True, ()), 5, tmp_path)
     recording, boat = open_recording(tmp_path / f"T002_{vessel}" / "run_3.csv", None, ())
     assert boat.name == vessel and len(recording) >= 240 and not recording.remarks
     assert json.loads((tmp_path / f"T002_{vessel}" / "answer.json").read_text()) == made
-    if rms := made.get("reference_position_rms_m"):  # nothing is missing but the boat's own coefficients
+    if rms := made.get(
+        "reference_position_rms_m"
+    ):  # nothing is missing but the boat's own coefficients
         assert rms["recalibrated"] == pytest.approx(rms["true_structure"], rel=0.1)
 
 
 def test_a_stronger_effect_gives_more_evidence_and_none_gives_none() -> None:
-    gains = [float(evidence(sailed(CHEAP, (3, 1), np.array([s])), False)[0]) for s in (1e-6, 0.05, 0.1)]
-    assert gains[0] == pytest.approx(0.0, abs=1e-3) and 1.0 < gains[1] < gains[2] < 4.0 * gains[1] + 1.0
+    gains = [
+        float(evidence(sailed(CHEAP, (3, 1), np.array([s])), False)[0]) for s in (1e-6, 0.05, 0.1)
+    ]
+    assert (
+        gains[0] == pytest.approx(0.0, abs=1e-3)
+        and 1.0 < gains[1] < gains[2] < 4.0 * gains[1] + 1.0
+    )

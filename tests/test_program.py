@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.physics import content, reach, vessel
+from boatsim.physics import content, dependency_hash, vessel
 from boatsim.physics.base import AXES, Array, motion
 from boatsim.physics.effects.added_mass import AddedMass
 from boatsim.physics.effects.current import Current
@@ -75,19 +75,27 @@ def with_spring(folder: Path) -> Path:
 def moment(place: Path, more: Mapping[str, str] | None = None) -> float:
     """Roll moment [N m] at 0.1 rad, in a fresh process with further variables in its environment."""
     done = subprocess.run(
-        [sys.executable, "-c", SNIPPET, str(place)], cwd=place, env=os.environ | dict(more or {}), capture_output=True,
-        text=True, check=True,
-    )  # fmt: skip
+        [sys.executable, "-c", SNIPPET, str(place)],
+        cwd=place,
+        env=os.environ | dict(more or {}),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     return float(done.stdout)
 
 
 def forces(program: Program, state: Sequence[float], on: Array | None = None) -> tuple[float, ...]:
     """Body force over the freedoms at a state in joint coordinates and their rates, actuators at rest."""
     act, switches = np.zeros(program.held_size), program.switches() if on is None else on
-    return tuple(program.module.forces(0.0, np.array(state), act, np.int64(0), program.values(), switches))
+    return tuple(
+        program.module.forces(0.0, np.array(state), act, np.int64(0), program.values(), switches)
+    )
 
 
-def test_an_edited_law_gives_its_new_number(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_edited_law_gives_its_new_number(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
     place = with_spring(tmp_path)
     assert moment(place) == pytest.approx(-0.1 * (2.0 + 3.0))
@@ -106,7 +114,9 @@ def test_a_law_edited_while_the_program_runs_gives_its_new_number(
     law = place / "spring.py"
     for factor in (3.0, 4.0):
         law.write_text(SPRING.replace("-3.0", f"-{factor}"))
-        assert forces(Program(vessel.load(str(place))), [0.1, 0.0]) == pytest.approx([-0.1 * (2.0 + factor)])
+        assert forces(Program(vessel.load(str(place))), [0.1, 0.0]) == pytest.approx(
+            [-0.1 * (2.0 + factor)]
+        )
 
 
 @pytest.mark.usefixtures("trusted")
@@ -137,7 +147,10 @@ def test_a_suspect_acts_only_when_it_is_switched_on(tmp_path: Path) -> None:
     none = forces(own, STATE)
     assert forces(program, STATE, off) == none
     north, east = 0.3 * np.cos(0.2), 0.3 * np.sin(0.2)
-    along, across = 0.5 * (np.cos(0.4) * north + np.sin(0.4) * east), np.cos(0.4) * east - np.sin(0.4) * north
+    along, across = (
+        0.5 * (np.cos(0.4) * north + np.sin(0.4) * east),
+        np.cos(0.4) * east - np.sin(0.4) * north,
+    )
     assert np.subtract(forces(program, STATE, windy), none) == pytest.approx([along, across, 0.0])
     assert forces(program, STATE, program.switches(["current"])) != none
 
@@ -155,8 +168,12 @@ def test_commands_that_are_not_given_are_zero(tmp_path: Path) -> None:
         program.command_array({"steer": 0.1})
 
 
-@pytest.mark.parametrize("freedoms", [("surge", "sway"), ("sway", "roll"), ("surge", "heave", "pitch"), ("yaw",)])
-def test_any_freedoms_feel_their_part_of_the_same_law(tmp_path: Path, freedoms: tuple[str, ...]) -> None:
+@pytest.mark.parametrize(
+    "freedoms", [("surge", "sway"), ("sway", "roll"), ("surge", "heave", "pitch"), ("yaw",)]
+)
+def test_any_freedoms_feel_their_part_of_the_same_law(
+    tmp_path: Path, freedoms: tuple[str, ...]
+) -> None:
     text = boats.PLANAR.replace('["surge", "sway", "yaw"]', str(list(freedoms))).replace(
         "body = { ", f"body = {{ {PITCH}"
     )
@@ -164,13 +181,17 @@ def test_any_freedoms_feel_their_part_of_the_same_law(tmp_path: Path, freedoms: 
     rates = {"surge": 0.3, "sway": -0.2, "yaw": 0.1, "heave": 0.2, "roll": 0.4, "pitch": -0.3}
     moving = {a: rates.get(a, 0.0) if a in freedoms else 0.0 for a in AXES}
     m = motion(**{symbol: moving[a] for symbol, a in zip("uvwpqr", AXES, strict=True)})
-    wanted = sum(np.array(e.wrench(m)) for e in program.effects if isinstance(e, AddedMass | LinearDamping))
+    wanted = sum(
+        np.array(e.wrench(m)) for e in program.effects if isinstance(e, AddedMass | LinearDamping)
+    )
     seen = forces(program, [*(0.0 for _ in freedoms), *(moving[a] for a in AXES if a in freedoms)])
     assert seen == pytest.approx([wanted[AXES.index(a)] for a in AXES if a in freedoms])
     assert np.any(seen)
 
 
-def test_an_unwritable_cache_folder_falls_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unwritable_cache_folder_falls_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("not a folder")
     monkeypatch.setenv("BOATSIM_CACHE", str(blocked / "cache"))
@@ -197,12 +218,16 @@ def test_programs_not_used_for_90_days_are_removed_when_a_new_one_is_composed(
     assert left == {"program_recent", f"program_{stamp}"}
     folder = tmp_path / "cache" / f"program_{stamp}"
     os.utime(folder, (used, used))
-    assert Program(program.vessel).module is program.module and folder.stat().st_mtime > used + 86400.0
+    assert (
+        Program(program.vessel).module is program.module and folder.stat().st_mtime > used + 86400.0
+    )
 
 
 def boats_own_roller(folder: Path) -> vessel.Vessel:
     """A vessel whose program no other test composes."""
-    return vessel.load(str(boats.written(folder, "roller", boats.ROLL + '[[effect]]\nuse = "wind"\n')))
+    return vessel.load(
+        str(boats.written(folder, "roller", boats.ROLL + '[[effect]]\nuse = "wind"\n'))
+    )
 
 
 # A program's name covers all that its laws can reach: tried on a copy of the package
@@ -233,9 +258,13 @@ EDITS = [  # a file, what of it is changed into what, whether a spring in roll, 
 def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the package, a boat with a spring and one in waves, and the names of their programs."""
     folder = tmp_path_factory.mktemp("copy")
-    shutil.copytree(content.root() / "boatsim", folder / "boatsim", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        content.root() / "boatsim", folder / "boatsim", ignore=shutil.ignore_patterns("__pycache__")
+    )
     boats.written(folder, "sprung", boats.ROLL)
-    waves = boats.ROLL[: boats.ROLL.index("[[effect]]")].replace('["roll"]', '["sway", "roll", "yaw"]')
+    waves = boats.ROLL[: boats.ROLL.index("[[effect]]")].replace(
+        '["roll"]', '["sway", "roll", "yaw"]'
+    )
     boats.written(folder, "tossed", f'{waves}[[effect]]\nuse = "irregular_sea"\n')
     (folder / "before").write_text(" ".join(names_in(folder)))
     return folder
@@ -246,7 +275,12 @@ def names_in(folder: Path) -> list[str]:
     places = [str(folder / name) for name in ("sprung", "tossed")]
     environment = os.environ | {"PYTHONPATH": str(folder), "BOATSIM_CACHE": str(folder / "cache")}
     done = subprocess.run(
-        [sys.executable, "-c", STAMP, *places], cwd=folder, env=environment, capture_output=True, text=True, check=True
+        [sys.executable, "-c", STAMP, *places],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     return done.stdout.split()
 
@@ -266,13 +300,19 @@ def test_a_program_has_another_name_when_anything_its_laws_reach_is_edited(
     assert tuple(a != b for a, b in zip(before, after, strict=True)) == felt
 
 
-def test_what_a_file_imports_by_dots_is_reached_too(copied: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_file_imports_by_dots_is_reached_too(
+    copied: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     physics = copied / "boatsim" / "physics"
-    monkeypatch.setattr(reach, "PACKAGE", copied / "boatsim")
+    monkeypatch.setattr(dependency_hash, "PACKAGE", copied / "boatsim")
     effect = physics / "effects" / "by_dots.py"
-    effect.write_text("from .thruster import at_mount\nfrom ..chance import drawn\nfrom .. import particulars\n")
-    reached = reach.reach(effect)
-    assert {physics / n for n in ("effects/thruster.py", "chance.py", "particulars.py", "signals.py")} <= reached
+    effect.write_text(
+        "from .thruster import at_mount\nfrom ..chance import drawn\nfrom .. import particulars\n"
+    )
+    reached = dependency_hash.reach(effect)
+    assert {
+        physics / n for n in ("effects/thruster.py", "chance.py", "particulars.py", "signals.py")
+    } <= reached
     assert physics / "effects" / "tether.py" not in reached
 
 
@@ -280,8 +320,10 @@ def test_a_controllers_compiled_law_is_known_by_all_that_it_reaches() -> None:
     law = content.root() / "controllers" / "pid_autopilot.py"
     home = content.root() / "boatsim"
     needed = ("control/allocation.py", "control/compiled.py", "physics/kernel/compiling.py")
-    assert {law, *(home / n for n in needed)} <= reach.reach(law)
-    assert content.load_class("controller", "pid_autopilot").law._cache._cache_file._source_stamp == reach.stamp(law)
+    assert {law, *(home / n for n in needed)} <= dependency_hash.reach(law)
+    assert content.load_class(
+        "controller", "pid_autopilot"
+    ).law._cache._cache_file._source_stamp == dependency_hash.stamp(law)
 
 
 def test_an_edited_constant_gives_its_new_force(tmp_path: Path, copied: Path) -> None:
@@ -290,12 +332,16 @@ def test_an_edited_constant_gives_its_new_force(tmp_path: Path, copied: Path) ->
     text = source.read_text()
     place = boats.written(tmp_path, "weighty", boats.ROLL + '[[effect]]\nuse = "weight"\n')
     (place / "weight.py").write_text(
-        SPRING.replace("Spring", "Weight").replace("-3.0", "-particulars.GRAVITY").replace(IMPORT, GRAVITY)
+        SPRING.replace("Spring", "Weight")
+        .replace("-3.0", "-particulars.GRAVITY")
+        .replace(IMPORT, GRAVITY)
     )
     try:
         for gravity in (9.81, 19.62):
             source.write_text(text.replace("GRAVITY = 9.81", f"GRAVITY = {gravity}"))
-            found[gravity] = moment(place, {"PYTHONPATH": str(copied), "BOATSIM_CACHE": str(tmp_path / "cache")})
+            found[gravity] = moment(
+                place, {"PYTHONPATH": str(copied), "BOATSIM_CACHE": str(tmp_path / "cache")}
+            )
     finally:
         source.write_text(text)
     assert found == {g: pytest.approx(-0.1 * (2.0 + g)) for g in (9.81, 19.62)}

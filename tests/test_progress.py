@@ -9,13 +9,21 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from boatsim.cli import app, asking, progress
-from boatsim.diagnose.analysis import diagnose
+from boatsim.cli import app, progress, trust_prompt
+from boatsim.diagnosis.pipeline import diagnose
 from boatsim.progress import part
 
 DATA = Path(__file__).parent / "data"
 TRIAL = [DATA / "trials" / "T002" / f"run_{i}.csv" for i in (1, 2)]
-STAGES = ("reading", "looking at the log", "fitting", "screening 39 entries", "selecting", "free runs", "writing")
+STAGES = (
+    "reading",
+    "looking at the log",
+    "fitting",
+    "screening 39 entries",
+    "selecting",
+    "free runs",
+    "writing",
+)
 
 
 def boatsim(*arguments: object):
@@ -23,10 +31,16 @@ def boatsim(*arguments: object):
 
 
 def lines(stderr: str) -> list[str]:
-    return [line.removeprefix("progress: ") for line in stderr.splitlines() if line.startswith("progress: ")]
+    return [
+        line.removeprefix("progress: ")
+        for line in stderr.splitlines()
+        if line.startswith("progress: ")
+    ]
 
 
-def test_a_diagnosis_says_its_stages_in_their_order_each_once_and_none_on_stdout(tmp_path: Path) -> None:
+def test_a_diagnosis_says_its_stages_in_their_order_each_once_and_none_on_stdout(
+    tmp_path: Path,
+) -> None:
     done = boatsim("diagnose", *TRIAL, "--out", tmp_path / "out")
     told = lines(done.stderr)
     assert done.exit_code == 0 and len(told) == len(set(told)) and "progress" not in done.stdout
@@ -34,7 +48,9 @@ def test_a_diagnosis_says_its_stages_in_their_order_each_once_and_none_on_stdout
     assert places == sorted(places) and len(told) < 16
 
 
-def test_a_stage_that_comes_back_is_told_once_and_the_first_with_the_second(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_stage_that_comes_back_is_told_once_and_the_first_with_the_second(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     with progress.reporting() as report:
         report("reading", 0.0)
         assert capsys.readouterr().err == ""
@@ -43,10 +59,17 @@ def test_a_stage_that_comes_back_is_told_once_and_the_first_with_the_second(caps
     assert lines(capsys.readouterr().err) == ["reading", "selecting", "judging", "writing"]
 
 
-def test_the_share_of_the_work_only_grows_and_the_library_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_share_of_the_work_only_grows_and_the_library_prints_nothing(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     shares: list[float] = []
     diagnose(TRIAL, report=lambda stage, share=0.0, detail="": shares.append(share))
-    assert shares[0] == 0.0 and shares == sorted(shares) and 0.8 < shares[-1] < 1.0 and len(shares) > 40
+    assert (
+        shares[0] == 0.0
+        and shares == sorted(shares)
+        and 0.8 < shares[-1] < 1.0
+        and len(shares) > 40
+    )
     assert capsys.readouterr() == ("", "")
 
 
@@ -65,11 +88,24 @@ def test_free_runs_of_a_recording_say_their_stages(tmp_path: Path, command: str)
 
 
 def test_a_new_boat_fitted_to_a_log_says_its_stages(tmp_path: Path) -> None:
-    rows = [line.split(",")[:6] for line in TRIAL[0].read_text().splitlines()]  # without the angles of steering
+    rows = [
+        line.split(",")[:6] for line in TRIAL[0].read_text().splitlines()
+    ]  # without the angles of steering
     (tmp_path / "log.csv").write_text("\n".join(map(",".join, rows)) + "\n")
-    drives = ["--thruster=-0.6,-0.19", "--thruster=-0.6,0.19", "--thrust", "1", "--from-log", tmp_path / "log.csv"]
-    done = boatsim("new", tmp_path / "own", "--length", "1.2", "--beam", "0.44", "--mass", "4.6", *drives)
-    assert {"fitting the coefficients", "judging on what was not fitted"} <= set(lines(done.stderr)), done.stderr
+    drives = [
+        "--thruster=-0.6,-0.19",
+        "--thruster=-0.6,0.19",
+        "--thrust",
+        "1",
+        "--from-log",
+        tmp_path / "log.csv",
+    ]
+    done = boatsim(
+        "new", tmp_path / "own", "--length", "1.2", "--beam", "0.44", "--mass", "4.6", *drives
+    )
+    assert {"fitting the coefficients", "judging on what was not fitted"} <= set(
+        lines(done.stderr)
+    ), done.stderr
 
 
 def test_a_log_that_is_imported_says_its_stages(tmp_path: Path) -> None:
@@ -89,16 +125,29 @@ def test_several_runs_are_counted_and_a_single_one_says_nothing(tmp_path: Path) 
 
 
 def test_a_manoeuvre_says_that_it_runs(tmp_path: Path) -> None:
-    done = boatsim("manoeuvre", "zigzag", "--vessel", "mariner", "--angle", "10", "--out", tmp_path / "out")
-    assert done.exit_code == 0 and len(lines(done.stderr)) == 1 and lines(done.stderr)[0].startswith("running ")
+    done = boatsim(
+        "manoeuvre", "zigzag", "--vessel", "mariner", "--angle", "10", "--out", tmp_path / "out"
+    )
+    assert (
+        done.exit_code == 0
+        and len(lines(done.stderr)) == 1
+        and lines(done.stderr)[0].startswith("running ")
+    )
 
 
 @pytest.mark.parametrize(
     ("elapsed", "share", "said"),
-    [(10.0, 0.5, "about 10 s left"), (60.0, 0.1, "about 9 min left"), (0.2, 0.5, ""), (30.0, 0.0, ""),
-     (50.0, 0.999, "nearly done")],
-)  # fmt: skip
-def test_the_time_left_is_what_the_rest_takes_at_the_same_pace(elapsed: float, share: float, said: str) -> None:
+    [
+        (10.0, 0.5, "about 10 s left"),
+        (60.0, 0.1, "about 9 min left"),
+        (0.2, 0.5, ""),
+        (30.0, 0.0, ""),
+        (50.0, 0.999, "nearly done"),
+    ],
+)
+def test_the_time_left_is_what_the_rest_takes_at_the_same_pace(
+    elapsed: float, share: float, said: str
+) -> None:
     assert progress.time_left(elapsed, share) == said
 
 
@@ -118,8 +167,8 @@ def test_the_bar_makes_way_for_a_question(monkeypatch: pytest.MonkeyPatch) -> No
             return "y\n"
 
     monkeypatch.setattr(progress, "_now", Bars())
-    monkeypatch.setattr(asking.sys, "stdin", Answer())
-    assert asking._asked(Path("mine")) and seen == ["stop", "asked", "start"]
+    monkeypatch.setattr(trust_prompt.sys, "stdin", Answer())
+    assert trust_prompt._asked(Path("mine")) and seen == ["stop", "asked", "start"]
 
 
 def test_a_part_of_the_work_is_told_as_its_share_of_the_whole() -> None:
@@ -131,11 +180,23 @@ def test_a_part_of_the_work_is_told_as_its_share_of_the_whole() -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="there is no terminal to pretend")
-def test_a_terminal_gets_a_bar_with_the_stage_and_the_time_and_it_is_gone_in_the_end(tmp_path: Path) -> None:
+def test_a_terminal_gets_a_bar_with_the_stage_and_the_time_and_it_is_gone_in_the_end(
+    tmp_path: Path,
+) -> None:
     ours, theirs = os.openpty()
-    command = [sys.executable, "-m", "boatsim", "diagnose", *map(str, TRIAL), "--out", str(tmp_path / "out")]
+    command = [
+        sys.executable,
+        "-m",
+        "boatsim",
+        "diagnose",
+        *map(str, TRIAL),
+        "--out",
+        str(tmp_path / "out"),
+    ]
     environ = os.environ | {"TERM": "xterm", "COLUMNS": "120"}
-    running = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=theirs, env=environ)
+    running = subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=theirs, env=environ
+    )
     os.close(theirs)
     shown = b""
     while True:
@@ -150,5 +211,7 @@ def test_a_terminal_gets_a_bar_with_the_stage_and_the_time_and_it_is_gone_in_the
     os.close(ours)
     text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", shown.decode(errors="replace"))
     assert running.returncode == 0 and b"The model leaves out" in out
-    assert "━" in text and "screening 39 entries" in text and "left" in text and "best so far" in text
+    assert (
+        "━" in text and "screening 39 entries" in text and "left" in text and "best so far" in text
+    )
     assert "progress: " not in text and shown.rstrip().endswith(b"\x1b[2K")

@@ -31,7 +31,10 @@ pytestmark = pytest.mark.slow
 
 LONG = os.environ.get("BOATSIM_README_LONG") == "1"
 RESULTS = (ROOT / "docs" / "results.md").read_text(encoding="utf-8")
-PAGES = {file.name: file.read_text(encoding="utf-8") for file in (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))}
+PAGES = {
+    file.name: file.read_text(encoding="utf-8")
+    for file in (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))
+}
 TUTORIALS = sorted(name for name, page in PAGES.items() if MARK in page)
 
 
@@ -50,7 +53,9 @@ def sessions() -> dict[str, tuple[list[list[str]], tuple[str, ...]]]:
     found = {}
     for name, page in PAGES.items():
         for block in blocks(page) if name not in TUTORIALS else ():
-            commands = [c.split("boatsim ", 1)[1] for c in block.commands.split("&&") if "boatsim " in c]
+            commands = [
+                c.split("boatsim ", 1)[1] for c in block.commands.split("&&") if "boatsim " in c
+            ]
             if block.shown and commands and "benchmarks." not in block.commands:
                 words = [[w for x in shlex.split(c) for w in braces(x)] for c in commands]
                 found[f"{name}:{block.line}"] = words, block.shown
@@ -64,7 +69,9 @@ def braces(word: str) -> list[str]:
 
 
 @pytest.mark.parametrize("place", sessions())
-def test_a_command_prints_what_is_shown_below_it(place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_command_prints_what_is_shown_below_it(
+    place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     commands, shown = sessions()[place]
     monkeypatch.chdir(tmp_path)
     (tmp_path / "tests").symlink_to(ROOT / "tests")
@@ -77,7 +84,11 @@ def test_a_command_prints_what_is_shown_below_it(place: str, tmp_path: Path, mon
 
 
 def test_the_commands_of_the_front_page_are_looked_at() -> None:
-    front = [[words[0] for words in commands] for place, (commands, _) in sessions().items() if "README" in place]
+    front = [
+        [words[0] for words in commands]
+        for place, (commands, _) in sessions().items()
+        if "README" in place
+    ]
     assert front == [["run", "diagnose"]]
 
 
@@ -106,27 +117,68 @@ class Row:
     label: str
     columns: tuple[int, ...]  # among the row's figures: recalibrated, patched, ratio
     long: bool = False
-    recordings: tuple[str, ...] = ()  # folders beside the repository that it reads, where they are called otherwise
+    recordings: tuple[
+        str, ...
+    ] = ()  # folders beside the repository that it reads, where they are called otherwise
 
 
 ROLL, HSVA, MARIN, LAKE, THESIS, SILVERBOX = (
-    "kvlcc2_roll_decay", "kvlcc2_hsva_zigzag", "kvlcc2_marin_free", "blueboat_lake", "thesis_tables", "silverbox",
-)  # fmt: skip
+    "kvlcc2_roll_decay",
+    "kvlcc2_hsva_zigzag",
+    "kvlcc2_marin_free",
+    "blueboat_lake",
+    "thesis_tables",
+    "silverbox",
+)
 POND, MMG, TANKS = "esso_osaka_pond", "kvlcc2_mmg", (HSVA, MARIN)
 REAL = (
     Row(ROLL, "every second 20 s window", "split", "windows", (1, 2, 3)),
     Row(ROLL, "middle third", "split", "middle third", (1, 2, 3)),
-    Row(HSVA, "unseen 15/5 and 20/5", "fitted on eight runs", "heading [deg]", (1, 2, 3), long=True),
+    Row(
+        HSVA, "unseen 15/5 and 20/5", "fitted on eight runs", "heading [deg]", (1, 2, 3), long=True
+    ),
     Row(HSVA, "position", "fitted on eight runs", "position [m]", (1, 2, 3), long=True),
     Row(MARIN, "35 deg turning circle", "fitted on", "yaw rate [deg/s]", (1, 2, 3), long=True),
     Row(MARIN, "speed", "fitted on", "speed [m/s]", (1, 2, 3), long=True),
     Row(LAKE, "each of 12 runs", "each run left out", "all", (0, 1, 2), long=True),
     Row(LAKE, "dead reckoning", "each run left out", "all", (3, 4, 5), long=True),
-    Row(POND, "turns and berthing", "fitted on random", "all, position [m]", (2, 3, 6), True, ("esso_osaka",)),
-    Row(POND, "the same by its captive", "fitted on random", "all, position [m]", (1, 3, 4), True, ("esso_osaka",)),
-    Row(MMG, "the standard MMG model", "fitted on eight runs", "heading [deg]", (1, 2, 3), True, TANKS),
+    Row(
+        POND,
+        "turns and berthing",
+        "fitted on random",
+        "all, position [m]",
+        (2, 3, 6),
+        True,
+        ("esso_osaka",),
+    ),
+    Row(
+        POND,
+        "the same by its captive",
+        "fitted on random",
+        "all, position [m]",
+        (1, 3, 4),
+        True,
+        ("esso_osaka",),
+    ),
+    Row(
+        MMG,
+        "the standard MMG model",
+        "fitted on eight runs",
+        "heading [deg]",
+        (1, 2, 3),
+        True,
+        TANKS,
+    ),
     Row(MMG, "position", "fitted on eight runs", "position [m]", (1, 2, 3), True, TANKS),
-    Row(MMG, "on MARIN's turning circle", "fitted on zz_10", "yaw rate [deg/s]", (1, 2, 3), True, TANKS),
+    Row(
+        MMG,
+        "on MARIN's turning circle",
+        "fitted on zz_10",
+        "yaw rate [deg/s]",
+        (1, 2, 3),
+        True,
+        TANKS,
+    ),
     Row(MMG, "speed", "fitted on zz_10", "speed [m/s]", (1, 2, 3), True, TANKS),
     Row(SILVERBOX, "one free run over", "Rms error [mV], one free run", "arrow", (1, 2, 3)),
     Row(THESIS, "published norms", "J, the rms", "all", (2, 3, 4), long=True),
@@ -168,7 +220,11 @@ def test_a_row_about_real_recordings_is_what_its_benchmark_prints(
     folders = [common.RECORDINGS / name for name in row.recordings or (row.benchmark,)]
     if row.benchmark not in (ROLL, THESIS) and not all(f.is_dir() for f in folders):
         pytest.skip("needs recordings beside the repository")
-    (cells,) = (c for c in with_names("## On real recordings") if c[0] == row.benchmark and row.judged_on in c[1])
+    (cells,) = (
+        c
+        for c in with_names("## On real recordings")
+        if c[0] == row.benchmark and row.judged_on in c[1]
+    )
     monkeypatch.chdir(tmp_path)
     found = in_table(printed_by(row.benchmark), row.title, row.label)
     shown = [numbers(cell)[0] for cell in cells[2:5]]
@@ -188,7 +244,9 @@ def test_every_row_about_real_recordings_is_compared() -> None:
     rows = list(with_names("## On real recordings"))
     assert len(rows) == len(REAL)
     for cells in rows:
-        assert any(cells[0] == row.benchmark and cells[1].startswith(row.judged_on) for row in REAL), cells
+        assert any(
+            cells[0] == row.benchmark and cells[1].startswith(row.judged_on) for row in REAL
+        ), cells
 
 
 TRIALS = {  # as a row of the page begins -> rows of the benchmark that give its figures
@@ -199,10 +257,16 @@ TRIALS = {  # as a row of the page begins -> rows of the benchmark that give its
     "visible pairs": ["visible pairs"],
     "wrong names": ["wrong names"],
     "visible unknown causes flagged": ["visible unknown cause flagged, pilot"],
-    "visible unknown causes described": ["visible unknown cause described", "with a term of its kind"],
+    "visible unknown causes described": [
+        "visible unknown cause described",
+        "with a term of its kind",
+    ],
     "their error on unseen": ["described: error ratio"],
     "skill with these": ["skill, truth taken out", "of these by a description"],
-    "unknown causes flagged": ["visible unknown cause flagged, pilot", "visible unknown cause flagged, concealed"],
+    "unknown causes flagged": [
+        "visible unknown cause flagged, pilot",
+        "visible unknown cause flagged, concealed",
+    ],
     "known cause": ["known cause"],
     "skill on unseen runs": ["held-out skill"],
     "true parameters": ["true parameters", "median error"],
@@ -210,9 +274,16 @@ TRIALS = {  # as a row of the page begins -> rows of the benchmark that give its
 }
 
 
-@pytest.mark.skipif(not LONG or not trials.SHARED.is_dir(), reason="many minutes; needs trials beside the repository")
-def test_the_table_of_the_trials_is_what_the_benchmark_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "argv", ["trials", "--unknowns", "--jobs", "1", "--out", str(tmp_path)])
+@pytest.mark.skipif(
+    not LONG or not trials.SHARED.is_dir(),
+    reason="many minutes; needs trials beside the repository",
+)
+def test_the_table_of_the_trials_is_what_the_benchmark_prints(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        sys, "argv", ["trials", "--unknowns", "--jobs", "1", "--out", str(tmp_path)]
+    )
     compare_trials("## On boats with concealed effects")
 
 
@@ -223,7 +294,9 @@ def test_the_table_of_five_other_vessels_is_what_the_benchmarks_print(
     made = str(tmp_path / "made")
     monkeypatch.setattr(sys, "argv", ["practice", "--out", made])
     practice.main()
-    monkeypatch.setattr(sys, "argv", ["trials", made, "--jobs", "1", "--out", str(tmp_path / "out")])
+    monkeypatch.setattr(
+        sys, "argv", ["trials", made, "--jobs", "1", "--out", str(tmp_path / "out")]
+    )
     compare_trials("## On five other vessels")
 
 

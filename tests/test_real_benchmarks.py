@@ -6,7 +6,7 @@ from runs import found
 from benchmarks.real import kvlcc2_roll_decay as roll
 from benchmarks.real import thesis_tables as thesis
 from benchmarks.real.thesis_runs import Bench
-from boatsim.diagnose.analysis import Diagnosis
+from boatsim.diagnosis.pipeline import Diagnosis
 
 TRUTH = {"thrust": 0.6, "astern": 0.7}  # [N], ratio
 
@@ -19,7 +19,9 @@ def windows() -> Diagnosis:
 def test_every_second_window_of_the_roll_decay_is_predicted_far_better_than_by_a_linear_boat(
     windows: Diagnosis,
 ) -> None:
-    assert len(windows.findings.held_out) == 4 and not set(windows.findings.held_out) & set(windows.findings.runs)
+    assert len(windows.findings.held_out) == 4 and not set(windows.findings.held_out) & set(
+        windows.findings.runs
+    )
     assert roll.ratio(windows) <= 0.3
 
 
@@ -27,7 +29,9 @@ def test_the_middle_third_is_predicted_from_the_first_and_the_last() -> None:
     assert roll.ratio(roll.by_thirds(*roll.opened(roll.AT_REST))) <= 0.2
 
 
-def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(windows: Diagnosis) -> None:
+def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(
+    windows: Diagnosis,
+) -> None:
     _, ranking = roll.last_third(windows, roll.opened(roll.AT_REST)[0])
     assert {n.name for n in ranking.named} == {"steady_force"}
     alike = {"steady_force", "roll_offset"}  # so small a roll can not tell them apart
@@ -52,7 +56,9 @@ def test_fast_runs_of_the_thesis_tests_give_the_norms_of_the_engine(test: str) -
 
 def test_commands_of_a_turn_can_be_played_to_another_boat() -> None:
     knobs, values = (thesis.OWN[1],), (0.2,)
-    closed, played = (Bench("yaw_1_as_published", played=p).norms(knobs, values, (0,)) for p in (False, True))
+    closed, played = (
+        Bench("yaw_1_as_published", played=p).norms(knobs, values, (0,)) for p in (False, True)
+    )
     fitted = ("moved", "position_inf", "position_rms", "turn_time")
     assert {n: played[n] for n in fitted} == pytest.approx({n: closed[n] for n in fitted}, rel=0.15)
 
@@ -61,7 +67,9 @@ def test_commands_of_a_turn_can_be_played_to_another_boat() -> None:
 def test_an_effect_that_made_the_norms_is_found_in_them() -> None:
     tables = thesis.Tables(tests=("sway_1", "sway_3"))
     knobs = thesis.knobs_of(("weak_reverse",))
-    made = {t: tables.norms(t, knobs, (TRUTH["thrust"], 0.5, TRUTH["astern"])) for t in tables.benches}
+    made = {
+        t: tables.norms(t, knobs, (TRUTH["thrust"], 0.5, TRUTH["astern"])) for t in tables.benches
+    }
     tables.data = {t: {n: made[t][n] for n in tables.data[t]} for t in tables.benches}
     ranking = thesis.rank(tables, ("weak_reverse", "cross_flow_drag", "prop_walk"))
     assert ranking.best.names == ("weak_reverse",) and ranking.gains["weak_reverse"] > 4.0
@@ -69,10 +77,16 @@ def test_an_effect_that_made_the_norms_is_found_in_them() -> None:
     assert value == pytest.approx(TRUTH["astern"], abs=max(2.0 * sd, 0.02))
     left = thesis.left_out(tables, ranking.best, "sway_3")
     without = thesis.left_out(tables, ranking.recalibrated, "sway_3")
-    assert thesis.distance(tables, left, ["sway_3"]) < 0.5 * thesis.distance(tables, without, ["sway_3"])
+    assert thesis.distance(tables, left, ["sway_3"]) < 0.5 * thesis.distance(
+        tables, without, ["sway_3"]
+    )
 
 
 def test_nothing_is_found_in_the_norms_of_the_nominal_itself() -> None:
     tables = thesis.Tables(tests=("sway_1",)).only(("sway_1",), facts=False)
-    tables.data = {"sway_1": {n: tables.norms("sway_1", thesis.OWN, (0.4, 0.5))[n] for n in tables.data["sway_1"]}}
+    tables.data = {
+        "sway_1": {
+            n: tables.norms("sway_1", thesis.OWN, (0.4, 0.5))[n] for n in tables.data["sway_1"]
+        }
+    }
     assert thesis.rank(tables, ("weak_reverse", "cross_flow_drag", "prop_walk")).best.names == ()

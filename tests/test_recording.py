@@ -24,11 +24,16 @@ RUNS = sorted(  # of vessels: measured wind and an oscillator lie there too
 )
 HEADER = "t_s,x_m,y_m,psi_rad,thrust_port_N\n"
 LIMITS = {"thrust_port_N": (-1.0, 1.0), "thrust_starboard_N": (-1.0, 1.0)}
-real = pytest.mark.skipif(not RUNS, reason="the real recordings lie beside the repository, not in it")
+real = pytest.mark.skipif(
+    not RUNS, reason="the real recordings lie beside the repository, not in it"
+)
 
 
 def lines(n: int = 30) -> list[str]:
-    return [f"{0.1 * i:.1f},{0.02 * i:.3f},{0.1 * math.sin(0.1 * i):.4f},{0.05 * i:.4f},0.5\n" for i in range(n)]
+    return [
+        f"{0.1 * i:.1f},{0.02 * i:.3f},{0.1 * math.sin(0.1 * i):.4f},{0.05 * i:.4f},0.5\n"
+        for i in range(n)
+    ]
 
 
 def file(folder: Path, text: str | bytes, name: str = "run.csv") -> Path:
@@ -55,13 +60,20 @@ def line_of(path: Path, **channels: tuple[float, float]) -> str:
 def circle(n: int = 200) -> Recording:
     t = 0.05 * np.arange(n)
     psi = 0.4 * t
-    signals = {"x_m": 2.0 * np.sin(psi), "y_m": 2.0 - 2.0 * np.cos(psi), "psi_rad": psi, "pwm_port": np.full(n, 120.0)}
+    signals = {
+        "x_m": 2.0 * np.sin(psi),
+        "y_m": 2.0 - 2.0 * np.cos(psi),
+        "psi_rad": psi,
+        "pwm_port": np.full(n, 120.0),
+    }
     signals["camera_x_m"] = np.where(np.arange(n) % 8 == 0, signals["x_m"], np.nan)
     return Recording("circle", t, signals)
 
 
 @real
-@pytest.mark.parametrize("path", [p for p in RUNS if "trials" not in p.parts], ids=lambda p: f"{p.parts[-3]}/{p.stem}")
+@pytest.mark.parametrize(
+    "path", [p for p in RUNS if "trials" not in p.parts], ids=lambda p: f"{p.parts[-3]}/{p.stem}"
+)
 def test_every_real_recording_is_read_with_its_notes(path):
     run = read(path)
     expected = path.read_text().count("\n") - 1
@@ -85,8 +97,12 @@ def test_degrees_are_told_from_radians_on_every_real_recording_that_turns(wrappe
     for run in map(read, RUNS):
         psi = np.remainder(run["psi_rad"], 2 * math.pi) if wrapped else run["psi_rad"]
         assert units.heading_in_degrees(run.t, psi, run.signals) is None, run.path
-        if run.notes.vessel != "kvlcc2_roll":  # goes straight ahead: 0.05 deg and 0.05 rad look the same
-            assert units.heading_in_degrees(run.t, np.degrees(psi), run.signals) is not None, run.path
+        if (
+            run.notes.vessel != "kvlcc2_roll"
+        ):  # goes straight ahead: 0.05 deg and 0.05 rad look the same
+            assert units.heading_in_degrees(run.t, np.degrees(psi), run.signals) is not None, (
+                run.path
+            )
 
 
 @real
@@ -135,7 +151,10 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
 
 def test_headings_are_unwrapped_and_may_pass_17_rad(tmp_path):
     psi = 0.3 * 0.1 * np.arange(800)
-    rows = [f"{0.1 * i:.1f},0,0,{p},0\n" for i, p in enumerate(np.remainder(psi + math.pi, 2 * math.pi) - math.pi)]
+    rows = [
+        f"{0.1 * i:.1f},0,0,{p},0\n"
+        for i, p in enumerate(np.remainder(psi + math.pi, 2 * math.pi) - math.pi)
+    ]
     again = read(file(tmp_path, HEADER + "".join(rows)))
     assert psi[-1] > 17
     np.testing.assert_allclose(again["psi_rad"], psi, atol=1e-9)
@@ -167,9 +186,17 @@ def test_a_part_keeps_its_times_and_an_empty_part_says_what_there_is():
 
 @pytest.mark.parametrize(
     "name, unit",
-    [("x_m", "m"), ("sensed_ax_mps2", "m/s^2"), ("wind_N_Nm", "N m"), ("pwm_port", ""), ("estimate_d_N_low", "N"),
-     ("n_rpm", "1/min"), ("r_radps", "rad/s"), ("filled", "")],
-)  # fmt: skip
+    [
+        ("x_m", "m"),
+        ("sensed_ax_mps2", "m/s^2"),
+        ("wind_N_Nm", "N m"),
+        ("pwm_port", ""),
+        ("estimate_d_N_low", "N"),
+        ("n_rpm", "1/min"),
+        ("r_radps", "rad/s"),
+        ("filled", ""),
+    ],
+)
 def test_the_unit_is_the_end_of_the_name(name, unit):
     assert circle().unit(name) == unit
 
@@ -184,7 +211,10 @@ def test_the_unit_is_the_end_of_the_name(name, unit):
         ((HEADER + "".join(lines())).replace(",", ";"), "row 1: is separated by semicolons"),
         (changed(1, "time,x_m,y_m,psi_rad,thrust_port_N"), "row 1, column t_s: is missing"),
         (changed(1, "t_s,a,b,c,thrust_port_N"), "no pose or rate"),
-        (changed(1, "t_s,x_m,x_m,psi_rad,thrust_port_N"), "row 1, column x_m: there are two columns"),
+        (
+            changed(1, "t_s,x_m,x_m,psi_rad,thrust_port_N"),
+            "row 1, column x_m: there are two columns",
+        ),
         (changed(7, "0.5,0,0,0"), "row 7: has 4 cells; the header has 5 columns"),
         (changed(7, "0.5,0,nan,0,0"), "row 7, column y_m: the cell is empty or not a number"),
         (changed(7, "0.5,0,0,,0"), "row 7, column psi_rad: the cell is empty"),
@@ -205,7 +235,10 @@ def test_a_bad_file_gets_one_line_with_file_row_and_column(tmp_path, text, said)
 @pytest.mark.parametrize("times", ["0.0", "0.0 0.0 0.1 0.1 0.1 0.0", "3 2 1"])
 @pytest.mark.filterwarnings("error")
 def test_time_that_stands_still_or_runs_back_is_one_line(tmp_path, times):
-    rows = [f"{times.split()[i % len(times.split())]},{0.1 * i},{0.1 * i * i},{0.3 * i},0.5\n" for i in range(40)]
+    rows = [
+        f"{times.split()[i % len(times.split())]},{0.1 * i},{0.1 * i * i},{0.3 * i},0.5\n"
+        for i in range(40)
+    ]
     assert "it must increase" in line_of(file(tmp_path, HEADER + "".join(rows)))
 
 
@@ -232,7 +265,9 @@ def test_degrees_are_refused_with_the_column_that_has_them(tmp_path, degrees):
     full["r_radps"][:40], full["psi_rad"] = 0.0, np.maximum(0.0, run["psi_rad"] - 0.8)
     write_csv(Recording("x", run.t, full), tmp_path / "run.csv")
     read(tmp_path / "run.csv")
-    write_csv(Recording("x", run.t, {**full, degrees: np.degrees(full[degrees])}), tmp_path / "run.csv")
+    write_csv(
+        Recording("x", run.t, {**full, degrees: np.degrees(full[degrees])}), tmp_path / "run.csv"
+    )
     assert f"column {degrees}: " in line_of(tmp_path / "run.csv")
     assert "looks like degrees" in line_of(tmp_path / "run.csv")
 
@@ -271,7 +306,10 @@ def test_notes_come_from_the_nearest_folder_above_and_a_run_overrides_them(tmp_p
         facts={"forward_speed_mps": 0.97, "fan": "north wall"},
     )
     assert (len(run), len(run.used())) == (30, 25)
-    assert "colour" in run.remarks[0] and "noise.headng_sd_rad (did you mean heading_sd_rad?)" in run.remarks[0]
+    assert (
+        "colour" in run.remarks[0]
+        and "noise.headng_sd_rad (did you mean heading_sd_rad?)" in run.remarks[0]
+    )
 
 
 @pytest.mark.parametrize(
@@ -288,10 +326,16 @@ def test_notes_come_from_the_nearest_folder_above_and_a_run_overrides_them(tmp_p
         ("set.wind.force_N = 'x'", "set.wind.force_N = 'x'; allowed is a number"),
         ("columns.x_m = 1", "columns.x_m = 1; allowed is a text"),
         ("runs.run = 1", "runs.run = 1; allowed is a table"),
-        ("use = [0, 1" + 400 * "0" + "]", "use is an integer of 401 digits; allowed are those of 64 bits"),
+        (
+            "use = [0, 1" + 400 * "0" + "]",
+            "use is an integer of 401 digits; allowed are those of 64 bits",
+        ),
         ("facts.walls_m = 3.0", "facts.walls_m = 3.0; allowed is [x_low, x_high, y_low, y_high]"),
         ("forward_speed_mps = 'fast'", "forward_speed_mps = 'fast'; allowed is a number"),
-        ("facts.walls_m = [4, -4, -3, 3]", "facts.walls_m = [4, -4, -3, 3]; allowed is [x_low, x_high, y_low, y_high]"),
+        (
+            "facts.walls_m = [4, -4, -3, 3]",
+            "facts.walls_m = [4, -4, -3, 3]; allowed is [x_low, x_high, y_low, y_high]",
+        ),
     ],
 )
 def test_a_bad_recording_toml_gets_one_line(tmp_path, text, said):
@@ -309,9 +353,15 @@ def test_the_one_axis_of_an_ambient_force_needs_no_list(tmp_path):
 
 
 CELL = st.one_of(
-    st.floats().map(repr), st.integers().map(str), st.text(max_size=6), st.sampled_from(["", "nan", "1e999"])
+    st.floats().map(repr),
+    st.integers().map(str),
+    st.text(max_size=6),
+    st.sampled_from(["", "nan", "1e999"]),
 )
-NAME = st.one_of(st.sampled_from(["t_s", "x_m", "psi_rad", "phi_rad", "r_radps", "thrust_N"]), st.text(max_size=6))
+NAME = st.one_of(
+    st.sampled_from(["t_s", "x_m", "psi_rad", "phi_rad", "r_radps", "thrust_N"]),
+    st.text(max_size=6),
+)
 
 
 @st.composite
@@ -326,8 +376,14 @@ def tables(draw):
     return text[: draw(st.integers(0, len(text)))] if draw(st.booleans()) else text
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(content=st.one_of(st.binary(max_size=400), tables().map(lambda text: text.encode("utf-8", "replace"))))
+@settings(
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    content=st.one_of(
+        st.binary(max_size=400), tables().map(lambda text: text.encode("utf-8", "replace"))
+    )
+)
 def test_no_content_of_a_file_ends_in_anything_but_a_recording_or_one_line(tmp_path, content):
     try:
         with warnings.catch_warnings():
@@ -340,11 +396,15 @@ def test_no_content_of_a_file_ends_in_anything_but_a_recording_or_one_line(tmp_p
 
 VALUE = st.recursive(
     st.one_of(st.integers(), st.floats(), st.booleans(), st.text(max_size=5)),
-    lambda inner: st.lists(inner, max_size=3)
-    | st.dictionaries(st.sampled_from(["run", "x_m", "axes", "wind"]), inner, max_size=3),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(st.sampled_from(["run", "x_m", "axes", "wind"]), inner, max_size=3)
+    ),
     max_leaves=6,
-)  # fmt: skip
-KEY = st.sampled_from(["vessel", "load", "scale", "use", "columns", "noise", "ambient", "facts", "set", "runs", "odd"])
+)
+KEY = st.sampled_from(
+    ["vessel", "load", "scale", "use", "columns", "noise", "ambient", "facts", "set", "runs", "odd"]
+)
 
 
 def toml(value: object) -> str:
@@ -353,13 +413,29 @@ def toml(value: object) -> str:
     if isinstance(value, list):
         return "[" + ", ".join(map(toml, value)) + "]"
     if isinstance(value, str):
-        return '"' + "".join(f"\\U{ord(letter):08X}" for letter in value if not 0xD800 <= ord(letter) < 0xE000) + '"'
+        return (
+            '"'
+            + "".join(
+                f"\\U{ord(letter):08X}" for letter in value if not 0xD800 <= ord(letter) < 0xE000
+            )
+            + '"'
+        )
     return str(value).lower()
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(content=st.one_of(st.binary(max_size=60), st.dictionaries(KEY, VALUE).map(
-    lambda table: "\n".join(f"{key} = {toml(value)}" for key, value in table.items()).encode())))  # fmt: skip
+@settings(
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    content=st.one_of(
+        st.binary(max_size=60),
+        st.dictionaries(KEY, VALUE).map(
+            lambda table: "\n".join(
+                f"{key} = {toml(value)}" for key, value in table.items()
+            ).encode()
+        ),
+    )
+)
 def test_no_recording_toml_ends_in_anything_but_notes_or_one_line(tmp_path, content):
     path = file(tmp_path, HEADER + "".join(lines()))
     file(tmp_path, content, "recording.toml")
@@ -389,15 +465,34 @@ CELLS = st.sampled_from(
         "+3",
         "ü",
     ]
-    + ["AUTO", '"4"', '"a,b"', 'a"b', '""', '"""', "nan(1)", "\t5", "1\x0b", "1\x1f", "\u20281", "9" * 30, "true", "\r"]
+    + [
+        "AUTO",
+        '"4"',
+        '"a,b"',
+        'a"b',
+        '""',
+        '"""',
+        "nan(1)",
+        "\t5",
+        "1\x0b",
+        "1\x1f",
+        "\u20281",
+        "9" * 30,
+        "true",
+        "\r",
+    ]
     + ["0.1234567890123456789", "1e5", "1E+5", "1d5", "١", "infinity", "NULL", "\0", "1\n", '"\n"']
 ) | st.floats().map(repr)
-HEADS = st.sampled_from(["a,b,c", " a ,b,c", '"a",b,c', "a,b,a", "a,b,", "a;b;c", "a,b", "\ufeffa,b,c", "a,b\x0b,c"])
+HEADS = st.sampled_from(
+    ["a,b,c", " a ,b,c", '"a",b,c', "a,b,a", "a,b,", "a;b;c", "a,b", "\ufeffa,b,c", "a,b\x0b,c"]
+)
 
 
 @settings(max_examples=300, deadline=None, derandomize=True, database=None)
 @given(
-    HEADS, st.lists(st.lists(CELLS, min_size=3, max_size=3), max_size=4), st.sampled_from(["\n", "\r\n", "\n\n", "\r"])
+    HEADS,
+    st.lists(st.lists(CELLS, min_size=3, max_size=3), max_size=4),
+    st.sampled_from(["\n", "\r\n", "\n\n", "\r"]),
 )
 def test_native_code_reads_a_csv_as_python_does_line_by_line_or_not_at_all(
     tmp_path_factory: pytest.TempPathFactory, head: str, rows: list[list[str]], end: str

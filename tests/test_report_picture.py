@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from test_report import MODELS, described, nothing, planar, rolling, unknown
 
-from boatsim.diagnose.report import page as report
-from boatsim.diagnose.report import show, stays
-from boatsim.diagnose.report.film import FRAMES, LASTS
-from boatsim.diagnose.report.findings import Findings, FreeRun, Missing
-from boatsim.diagnose.report.replay import LARGEST, SHOWN, SMALLEST, replay
+from boatsim.diagnosis.report import before_after, mean_force_section
+from boatsim.diagnosis.report import page as report
+from boatsim.diagnosis.report.animation import FRAMES, LASTS
+from boatsim.diagnosis.report.findings import Findings, FreeRun, Missing
+from boatsim.diagnosis.report.replay_section import LARGEST, SHOWN, SMALLEST, replay
 
 LIMIT = 2_000_000  # bytes of a page
 
@@ -32,8 +32,12 @@ def test_the_picture_is_of_unseen_data_and_comes_before_everything_else(tmp_path
     for look in ("recorded", "recalibrated", "patched"):
         assert re.search(rf'class="line {look}" d="M', first)
     assert first.count("<figure") == 1 and 'type="range"' in first and "<button" in first
-    film = json.loads(re.search(r'<script type="application/json">(.*?)</script>', first, re.DOTALL)[1])
-    assert [b["look"] for b in film["boats"]] == ["recorded", "recalibrated", "patched"] and film["plan"]
+    film = json.loads(
+        re.search(r'<script type="application/json">(.*?)</script>', first, re.DOTALL)[1]
+    )
+    assert [b["look"] for b in film["boats"]] == ["recorded", "recalibrated", "patched"] and film[
+        "plan"
+    ]
 
 
 def test_north_is_up_east_is_right_and_a_boat_on_heading_zero_points_up():
@@ -52,12 +56,15 @@ def test_the_film_shows_what_was_run_and_begins_where_the_recalibrated_boat_errs
     found, boats = film_of(f)
     off = {
         m: np.hypot(
-            np.subtract(boats[m]["x"], boats["recorded"]["x"]), np.subtract(boats[m]["y"], boats["recorded"]["y"])
+            np.subtract(boats[m]["x"], boats["recorded"]["x"]),
+            np.subtract(boats[m]["y"], boats["recorded"]["y"]),
         )
         for m in ("recalibrated", "patched")
     }
     largest = max(
-        np.hypot(*(r.channels["recalibrated"][n] - r.channels["recorded"][n] for n in ("x_m", "y_m"))).max()
+        np.hypot(
+            *(r.channels["recalibrated"][n] - r.channels["recorded"][n] for n in ("x_m", "y_m"))
+        ).max()
         for r in f.free_runs
     )
     assert off["recalibrated"].max() == pytest.approx(largest, abs=1e-3)
@@ -78,17 +85,29 @@ def test_a_boat_is_drawn_so_that_it_can_be_seen_and_its_scale_is_said(size, draw
 def test_a_boat_that_only_rolls_shows_its_roll_over_time():
     f = rolling()
     found, boats = film_of(f)
-    assert not found.film["plan"] and found.film["unit"] == "°" and found.title.startswith("Roll on unseen data")
+    assert (
+        not found.film["plan"]
+        and found.film["unit"] == "°"
+        and found.title.startswith("Roll on unseen data")
+    )
     run = f.free_runs[0]
     shown = np.interp(found.film["t"], run.t, np.degrees(run.channels["patched"]["phi_rad"]))
-    assert boats["patched"]["y"] == pytest.approx(shown, abs=1e-2) and boats["patched"]["x"] == found.film["t"]
+    assert (
+        boats["patched"]["y"] == pytest.approx(shown, abs=1e-2)
+        and boats["patched"]["x"] == found.film["t"]
+    )
     assert 'data-across="time [s]"' in found.picture and 'data-up="roll [°]"' in found.picture
 
 
 def test_a_boat_whose_heading_nobody_knows_is_a_mark_that_points_nowhere():
     f = planar()
     headless = tuple(
-        replace(r, channels={m: {n: v for n, v in c.items() if n != "psi_rad"} for m, c in r.channels.items()})
+        replace(
+            r,
+            channels={
+                m: {n: v for n, v in c.items() if n != "psi_rad"} for m, c in r.channels.items()
+            },
+        )
         for r in f.free_runs
     )
     found, boats = film_of(replace(f, free_runs=headless))
@@ -99,11 +118,14 @@ def test_a_boat_whose_heading_nobody_knows_is_a_mark_that_points_nowhere():
 def test_a_boat_that_only_yaws_shows_its_heading_over_time():
     f = planar()
     yawing = tuple(
-        replace(r, channels={m: {"psi_rad": c["psi_rad"]} for m, c in r.channels.items()}) for r in f.free_runs
+        replace(r, channels={m: {"psi_rad": c["psi_rad"]} for m, c in r.channels.items()})
+        for r in f.free_runs
     )
     found, boats = film_of(replace(f, free_runs=yawing))
     assert not found.film["plan"] and found.title.startswith("Heading on unseen data")
-    assert np.degrees(boats["patched"]["turned"]) == pytest.approx(np.array(boats["patched"]["y"]), abs=0.1)
+    assert np.degrees(boats["patched"]["turned"]) == pytest.approx(
+        np.array(boats["patched"]["y"]), abs=0.1
+    )
 
 
 def test_without_a_patch_no_patched_boat_is_shown_and_without_free_runs_no_picture(tmp_path):
@@ -116,7 +138,9 @@ def test_without_a_patch_no_patched_boat_is_shown_and_without_free_runs_no_pictu
 
 def test_gaps_of_the_recording_are_gaps_of_the_film_and_rare_fixes_are_not(tmp_path):
     f = planar()
-    seen = np.isin(np.arange(37), [1, 7, 13, 32, 35])  # 6 a second: a fix a second, then none for 3.2 s
+    seen = np.isin(
+        np.arange(37), [1, 7, 13, 32, 35]
+    )  # 6 a second: a fix a second, then none for 3.2 s
     gap = {n: np.where(seen, v, np.nan) for n, v in f.free_runs[0].channels["recorded"].items()}
     run = replace(f.free_runs[0], channels=f.free_runs[0].channels | {"recorded": gap})
     _, boats = film_of(replace(f, free_runs=(run,)))
@@ -125,7 +149,11 @@ def test_gaps_of_the_recording_are_gaps_of_the_film_and_rare_fixes_are_not(tmp_p
     assert boats["recorded"]["x"][4] == pytest.approx((gap["y_m"][1] + gap["y_m"][7]) / 2, abs=1e-3)
     assert None not in boats["patched"]["x"]
     report.write(replace(f, free_runs=(run,)), tmp_path)
-    film = re.search(r'"application/json">(.*?)</script>', (tmp_path / "report.html").read_text("utf-8"), re.DOTALL)
+    film = re.search(
+        r'"application/json">(.*?)</script>',
+        (tmp_path / "report.html").read_text("utf-8"),
+        re.DOTALL,
+    )
     json.loads(film[1], parse_constant=lambda name: pytest.fail(name))
 
 
@@ -137,20 +165,33 @@ def hour(runs: int = 3, horizon: float = 6.0, rate: float = 10.0) -> Findings:
     noise = np.cumsum(rng.normal(size=n)) / 30
     band = {a: np.full(n, 1.0) for a in ("surge", "sway", "yaw")}
     unit = {"surge": "N", "sway": "N", "yaw": "N m"}
-    missing = tuple(Missing(f"log_{i}", t, dict.fromkeys(band, noise), band, unit, dict.fromkeys(band, 0.1 * noise))
-                    for i in range(runs + 3))  # fmt: skip
+    missing = tuple(
+        Missing(
+            f"log_{i}", t, dict.fromkeys(band, noise), band, unit, dict.fromkeys(band, 0.1 * noise)
+        )
+        for i in range(runs + 3)
+    )
     rows = round(horizon * rate) + 1
     free = []
     for i in range(runs):
         for k in range(0, n - rows, rows - 1):
             s, tau = t[k : k + rows], t[:rows]
-            path = {"x_m": 300 * np.sin(0.003 * s), "y_m": 200 * np.sin(0.007 * s), "psi_rad": 0.01 * s}
+            path = {
+                "x_m": 300 * np.sin(0.003 * s),
+                "y_m": 200 * np.sin(0.007 * s),
+                "psi_rad": 0.01 * s,
+            }
             models = {
-                m: {c: v + a * 0.01 * tau**2 for c, v in path.items()} for m, a in zip(MODELS, (2, 1, 0.1), strict=True)
+                m: {c: v + a * 0.01 * tau**2 for c, v in path.items()}
+                for m, a in zip(MODELS, (2, 1, 0.1), strict=True)
             }
             free.append(FreeRun(f"unseen_{i}", float(s[0]), s, {"recorded": path} | models))
-    intervals = [{"run": f"log_{i}", "from_s": 9.0 * k, "to_s": 9.0 * k + 5.0, "axis": axis}
-                 for i in range(runs) for k in range(400) for axis in band]  # fmt: skip
+    intervals = [
+        {"run": f"log_{i}", "from_s": 9.0 * k, "to_s": 9.0 * k + 5.0, "axis": axis}
+        for i in range(runs)
+        for k in range(400)
+        for axis in band
+    ]
     answer = f.answer | {"where": f.answer["where"] | {"intervals": intervals}}
     return replace(f, answer=answer, missing=missing, free_runs=tuple(free), held_out=("unseen_0",))
 
@@ -184,10 +225,16 @@ def test_parts_of_one_run_come_in_the_order_of_time():
         def __init__(self, name: str, begin: float) -> None:
             self.name, self.times = name, np.array([begin, begin + 1.0])
 
-    thirds = [Part("run (first third)", 0.0), Part("run (last third)", 2.0), Part("run (middle third)", 1.0)]
-    assert [p.name for p in show.in_time(thirds)] == [f"run ({n} third)" for n in ("first", "middle", "last")]
+    thirds = [
+        Part("run (first third)", 0.0),
+        Part("run (last third)", 2.0),
+        Part("run (middle third)", 1.0),
+    ]
+    assert [p.name for p in before_after.in_time(thirds)] == [
+        f"run ({n} third)" for n in ("first", "middle", "last")
+    ]
     whole = [Part("run_2", 5.0), Part("run_1", 0.0), Part("run_3", 3.0)]
-    assert show.in_time(whole) == whole
+    assert before_after.in_time(whole) == whole
 
 
 MEAN = {"sway": {"mean": -0.21, "sd": 0.02, "unit": "N", "share_of_full_thrust": 0.105}}
@@ -198,7 +245,9 @@ def test_a_mean_force_that_stays_is_said_first_with_its_axis_its_side_and_its_sh
     report.write(replace(f, answer=f.answer | {"mean_left": MEAN}), tmp_path)
     said = "0.210 ± 0.020 N to port in sway (10 % of full thrust)"
     html = (tmp_path / "report.html").read_text("utf-8").replace("\u00a0", " ")
-    assert said in html[: html.index("<nav")] and said in (tmp_path / "report.md").read_text("utf-8")
+    assert said in html[: html.index("<nav")] and said in (tmp_path / "report.md").read_text(
+        "utf-8"
+    )
     assert "stays in the patched vessel" in html
 
 
@@ -207,11 +256,14 @@ def test_where_none_stays_nothing_is_said_of_it(made, tmp_path):
     f = made()
     report.write(replace(f, answer=f.answer | {"mean_left": {}}), tmp_path)
     assert "mean force" not in (tmp_path / "report.html").read_text("utf-8").lower()
-    assert stays.in_words(f.answer, True) == []
+    assert mean_force_section.in_words(f.answer, True) == []
 
 
 def test_the_share_of_belief_says_what_it_is(tmp_path):
     report.write(planar(), tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
     assert "probability alone" not in text and "how likely, if only one thing is missing" in text
-    assert "if exactly one of these entries, or nothing, were what is missing, how likely is it this one?" in text
+    assert (
+        "if exactly one of these entries, or nothing, were what is missing, how likely is it this one?"
+        in text
+    )

@@ -22,7 +22,12 @@ def circle(seconds: float = 10.0) -> Recording:
     t = np.round(0.02 * np.arange(round(seconds / 0.02) + 1), 10)
     psi = 0.35 * t + 17.0
     pose = {"x_m": 0.5 * np.sin(0.35 * t), "y_m": 0.5 - 0.5 * np.cos(0.35 * t), "psi_rad": psi}
-    rates = {"u_mps": 0.175 + 1e-7 * t, "v_mps": 0 * t, "r_radps": 0.35 + 0 * t, "reference_u_mps": 0.18 + 0 * t}
+    rates = {
+        "u_mps": 0.175 + 1e-7 * t,
+        "v_mps": 0 * t,
+        "r_radps": 0.35 + 0 * t,
+        "reference_u_mps": 0.18 + 0 * t,
+    }
     thrust = {
         "thrust_port_N": 1.0 / 3.0 + 0 * t,
         "actual_thrust_port_N": 0.3 + 0 * t,
@@ -30,13 +35,21 @@ def circle(seconds: float = 10.0) -> Recording:
     }
     seen = {f"camera_{n}": np.where(np.arange(len(t)) % 8 == 0, pose[n], np.nan) for n in pose}
     rest = {"sensed_u_mps": np.full(len(t), np.nan), "force_X_N": np.cos(t), "force_Y_N": np.sin(t)}
-    bounds = {"estimate_d_N": np.sin(t), "estimate_d_N_low": -2.0 + 0 * t, "estimate_d_N_high": 2.0 + 0 * t}
+    bounds = {
+        "estimate_d_N": np.sin(t),
+        "estimate_d_N_low": -2.0 + 0 * t,
+        "estimate_d_N_high": 2.0 + 0 * t,
+    }
     return Recording("circle", t, {**pose, **rates, **thrust, **seen, **rest, **bounds})
 
 
 def pieces(run: Recording, rows: int = 50) -> list[Recording]:
-    return [Recording(run.name, run.t[i : i + rows], {n: v[i : i + rows] for n, v in run.signals.items()})
-            for i in range(0, len(run), rows)]  # fmt: skip
+    return [
+        Recording(
+            run.name, run.t[i : i + rows], {n: v[i : i + rows] for n, v in run.signals.items()}
+        )
+        for i in range(0, len(run), rows)
+    ]
 
 
 def entities(path) -> dict[str, int]:
@@ -53,7 +66,17 @@ def logged(tmp_path):
     with RunLog(tmp_path / "run.rrd", SCENE) as log:
         for piece in pieces(circle()):
             log.chunk(piece)
-        log.finish({"moved": {"value": 0.5, "unit": "m", "published": 0.4, "guard": [0.3, None], "ok": True}})
+        log.finish(
+            {
+                "moved": {
+                    "value": 0.5,
+                    "unit": "m",
+                    "published": 0.4,
+                    "guard": [0.3, None],
+                    "ok": True,
+                }
+            }
+        )
     return tmp_path / "run.rrd"
 
 
@@ -64,7 +87,9 @@ def test_what_is_read_back_is_the_recording_and_its_csv(logged, tmp_path):
         np.testing.assert_allclose(again.t, run.t, atol=1e-9, rtol=0)
         assert again.signals.keys() == run.signals.keys()
         for name, values in run.signals.items():
-            np.testing.assert_allclose(again[name], values, atol=1e-9, rtol=0, equal_nan=True, err_msg=name)
+            np.testing.assert_allclose(
+                again[name], values, atol=1e-9, rtol=0, equal_nan=True, err_msg=name
+            )
 
 
 def test_a_log_opens_laid_out_with_scene_plots_and_norms(logged):
@@ -125,13 +150,21 @@ def test_the_log_of_a_diagnosis_has_all_boats_the_missing_force_and_what_was_fla
     run = circle()
     pose = Recording("x", run.t, {n: run[n] for n in ("x_m", "y_m", "psi_rad")})
     force = np.sin(run.t)
-    missing = Recording("m", run.t, {"force_X_N": force, "force_X_N_low": force - 1, "force_X_N_high": force + 1})
+    missing = Recording(
+        "m", run.t, {"force_X_N": force, "force_X_N_low": force - 1, "force_X_N_high": force + 1}
+    )
     boats = dict.fromkeys(("recording", "nominal", "recalibrated", "patched"), [pose])
     flagged = [{"run": "run", "from_s": 2.0, "to_s": 3.0, "axis": "surge"}]
     log_overlay(tmp_path / "diagnosis.rrd", boats, missing, flagged, SCENE)
     rows = entities(tmp_path / "diagnosis.rrd")
-    assert {f"world/boats/{boat}" for boat in boats} | {f"world/paths/{boat}" for boat in boats} <= rows.keys()
-    assert {"missing/force_X_N", "missing/force_X_N_low", "missing/force_X_N_flagged"} <= rows.keys()
+    assert {f"world/boats/{boat}" for boat in boats} | {
+        f"world/paths/{boat}" for boat in boats
+    } <= rows.keys()
+    assert {
+        "missing/force_X_N",
+        "missing/force_X_N_low",
+        "missing/force_X_N_flagged",
+    } <= rows.keys()
     assert len(RrdReader(tmp_path / "diagnosis.rrd").blueprints()) == 1
     with pytest.raises(BadInput, match="is not the log of a boatsim run"):
         read(tmp_path / "diagnosis.rrd")
@@ -142,13 +175,21 @@ def test_between_two_free_runs_nothing_is_drawn(tmp_path):
     t = np.arange(0.0, 3.01, 0.1)
     first = Recording("patched", t, {"x_m": 0.1 * t, "y_m": t / 3.0})
     second = Recording("patched", t + 3.0, {"x_m": 0.1 * t + 0.3, "y_m": 0 * t})
-    whole = Recording("recording", np.append(t, t[1:] + 3.0), {n: np.zeros(2 * len(t) - 1) for n in ("x_m", "y_m")})
-    log_overlay(tmp_path / "d.rrd", {"recording": [whole], "patched": [first, second]}, None, [], SCENE)
+    whole = Recording(
+        "recording",
+        np.append(t, t[1:] + 3.0),
+        {n: np.zeros(2 * len(t) - 1) for n in ("x_m", "y_m")},
+    )
+    log_overlay(
+        tmp_path / "d.rrd", {"recording": [whole], "patched": [first, second]}, None, [], SCENE
+    )
     lines, curve = [], {}
     for chunk in RrdReader(tmp_path / "d.rrd").stream():
         batch, name = chunk.to_record_batch(), chunk.entity_path.strip("/")
         if name == "world/paths/patched" and not chunk.is_static:
-            lines += [strip for row in batch.column("LineStrips3D:strips").to_pylist() for strip in row]
+            lines += [
+                strip for row in batch.column("LineStrips3D:strips").to_pylist() for strip in row
+            ]
         if name == "signals/patched/y_m" and not chunk.is_static:
             times = batch.column("sim_time").cast("int64").to_pylist()
             curve |= dict(zip(times, batch.column("Scalars:scalars").to_pylist(), strict=True))
@@ -161,7 +202,10 @@ def test_between_two_free_runs_nothing_is_drawn(tmp_path):
 
 def test_a_boat_of_which_few_places_are_known_has_a_path_through_them(tmp_path):
     t = np.arange(0.0, 3.01, 0.1)
-    seen = {n: np.where(np.arange(len(t)) % 10 == 0, t * k, np.nan) for n, k in (("x_m", 0.1), ("y_m", 1.0))}
+    seen = {
+        n: np.where(np.arange(len(t)) % 10 == 0, t * k, np.nan)
+        for n, k in (("x_m", 0.1), ("y_m", 1.0))
+    }
     boats = {"recording": [Recording("recording", t, seen)], "patched": [track_of(1.0)]}
     log_overlay(tmp_path / "d.rrd", boats, None, [], SCENE)
     rows = entities(tmp_path / "d.rrd")
@@ -172,7 +216,9 @@ def test_the_outline_is_that_of_the_hull_from_above():
     ring = SCENE.outline()
     np.testing.assert_array_equal(ring[0], ring[-1])
     x, y = ring.T
-    assert 0.5 * abs(np.dot(x[:-1], y[1:]) - np.dot(y[:-1], x[1:])) == pytest.approx(0.875 * 1.2 * 0.3)
+    assert 0.5 * abs(np.dot(x[:-1], y[1:]) - np.dot(y[:-1], x[1:])) == pytest.approx(
+        0.875 * 1.2 * 0.3
+    )
 
 
 def test_without_a_file_and_a_viewer_there_is_nothing_to_do():
@@ -190,7 +236,10 @@ def test_the_scene_of_a_vessel_has_its_hull_and_a_thruster_on_each_side():
     scene = scene_from(world.build(boat, tank), boat, tank)
     hull = np.concatenate([solid.vertices for solid in scene.solids if solid.part == "hull"])
     assert np.ptp(hull[:, 0]) == pytest.approx(boat.length, rel=0.1)
-    assert {thruster.name: np.sign(thruster.y) for thruster in scene.thrusters} == {"port": -1, "starboard": 1}
+    assert {thruster.name: np.sign(thruster.y) for thruster in scene.thrusters} == {
+        "port": -1,
+        "starboard": 1,
+    }
     assert all(solid.triangles.max() < len(solid.vertices) for solid in scene.solids)
 
 
@@ -213,7 +262,9 @@ def test_every_closed_shape_has_its_outside_outside():
 
 def track_of(size: float, aside: float = 0.0) -> Recording:
     t = np.linspace(0.0, 10.0, 101)
-    return Recording("a", t, {"x_m": 0.1 * size * t, "y_m": 0.05 * size * t + aside, "psi_rad": 0 * t})
+    return Recording(
+        "a", t, {"x_m": 0.1 * size * t, "y_m": 0.05 * size * t + aside, "psi_rad": 0 * t}
+    )
 
 
 @pytest.mark.parametrize("size", [0.3, 5.0, 400.0])
@@ -221,11 +272,18 @@ def test_boats_are_as_large_as_the_track_asks_for_and_all_of_it_lies_in_view_on_
     from boatsim.physics import vessel
 
     boat = vessel.load("trial_boat")
-    boats = {"recording": [track_of(size)], "nominal": [track_of(1e4 * size)], "patched": [track_of(size, 0.2 * size)]}
+    boats = {
+        "recording": [track_of(size)],
+        "nominal": [track_of(1e4 * size)],
+        "patched": [track_of(size, 0.2 * size)],
+    }
     scene = water.around(boat, boats)
     hull = np.concatenate([s.vertices for s in scene.solids if s.part == "hull"])
     sea = np.concatenate([s.vertices for s in scene.solids if s.part == "tank"])
-    assert np.ptp(hull[:, 0]) == pytest.approx(scene.times * boat.length, rel=0.1) and scene.times >= 1.0
+    assert (
+        np.ptp(hull[:, 0]) == pytest.approx(scene.times * boat.length, rel=0.1)
+        and scene.times >= 1.0
+    )
     assert scene.length >= 0.99 * water.SEEN * size and scene.times == pytest.approx(
         max(1.0, 0.08 * size / boat.length)
     )
@@ -234,25 +292,51 @@ def test_boats_are_as_large_as_the_track_asks_for_and_all_of_it_lies_in_view_on_
         assert np.abs(run["x_m"] - x).max() + scene.length <= 0.501 * length + 0.5 * scene.length
         assert np.abs(run["y_m"] - y).max() + scene.length <= 0.501 * width + 0.5 * scene.length
     assert length < 3 * size + 5 * scene.length, "the nominal boat that runs away is not followed"
-    assert (sea[:, 0].min(), sea[:, 0].max()) <= (x - length, x + length) and sea[:, 1].max() >= -y + width
+    assert (sea[:, 0].min(), sea[:, 0].max()) <= (x - length, x + length) and sea[
+        :, 1
+    ].max() >= -y + width
 
 
 def test_a_boat_that_goes_nowhere_is_drawn_at_its_size():
     from boatsim.physics import vessel
 
     t = np.linspace(0.0, 5.0, 20)
-    scene = water.around(vessel.load("kvlcc2_roll"), {"recording": [Recording("a", t, {"phi_rad": 0.1 * np.sin(t)})]})
+    scene = water.around(
+        vessel.load("kvlcc2_roll"), {"recording": [Recording("a", t, {"phi_rad": 0.1 * np.sin(t)})]}
+    )
     assert scene.times == 1.0 and scene.tank[2:] == (0.0, 0.0)
 
 
 def test_norms_are_told_with_what_was_published_and_whether_the_bar_is_met():
-    table = norms_table({
-        "moved": {"value": 0.51234, "unit": "m", "published": 0.4, "verdict": "not reproduced", "guard": [0.3, None],
-                  "ok": True},
-        "rate": {"value": -2.0, "unit": "rad/s", "published": None, "verdict": None, "guard": [-1.0, 1.0], "ok": False},
-        "free": {"value": None, "unit": None, "kind": "largest", "lacking": "too short",
-                 "published": None, "guard": None, "ok": None},
-    })  # fmt: skip
+    table = norms_table(
+        {
+            "moved": {
+                "value": 0.51234,
+                "unit": "m",
+                "published": 0.4,
+                "verdict": "not reproduced",
+                "guard": [0.3, None],
+                "ok": True,
+            },
+            "rate": {
+                "value": -2.0,
+                "unit": "rad/s",
+                "published": None,
+                "verdict": None,
+                "guard": [-1.0, 1.0],
+                "ok": False,
+            },
+            "free": {
+                "value": None,
+                "unit": None,
+                "kind": "largest",
+                "lacking": "too short",
+                "published": None,
+                "guard": None,
+                "ok": None,
+            },
+        }
+    )
     assert "| moved |  | 0.5123 m | at least 0.3 | yes | 0.4 (differs) |" in table
     assert "| rate |  | -2 rad/s | -1 to 1 | **no** |  |" in table
     assert "| free | largest | too short |  |  |  |" in table and "no norms" in norms_table({})

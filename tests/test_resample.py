@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boatsim.recordings.importing.resample import Samples, clock, held, longest_hold, placed, samples
+from boatsim.recordings.importing.resample import (
+    Samples,
+    clock,
+    held,
+    longest_hold,
+    placed,
+    samples,
+)
 from boatsim.recordings.table import Recording
 
 ROWS = 0.1 * np.arange(50)
@@ -28,7 +35,9 @@ def test_every_sample_is_in_one_row_of_its_own_time_and_no_value_is_new(times):
     assert set(found[there]) <= set(given_.values)
     for t, value in zip(rows[there], found[there], strict=True):
         assert abs(t - given_.t[given_.values == value][0]) <= near
-    lost = set(given_.values) - set(found[there])  # only ones that lie so near to another that both are in one row
+    lost = set(given_.values) - set(
+        found[there]
+    )  # only ones that lie so near to another that both are in one row
     assert all(
         np.min(np.abs(np.delete(given_.t, int(k)) - given_.t[int(k)])) <= 2 * near
         for k in map(list(given_.values).index, lost)
@@ -44,11 +53,15 @@ def test_every_sample_is_in_one_row_of_its_own_time_and_no_value_is_new(times):
     )
 )
 def test_the_area_under_a_held_command_is_that_of_the_command_itself(points):
-    given_ = samples(np.array([0.0, *(t for t, _ in points)]), np.array([0.3, *(v for _, v in points)]))
+    given_ = samples(
+        np.array([0.0, *(t for t, _ in points)]), np.array([0.3, *(v for _, v in points)])
+    )
     found = held(ROWS, given_)
     ends = np.append(given_.t, ROWS[-1])
     inside = np.diff(np.minimum(ends, ROWS[-1]))
-    assert float(found[:-1] @ np.diff(ROWS)) == pytest.approx(float(given_.values @ inside), abs=1e-5)
+    assert float(found[:-1] @ np.diff(ROWS)) == pytest.approx(
+        float(given_.values @ inside), abs=1e-5
+    )
 
 
 def test_a_command_between_whose_rows_none_comes_is_the_command_itself():
@@ -64,10 +77,12 @@ def test_a_command_that_stops_coming_is_said():
 
 def test_a_recording_of_mixed_rates_is_thinned_signal_by_signal():
     t = 0.01 * np.arange(1000)
-    own = np.where(np.arange(1000) % 200 == 7, t, np.nan)  # a slow signal in rows that no thinning by rows would keep
-    run = Recording("r", t, {"psi_rad": np.where(np.isnan(own), t, np.nan), "x_m": own, "thrust": np.sin(t)}).thinned(
-        10.0
-    )
+    own = np.where(
+        np.arange(1000) % 200 == 7, t, np.nan
+    )  # a slow signal in rows that no thinning by rows would keep
+    run = Recording(
+        "r", t, {"psi_rad": np.where(np.isnan(own), t, np.nan), "x_m": own, "thrust": np.sin(t)}
+    ).thinned(10.0)
     np.testing.assert_array_equal(run["x_m"][np.isfinite(run["x_m"])], own[np.isfinite(own)])
     psi = np.isfinite(run["psi_rad"])
     assert abs(psi.sum() - 100) <= 1 and np.median(np.diff(run.t[psi])) == pytest.approx(0.1)

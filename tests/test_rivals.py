@@ -17,7 +17,14 @@ from benchmarks.rivals.accelerations import derived, kernel
 from benchmarks.rivals.evidence import Judge
 from benchmarks.rivals.linear import solved
 
-EASY = Trial("T001_martin_tank_model", "martin_tank_model", "single", False, False, (hulls.righting_arm_stiffening,))
+EASY = Trial(
+    "T001_martin_tank_model",
+    "martin_tank_model",
+    "single",
+    False,
+    False,
+    (hulls.righting_arm_stiffening,),
+)
 NOTHING = {"effects": [], "unknown": {"flag": False}}
 
 
@@ -30,7 +37,11 @@ def easy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("rival", RIVALS)
 def test_a_rival_names_what_is_plain_to_see_and_is_scored(
-    rival: str, easy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    rival: str,
+    easy: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     enter(rival, easy / EASY.name, tmp_path / EASY.name)
     answer = read_answer(tmp_path / EASY.name / "diagnosis.json")
@@ -45,7 +56,10 @@ def test_a_rival_names_what_is_plain_to_see_and_is_scored(
 def test_an_answer_needs_no_more_than_names_and_the_flag(tmp_path: Path) -> None:
     write(tmp_path, {"effects": [{"name": "wind"}], "unknown": {"flag": False}})
     found = answers_in(tmp_path, ["T001"])["T001"]
-    assert found["effects"][0] == {"name": "wind", "tied_with": [], "parameters": {}} and found["described"] == []
+    assert (
+        found["effects"][0] == {"name": "wind", "tied_with": [], "parameters": {}}
+        and found["described"] == []
+    )
 
 
 @pytest.mark.parametrize(
@@ -53,7 +67,10 @@ def test_an_answer_needs_no_more_than_names_and_the_flag(tmp_path: Path) -> None
     [
         ({"unknown": {"flag": False}}, "effects is missing; it is a list"),
         ({"effects": []}, "unknown is missing; it is a table"),
-        ({"effects": [], "unknown": {"flag": "no"}}, "unknown.flag = 'no'; allowed is true or false"),
+        (
+            {"effects": [], "unknown": {"flag": "no"}},
+            "unknown.flag = 'no'; allowed is true or false",
+        ),
         (NOTHING | {"effects": [{"parameters": {}}]}, "effects[0].name is missing; it is a text"),
         (
             NOTHING | {"effects": [{"name": "wind", "parameters": {"force_N": {"value": 1.0}}}]},
@@ -66,18 +83,29 @@ def test_a_bad_answer_is_refused_in_one_line(tmp_path: Path, answer: object, wor
     write(tmp_path, answer)
     with pytest.raises(BadEntry) as refused:
         answers_in(tmp_path, ["T001"])
-    assert words in str(refused.value) and "\n" not in str(refused.value) and "T001" in str(refused.value)
+    assert (
+        words in str(refused.value)
+        and "\n" not in str(refused.value)
+        and "T001" in str(refused.value)
+    )
 
 
-def test_a_missing_folder_or_trial_is_said_in_one_line(easy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for folder, words in (("nowhere", "there is no such folder"), (".", "every trial needs an answer")):
+def test_a_missing_folder_or_trial_is_said_in_one_line(
+    easy: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for folder, words in (
+        ("nowhere", "there is no such folder"),
+        (".", "every trial needs an answer"),
+    ):
         monkeypatch.setattr(sys, "argv", ["trials", str(easy), "--answers", str(easy / folder)])
         with pytest.raises(SystemExit) as refused:
             trials.main()
         assert words in str(refused.value) and "\n" not in str(refused.value)
 
 
-def test_trials_make_the_very_set_that_practice_makes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_trials_make_the_very_set_that_practice_makes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     made = list[tuple[Path, int]]()
     monkeypatch.setattr(practice, "make_set", lambda out, seed, *_: made.append((out, seed)))
     monkeypatch.setattr(sys, "argv", ["trials", "--make", str(tmp_path), "--seed", "7"])
@@ -90,12 +118,26 @@ def test_trials_make_the_very_set_that_practice_makes(tmp_path: Path, monkeypatc
 def test_free_runs_count_only_if_they_are_long_enough_and_cover_the_run(tmp_path: Path) -> None:
     t = np.arange(0.0, 20.01, 0.25)
     (tmp_path / "recording.toml").write_text('vessel = "joystick_boat"\n')
-    np.savetxt(tmp_path / "run_3.csv", np.column_stack([t, t, t]), "%.7g", ",", header="t_s,x_m,y_m", comments="")
+    np.savetxt(
+        tmp_path / "run_3.csv",
+        np.column_stack([t, t, t]),
+        "%.7g",
+        ",",
+        header="t_s,x_m,y_m",
+        comments="",
+    )
     (tmp_path / "run_1.csv").write_text("")
 
     def errors(length: float, runs: int) -> float | None:
-        rows = [(x, i, x + 0.3, x) for i in range(runs) for x in t if i * length <= x <= (i + 1) * length]
-        np.savetxt(tmp_path / "replay.csv", rows, "%.9g", ",", header="t_s,segment,x_m,y_m", comments="")
+        rows = [
+            (x, i, x + 0.3, x)
+            for i in range(runs)
+            for x in t
+            if i * length <= x <= (i + 1) * length
+        ]
+        np.savetxt(
+            tmp_path / "replay.csv", rows, "%.9g", ",", header="t_s,segment,x_m,y_m", comments=""
+        )
         return replay_errors(tmp_path, tmp_path / "replay.csv", horizon_of(tmp_path))
 
     assert errors(6.0, 3) == pytest.approx(0.3 / np.sqrt(2.0))
@@ -112,7 +154,9 @@ def test_bic_asks_more_of_errors_that_are_alike() -> None:
     slow = np.repeat(rng.standard_normal((40, 1)), 10, axis=0)
     plain, careful = Judge(True, 30), Judge(False, 30)
     for errors in (white, slow):
-        assert plain.gain([1.2 * errors], [errors], 1) == pytest.approx(400 * np.log(1.2) - 0.5 * np.log(400))
+        assert plain.gain([1.2 * errors], [errors], 1) == pytest.approx(
+            400 * np.log(1.2) - 0.5 * np.log(400)
+        )
     assert plain.gain([1.2 * white], [white], 1) - careful.gain([1.2 * white], [white], 1) < 40
     assert careful.gain([1.2 * slow], [slow], 1) < 10
 

@@ -25,7 +25,12 @@ WRITTEN = {
     "compare": {"compare.csv", "compare.rrd"},
     "run": {"recording.csv", "camera.csv", "recording.toml", "norms.json", "run.rrd"},
 }
-COMMON = {"deadline": None, "derandomize": True, "suppress_health_check": list(HealthCheck), "database": None}
+COMMON = {
+    "deadline": None,
+    "derandomize": True,
+    "suppress_health_check": list(HealthCheck),
+    "database": None,
+}
 quick, few = settings(max_examples=60, **COMMON), settings(max_examples=25, **COMMON)  # type: ignore[arg-type]
 
 Table = tuple[list[str], list[list[str]]]  # header, rows
@@ -44,7 +49,16 @@ def decay(rows: int = 75) -> Table:
 def cruise(rows: int = 60) -> Table:
     """A boat at half a metre a second; it need not make sense, only be possible."""
     t = np.arange(rows) / 6.0
-    columns = [t, 0.5 * t, 0.02 * np.sin(t), 0.1 * np.sin(t), 0 * t + 1.0, 0 * t + 0.9, 0.1 * np.cos(t), 0 * t]
+    columns = [
+        t,
+        0.5 * t,
+        0.02 * np.sin(t),
+        0.1 * np.sin(t),
+        0 * t + 1.0,
+        0 * t + 0.9,
+        0.1 * np.cos(t),
+        0 * t,
+    ]
     header = "t_s x_m y_m psi_rad thrust_port_N thrust_starboard_N steer_port_rad steer_starboard_rad".split()
     return header, [[f"{x:.6f}" for x in row] for row in zip(*columns, strict=True)]
 
@@ -105,8 +119,37 @@ below = 1.0
 
 # What may be wrong with them ----------------------------------------------------------------------------------------
 
-CELLS = ["", " ", "nan", "inf", "-inf", "1e400", "1e300", "-1e9", "abc", "1_000", "0x10", "1,5", '"1', "١", "9" * 400]
-NAMES = ["t_s", "phi_rad", "psi_rad", "phi_deg", "x_m", "p_radps", "", '"', "phi rad", "a,b", "φ_rad", "thrust_port_N"]
+CELLS = [
+    "",
+    " ",
+    "nan",
+    "inf",
+    "-inf",
+    "1e400",
+    "1e300",
+    "-1e9",
+    "abc",
+    "1_000",
+    "0x10",
+    "1,5",
+    '"1',
+    "١",
+    "9" * 400,
+]
+NAMES = [
+    "t_s",
+    "phi_rad",
+    "psi_rad",
+    "phi_deg",
+    "x_m",
+    "p_radps",
+    "",
+    '"',
+    "phi rad",
+    "a,b",
+    "φ_rad",
+    "thrust_port_N",
+]
 
 
 def at(draw: Any, rows: list[list[str]]) -> list[str]:
@@ -179,9 +222,19 @@ def a_constant(draw: Any, table: Table) -> None:
 
 
 TABLES: list[Callable[[Any, Table], None]] = [
-    a_cell, a_column_scaled, a_column_shifted, a_column_less, a_column_twice, a_name, rows_swapped, a_row_twice,
-    a_row_ragged, few_rows, rows_missing, a_constant,
-]  # fmt: skip
+    a_cell,
+    a_column_scaled,
+    a_column_shifted,
+    a_column_less,
+    a_column_twice,
+    a_name,
+    rows_swapped,
+    a_row_twice,
+    a_row_ragged,
+    few_rows,
+    rows_missing,
+    a_constant,
+]
 TEXTS: list[Callable[[str], bytes]] = [
     lambda text: text.encode(),
     lambda text: b"\xef\xbb\xbf" + text.encode(),
@@ -215,26 +268,58 @@ def recordings(draw: Any, right: Table) -> bytes:
     return bytes(draw(st.one_of(st.just(TEXTS[0]), st.sampled_from(TEXTS)))(csv_text(table)))
 
 
-ODD = ["-1", "0", "0.5", "1e400", "nan", "-inf", "true", '"x"', '""', "[]", "[1, 2]", '["x"]', "{}", "{ a = 1 }"]
-ODD += ["1" + 400 * "0", "1979-05-27", "'''\n'''", "1e308", "[[1]]", "[nan, 1.0]", "= 2", "[1.0, 1e30]"]
+ODD = [
+    "-1",
+    "0",
+    "0.5",
+    "1e400",
+    "nan",
+    "-inf",
+    "true",
+    '"x"',
+    '""',
+    "[]",
+    "[1, 2]",
+    '["x"]',
+    "{}",
+    "{ a = 1 }",
+]
+ODD += [
+    "1" + 400 * "0",
+    "1979-05-27",
+    "'''\n'''",
+    "1e308",
+    "[[1]]",
+    "[nan, 1.0]",
+    "= 2",
+    "[1.0, 1e30]",
+]
 
 
 @st.composite
 def tomls(draw: Any, right: str, end: str = "\0", kept: tuple[str, ...] = ()) -> bytes:
     """A TOML file with one mistake; it is cut off only before `end`, and lines that begin with a `kept` word stay."""
     lines = right.split("\n")
-    settable = [i for i, line in enumerate(lines) if " = " in line and not line.startswith(("#", " ", *kept))]
+    settable = [
+        i
+        for i, line in enumerate(lines)
+        if " = " in line and not line.startswith(("#", " ", *kept))
+    ]
     i = draw(st.sampled_from(settable))
     key, _, value = lines[i].partition(" = ")
     way = draw(st.integers(0, 8))
     if way <= 3:
         lines[i] = f"{key} = {draw(st.sampled_from(ODD))}"
     elif way == 4:
-        lines[i] = f"{draw(st.sampled_from([key + 's', key[:-1] or 'q', '1', 'a.b', 'ü']))} = {value}"
+        lines[i] = (
+            f"{draw(st.sampled_from([key + 's', key[:-1] or 'q', '1', 'a.b', 'ü']))} = {value}"
+        )
     elif way == 5:
         del lines[i]
     elif way == 6:
-        lines.insert(i, draw(st.sampled_from([lines[i], "q = 1", "[q]", "[", "\x07", "é", "[[q]]\na = 1"])))
+        lines.insert(
+            i, draw(st.sampled_from([lines[i], "q = 1", "[q]", "[", "\x07", "é", "[[q]]\na = 1"]))
+        )
     elif way == 7:
         cut = draw(st.integers(0, right.find(end) % (len(right) + 1)))
         return right[:cut].encode()
@@ -251,7 +336,9 @@ def obeys(out: Path, files: tuple[str, ...], command: str, *arguments: object) -
     given = [command, *(str(a) for a in arguments), "--out", str(out)]
     result = CliRunner().invoke(app, given, catch_exceptions=False)
     left = {f.name for f in out.rglob("*")} if out.exists() else set()
-    said = [line for line in result.stderr.splitlines() if not line.startswith(("note: ", "progress: "))]
+    said = [
+        line for line in result.stderr.splitlines() if not line.startswith(("note: ", "progress: "))
+    ]
     if result.exit_code == 2:
         assert len(said) == 1 and said[0].startswith("boatsim: "), result.stderr
         assert any(name in said[0] for name in files), said[0]
@@ -259,7 +346,9 @@ def obeys(out: Path, files: tuple[str, ...], command: str, *arguments: object) -
         return said[0]
     assert result.exit_code in ((0, 1) if command == "run" else (0,)) and not said, result.stderr
     assert WRITTEN[command] <= left <= WRITTEN[command] | {"next.toml"}
-    assert all((out / name).stat().st_size for name in left) and "nan" not in result.stdout, result.stdout
+    assert all((out / name).stat().st_size for name in left) and "nan" not in result.stdout, (
+        result.stdout
+    )
     if command == "diagnose":
         strict_json(out / "diagnosis.json")
     return None
@@ -303,41 +392,64 @@ def test_a_recording_that_is_right_is_used(command: str, place: Callable[..., Pa
 
 @few
 @given(content=recordings(decay()))
-def test_a_diagnosis_uses_a_recording_or_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
+def test_a_diagnosis_uses_a_recording_or_says_why_not(
+    content: bytes, place: Callable[..., Path]
+) -> None:
     folder = place(run__csv=content)
     obeys(folder / "out", ("run.csv",), "diagnose", folder / "run.csv", "--vessel", "kvlcc2_roll")
 
 
 @quick
 @given(content=recordings(decay()), command=st.sampled_from(["replay", "compare"]))
-def test_a_replay_uses_a_recording_or_says_why_not(content: bytes, command: str, place: Callable[..., Path]) -> None:
+def test_a_replay_uses_a_recording_or_says_why_not(
+    content: bytes, command: str, place: Callable[..., Path]
+) -> None:
     folder = place(run__csv=content)
     short = ["--horizon", "3"] if command == "replay" else []
-    obeys(folder / "out", ("run.csv",), command, folder / "run.csv", "--vessel", "kvlcc2_roll", *short)
+    obeys(
+        folder / "out", ("run.csv",), command, folder / "run.csv", "--vessel", "kvlcc2_roll", *short
+    )
 
 
 @pytest.mark.slow
 @few
 @given(content=recordings(cruise()))
-def test_a_recording_with_commands_is_used_or_the_line_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
+def test_a_recording_with_commands_is_used_or_the_line_says_why_not(
+    content: bytes, place: Callable[..., Path]
+) -> None:
     folder = place(run__csv=content)
-    obeys(folder / "out", ("run.csv",), "replay", folder / "run.csv", "--vessel", "trial_boat", "--horizon", "2")
+    obeys(
+        folder / "out",
+        ("run.csv",),
+        "replay",
+        folder / "run.csv",
+        "--vessel",
+        "trial_boat",
+        "--horizon",
+        "2",
+    )
 
 
 @pytest.mark.parametrize("command", ["diagnose", "replay", "compare"])
 @pytest.mark.parametrize("what", ["folder", "nothing", "parquet", "rrd"])
-def test_what_is_no_recording_is_refused(command: str, what: str, place: Callable[..., Path]) -> None:
+def test_what_is_no_recording_is_refused(
+    command: str, what: str, place: Callable[..., Path]
+) -> None:
     folder = place(bad__parquet=b"PAR1 no", bad__rrd=b"RRF2 no")
     (folder / "run.csv").mkdir()
     name = {"folder": "run.csv", "nothing": "other.csv"}.get(what, f"bad.{what}")
     assert obeys(folder / "out", (name,), command, folder / name, "--vessel", "kvlcc2_roll")
 
 
-def test_a_command_beyond_its_limits_is_refused_with_row_and_column(place: Callable[..., Path]) -> None:
+def test_a_command_beyond_its_limits_is_refused_with_row_and_column(
+    place: Callable[..., Path],
+) -> None:
     header, rows = cruise()
     rows[30][header.index("steer_port_rad")] = "9.9"
     folder = place(run__csv=csv_text((header, rows)))
-    line = obeys(folder / "out", ("run.csv",), "diagnose", folder / "run.csv", "--vessel", "trial_boat")
+    line = obeys(
+        folder / "out", ("run.csv",), "diagnose", folder / "run.csv", "--vessel", "trial_boat"
+    )
     assert "row 32" in line and "steer_port_rad" in line and "9.9 rad" in line
 
 
@@ -348,9 +460,18 @@ def test_a_command_beyond_its_limits_is_refused_with_row_and_column(place: Calla
 @given(content=tomls(NOTES))
 @example(content=NOTES.replace("force_rms = [0.2]", "force_rms = [0.0]").encode())
 @example(content=NOTES.replace("roll_sd_rad = 1e-4", "roll_sd_rad = 0.0").encode())
-def test_notes_beside_a_recording_are_used_or_the_line_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
+def test_notes_beside_a_recording_are_used_or_the_line_says_why_not(
+    content: bytes, place: Callable[..., Path]
+) -> None:
     folder = place(run__csv=csv_text(decay()), recording__toml=content)
-    obeys(folder / "out", ("recording.toml", "run.csv"), "replay", folder / "run.csv", "--horizon", "3")
+    obeys(
+        folder / "out",
+        ("recording.toml", "run.csv"),
+        "replay",
+        folder / "run.csv",
+        "--horizon",
+        "3",
+    )
 
 
 @few
@@ -367,7 +488,9 @@ HULL = (root() / "models" / "kvlcc2_roll" / "hull.xml").read_bytes()
 @pytest.mark.slow
 @quick
 @given(content=tomls(ROLLER, "[body]", ("suspects", "use")))
-def test_a_vessel_file_is_used_or_the_line_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
+def test_a_vessel_file_is_used_or_the_line_says_why_not(
+    content: bytes, place: Callable[..., Path]
+) -> None:
     folder = place(run__csv=csv_text(decay()), vessel__toml=content, hull__xml=HULL)
     found = "vessel.toml", "run.csv", "hull.xml"
     obeys(folder / "out", found, "compare", folder / "run.csv", "--vessel", folder / "vessel.toml")
@@ -381,7 +504,9 @@ PATCHED = 'based_on = "kvlcc2_roll"\n' + ROLLER.replace(
 @pytest.mark.slow
 @quick
 @given(content=tomls(PATCHED, "[body]", ("suspects", "use")))
-def test_a_patched_file_is_used_or_the_line_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
+def test_a_patched_file_is_used_or_the_line_says_why_not(
+    content: bytes, place: Callable[..., Path]
+) -> None:
     folder = place(run__csv=csv_text(decay()), patched__toml=content)
     given = folder / "run.csv", "--vessel", folder / "patched.toml", "--horizon", "3"
     obeys(folder / "out", ("patched.toml", "run.csv"), "replay", *given)
@@ -389,7 +514,9 @@ def test_a_patched_file_is_used_or_the_line_says_why_not(content: bytes, place: 
 
 @few
 @given(content=tomls(SCENARIO, "[controller]", ("use",)))
-def test_a_scenario_is_run_or_the_line_says_why_not(content: bytes, place: Callable[..., Path]) -> None:
+def test_a_scenario_is_run_or_the_line_says_why_not(
+    content: bytes, place: Callable[..., Path]
+) -> None:
     folder = place(next__toml=content)
     obeys(folder / "out", ("next",), "run", folder / "next.toml")
 
@@ -414,15 +541,23 @@ def test_a_scenario_is_run_or_the_line_says_why_not(content: bytes, place: Calla
 def test_wrong_usage_is_one_line(arguments: list[str], said: str) -> None:
     result = CliRunner().invoke(app, arguments, catch_exceptions=False)
     assert result.exit_code == 2 and not result.stdout
-    assert result.stderr.count("\n") == 1 and result.stderr.startswith("boatsim: ") and said in result.stderr
+    assert (
+        result.stderr.count("\n") == 1
+        and result.stderr.startswith("boatsim: ")
+        and said in result.stderr
+    )
 
 
 def test_no_arguments_ask_for_help() -> None:
     assert "diagnose" in CliRunner().invoke(app, []).stdout
 
 
-@pytest.mark.parametrize("load", [["--load", "heavy", "--load", "light"], ["--load", "narrow,wide"]])
-def test_loads_that_contradict_each_other_are_refused(load: list[str], place: Callable[..., Path]) -> None:
+@pytest.mark.parametrize(
+    "load", [["--load", "heavy", "--load", "light"], ["--load", "narrow,wide"]]
+)
+def test_loads_that_contradict_each_other_are_refused(
+    load: list[str], place: Callable[..., Path]
+) -> None:
     folder = place(run__csv=csv_text(cruise()))
     given = folder / "run.csv", "--vessel", "joystick_boat", *load
     line = obeys(folder / "out", ("vessel.toml",), "replay", *given)
@@ -433,15 +568,24 @@ def test_loads_that_contradict_each_other_are_refused(load: list[str], place: Ca
 def test_any_horizon_is_used_or_refused(horizon: str, place: Callable[..., Path]) -> None:
     folder = place(run__csv=csv_text(decay()))
     given = folder / "run.csv", "--vessel", "kvlcc2_roll", "--horizon", horizon
-    assert (obeys(folder / "out", ("run.csv", "--horizon"), "replay", *given) is None) == math.isclose(
-        float(horizon), 0.1
-    )
+    assert (
+        obeys(folder / "out", ("run.csv", "--horizon"), "replay", *given) is None
+    ) == math.isclose(float(horizon), 0.1)
 
 
 @pytest.mark.parametrize("command", ["diagnose", "replay", "compare"])
-def test_a_file_where_the_folder_should_be_is_left_alone(command: str, place: Callable[..., Path]) -> None:
+def test_a_file_where_the_folder_should_be_is_left_alone(
+    command: str, place: Callable[..., Path]
+) -> None:
     folder = place(run__csv=csv_text(decay()), out="mine")
-    given = [command, str(folder / "run.csv"), "--vessel", "kvlcc2_roll", "--out", str(folder / "out")]
+    given = [
+        command,
+        str(folder / "run.csv"),
+        "--vessel",
+        "kvlcc2_roll",
+        "--out",
+        str(folder / "out"),
+    ]
     result = CliRunner().invoke(app, given, catch_exceptions=False)
     assert result.exit_code == 2 and (folder / "out").read_text() == "mine"
     assert [line for line in result.stderr.splitlines() if str(folder / "out") in line]

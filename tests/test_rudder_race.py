@@ -7,12 +7,16 @@ import pytest
 from boats import HULL
 from scipy.integrate import solve_ivp
 
-from boatsim.diagnose.analysis import diagnose
+from boatsim.diagnosis.pipeline import diagnose
 from boatsim.physics.base import Array
 
 M, IZ, ADDED = 900.0, 2300.0, np.array([60.0, 700.0, 1500.0])  # [kg], [kg m^2], [kg, kg, kg m^2]
 LINEAR, SQUARE = np.array([40.0, 500.0, 1500.0]), np.array([35.0, 700.0, 900.0])
-AT, SLOPE, RACE = -2.2, 60.0, 0.9  # [m] of the blade, [N s^2/m^2 per rad] in open water, normal force per thrust
+AT, SLOPE, RACE = (
+    -2.2,
+    60.0,
+    0.9,
+)  # [m] of the blade, [N s^2/m^2 per rad] in open water, normal force per thrust
 HOLD, RATE, SD = 6.0, 5.0, np.array([0.02, 0.02, 0.01])
 
 VESSEL = f"""about = "a launch by whoever thought of the blade as one in open water"
@@ -52,7 +56,9 @@ def sailed(commands: Array, t: Array) -> Array:
 
     y, rows = np.zeros(6), [np.zeros(3)]
     for a, b, (thrust, helm) in zip(t[:-1], t[1:], commands, strict=False):
-        y = solve_ivp(lambda _, y, f=thrust, h=helm: slope(y, f, h), (a, b), y, rtol=1e-8, atol=1e-9).y[:, -1]
+        y = solve_ivp(
+            lambda _, y, f=thrust, h=helm: slope(y, f, h), (a, b), y, rtol=1e-8, atol=1e-9
+        ).y[:, -1]
         rows.append(y[:3])
     return np.array(rows)
 
@@ -67,7 +73,9 @@ def test_the_race_is_named_with_its_strength_on_a_boat_whose_rudder_was_thought_
     t = np.arange(round(240.0 * RATE) + 1) / RATE
     levels = rng.uniform([-0.3, -0.6], [1.0, 0.6], (int(t[-1] / HOLD) + 1, 2)) * [600.0, 1.0]
     commands = levels[(t / HOLD + 1e-9).astype(int)]
-    rows = np.column_stack([t, sailed(commands, t) + rng.standard_normal((len(t), 3)) * SD, commands])
+    rows = np.column_stack(
+        [t, sailed(commands, t) + rng.standard_normal((len(t), 3)) * SD, commands]
+    )
     header = "t_s,x_m,y_m,psi_rad,thrust_N,rudder_rad"
     np.savetxt(tmp_path / "run.csv", rows, "%.9g", ",", header=header, comments="")
     found = diagnose([tmp_path / "run.csv"], vessel=str(tmp_path / "vessel.toml")).findings.answer

@@ -11,13 +11,16 @@ from benchmarks.real.thesis_score import J
 from boatsim.errors import BadInput
 from boatsim.physics.content import find
 from boatsim.simulate import scenario
-from boatsim.simulate.norms import norms
+from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import run
 
 SEEDS = 6  # of the means in section 11
 FEW = 3  # where a bar is far away
 MODES = [
-    (test, mode) for test in TESTS for mode in ("", "gyro", "wind") if not (test.startswith("yaw") and mode == "wind")
+    (test, mode)
+    for test in TESTS
+    for mode in ("", "gyro", "wind")
+    if not (test.startswith("yaw") and mode == "wind")
 ]
 # Section 11, set B, means of six seeds: norm -> test 1 to 4
 AS_PUBLISHED = {
@@ -38,8 +41,12 @@ AS_PUBLISHED = {
 }
 # Bars of section 11 by sensor set: the largest absolute value allowed
 GYRO_SWAY = {
-    "heading_at_end": 3.0, "yaw_rate_inf": 1.0, "yaw_rate_l2": 2.5, "yaw_rate_l1": 12.0, "time_to_end": 20.0
-}  # fmt: skip
+    "heading_at_end": 3.0,
+    "yaw_rate_inf": 1.0,
+    "yaw_rate_l2": 2.5,
+    "yaw_rate_l1": 12.0,
+    "time_to_end": 20.0,
+}
 CORRECTED = {
     "sway": GYRO_SWAY | {"surge_offset": 0.10},
     "yaw": {"moved": 0.10, "position_inf": 0.12},
@@ -64,7 +71,10 @@ def shipped(test: str, mode: str = "") -> str:
 
 def with_reverse(name: str, factor: float) -> scenario.Scenario:
     """A shipped scenario with another reverse efficiency; in open water, for the boat may leave the tank."""
-    effects = [t | ({"astern_factor": factor} if t["use"] == "weak_reverse" else {}) for t in raw(name)["effect"]]
+    effects = [
+        t | ({"astern_factor": factor} if t["use"] == "weak_reverse" else {})
+        for t in raw(name)["effect"]
+    ]
     return scenario.load(name, {"tank": None, "effect": effects})
 
 
@@ -87,7 +97,9 @@ def test_the_thesis_program_gives_the_norms_of_set_b(test: str) -> None:
 def test_bars_in_the_files_are_thirty_percent_about_set_b(test: str) -> None:
     manoeuvre, number = test.split("_")
     content = raw(shipped(test, "as_published"))
-    bars = {name: tuple(table["guard"]) for name, table in content["norms"].items() if "guard" in table}
+    bars = {
+        name: tuple(table["guard"]) for name, table in content["norms"].items() if "guard" in table
+    }
     wanted = {name: column[int(number) - 1] for name, column in AS_PUBLISHED[manoeuvre].items()}
     assert bars.keys() == wanted.keys() and content["noise_widens_guards"]
     for name, value in wanted.items():
@@ -100,7 +112,11 @@ def score() -> dict[str, float]:
     tests: dict[str, Any] = {"set B": [], "ideal": []}
     for test in TESTS:
         content = raw(shipped(test, "as_published"))
-        published = {name: table["published"] for name, table in content["norms"].items() if "published" in table}
+        published = {
+            name: table["published"]
+            for name, table in content["norms"].items()
+            if "published" in table
+        }
         assert published.keys() <= set(SCORED[test.split("_")[0]])
         tests["set B"].append((mean_of(shipped(test, "as_published"), SEEDS), published))
         told = with_reverse(shipped(test, "as_published"), 1.0)
@@ -134,7 +150,9 @@ def test_bars_hold_whatever_the_reverse_efficiency(test: str, mode: str, factor:
 
 
 @EACH_TEST
-def test_corrected_controller_with_a_speed_sensor_meets_the_thesis_requirements_in_every_run(test: str) -> None:
+def test_corrected_controller_with_a_speed_sensor_meets_the_thesis_requirements_in_every_run(
+    test: str,
+) -> None:
     for seed in range(FEW):
         seen, _ = found(shipped(test), seed)
         assert not over(mean([seen]), REQUIRED[test.split("_")[0]])
@@ -146,7 +164,9 @@ def test_beam_wind_does_not_turn_a_sway(test: str) -> None:
 
 
 @pytest.mark.parametrize(("test", "mode"), MODES)
-def test_bars_of_the_corrected_controller_in_the_files_are_those_agreed(test: str, mode: str) -> None:
+def test_bars_of_the_corrected_controller_in_the_files_are_those_agreed(
+    test: str, mode: str
+) -> None:
     manoeuvre = test.split("_")[0]
     tables = raw(shipped(test, mode))["norms"]
     bars = CORRECTED["_".join([manoeuvre, mode] if mode else [manoeuvre])]
@@ -179,8 +199,12 @@ def test_a_shipped_scenario_is_a_script(name: str) -> None:
 
 
 def test_all_tests_of_the_thesis_are_shipped() -> None:
-    modes = {t: ["", "gyro", "as_published", *(["wind"] if t.startswith("sway") else [])] for t in TESTS}
-    assert {shipped(test, mode) for test in TESTS for mode in modes[test]} | {"joystick_boat/berth"} <= set(SHIPPED)
+    modes = {
+        t: ["", "gyro", "as_published", *(["wind"] if t.startswith("sway") else [])] for t in TESTS
+    }
+    assert {shipped(test, mode) for test in TESTS for mode in modes[test]} | {
+        "joystick_boat/berth"
+    } <= set(SHIPPED)
 
 
 @pytest.mark.parametrize("test", TESTS[:4])
@@ -222,7 +246,9 @@ class Listener(Controller):
 
 
 @pytest.mark.usefixtures("trusted")
-def test_a_sensor_is_one_file_whose_readings_reach_the_controller_and_the_log(tmp_path: Path) -> None:
+def test_a_sensor_is_one_file_whose_readings_reach_the_controller_and_the_log(
+    tmp_path: Path,
+) -> None:
     (tmp_path / "motor_log.py").write_text(LOG_OF_THE_MOTORS)
     (tmp_path / "listener.py").write_text(LISTENER)
     told = tmp_path / "heard.toml"
@@ -237,7 +263,8 @@ def test_a_sensor_is_one_file_whose_readings_reach_the_controller_and_the_log(tm
 
 def test_a_further_sensor_changes_nothing_of_what_the_others_read() -> None:
     plain, more = (
-        run(scenario.load(shipped("sway_1"), s), 3).recording for s in ({}, {"sensor": [{"use": "inclinometer"}]})
+        run(scenario.load(shipped("sway_1"), s), 3).recording
+        for s in ({}, {"sensor": [{"use": "inclinometer"}]})
     )
     for name in ("sensed_psi_rad", "sensed_ax_mps2", "psi_rad"):
         assert plain[name].tobytes() == more[name].tobytes()
@@ -254,25 +281,39 @@ MISTAKES = [
     ({"measure": "sawy"}, r"measure 'sawy' does not exist; did you mean 'sway'"),
     ({"tank": {"lenght": 1.5}}, r"key in \[tank\] 'lenght' .*did you mean 'length'"),
     ({"start": {"x": 9.0}}, r"lies outside the tank"),
-    ({"controller": {"use": "l1_joystik"}}, r"controller 'l1_joystik' .*did you mean 'l1_joystick'"),
+    (
+        {"controller": {"use": "l1_joystik"}},
+        r"controller 'l1_joystik' .*did you mean 'l1_joystick'",
+    ),
     ({"controller": {"use": "l1_joystick", "pol": 2.0}}, r"setting 'pol' .*did you mean 'pole'"),
-    ({"controller": {"use": "l1_joystick", "pole": 99.0}}, r"pole = 99 1/s; allowed 0\.1 to 10 1/s"),
+    (
+        {"controller": {"use": "l1_joystick", "pole": 99.0}},
+        r"pole = 99 1/s; allowed 0\.1 to 10 1/s",
+    ),
     ({"sensors": {"speed": 0.01}}, r"\[sensors\] .*setting 'speed' .*did you mean 'speed_sd'"),
     ({"sensor": [{"use": "inclinometr"}]}, r"sensor 'inclinometr' .*did you mean 'inclinometer'"),
-    ({"sensor": [{"use": "inclinometer"}] * 2}, r"\[\[sensor\]\] inclinometer: phi is read by another sensor"),
+    (
+        {"sensor": [{"use": "inclinometer"}] * 2},
+        r"\[\[sensor\]\] inclinometer: phi is read by another sensor",
+    ),
     ({"camera": {"mark_sd": 9.0}}, r"\[camera\] .*mark_sd = 9 m; allowed 0 to 0\.1 m"),
     ({"goal": [{"sway": 0.07}]}, r"\[\[goal\]\] key 'sway' .*did you mean 'sway_mps'"),
     ({"goal": [{"from": 3.0}, {"from": 1.0}]}, r"times in ascending order"),
     ({"effect": [{"use": "weak_revers"}]}, r"effect 'weak_revers' .*did you mean 'weak_reverse'"),
     ({"set": {"pwm_thrust": {"at_spa": 0.3}}}, r"setting 'at_spa' .*did you mean 'at_span'"),
-    ({"norms": {"yaw_rate_l1": {"guard": [2.0, 1.0]}}}, r"guard = \[2\.0, 1\.0\]; allowed are its lower end"),
+    (
+        {"norms": {"yaw_rate_l1": {"guard": [2.0, 1.0]}}},
+        r"guard = \[2\.0, 1\.0\]; allowed are its lower end",
+    ),
     ({"norms": {"yaw_rate_l1": {"tolerance": 1.0}}}, r"tolerance needs published"),
     ({"norms": {"moved": {"guard": [0.0, 1.0]}}}, r"\[norms\] key 'moved' does not exist"),
 ]
 
 
 @pytest.mark.parametrize(
-    ("change", "line"), MISTAKES, ids=lambda value: next(iter(value), None) if isinstance(value, dict) else ""
+    ("change", "line"),
+    MISTAKES,
+    ids=lambda value: next(iter(value), None) if isinstance(value, dict) else "",
 )
 def test_a_mistake_in_a_file_is_one_clear_line(change: dict[str, Any], line: str) -> None:
     with pytest.raises(BadInput, match=line) as caught:

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.special import exp1
 
 from boatsim.errors import BadInput
-from boatsim.measures.sea_keeping import SeaKeeping
+from boatsim.metrics.sea_keeping import SeaKeeping
 from boatsim.physics import vessel
 from boatsim.physics.base import AXES, Array, Wrench, motion
 from boatsim.physics.effects.bilge_keels import BilgeKeels
@@ -33,7 +33,9 @@ SEEDS = 4000  # the error of an rms over them is 1.1 %
 
 def sea(**more: float) -> IrregularSea:
     """A sea on Eastward Ho, condition 1."""
-    return IrregularSea(significant_height=1.0, **more).completed(vessel.load("eastward_ho", ["condition_1"]))
+    return IrregularSea(significant_height=1.0, **more).completed(
+        vessel.load("eastward_ho", ["condition_1"])
+    )
 
 
 def ensemble(effect: Any, t: float = 0.0) -> Array:
@@ -54,7 +56,9 @@ def test_section_integrals(s: float, taper: float) -> None:
 
 
 @pytest.mark.parametrize(("height", "period", "wanted"), [(0.88, 7.5, 2.09), (1.88, 8.8, 3.48)])
-def test_slope_is_that_of_the_spectrum_up_to_the_cut(height: float, period: float, wanted: float) -> None:
+def test_slope_is_that_of_the_spectrum_up_to_the_cut(
+    height: float, period: float, wanted: float
+) -> None:
     """The slope's spectrum A / (w g^2) exp(-B / w^4) integrates to A / (4 g^2) E1(B / cut^4)."""
     b = 1.25 * (2 * pi / period) ** 4
     integral = sqrt(b * height**2 / 4 / (4 * G**2) * exp1(b / 3.0**4))
@@ -78,19 +82,29 @@ def test_slope_is_that_of_the_spectrum_up_to_the_cut(height: float, period: floa
     ],
 )
 def test_accelerations_that_the_thesis_seas_give(
-    name: str, condition: int, encounter: int, height: float, period: float, wanted: tuple[float, float, float]
+    name: str,
+    condition: int,
+    encounter: int,
+    height: float,
+    period: float,
+    wanted: tuple[float, float, float],
 ) -> None:
     """Rms of yaw, sway and direct roll [deg/s^2]; in the beam sea the height is a hundredth of the resonant length."""
     boat = vessel.load(name, [f"condition_{condition}"])
     beam = encounter == 90
     own = IrregularSea(
         significant_height=height or 0.01 * G * period**2 / (2 * pi),
-        modal_period=period, toward=radians(encounter), flat=float(beam), course_kept=1.0,
-    ).completed(boat)  # fmt: skip
+        modal_period=period,
+        toward=radians(encounter),
+        flat=float(beam),
+        course_kept=1.0,
+    ).completed(boat)
     w, water, body = ensemble(own), boat.effect("added_mass"), boat.body
     direct = w[:, ROLL] - own.arm * w[:, SWAY]
     mass = (body.yaw_inertia + water.yaw, body.mass + water.sway, body.roll_inertia + water.roll)  # type: ignore[union-attr]
-    found = [degrees(a.std() / b) for a, b in zip((w[:, YAW], w[:, SWAY], direct), mass, strict=True)]
+    found = [
+        degrees(a.std() / b) for a, b in zip((w[:, YAW], w[:, SWAY], direct), mass, strict=True)
+    ]
     assert found == pytest.approx(wanted, rel=0.045, abs=0.006)
 
 
@@ -102,7 +116,9 @@ def test_a_ship_on_a_straight_course_meets_the_waves_of_the_formula(angle: float
     for t in (0.0, 3.7, 61.3):
         seen = world.wrench(motion(t=t, x=5.0 * t, u=5.0))
         assert seen == pytest.approx(kept.wrench(motion(t=t)), rel=1e-9)
-    turned = replace(world, toward=radians(angle) + 0.3)  # only the angle between waves and ship counts
+    turned = replace(
+        world, toward=radians(angle) + 0.3
+    )  # only the angle between waves and ship counts
     course = motion(t=9.0, psi=0.3, x=45.0 * cos(0.3), y=45.0 * sin(0.3))
     assert turned.wrench(course) == pytest.approx(world.wrench(motion(t=9.0, x=45.0)), rel=1e-9)
 
@@ -121,9 +137,13 @@ def published(own: IrregularSea, w: float, angle: float, slope: float) -> tuple[
 
 
 @pytest.mark.parametrize("angle", [0.3, 1.2, 2.6])
-def test_one_wave_has_the_frequency_of_encounter_and_the_force_of_the_published_integrals(angle: float) -> None:
+def test_one_wave_has_the_frequency_of_encounter_and_the_force_of_the_published_integrals(
+    angle: float,
+) -> None:
     one = replace(sea(toward=angle, components=1.0, course_kept=1.0), arm=0.0, speed=6.0)
-    Y, K, N = np.array([one.wrench(motion(t=t)) for t in np.arange(0.0, 400.0, 0.04)])[:, [SWAY, ROLL, YAW]].T
+    Y, K, N = np.array([one.wrench(motion(t=t)) for t in np.arange(0.0, 400.0, 0.04)])[
+        :, [SWAY, ROLL, YAW]
+    ].T
     up = np.flatnonzero((K[:-1] < 0) & (K[1:] >= 0))
     times = 0.04 * (up - K[up] / (K[up + 1] - K[up]))
     met = 2 * pi * (len(up) - 1) / (times[-1] - times[0])
@@ -144,7 +164,9 @@ def test_a_calm_sea_is_nothing_and_a_seed_is_another_course_of_the_same_sea() ->
 
 def test_sea_needs_no_particular_vessel() -> None:
     boat = vessel.load("joystick_boat")
-    small = IrregularSea(significant_height=0.02, modal_period=1.0, toward=1.0, cut=12.0).completed(boat)
+    small = IrregularSea(significant_height=0.02, modal_period=1.0, toward=1.0, cut=12.0).completed(
+        boat
+    )
     assert small.wrench(motion(t=1.0)).K == 0.0 and small.wrench(motion(t=1.0)).Y != 0.0
 
 
@@ -169,7 +191,9 @@ def test_noise_has_the_filters_autocorrelation_and_independent_axes(noise: Any) 
     for tau in (0.7, 2.5, 6.0):
         later = ensemble(noise, tau)
         wanted = exp(-0.125 * tau) * (cos(damped * tau) - 0.125 / damped * sin(damped * tau))
-        assert (start * later).mean(axis=0)[acts] / level[acts] ** 2 == pytest.approx(wanted, abs=0.06)
+        assert (start * later).mean(axis=0)[acts] / level[acts] ** 2 == pytest.approx(
+            wanted, abs=0.06
+        )
     assert type(noise)().wrench(motion(t=2.0)) == Wrench()
 
 
@@ -203,7 +227,9 @@ def test_bilge_keels_take_the_energy_of_the_published_equivalent_damping() -> No
 
         drag = 22.5 * 0.05 / (pi * 0.3 * a * 1.2) + 2.4
         damping = 8 / (3 * pi) * RHO * 0.3**3 * 4.2 * a * 0.05 * 0.6 * 1.2**2 * drag
-        assert quad(power, 0, 2 * pi / 4.2, limit=200)[0] == pytest.approx(pi * damping * 4.2 * a**2, rel=1e-6)
+        assert quad(power, 0, 2 * pi / 4.2, limit=200)[0] == pytest.approx(
+            pi * damping * 4.2 * a**2, rel=1e-6
+        )
 
 
 def test_bilge_keels_take_size_and_frequency_of_their_vessel() -> None:
@@ -237,7 +263,9 @@ def test_a_blade_pushes_at_its_place_and_a_little_more_than_alone() -> None:
     alone = 0.5 * RHO * 6.13 * 1.5 / 3.75 * 2.0 * 16.0
     force, arm = blade.wrench(motion(), angle=0.1), boat.effect("linear_hull").arm  # type: ignore[union-attr]
     assert -force.Y == pytest.approx(0.1 * alone * (1 + 0.627 * 0.514 - 0.153))
-    assert force.N == pytest.approx(-10.0 * force.Y) and force.K == pytest.approx((arm - 2.0) * force.Y)
+    assert force.N == pytest.approx(-10.0 * force.Y) and force.K == pytest.approx(
+        (arm - 2.0) * force.Y
+    )
     given = Rudder(sway=3.0, yaw=-4.0, roll=5.0).completed(boat)
     assert given.wrench(motion(), angle=0.5) == Wrench(Y=1.5, K=2.5, N=-2.0)
 
@@ -259,10 +287,14 @@ def test_a_hull_too_short_for_a_spheroid_is_refused() -> None:
 @pytest.mark.parametrize("delta", [-0.6, -0.2, 0.3, 0.6])
 def test_a_stalled_rudder_gives_what_it_gave_at_the_angle_of_stall(delta: float) -> None:
     boat = vessel.load("eastward_ho")
-    own, stalling = (b.effect("rudder") for b in (boat, vessel.added(boat, RudderStall(angle=0.35))))
+    own, stalling = (
+        b.effect("rudder") for b in (boat, vessel.added(boat, RudderStall(angle=0.35)))
+    )
     assert isinstance(own, Rudder) and isinstance(stalling, Rudder)
     stalled = min(max(delta, -0.35), 0.35)
-    assert stalling.wrench(motion(), angle=delta) == pytest.approx(own.wrench(motion(), angle=stalled))
+    assert stalling.wrench(motion(), angle=delta) == pytest.approx(
+        own.wrench(motion(), angle=stalled)
+    )
 
 
 def test_speed_hold_leaves_no_surge_but_towards_the_speed() -> None:
@@ -278,6 +310,12 @@ def test_a_push_is_the_same_on_every_heading() -> None:
 
 def test_sea_keeping_is_the_rms_of_three_angles_in_degrees() -> None:
     t = np.linspace(0.0, 2 * pi, 1001)[:-1]
-    log = Recording("log", t, {"psi_rad": 0.1 * np.sin(t), "phi_rad": np.full(1000, -0.2), "rudder_rad": 0.0 * t})
+    log = Recording(
+        "log",
+        t,
+        {"psi_rad": 0.1 * np.sin(t), "phi_rad": np.full(1000, -0.2), "rudder_rad": 0.0 * t},
+    )
     found = SeaKeeping().values(log)
-    assert found == pytest.approx({"yaw_rms": degrees(0.1 / sqrt(2)), "roll_rms": degrees(0.2), "rudder_rms": 0.0})
+    assert found == pytest.approx(
+        {"yaw_rms": degrees(0.1 / sqrt(2)), "roll_rms": degrees(0.2), "rudder_rms": 0.0}
+    )

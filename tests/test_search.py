@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from pushed_boat import laid, push, sail
 
-from boatsim.diagnose.fit import fit
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.evidence import worth
-from boatsim.diagnose.search.screen import Begin, checked, screen
-from boatsim.diagnose.search.sets import Sets
-from boatsim.diagnose.search.settle import there
+from boatsim.diagnosis.fit import fit
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.candidate_sets import Sets
+from boatsim.diagnosis.search.evidence import worth
+from boatsim.diagnosis.search.pruning import there
+from boatsim.diagnosis.search.screening import Begin, checked, screen
 from boatsim.physics.base import Array
 
 
@@ -24,9 +24,15 @@ def weak() -> tuple[Problem, Fit]:
     return laid(*(sail(f"run_{k}", 40 + k, a_third_more_astern)[0] for k in range(2)))
 
 
-def test_a_start_promises_what_least_squares_gains_by_a_multiple_of_it_beside_all_that_is_free() -> None:
+def test_a_start_promises_what_least_squares_gains_by_a_multiple_of_it_beside_all_that_is_free() -> (
+    None
+):
     rng = np.random.default_rng(3)
-    known, white, mark = rng.standard_normal((50, 4)), rng.standard_normal(50), rng.standard_normal(50)
+    known, white, mark = (
+        rng.standard_normal((50, 4)),
+        rng.standard_normal(50),
+        rng.standard_normal(50),
+    )
     begin = Begin(known, np.zeros(4), 0.0, white, np.linalg.inv(np.eye(4) + known.T @ known))
 
     def cost(A: Array) -> float:
@@ -51,17 +57,25 @@ def test_a_look_that_the_filter_bears_out_stays_and_from_one_that_it_does_not_it
     assert checked(problem, base, look) is look
     own = np.array([f.effect == "weak_reverse" for f in look.free])
     mean = np.array([f.mean for f in look.free])
-    wild = replace(look, theta=np.where(own, mean - 2.5 * (look.theta - mean), look.theta))  # strong, the wrong way
+    wild = replace(
+        look, theta=np.where(own, mean - 2.5 * (look.theta - mean), look.theta)
+    )  # strong, the wrong way
     honest = checked(problem, base, wild)
-    assert honest is not wild and honest.theta[own] == pytest.approx(look.theta[own], abs=0.2)  # from the wrong side
+    assert honest is not wild and honest.theta[own] == pytest.approx(
+        look.theta[own], abs=0.2
+    )  # from the wrong side
     assert honest.evidence - base.evidence == pytest.approx(look.evidence - base.evidence, rel=0.2)
 
 
-def test_a_member_is_worth_less_than_its_curvature_says_and_what_does_nothing_little(weak: tuple[Problem, Fit]) -> None:
+def test_a_member_is_worth_less_than_its_curvature_says_and_what_does_nothing_little(
+    weak: tuple[Problem, Fit],
+) -> None:
     problem, base = weak
     looks = screen(problem, base, ["weak_reverse", "steady_force"])
     found = fit(problem, looks["weak_reverse"])
-    assert worth(found, "weak_reverse") > found.evidence - base.evidence > 100.0  # the latent force takes its place
+    assert (
+        worth(found, "weak_reverse") > found.evidence - base.evidence > 100.0
+    )  # the latent force takes its place
     both = fit(problem, screen(problem, found, ["steady_force"])["steady_force"])
     assert worth(both, "steady_force") < 10.0 and worth(both, "nothing of the kind") == 0.0
 
@@ -75,6 +89,12 @@ def test_an_effect_acts_where_recordings_tell_a_number_of_it_whatever_they_leave
     free = problem.parameters(("planing_lag",))
     at = {f.name: i for i, f in enumerate(free) if f.effect == "planing_lag"}
     theta, sd = np.array([f.mean for f in free]), np.array([f.sd for f in free])
-    theta[at["full_speed"]], theta[at["least"]], sd[at["least"]] = sd[at["full_speed"]], 0.5, least_sd
-    found = replace(base, suspects=("planing_lag",), free=free, theta=theta, covariance=np.diag(sd**2))
+    theta[at["full_speed"]], theta[at["least"]], sd[at["least"]] = (
+        sd[at["full_speed"]],
+        0.5,
+        least_sd,
+    )
+    found = replace(
+        base, suspects=("planing_lag",), free=free, theta=theta, covariance=np.diag(sd**2)
+    )
     assert there(Sets(problem, ("planing_lag",), base), found, "planing_lag") is acts

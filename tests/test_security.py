@@ -22,12 +22,12 @@ import pytest
 from pyarrow import parquet
 from typer.testing import CliRunner
 
-from boatsim.cli import app, asking
-from boatsim.cli.batch import plan
+from boatsim.cli import app, trust_prompt
 from boatsim.cli.exits import LONGEST, complain, words
-from boatsim.diagnose.analysis import vessel_for
-from boatsim.diagnose.tried import library_for
-from boatsim.drive.hands import PATIENCE, Hands, Sticks
+from boatsim.cli.run_many import plan
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.pipeline import vessel_for
+from boatsim.drive.driver_input import PATIENCE, Hands, Sticks
 from boatsim.drive.server import LARGEST as MESSAGE
 from boatsim.drive.server import STRANGE, TAKEN, Server
 from boatsim.errors import BadInput, BoatsimError, shown
@@ -101,11 +101,17 @@ def test_1_a_python_file_that_data_name_does_not_run(tmp_path: Path, kind: str) 
     if kind in text:
         file.write_text(text[kind])
     assert "slime.py is not run" in refused(boatsim("run", file, "--out", tmp_path / "out"))
-    assert not ran.exists() and not (tmp_path / "slime.ran").exists() and not (tmp_path / "out").exists()
+    assert (
+        not ran.exists()
+        and not (tmp_path / "slime.ran").exists()
+        and not (tmp_path / "out").exists()
+    )
 
 
 def test_1_an_effect_that_a_vessel_asks_to_be_tried_does_not_run(tmp_path: Path) -> None:
-    place = boats.written(tmp_path, "test_boat", boats.ROLL + '[diagnosis]\nalso = [{ use = "slime" }]\n')
+    place = boats.written(
+        tmp_path, "test_boat", boats.ROLL + '[diagnosis]\nalso = [{ use = "slime" }]\n'
+    )
     (place / "slime.py").write_text(EFFECT)
     boat = vessel.load(f"{place}/")
     with pytest.raises(BadInput, match="is not run"):
@@ -120,7 +126,9 @@ def test_1_a_strangers_recording_runs_nothing(tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_bytes(TRIAL.read_bytes())
     (tmp_path / "recording.toml").write_text('vessel = "test_boat/vessel.toml"\n')
     for command in ("diagnose", "replay", "compare"):
-        assert "slime.py is not run" in refused(boatsim(command, tmp_path / "run.csv", "--out", tmp_path / "out"))
+        assert "slime.py is not run" in refused(
+            boatsim(command, tmp_path / "run.csv", "--out", tmp_path / "out")
+        )
     assert not ran.exists()
 
 
@@ -130,21 +138,35 @@ def test_2_content_runs_and_its_names_resolve(tmp_path: Path) -> None:
         (home / folder).mkdir(parents=True)
     (home / "effects" / "slime.py").write_text(EFFECT)
     boats.written(home / "models", "slimy", boats.ROLL + USE.format("slime"))
-    (home / "scenarios" / "calm" / "still.toml").write_text(f'about = "Calm."\nvessel = "slimy"\n{STILL}')
-    assert "'calm/still' does not exist" in refused(boatsim("run", "calm/still", "--out", tmp_path / "out"))
+    (home / "scenarios" / "calm" / "still.toml").write_text(
+        f'about = "Calm."\nvessel = "slimy"\n{STILL}'
+    )
+    assert "'calm/still' does not exist" in refused(
+        boatsim("run", "calm/still", "--out", tmp_path / "out")
+    )
     assert boatsim("run", "calm/still", "--content", home, "--out", tmp_path / "out").exit_code == 0
     listed = boatsim("list", "--content", home).stdout
-    assert all(re.search(rf"^  {name} ", listed, re.MULTILINE) for name in ("slime", "slimy", "calm/still", "thruster"))
+    assert all(
+        re.search(rf"^  {name} ", listed, re.MULTILINE)
+        for name in ("slime", "slimy", "calm/still", "thruster")
+    )
     (home / "effects" / "thruster.py").write_text("1 / 0")
     with trust.trusting(home):
-        assert content.load_class("effect", "thruster").__module__ == "boatsim.physics.effects.thruster"
+        assert (
+            content.load_class("effect", "thruster").__module__
+            == "boatsim.physics.effects.thruster"
+        )
         assert plan(["calm/still"], None, None)[0].name == "calm/still"
     assert "no such folder" in refused(boatsim("list", "--content", tmp_path / "none"))
 
 
-def test_3_trust_lets_run_what_lies_beside_the_files_of_the_command_line_and_nothing_else(tmp_path: Path) -> None:
+def test_3_trust_lets_run_what_lies_beside_the_files_of_the_command_line_and_nothing_else(
+    tmp_path: Path,
+) -> None:
     file, ran = with_slime(tmp_path)
-    assert boatsim("run", file, "--trust", "--out", tmp_path / "out").exit_code == 0 and ran.exists()
+    assert (
+        boatsim("run", file, "--trust", "--out", tmp_path / "out").exit_code == 0 and ran.exists()
+    )
     (tmp_path / "elsewhere").mkdir()
     other, ran = with_slime(tmp_path / "elsewhere")
     named = tmp_path / "named" / "still.toml"
@@ -154,7 +176,9 @@ def test_3_trust_lets_run_what_lies_beside_the_files_of_the_command_line_and_not
     assert not ran.exists()
 
 
-@pytest.mark.parametrize(("answer", "runs"), [("y\n", True), ("YES\n", True), ("n\n", False), ("", False)])
+@pytest.mark.parametrize(
+    ("answer", "runs"), [("y\n", True), ("YES\n", True), ("n\n", False), ("", False)]
+)
 def test_4_a_person_at_a_terminal_is_asked_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: str, runs: bool
 ) -> None:
@@ -162,14 +186,14 @@ def test_4_a_person_at_a_terminal_is_asked_once(
     (file.parent / "test_boat" / "slimy.py").write_text(EFFECT.replace("Slime", "Slimy"))
     with (file.parent / "test_boat" / "vessel.toml").open("a") as text:
         text.write(USE.format("slimy"))
-    monkeypatch.setattr(asking, "_there", lambda: True)
+    monkeypatch.setattr(trust_prompt, "_there", lambda: True)
     done = CliRunner().invoke(app, ["run", str(file), "--out", str(tmp_path / "out")], input=answer)
     assert done.stderr.count("Run them? [y/N]") == 1 and ran.exists() == runs
     assert done.exit_code == (0 if runs else 2)
 
 
 def test_4_nobody_is_asked_without_a_terminal() -> None:
-    assert not asking._there()  # as tests run
+    assert not trust_prompt._there()  # as tests run
 
 
 def test_5_a_file_that_the_user_names_runs(tmp_path: Path) -> None:
@@ -183,8 +207,12 @@ def test_5_a_file_that_the_user_names_runs(tmp_path: Path) -> None:
         content.load_class("effect", str(other))
 
 
-@pytest.mark.parametrize("use", ["../away/slime.py", "{}/away/slime.py", "link.py", "away/slime.py", "slime"])
-def test_6_a_path_counts_by_where_the_file_really_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, use: str) -> None:
+@pytest.mark.parametrize(
+    "use", ["../away/slime.py", "{}/away/slime.py", "link.py", "away/slime.py", "slime"]
+)
+def test_6_a_path_counts_by_where_the_file_really_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, use: str
+) -> None:
     (tmp_path / "boat").mkdir()
     file, _ = with_slime(tmp_path / "boat", use.format(tmp_path))
     (tmp_path / "boat" / "test_boat" / "slime.py").unlink()
@@ -238,14 +266,22 @@ def test_7_paths_in_notes_start_at_their_folder(far: Path, monkeypatch: pytest.M
         vessel_for(far, "mine/", [])  # the user's own word starts where he is
 
 
-@pytest.mark.parametrize("name", ["x\nimport os; os.mkdir('ran')\n#", "\r1/0", "\u2028 1/0", '"""\n1/0\n"""'])
-def test_8_names_do_not_become_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+@pytest.mark.parametrize(
+    "name", ["x\nimport os; os.mkdir('ran')\n#", "\r1/0", "\u2028 1/0", '"""\n1/0\n"""']
+)
+def test_8_names_do_not_become_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
-    quoted = name.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\r", "\\r")
+    quoted = (
+        name.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\r", "\\r")
+    )
     text = boats.ROLL + f'[[effect]]\nuse = "roll_damping"\nname = "{quoted}"\n'
     place = boats.written(tmp_path, 'quo"""ted\n1\n', boats.ROLL)
-    (place / "vessel.toml").write_text(text.replace('use = "roll_damping"', 'use = "quadratic_damping"\nroll = 0.1'))
+    (place / "vessel.toml").write_text(
+        text.replace('use = "roll_damping"', 'use = "quadratic_damping"\nroll = 0.1')
+    )
     program = Program(vessel.load(str(place / "vessel.toml")))
     assert program.module.HELD == 1 and not (tmp_path / "ran").exists()
 
@@ -254,7 +290,9 @@ def test_9_processes_may_run_what_their_parent_may(tmp_path: Path) -> None:
     file, ran = with_slime(tmp_path)
     twin = tmp_path / "twin.toml"
     twin.write_text(file.read_text())
-    assert boatsim("run", file, twin, "--jobs", 2, "--trust", "--out", tmp_path / "out").exit_code == 0
+    assert (
+        boatsim("run", file, twin, "--jobs", 2, "--trust", "--out", tmp_path / "out").exit_code == 0
+    )
     assert {p.name for p in (tmp_path / "out").iterdir()} == {"still", "twin"} and ran.exists()
     with trust.trusting(allowed=[tmp_path], ask=lambda folder: True):
         assert trust.now().ask is None and trust.now().holds(ran)
@@ -299,7 +337,9 @@ def test_12_without_a_home_the_cache_is_a_new_folder_of_the_process(tmp_path: Pa
     environ |= {"HOME": str(tmp_path / "file"), "TMPDIR": str(tmp_path)}
     places = set()
     for _ in range(2):
-        done = subprocess.run([sys.executable, "-c", code], env=environ, capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            [sys.executable, "-c", code], env=environ, capture_output=True, text=True, check=True
+        )
         place, same, mode, handed_on = done.stdout.split()
         assert (same, mode, handed_on) == ("True", "700", "True") and Path(place).parent == tmp_path
         assert not Path(place).exists() and f"boatsim-{os.getuid()}" != Path(place).name
@@ -308,7 +348,9 @@ def test_12_without_a_home_the_cache_is_a_new_folder_of_the_process(tmp_path: Pa
 
 
 @pytest.mark.parametrize("damage", ["laws.py", "__init__.py", "*.nbi", "*.nbc", "cut"])
-def test_13_a_damaged_cache_is_built_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: str) -> None:
+def test_13_a_damaged_cache_is_built_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: str
+) -> None:
     place = boats.written(tmp_path, "test_roller", boats.ROLL)
     monkeypatch.setenv("BOATSIM_CACHE", str(tmp_path / "cache"))
     code = (
@@ -330,14 +372,18 @@ def test_13_a_damaged_cache_is_built_again(tmp_path: Path, monkeypatch: pytest.M
     assert kept
     for file in kept:
         whole = file.read_bytes()
-        file.write_bytes(whole[: len(whole) // 2] if damage == "cut" else b"\x80garbage" + whole[9:])
+        file.write_bytes(
+            whole[: len(whole) // 2] if damage == "cut" else b"\x80garbage" + whole[9:]
+        )
     assert moment() == before == moment()
 
 
 # What is shown ----------------------------------------------------------------------------------------------------
 
 
-def test_14_what_steers_a_terminal_is_shown_as_an_escape(capsys: pytest.CaptureFixture[str]) -> None:
+def test_14_what_steers_a_terminal_is_shown_as_an_escape(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     complain("a\x1b[2Jb\u202ec\u200bd\udcffe\nf")
     assert capsys.readouterr().err == "boatsim: a\\x1b[2Jb\\u202ec\\u200bd\\udcffe\\nf\n"
     assert shown("Königsberg, 5 °") == "Königsberg, 5 °"
@@ -347,21 +393,27 @@ def test_14_an_ascii_terminal_gets_escapes(tmp_path: Path) -> None:
     file = tmp_path / "größe.toml"
     file.write_text(f'vessel = "kvlcc2_roll"\n{STILL}')
     words = [sys.executable, "-m", "boatsim", "run", str(file), "--out", str(tmp_path / "größe")]
-    done = subprocess.run(words, env=os.environ | {"PYTHONIOENCODING": "ascii"}, capture_output=True, check=False)
+    done = subprocess.run(
+        words, env=os.environ | {"PYTHONIOENCODING": "ascii"}, capture_output=True, check=False
+    )
     assert done.returncode == 0 and b"gr\\xf6\\xdfe" in done.stdout and not done.stderr
 
 
 def test_15_a_line_is_not_too_long(capsys: pytest.CaptureFixture[str]) -> None:
     complain(words(BadInput(f"{'a' * 4000}: first {'b' * 4000} last")))
     line = capsys.readouterr().err
-    assert len(line) == LONGEST + 1 and line.startswith("boatsim: aaa") and line.endswith("bbb last\n")
+    assert (
+        len(line) == LONGEST + 1 and line.startswith("boatsim: aaa") and line.endswith("bbb last\n")
+    )
 
 
 @pytest.mark.slow
 def test_16_the_report_escapes_what_it_shows(tmp_path: Path) -> None:
     run = tmp_path / "x<img src=q onerror=alert(1)>.csv"
     run.write_bytes(TRIAL.read_bytes())
-    assert boatsim("diagnose", run, "--vessel", "trial_boat", "--out", tmp_path / "out").exit_code == 0
+    assert (
+        boatsim("diagnose", run, "--vessel", "trial_boat", "--out", tmp_path / "out").exit_code == 0
+    )
     page = (tmp_path / "out" / "report.html").read_text()
     assert "<img src=q" not in page and "&lt;img src=q" in page and "<script src" not in page
 
@@ -423,10 +475,16 @@ def test_17_toml_has_its_limits(tmp_path: Path, text: str, said: str) -> None:
 
 def test_18_too_many_columns_are_refused(tmp_path: Path) -> None:
     names = ["t_s", "x_m", *(f"c{i}" for i in range(30_000))]
-    (tmp_path / "wide.csv").write_text(",".join(names) + "\n" + "\n".join([",".join("1" for _ in names)] * 30))
-    parquet.write_table(pa.table({n: np.arange(30.0) for n in names[:3000]}), tmp_path / "wide.parquet")
+    (tmp_path / "wide.csv").write_text(
+        ",".join(names) + "\n" + "\n".join([",".join("1" for _ in names)] * 30)
+    )
+    parquet.write_table(
+        pa.table({n: np.arange(30.0) for n in names[:3000]}), tmp_path / "wide.parquet"
+    )
     for file, found in (("wide.csv", len(names)), ("wide.parquet", 3000)):
-        with pytest.raises(BadInput, match=rf"has {found} columns; a recording has at most {limits.MOST_COLUMNS}"):
+        with pytest.raises(
+            BadInput, match=rf"has {found} columns; a recording has at most {limits.MOST_COLUMNS}"
+        ):
             read(tmp_path / file)
     (tmp_path / "line.csv").write_bytes(b"t_s" * limits.LONGEST_HEADER)
     with pytest.raises(BadInput, match="the first line has more"):
@@ -453,7 +511,9 @@ def test_18_lists_in_a_column_are_not_read_and_texts_that_repeat_stay_one(tmp_pa
     assert set(read(tmp_path / "run.parquet").signals) == {"x_m", "psi_rad"}
 
 
-def test_19_what_does_not_fit_the_memory_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_19_what_does_not_fit_the_memory_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert limits.free_memory() > 1e6
     monkeypatch.setattr(limits, "free_memory", lambda: 11.0 * TRIAL.stat().st_size)
     with pytest.raises(BadInput, match="of memory to be read"):
@@ -501,7 +561,11 @@ def test_20_a_wrong_token_gets_neither_page_nor_socket(server: Server) -> None:
 
 
 def test_20_another_name_of_the_host_is_refused(server: Server) -> None:
-    for host in ("evil.example", f"evil.example:{server.port}", f"127.0.0.1.evil.example:{server.port}"):
+    for host in (
+        "evil.example",
+        f"evil.example:{server.port}",
+        f"127.0.0.1.evil.example:{server.port}",
+    ):
         assert answer(server.address, Host=host) == 421
 
 
@@ -537,10 +601,22 @@ def test_21_one_drives_and_a_second_page_is_told_so(server: Server) -> None:
 
 @pytest.mark.parametrize(
     "message",
-    ["", "[", "{}", '{"sticks": [2, 0, 0], "moved": 0}', '{"sticks": [NaN, 0, 0], "moved": 0}', "[" * 900,
-     '{"sticks": [0, 0], "moved": 0}', '{"sticks": "abc", "moved": 0}', b"\xff\xfe", "x" * 5000],
-)  # fmt: skip
-def test_22_what_is_no_message_of_the_page_ends_the_socket_and_moves_nothing(server: Server, message: str) -> None:
+    [
+        "",
+        "[",
+        "{}",
+        '{"sticks": [2, 0, 0], "moved": 0}',
+        '{"sticks": [NaN, 0, 0], "moved": 0}',
+        "[" * 900,
+        '{"sticks": [0, 0], "moved": 0}',
+        '{"sticks": "abc", "moved": 0}',
+        b"\xff\xfe",
+        "x" * 5000,
+    ],
+)
+def test_22_what_is_no_message_of_the_page_ends_the_socket_and_moves_nothing(
+    server: Server, message: str
+) -> None:
     with dialled(server) as page:
         page.send(message)
         with pytest.raises(Exception, match=f"{STRANGE}|1009|1007"):
@@ -564,7 +640,9 @@ class Resources(HTMLParser):
         self.found: list[str] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.found += [f"{name}={value}" for name, value in attrs if name in ("src", "href", "style", "action")]
+        self.found += [
+            f"{name}={value}" for name, value in attrs if name in ("src", "href", "style", "action")
+        ]
         self.found += [name for name, _ in attrs if name.startswith("on")]
 
 
@@ -585,14 +663,25 @@ def test_22_the_page_fetches_nothing_and_may_run_its_own_script_alone(server: Se
 
 def test_every_line_of_the_page_has_its_test() -> None:
     lines = {int(n) for n in re.findall(r"^(\d+)\. ", PAGE, re.MULTILINE)}
-    tests = {int(n) for n in re.findall(r"^def test_(\d+)_", HERE.read_text(encoding="utf-8"), re.MULTILINE)}
+    tests = {
+        int(n)
+        for n in re.findall(r"^def test_(\d+)_", HERE.read_text(encoding="utf-8"), re.MULTILINE)
+    }
     assert lines == tests == set(range(1, 23))
 
 
 def test_the_page_states_the_limits_that_are() -> None:
     said = " ".join(PAGE.split())
-    assert f"at most {limits.MOST_COLUMNS} columns" in said and f"{limits.MOST_CELLS // 10**6} million cells" in said
-    assert f"{limits.LARGEST_FILE >> 30} GiB" in said and f"{limits.BYTES_PER_CELL} bytes for each cell" in said
-    assert f"{LARGEST >> 20} MiB, {DEEPEST} tables" in said and f"at most {LONGEST} characters" in said
+    assert (
+        f"at most {limits.MOST_COLUMNS} columns" in said
+        and f"{limits.MOST_CELLS // 10**6} million cells" in said
+    )
+    assert (
+        f"{limits.LARGEST_FILE >> 30} GiB" in said
+        and f"{limits.BYTES_PER_CELL} bytes for each cell" in said
+    )
+    assert (
+        f"{LARGEST >> 20} MiB, {DEEPEST} tables" in said and f"at most {LONGEST} characters" in said
+    )
     assert f"at most {MESSAGE} bytes" in said and f"silent for {PATIENCE:g} s" in said
     assert limits.GROWS == 12 and limits.LONGEST_HEADER == 1 << 20

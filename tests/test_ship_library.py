@@ -12,8 +12,8 @@ import pytest
 from alike import slow
 from scipy.integrate import solve_ivp
 
-from boatsim.diagnose import analysis
-from boatsim.diagnose.excursion import bound
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.command_range import bound
 from boatsim.errors import BadInput
 from boatsim.physics import particulars, vessel
 from boatsim.physics.base import Array, Course, Effect, Wrench, mean_of, motion
@@ -47,7 +47,9 @@ def test_a_stall_is_sought_among_rudder_angles_and_not_among_shaft_rates() -> No
 def signals(kind: type[Effect], **given: float) -> Any:
     """Signals of a law's roles, with cosine and sine of those that are angles."""
     angles = {n: a for n, a in given.items() if kind.roles[n].unit == "rad"}
-    parts = {f"cos_{n}": cos(a) for n, a in angles.items()} | {f"sin_{n}": sin(a) for n, a in angles.items()}
+    parts = {f"cos_{n}": cos(a) for n, a in angles.items()} | {
+        f"sin_{n}": sin(a) for n, a in angles.items()
+    }
     return kind.signals_type()(**given, **parts)
 
 
@@ -56,16 +58,27 @@ def signals(kind: type[Effect], **given: float) -> Any:
 
 def test_balance_holds_a_speed_in_proportion_to_the_propellers_rate() -> None:
     balance = ApproachBalance(damping=90.0, speed=1.2, shaft_rate=10.0)
-    assert balance.wrench(motion(u=0.9), signals(ApproachBalance, shaft=7.5)) == pytest.approx(Wrench())
-    assert balance.wrench(motion(u=1.0), signals(ApproachBalance, shaft=10.0)).X == pytest.approx(18.0)
+    assert balance.wrench(motion(u=0.9), signals(ApproachBalance, shaft=7.5)) == pytest.approx(
+        Wrench()
+    )
+    assert balance.wrench(motion(u=1.0), signals(ApproachBalance, shaft=10.0)).X == pytest.approx(
+        18.0
+    )
     stronger = replace(balance, gain=1.1)
-    assert stronger.wrench(motion(u=0.99), signals(ApproachBalance, shaft=7.5)) == pytest.approx(Wrench(), abs=1e-12)
+    assert stronger.wrench(motion(u=0.99), signals(ApproachBalance, shaft=7.5)) == pytest.approx(
+        Wrench(), abs=1e-12
+    )
 
 
 def test_speed_scaled_hull_and_rudder_are_the_nondimensional_form() -> None:
-    hull, rudder = LinearDamping(sway=591.4, sway_by_yaw=-801.8, yaw_by_sway=1800.6, yaw=4508.0), SHIP.effect("rudder")
+    hull, rudder = (
+        LinearDamping(sway=591.4, sway_by_yaw=-801.8, yaw_by_sway=1800.6, yaw=4508.0),
+        SHIP.effect("rudder"),
+    )
     assert isinstance(rudder, Rudder)
-    whole = SpeedScaledSteering(hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1).completed(SHIP)
+    whole = SpeedScaledSteering(hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1).completed(
+        SHIP
+    )
     m, helm = motion(**TURN), signals(Rudder, angle=HELM)
     ratio = m.u / 1.179
     of_hull, of_rudder = np.array(hull.wrench(m)), np.array(rudder.wrench(m, helm))
@@ -74,20 +87,26 @@ def test_speed_scaled_hull_and_rudder_are_the_nondimensional_form() -> None:
 
 
 def test_speed_scaling_vanishes_at_the_approach_speed_whatever_its_shares() -> None:
-    shares = SpeedScaledSteering(hull_sway=2, hull_yaw=-1, rudder_sway=0.5, rudder_yaw=3).completed(SHIP)
+    shares = SpeedScaledSteering(hull_sway=2, hull_yaw=-1, rudder_sway=0.5, rudder_yaw=3).completed(
+        SHIP
+    )
     at_it = shares.wrench(motion(**{**TURN, "u": 1.179}), signals(SpeedScaledSteering, angle=HELM))
     assert at_it == pytest.approx(Wrench(), abs=1e-12)
 
 
 def test_astern_the_water_meets_the_rudder_from_behind_and_the_hull_still_damps() -> None:
-    scaled = SpeedScaledSteering(hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1).completed(SHIP)
+    scaled = SpeedScaledSteering(hull_sway=1, hull_yaw=1, rudder_sway=1, rudder_yaw=1).completed(
+        SHIP
+    )
     hull, rudder = SHIP.effect("linear_damping"), SHIP.effect("rudder")
     assert isinstance(hull, LinearDamping) and isinstance(rudder, Rudder)
 
     def whole(u: float, v: float, helm: float) -> Array:
         m = motion(u=u, v=v)
         parts = hull.wrench(m), rudder.wrench(m, signals(Rudder, angle=helm))
-        return np.array([*parts, scaled.wrench(m, signals(SpeedScaledSteering, angle=helm))])[:, [1, 5]].sum(axis=0)
+        return np.array([*parts, scaled.wrench(m, signals(SpeedScaledSteering, angle=helm))])[
+            :, [1, 5]
+        ].sum(axis=0)
 
     assert whole(-0.8, 0.0, HELM) == pytest.approx(-whole(0.8, 0.0, HELM))
     assert whole(-0.8, 0.2, 0.0)[0] == pytest.approx(whole(0.8, 0.2, 0.0)[0])
@@ -100,15 +119,21 @@ def test_a_race_adds_to_a_blade_what_momentum_theory_adds_to_the_square_of_its_i
     race = RudderRace(normal_force_per_thrust=per_thrust, at=-1.4, side=-1.0)
     for u in (0.0, 0.7):
         faster = 8.0 * thrust / (pi * density * diameter**2)  # V_R^2 - u^2 [m^2/s^2] far behind
-        slope = [particulars.rudder_slope(area, aspect, sqrt(u * u + more), density) for more in (0.0, faster)]
+        slope = [
+            particulars.rudder_slope(area, aspect, sqrt(u * u + more), density)
+            for more in (0.0, faster)
+        ]
         normal = (slope[1] - slope[0]) * sin(delta)
         seen = race.wrench(motion(u=u), signals(RudderRace, angle=delta, thrust=thrust))
         assert seen == pytest.approx(
-            Wrench(X=-normal * sin(delta), Y=-normal * cos(delta), N=1.4 * normal * cos(delta)), rel=1e-12
+            Wrench(X=-normal * sin(delta), Y=-normal * cos(delta), N=1.4 * normal * cos(delta)),
+            rel=1e-12,
         )
 
 
-def test_a_propeller_that_backs_washes_no_rudder_and_a_race_takes_its_place_from_the_rudder() -> None:
+def test_a_propeller_that_backs_washes_no_rudder_and_a_race_takes_its_place_from_the_rudder() -> (
+    None
+):
     race = RudderRace(normal_force_per_thrust=0.5).completed(SHIP)
     rudder = SHIP.effect("rudder")
     assert isinstance(rudder, Rudder)
@@ -122,8 +147,12 @@ def test_a_propeller_that_backs_washes_no_rudder_and_a_race_takes_its_place_from
 def test_forward_speed_damping_is_linear_damping_in_proportion_to_the_speed(u: float) -> None:
     m = motion(u=u, v=0.2, p=-0.3, r=0.4)
     linear = LinearDamping(sway=0.7 * 8.0, roll=0.7 * 2.0, yaw=0.7 * 3.0)
-    assert ForwardSpeedDamping(sway=8.0, roll=2.0, yaw=3.0).wrench(m) == pytest.approx(linear.wrench(m))
-    assert not any(ForwardSpeedDamping(sway=8.0, roll=2.0, yaw=3.0).wrench(motion(v=0.2, p=-0.3, r=0.4)))
+    assert ForwardSpeedDamping(sway=8.0, roll=2.0, yaw=3.0).wrench(m) == pytest.approx(
+        linear.wrench(m)
+    )
+    assert not any(
+        ForwardSpeedDamping(sway=8.0, roll=2.0, yaw=3.0).wrench(motion(v=0.2, p=-0.3, r=0.4))
+    )
 
 
 @pytest.mark.parametrize("u", [0.7, -0.7])
@@ -132,14 +161,18 @@ def test_lift_at_a_place_is_a_force_there_by_the_drift_there_and_astern_the_hull
 ) -> None:
     lift = ForwardSpeedDamping(sway=8.0, at=-0.4)
     seen, there = lift.wrench(motion(u=u, v=0.2, r=0.3)), -0.4 if u > 0.0 else 0.4
-    assert (lift.wrench(motion(u=u, v=0.2)).N / lift.wrench(motion(u=u, v=0.2)).Y) == pytest.approx(there)
+    assert (lift.wrench(motion(u=u, v=0.2)).N / lift.wrench(motion(u=u, v=0.2)).Y) == pytest.approx(
+        there
+    )
     assert seen.Y == pytest.approx(-8.0 * abs(u) * (0.2 + there * 0.3))
     assert seen.N == pytest.approx(there * seen.Y)
 
 
 def test_speed_lost_in_a_turn_is_the_coriolis_force_of_the_sway_added_mass() -> None:
     m = motion(**TURN)
-    assert SpeedLossInTurn(mass=2486.0).wrench(m).X == pytest.approx(AddedMass(sway=2486.0).wrench(m).X)
+    assert SpeedLossInTurn(mass=2486.0).wrench(m).X == pytest.approx(
+        AddedMass(sway=2486.0).wrench(m).X
+    )
     assert SpeedLossInTurn(mass=2486.0).wrench(m).X < 0.0
 
 
@@ -157,8 +190,12 @@ def test_rate_limit_takes_the_time_of_a_ramp_and_its_mean_is_exact() -> None:
     memory, fine = np.zeros(1), 2000
     angle = 0.0
     for x in commands:
-        mean = mean_of(SteeringRateLimit.channel(Course(x, x, x), 0.0, 0.0, memory, 0, dt, limit.values()))
-        path = angle + np.sign(x - angle) * np.minimum(limit.rate * dt * np.arange(fine + 1) / fine, abs(x - angle))
+        mean = mean_of(
+            SteeringRateLimit.channel(Course(x, x, x), 0.0, 0.0, memory, 0, dt, limit.values())
+        )
+        path = angle + np.sign(x - angle) * np.minimum(
+            limit.rate * dt * np.arange(fine + 1) / fine, abs(x - angle)
+        )
         assert mean == pytest.approx(np.trapezoid(path) / fine, abs=1e-7)
         angle = path[-1]
         assert memory[0] == pytest.approx(angle)
@@ -177,7 +214,9 @@ def test_metacentric_height_changes_the_period_by_the_inverse_root() -> None:
 def test_thrust_lost_with_speed_scales_each_thruster(u: float) -> None:
     own, loss = Thruster(x=-0.6, y=0.19, gain=1.2), ThrustLossWithSpeed(loss=0.2)
     for thrust in (0.8, -0.5):
-        given, less = (signals(Thruster, thrust=t, angle=0.3) for t in (thrust, thrust - 0.2 * u * abs(thrust)))
+        given, less = (
+            signals(Thruster, thrust=t, angle=0.3) for t in (thrust, thrust - 0.2 * u * abs(thrust))
+        )
         seen = np.add(own.wrench(motion(u=u), given), loss.wrench(motion(u=u), given, own.values()))
         assert seen == pytest.approx(own.wrench(motion(u=u), less))
 
@@ -193,7 +232,9 @@ def test_planing_lag_is_the_kappa_form(u: float, kappa: float) -> None:
 
 
 def test_revolutions_a_minute_add_to_those_a_second() -> None:
-    turning = ShaftRpm.channel(Course(0.5, 0.5, 0.5), 0.0, 90.0, np.zeros(1), 0, 0.1, ShaftRpm().values())
+    turning = ShaftRpm.channel(
+        Course(0.5, 0.5, 0.5), 0.0, 90.0, np.zeros(1), 0, 0.1, ShaftRpm().values()
+    )
     assert turning == pytest.approx([2.0, 2.0, 2.0])
 
 
@@ -208,9 +249,15 @@ def test_kvlcc2_has_the_published_derivatives() -> None:
     water = SHIP.effect("added_mass")
     assert isinstance(hull, LinearDamping) and isinstance(water, AddedMass)
     assert hull.sway == pytest.approx(0.315 * force, rel=1e-3)
-    assert hull.sway_by_yaw == pytest.approx(-0.083 * force * L + 0.022 * 500.0 * L**2 * d * U0, rel=1e-3)
-    assert (hull.yaw_by_sway, hull.yaw) == pytest.approx((0.137 * force * L, 0.049 * force * L**2), rel=1e-3)
-    assert (water.surge, water.sway) == pytest.approx((0.022 * 500 * L**2 * d, 0.223 * 500 * L**2 * d), rel=1e-3)
+    assert hull.sway_by_yaw == pytest.approx(
+        -0.083 * force * L + 0.022 * 500.0 * L**2 * d * U0, rel=1e-3
+    )
+    assert (hull.yaw_by_sway, hull.yaw) == pytest.approx(
+        (0.137 * force * L, 0.049 * force * L**2), rel=1e-3
+    )
+    assert (water.surge, water.sway) == pytest.approx(
+        (0.022 * 500 * L**2 * d, 0.223 * 500 * L**2 * d), rel=1e-3
+    )
     J = 0.6 * U0 / (n * 0.204)
     KT = 0.2931 - 0.2753 * J - 0.1385 * J**2
     jet = 1.0 + 0.5 * (sqrt(1.0 + 8.0 * KT / (pi * J**2)) - 1.0)
@@ -245,7 +292,9 @@ def test_full_scale_kvlcc2_is_the_model_by_froudes_law() -> None:
             if getattr(own, name.replace("_equal", "_exponent")) == 1.0 and name.endswith("_equal"):
                 continue  # where a linear law meets another power says nothing of it
             wanted = getattr(own, name) * grows(about.unit)
-            loose = 1e-2 if name == "shaft_rate" else 1e-3  # the tanks' propellers turned at slightly different rates
+            loose = (
+                1e-2 if name == "shaft_rate" else 1e-3
+            )  # the tanks' propellers turned at slightly different rates
             assert getattr(scaled, name) == pytest.approx(wanted, rel=loose), f"{own.name}.{name}"
     assert full.body.mass == pytest.approx(SHIP.body.mass * ratio**3, rel=1e-3)
     assert full.body.yaw_inertia == pytest.approx(SHIP.body.yaw_inertia * ratio**5, rel=1e-3)
@@ -281,7 +330,9 @@ def tanker(t: float, y: Array, angle: Callable[[float], float], shaft: float, re
     N = lift * (-1800.6 * v - 4508.0 * r) + steer * 391.9 * delta - m * ahead * u * r
     matrix = np.array([[m + 2486.0, m * ahead], [m * ahead, 9908.6 + m * ahead**2 + 6009.0]])
     c, s = np.cos(psi), np.sin(psi)
-    return np.array([u * c - v * s, u * s + v * c, r, X / (m + 245.2), *np.linalg.solve(matrix, [Y, N])])
+    return np.array(
+        [u * c - v * s, u * s + v * c, r, X / (m + 245.2), *np.linalg.solve(matrix, [Y, N])]
+    )
 
 
 def sailed(real: Real, seed: int) -> Recording:
@@ -302,21 +353,27 @@ def sailed(real: Real, seed: int) -> Recording:
             near = 0.5 * real.rate  # [rad]
             return goal - near * asinh(sinh((goal - begin) / near) * exp(-real.rate * t / near))
 
-        y = solve_ivp(tanker, (0.0, dt), y, args=(machine, shaft, real), rtol=1e-7, atol=1e-9).y[:, -1]
+        y = solve_ivp(tanker, (0.0, dt), y, args=(machine, shaft, real), rtol=1e-7, atol=1e-9).y[
+            :, -1
+        ]
         angle = machine(dt)
     table = np.array(rows)
     table[:, 1:7] += rng.standard_normal((n, 6)) * [0.002, 0.002, 4e-4, 1e-3, 1e-3, 2e-4]
     names = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps", "delta_rad")
-    signals = {name: table[:, i + 1] for i, name in enumerate(names)} | {"n_rps": np.full(n, 10.2295 * shaft)}
+    signals = {name: table[:, i + 1] for i, name in enumerate(names)} | {
+        "n_rps": np.full(n, 10.2295 * shaft)
+    }
     return Recording(f"{seed}", table[:, 0], signals, Notes(vessel="kvlcc2"))
 
 
-def diagnosed(made: Callable[[int], Recording], folder: Path, name: str, library: tuple[str, ...]) -> dict[str, Any]:
+def diagnosed(
+    made: Callable[[int], Recording], folder: Path, name: str, library: tuple[str, ...]
+) -> dict[str, Any]:
     """The answer of a diagnosis of three runs."""
     files = [folder / f"{seed}.csv" for seed in (1, 2, 3)]
     for seed, file in enumerate(files, 1):
         recording.write_csv(made(seed), file)
-    return analysis.diagnose(files[:2], files[2:], name, library=library).findings.answer
+    return pipeline.diagnose(files[:2], files[2:], name, library=library).findings.answer
 
 
 def check(answer: dict[str, Any], wanted: dict[str, dict[str, float]]) -> None:
@@ -325,7 +382,9 @@ def check(answer: dict[str, Any], wanted: dict[str, dict[str, float]]) -> None:
     for effect in answer["effects"]:
         for key, true in wanted[effect["name"]].items():
             found = effect["parameters"][key]
-            assert abs(found["value"] - true) < 3.5 * found["sd"] and found["sd"] < 0.3 * abs(true), key
+            assert abs(found["value"] - true) < 3.5 * found["sd"] and found["sd"] < 0.3 * abs(
+                true
+            ), key
 
 
 @pytest.mark.parametrize(
@@ -347,8 +406,13 @@ def check(answer: dict[str, Any], wanted: dict[str, dict[str, float]]) -> None:
     ],
     ids=lambda case: "" if isinstance(case, Real) else "+".join(case) or "nothing",
 )
-def test_what_a_linear_tanker_lacks_is_named_with_its_values(tmp_path: Path, real: Real, wanted: Any) -> None:
-    check(diagnosed(lambda seed: sailed(real, seed), tmp_path, "kvlcc2", ("steering_rate_limit",)), wanted)
+def test_what_a_linear_tanker_lacks_is_named_with_its_values(
+    tmp_path: Path, real: Real, wanted: Any
+) -> None:
+    check(
+        diagnosed(lambda seed: sailed(real, seed), tmp_path, "kvlcc2", ("steering_rate_limit",)),
+        wanted,
+    )
 
 
 CRAFT = """
@@ -396,7 +460,9 @@ def throttled(change: Callable[[float, float], float], seed: int) -> Recording:
     y, rows = np.array([0.0, 3.0]), []
     for a in thrust:
         rows.append(y)
-        y = solve_ivp(lambda t, z, a=a: [z[1], change(a, z[1])], (0.0, dt), y, rtol=1e-8, atol=1e-9).y[:, -1]
+        y = solve_ivp(
+            lambda t, z, a=a: [z[1], change(a, z[1])], (0.0, dt), y, rtol=1e-8, atol=1e-9
+        ).y[:, -1]
     x, u = np.array(rows).T + rng.standard_normal((2, n)) * [[0.05], [0.15]]
     signals = {"x_m": x, "u_mps": u}
     signals |= {f"thrust_{side}_N": 0.5 * 388.0 * thrust for side in ("port", "starboard")}
@@ -410,7 +476,9 @@ def drag(u: float) -> float:
 
 
 def lagging(a: float, u: float) -> float:
-    return min((0.2**4 + max(u / 28.0, 0.0) ** 4) ** 0.25, 1.0) * (a - drag(u))  # it planes by and by
+    return min((0.2**4 + max(u / 28.0, 0.0) ** 4) ** 0.25, 1.0) * (
+        a - drag(u)
+    )  # it planes by and by
 
 
 def slipping(a: float, u: float) -> float:
@@ -421,10 +489,15 @@ def slipping(a: float, u: float) -> float:
     ("change", "wanted"),
     [
         slow((lagging, {"planing_lag": {"full_speed_mps": 28.0, "least": 0.2}})),
-        (slipping, {"thrust_loss_with_speed": {"loss_spm": 0.012, "curve_s2pm2": 0.015 * 0.2 / 12.0}}),
+        (
+            slipping,
+            {"thrust_loss_with_speed": {"loss_spm": 0.012, "curve_s2pm2": 0.015 * 0.2 / 12.0}},
+        ),
     ],
 )
-def test_what_a_planing_craft_lacks_is_named_with_its_values(tmp_path: Path, change: Any, wanted: Any) -> None:
+def test_what_a_planing_craft_lacks_is_named_with_its_values(
+    tmp_path: Path, change: Any, wanted: Any
+) -> None:
     folder = boats.written(tmp_path, "craft", CRAFT)
     check(diagnosed(lambda seed: throttled(change, seed), tmp_path, str(folder), ()), wanted)
 
@@ -437,19 +510,26 @@ def test_a_rudder_counted_to_port_is_turned_and_said_so(tmp_path: Path) -> None:
     recording.write_csv(run, tmp_path / "ours.csv")
     theirs = {**run.signals, "delta_rad": -run["delta_rad"]}
     recording.write_csv(replace(run, signals=theirs), tmp_path / "theirs.csv")
-    ours, said = (analysis.open_recording(tmp_path / f"{n}.csv", "kvlcc2", ())[0] for n in ("ours", "theirs"))
+    ours, said = (
+        pipeline.open_recording(tmp_path / f"{n}.csv", "kvlcc2", ())[0] for n in ("ours", "theirs")
+    )
     assert said["delta_rad"] == pytest.approx(ours["delta_rad"]) and not ours.remarks
-    assert said.remarks[-1].endswith("theirs.csv: positive delta_rad turns the other way; its sign is changed")
+    assert said.remarks[-1].endswith(
+        "theirs.csv: positive delta_rad turns the other way; its sign is changed"
+    )
 
 
 def test_the_scale_of_a_recording_picks_the_vessel_or_is_refused(tmp_path: Path) -> None:
     run = sailed(Real(), 1)
-    recording.write_csv(replace(run, signals={**run.signals, "n_rps": np.full(len(run), 1.5)}), tmp_path / "run.csv")
+    recording.write_csv(
+        replace(run, signals={**run.signals, "n_rps": np.full(len(run), 1.5)}), tmp_path / "run.csv"
+    )
     (tmp_path / "recording.toml").write_text('vessel = "kvlcc2"\nscale = 1.0\n')
-    assert analysis.open_recording(tmp_path / "run.csv", None, ())[1].name == "kvlcc2_full_scale"
+    assert pipeline.open_recording(tmp_path / "run.csv", None, ())[1].name == "kvlcc2_full_scale"
     with pytest.raises(
-        BadInput, match="scale = 1, but kvlcc2 is at scale 45.714; the vessel at that scale is kvlcc2_f"
+        BadInput,
+        match="scale = 1, but kvlcc2 is at scale 45.714; the vessel at that scale is kvlcc2_f",
     ):
-        analysis.open_recording(tmp_path / "run.csv", "kvlcc2", ())
+        pipeline.open_recording(tmp_path / "run.csv", "kvlcc2", ())
     (tmp_path / "recording.toml").write_text('vessel = "kvlcc2"\nscale = 45.714\n')
-    assert analysis.open_recording(tmp_path / "run.csv", None, ())[1].name == "kvlcc2"
+    assert pipeline.open_recording(tmp_path / "run.csv", None, ())[1].name == "kvlcc2"

@@ -54,53 +54,78 @@ def norms(folder: Path) -> dict[str, Any]:
     return found
 
 
-def test_each_controller_has_a_folder_and_the_log_of_all_lies_beside_them(both: tuple[Path, Any]) -> None:
+def test_each_controller_has_a_folder_and_the_log_of_all_lies_beside_them(
+    both: tuple[Path, Any],
+) -> None:
     out, result = both
     assert result.exit_code == 0, result.output
     assert {f.name for f in out.iterdir()} == {"pid_autopilot", "l1_joystick", "compare.rrd"}
-    assert [norms(out / c)["controller"] for c in ("pid_autopilot", "l1_joystick")] == ["pid_autopilot", "l1_joystick"]
+    assert [norms(out / c)["controller"] for c in ("pid_autopilot", "l1_joystick")] == [
+        "pid_autopilot",
+        "l1_joystick",
+    ]
 
 
 def test_the_table_has_every_norm_of_every_run_and_marks_the_lowest(both: tuple[Path, Any]) -> None:
     out, result = both
     found = [norms(out / c)["norms"] for c in ("pid_autopilot", "l1_joystick")]
     for name, first in found[0].items():
-        row = next(line for line in result.stdout.splitlines() if f"{name} [{first['unit']}]" in line)
+        row = next(
+            line for line in result.stdout.splitlines() if f"{name} [{first['unit']}]" in line
+        )
         cells = [cell.strip() for cell in row.strip("│").split("│")]
         assert cells[1] == first["kind"]
         values = [f"{one[name]['value']:.4g}" for one in found]
         lowest = min(values, key=float)
-        assert cells[2:] == [f"{v} *" if v == lowest and len(set(values)) > 1 else v for v in values]
+        assert cells[2:] == [
+            f"{v} *" if v == lowest and len(set(values)) > 1 else v for v in values
+        ]
 
 
-def test_the_scenarios_own_controller_keeps_its_settings(both: tuple[Path, Any], tmp_path: Path) -> None:
+def test_the_scenarios_own_controller_keeps_its_settings(
+    both: tuple[Path, Any], tmp_path: Path
+) -> None:
     out, _ = both
     (tmp_path / "own.toml").write_text(SCENARIO)
     assert boatsim("run", tmp_path / "own.toml", "--out", tmp_path / "alone").exit_code == 0
-    assert (tmp_path / "alone" / "recording.csv").read_bytes() == (out / "l1_joystick" / "recording.csv").read_bytes()
+    assert (tmp_path / "alone" / "recording.csv").read_bytes() == (
+        out / "l1_joystick" / "recording.csv"
+    ).read_bytes()
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-def test_the_log_holds_what_each_run_recorded_under_its_name_and_the_shared_goal_once(both: tuple[Path, Any]) -> None:
+def test_the_log_holds_what_each_run_recorded_under_its_name_and_the_shared_goal_once(
+    both: tuple[Path, Any],
+) -> None:
     out, _ = both
     logged: dict[str, list[float]] = {}
     for chunk in RrdReader(out / "compare.rrd").stream().to_chunks():
         name = chunk.entity_path.removeprefix("/")
         table = chunk.to_record_batch()
         if name.startswith("signals/") and "Scalars:scalars" in table.schema.names:
-            logged.setdefault(name, []).extend(v[0] for v in table.column("Scalars:scalars").to_pylist() if v)
+            logged.setdefault(name, []).extend(
+                v[0] for v in table.column("Scalars:scalars").to_pylist() if v
+            )
     for boat in ("pid_autopilot", "l1_joystick"):
         recorded = read(out / boat / "recording.csv")
         assert np.allclose(logged[f"signals/{boat}/v_mps"], recorded["v_mps"], atol=1e-9)
-    assert [n for n in logged if n.endswith("goal_sway_mps")] == ["signals/pid_autopilot/goal_sway_mps"]
+    assert [n for n in logged if n.endswith("goal_sway_mps")] == [
+        "signals/pid_autopilot/goal_sway_mps"
+    ]
 
 
 @pytest.mark.parametrize(
     ("controller", "said"),
     [
-        ("pd_heading", r"controller pd_heading does not fit own: own.toml: \[\[goal\]\] key 'sway_mps' does not exist"),
+        (
+            "pd_heading",
+            r"controller pd_heading does not fit own: own.toml: \[\[goal\]\] key 'sway_mps' does not exist",
+        ),
         ("l1_heading_discrete", r"controller l1_heading_discrete does not fit own: "),
-        ("blind.py", r"controller .*blind.py does not fit own: no \[\[goal\]\] in force says course_rad"),
+        (
+            "blind.py",
+            r"controller .*blind.py does not fit own: no \[\[goal\]\] in force says course_rad",
+        ),
         ("pid_autopilo", r"controller 'pid_autopilo' does not exist; did you mean 'pid_autopilot'"),
     ],
 )
@@ -118,12 +143,18 @@ def test_a_controller_that_does_not_fit_is_one_line_and_nothing_runs(
 
 def test_one_controller_alone_changes_no_folder(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text(SCENARIO)
-    result = boatsim("run", tmp_path / "own.toml", "--controller", "pid_autopilot", "--out", tmp_path / "o")
+    result = boatsim(
+        "run", tmp_path / "own.toml", "--controller", "pid_autopilot", "--out", tmp_path / "o"
+    )
     assert result.exit_code == 0 and norms(tmp_path / "o")["controller"] == "pid_autopilot"
-    assert not (tmp_path / "o" / "compare.rrd").exists() and "pid_autopilot, seed 0" in result.stdout
+    assert (
+        not (tmp_path / "o" / "compare.rrd").exists() and "pid_autopilot, seed 0" in result.stdout
+    )
 
 
-def test_two_scenarios_side_by_side_differ_in_their_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_scenarios_side_by_side_differ_in_their_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     for name, pole in (("slow", "0.5"), ("quick", "2.0")):
         Path(f"{name}.toml").write_text(SCENARIO.replace("0.7", pole))
@@ -138,12 +169,20 @@ def test_a_norm_that_has_another_unit_in_another_scenario_has_a_row_for_each(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     for name, signal in (("drift", "v_mps"), ("turn", "r_radps")):
-        Path(f"{name}.toml").write_text(f'measure = {{ use = "tracking", signal = "{signal}" }}\n' + SCENARIO)
+        Path(f"{name}.toml").write_text(
+            f'measure = {{ use = "tracking", signal = "{signal}" }}\n' + SCENARIO
+        )
     result = boatsim("run", "drift.toml", "turn.toml", "--side-by-side")
     assert result.exit_code == 0, result.output
-    rows = [[c.strip() for c in line.strip("│").split("│")] for line in result.stdout.splitlines() if "│" in line]
+    rows = [
+        [c.strip() for c in line.strip("│").split("│")]
+        for line in result.stdout.splitlines()
+        if "│" in line
+    ]
     cells = {name: values for name, _, *values in rows}
-    drift, turn = (f"{norms(Path('out') / name)['norms']['rms']['value']:.4g}" for name in ("drift", "turn"))
+    drift, turn = (
+        f"{norms(Path('out') / name)['norms']['rms']['value']:.4g}" for name in ("drift", "turn")
+    )
     assert cells["rms [m/s]"] == [drift, ""] and cells["rms [deg/s]"] == ["", turn]
     assert all(cells["sway_error_rms [m/s]"])
 
@@ -158,5 +197,9 @@ def test_no_boat_is_lost_from_the_log_where_names_differ_by_a_mark_alone(
         Path(name).write_text(SCENARIO)
     result = boatsim("run", *own, "--side-by-side")
     assert result.exit_code == 0, result.output
-    logged = {chunk.entity_path for chunk in RrdReader(Path("out") / "compare.rrd").stream().to_chunks()}
-    assert {n for n in logged if n.endswith("/v_mps")} == {f"/signals/{n}/v_mps" for n in ("a_b", "a_b_2", "a_b_3")}
+    logged = {
+        chunk.entity_path for chunk in RrdReader(Path("out") / "compare.rrd").stream().to_chunks()
+    }
+    assert {n for n in logged if n.endswith("/v_mps")} == {
+        f"/signals/{n}/v_mps" for n in ("a_b", "a_b_2", "a_b_3")
+    }

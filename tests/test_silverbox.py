@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.real import silverbox
 from benchmarks.real.common import RECORDINGS
-from boatsim.diagnose.analysis import Diagnosis
+from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 
@@ -40,13 +40,19 @@ def test_the_input_between_its_rows_is_the_band_limited_signal_through_them(tmp_
     for between in silverbox.WAYS:
         recording, true = taken(tmp_path, between)
         assert recording.orders is not None
-        off[between] = float(np.std((recording.orders.signals["force_V"] - true)[inner]) / np.std(true))
+        off[between] = float(
+            np.std((recording.orders.signals["force_V"] - true)[inner]) / np.std(true)
+        )
     assert off["band"] < 0.005 and off["lines"] > 0.1 and off["held"] > 0.3
 
 
 def test_a_row_holds_the_mean_of_the_courses_until_the_next(tmp_path: Path) -> None:
     recording, _ = taken(tmp_path, "band")
-    assert recording.orders is not None and len(recording) == 400 and recording.t[-1] == pytest.approx(399 / 20)
+    assert (
+        recording.orders is not None
+        and len(recording) == 400
+        and recording.t[-1] == pytest.approx(399 / 20)
+    )
     courses = recording.orders.signals["force_V"].reshape(400, -1)
     assert recording["force_V"] == pytest.approx(courses.mean(axis=1))
 
@@ -57,7 +63,9 @@ def test_the_vessel_swings_as_the_circuit_on_a_slower_clock(tmp_path: Path) -> N
     assert arm is not None and thruster is not None and boat.freedoms == ("roll",)
     stiffness, lever = getattr(arm, "stiffness"), getattr(thruster, "z")  # noqa: B009
     pulsation = np.sqrt(stiffness / boat.body.roll_inertia)  # [rad/s]
-    assert pulsation / (2.0 * np.pi) == pytest.approx(silverbox.SWINGS * silverbox.SECOND / RATE, rel=1e-4)
+    assert pulsation / (2.0 * np.pi) == pytest.approx(
+        silverbox.SWINGS * silverbox.SECOND / RATE, rel=1e-4
+    )
     assert -lever == pytest.approx(stiffness)  # a steady V heels it by a V
 
 
@@ -77,12 +85,17 @@ def test_the_cubic_spring_is_named_before_all_else(found: Diagnosis) -> None:
     allowed = {"righting_arm_stiffening", "steady_force", "roll_offset", "quadratic_damping"}
     assert {"steady_force", "roll_offset"} < set(names) <= allowed
     cubic = effects[0]["parameters"]["cubic_perrad2"]
-    assert cubic["value"] == pytest.approx(CUBIC, rel=0.03) and abs(cubic["value"] - CUBIC) < 2.0 * cubic["sd"]
+    assert (
+        cubic["value"] == pytest.approx(CUBIC, rel=0.03)
+        and abs(cubic["value"] - CUBIC) < 2.0 * cubic["sd"]
+    )
 
 
 @there
 @pytest.mark.slow
-def test_a_zero_of_the_output_that_is_off_is_told_by_the_square_that_it_makes_of_the_cube(found: Diagnosis) -> None:
+def test_a_zero_of_the_output_that_is_off_is_told_by_the_square_that_it_makes_of_the_cube(
+    found: Diagnosis,
+) -> None:
     """Without its entry the same is described as a spring that is stronger to one side."""
     (offset,) = (e for e in found.findings.answer["effects"] if e["name"] == "roll_offset")
     assert offset["gain_nats"] > 100.0

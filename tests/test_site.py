@@ -18,7 +18,9 @@ from tests.pages import ROOT, blocks, difference, reference
 
 DOCS = ROOT / "docs"
 REFERENCE = reference.pages()
-TEXTS = {file: file.read_text(encoding="utf-8") for file in (ROOT / "README.md", *DOCS.glob("**/*.md"))}
+TEXTS = {
+    file: file.read_text(encoding="utf-8") for file in (ROOT / "README.md", *DOCS.glob("**/*.md"))
+}
 TEXTS |= {DOCS / "reference" / f"{name}.md": text for name, text in REFERENCE.items()}
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]*))?\)")
 CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
@@ -55,7 +57,9 @@ def test_all_of_a_kind_have_a_page_with_words_and_something_to_paste(kind: str) 
             assert tomllib.loads(page.split("```toml\n")[1].split("```")[0]), name
 
 
-def test_the_page_of_an_effect_has_each_parameter_and_what_is_fitted_and_what_rules_it_out() -> None:
+def test_the_page_of_an_effect_has_each_parameter_and_what_is_fitted_and_what_rules_it_out() -> (
+    None
+):
     page = REFERENCE["effects/tether"]
     assert "- **ruled out by**: moored = false" in page
     assert "| tension | 0 N | 0 to 1e+06 | yes | steady pull |" in page
@@ -65,7 +69,17 @@ def test_the_page_of_an_effect_has_each_parameter_and_what_is_fitted_and_what_ru
 def test_every_scenario_and_every_command_is_in_the_reference() -> None:
     for name in names("scenario"):
         assert f"`{name}`" in REFERENCE[f"scenarios/{name.partition('/')[0]}"]
-    for command in ("run", "diagnose", "import", "check", "new", "show", "list", "replay", "manoeuvre"):
+    for command in (
+        "run",
+        "diagnose",
+        "import",
+        "check",
+        "new",
+        "show",
+        "list",
+        "replay",
+        "manoeuvre",
+    ):
         assert "--help" in REFERENCE[f"commands/{command}"]
 
 
@@ -76,9 +90,21 @@ def test_words_of_the_library_are_not_taken_for_markdown() -> None:
 
 
 def test_the_map_of_the_readme_and_that_of_the_site_lead_to_the_same_pages() -> None:
-    maps = [{Path(path).stem for path, _ in links(TEXTS[ROOT / name])} for name in ("README.md", "docs/index.md")]
+    maps = [
+        {Path(path).stem for path, _ in links(TEXTS[ROOT / name])}
+        for name in ("README.md", "docs/index.md")
+    ]
     assert maps[0] - {"run"} == maps[1] - {"run", "index"}
-    assert {"first_steps", "your_boat", "logs", "formats", "diagnosis", "results", "extending", "papers"} <= maps[0]
+    assert {
+        "first_steps",
+        "your_boat",
+        "logs",
+        "formats",
+        "diagnosis",
+        "results",
+        "extending",
+        "papers",
+    } <= maps[0]
 
 
 def test_the_readme_is_one_screen_and_a_map() -> None:
@@ -88,15 +114,24 @@ def test_the_readme_is_one_screen_and_a_map() -> None:
 def test_every_key_of_a_file_is_on_the_page_of_formats() -> None:
     page = TEXTS[DOCS / "formats.md"]
     models = (VesselFile, DiagnosisTable, ManoeuvringTable, ScenarioFile)
-    keys = {key for model in models for key in model.model_fields} | set(KEYS) | set(NOISE) | set(WORDS)
+    keys = (
+        {key for model in models for key in model.model_fields}
+        | set(KEYS)
+        | set(NOISE)
+        | set(WORDS)
+    )
     told = set(re.findall(r"[a-zA-Z_]+", " ".join(re.findall(r"`([^`\n]*)`", page))))
     assert keys - told - {"position_wander_sd_m", "position_wander_time_s"} == set()
 
 
-def test_what_the_page_on_adding_shows_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_page_on_adding_shows_is_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Its effect, its vessel and its scenario in files as it says, and the boat moves."""
     page = TEXTS[DOCS / "extending.md"]
-    made = {kind: re.findall(rf"```{kind}\n(.*?)```", page, re.DOTALL) for kind in ("python", "toml")}
+    made = {
+        kind: re.findall(rf"```{kind}\n(.*?)```", page, re.DOTALL) for kind in ("python", "toml")
+    }
     hull = re.search(r"`(<mujoco>.*?</mujoco>)`", page, re.DOTALL)
     assert hull
     boat, [scenario] = made["toml"][0], made["toml"][1:]
@@ -105,7 +140,9 @@ def test_what_the_page_on_adding_shows_is_whole(tmp_path: Path, monkeypatch: pyt
     folder.mkdir()
     (folder / "fog_drag.py").write_text(made["python"][0])
     (folder / "hull.xml").write_text(hull[1])
-    (folder / "vessel.toml").write_text(boat.replace("# All of this may", f"{fog}# All of this may"))
+    (folder / "vessel.toml").write_text(
+        boat.replace("# All of this may", f"{fog}# All of this may")
+    )
     ahead = '[controller]\nuse = "open_loop"\n[[goal]]\nport_N = 2.0\nstarboard_N = 2.0\n'
     (tmp_path / "straight.toml").write_text(f'vessel = "my_boat/"\nduration = 2.0\n{ahead}')
     (tmp_path / "turn.toml").write_text(scenario)

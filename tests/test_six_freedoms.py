@@ -14,14 +14,20 @@ from boatsim.physics.base import Array
 from boatsim.physics.kernel.equations import tilts
 from boatsim.physics.signals import AXES, signals_of
 from boatsim.physics.vessel import Vessel
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.twin import Twin
 
 # ---- the Otter (Fossen's toolbox)
 
 # order u v w p q r, about the origin midships [kg, kg m, kg m^2]
 OTTER_MASS = np.diag([60.28152101, 137.5, 110.0, 14.517184, 29.15, 39.325])
-for (i, j), value in {(0, 4): -11.0, (1, 3): 11.0, (1, 5): 11.0, (2, 4): -11.0, (3, 5): 2.2}.items():
+for (i, j), value in {
+    (0, 4): -11.0,
+    (1, 3): 11.0,
+    (1, 5): 11.0,
+    (2, 4): -11.0,
+    (3, 5): 2.2,
+}.items():
     OTTER_MASS[i, j] = OTTER_MASS[j, i] = value
 OTTER_ADDED = np.diag([5.28152101, 82.5, 55.0, 2.052864, 11.0, 23.375])
 OTTER_DAMPING = np.array([77.55443235, 137.5, 546.48048913, 50.02366181, 218.18785613, 39.325])
@@ -49,7 +55,14 @@ def restoring() -> Array:
     across = 2 / 12 * length * b**3 * 6 * c**3 / ((1 + c) * (1 + 2 * c)) + 2 * plane * 0.395**2
     along = 0.8 * 2 / 12 * b * length**3
     KB, KG = (5 * T / 2 - V / (2 * length * b)) / 3, T + 0.2
-    stiffness = [0, 0, rho_g * 2 * plane, rho_g * V * (KB + across / V - KG), rho_g * V * (KB + along / V - KG), 0]
+    stiffness = [
+        0,
+        0,
+        rho_g * 2 * plane,
+        rho_g * V * (KB + across / V - KG),
+        rho_g * V * (KB + along / V - KG),
+        0,
+    ]
     H = np.eye(6)
     H[:3, 3:] = skew(np.array([-0.2, 0.0, 0.0])).T
     return np.asarray(H.T @ np.diag(stiffness) @ H)
@@ -60,19 +73,30 @@ def cross_flow(v: float, r: float) -> tuple[float, float]:
     if abs(r) < 1e-4:  # where the differences below lose their digits
         points = [-v / r] if r and abs(v / r) < 1.0 else None
         one, two = (
-            quad(lambda x, k=k: abs(v + x * r) * (v + x * r) * x**k, -1, 1, points=points, epsabs=1e-15)[0]
+            quad(
+                lambda x, k=k: abs(v + x * r) * (v + x * r) * x**k,
+                -1,
+                1,
+                points=points,
+                epsabs=1e-15,
+            )[0]
             for k in (0, 1)
         )
         return float(one), float(two)
     low, high = v - r, v + r
-    cube, fourth = (abs(high) ** 3 - abs(low) ** 3) / 3, (high**3 * abs(high) - low**3 * abs(low)) / 4
+    cube, fourth = (
+        (abs(high) ** 3 - abs(low) ** 3) / 3,
+        (high**3 * abs(high) - low**3 * abs(low)) / 4,
+    )
     return cube / r, (fourth - v * cube) / r**2
 
 
 def rotation(phi: float, theta: float, psi: float) -> Array:
     """Body axes to earth axes, roll first."""
     about_z = np.array([[np.cos(psi), -np.sin(psi), 0], [np.sin(psi), np.cos(psi), 0], [0, 0, 1]])
-    about_y = np.array([[np.cos(theta), 0, np.sin(theta)], [0, 1, 0], [-np.sin(theta), 0, np.cos(theta)]])
+    about_y = np.array(
+        [[np.cos(theta), 0, np.sin(theta)], [0, 1, 0], [-np.sin(theta), 0, np.cos(theta)]]
+    )
     about_x = np.array([[1, 0, 0], [0, np.cos(phi), -np.sin(phi)], [0, np.sin(phi), np.cos(phi)]])
     return np.asarray(about_z @ about_y @ about_x)
 
@@ -91,7 +115,11 @@ def euler_rates(phi: float, theta: float) -> Array:
 def otter_rates(t: float, s: Array, G: Array) -> Array:
     eta, nu, n = s[:6], s[6:12], s[12:]
     port, starboard = 0.01108 * n * np.abs(n)
-    tau = np.array([port + starboard, 0, 0, 0, 0, 0.395 * (port - starboard)]) - OTTER_DAMPING * nu - G @ eta
+    tau = (
+        np.array([port + starboard, 0, 0, 0, 0, 0.395 * (port - starboard)])
+        - OTTER_DAMPING * nu
+        - G @ eta
+    )
     tau[5] -= 10 * abs(nu[5]) * OTTER_DAMPING[5] * nu[5]
     k = 0.5 * 1025 * OTTER_DRAUGHT * 0.847030
     Y, N = cross_flow(nu[1], nu[5])
@@ -100,7 +128,9 @@ def otter_rates(t: float, s: Array, G: Array) -> Array:
     rigid = OTTER_MASS - OTTER_ADDED
     tau -= (coriolis_matrix(rigid, nu) + coriolis_matrix(OTTER_ADDED, nu)) @ nu
     place, turn = rotation(*eta[3:]) @ nu[:3], np.linalg.solve(euler_rates(*eta[3:5]), nu[3:])
-    return np.concatenate([place, turn, np.linalg.solve(OTTER_MASS, tau), (np.array([80.0, 60.0]) - n) / 0.1])
+    return np.concatenate(
+        [place, turn, np.linalg.solve(OTTER_MASS, tau), (np.array([80.0, 60.0]) - n) / 0.1]
+    )
 
 
 def whole(state: State) -> Array:
@@ -128,7 +158,9 @@ def test_otter_has_the_published_mass_matrix_and_restoring_force() -> None:
     water = mass.matrix()  # type: ignore[union-attr]
     c = skew(np.array([body.centre[0], 0.0, body.centre[1]]))
     inertia = np.diag([body.roll_inertia, body.pitched(), body.yaw_inertia])
-    rigid = np.block([[body.mass * np.eye(3), -body.mass * c], [body.mass * c, inertia - body.mass * c @ c]])
+    rigid = np.block(
+        [[body.mass * np.eye(3), -body.mass * c], [body.mass * c, inertia - body.mass * c @ c]]
+    )
     assert rigid + water == pytest.approx(OTTER_MASS, abs=1e-8)
     inverse = np.linalg.inv(OTTER_MASS)
     assert [k[30], k[31], k[35], k[40]] == pytest.approx(
@@ -141,7 +173,9 @@ def test_otter_has_the_published_mass_matrix_and_restoring_force() -> None:
 
 
 def test_otter_turns_as_published() -> None:
-    assert sailed(21, 80.0, 60.0, 20.0) == pytest.approx(np.array(TURN), rel=1e-4, abs=5e-9)  # half of the last digit
+    assert sailed(21, 80.0, 60.0, 20.0) == pytest.approx(
+        np.array(TURN), rel=1e-4, abs=5e-9
+    )  # half of the last digit
 
 
 def test_otter_goes_straight_as_published() -> None:
@@ -151,7 +185,9 @@ def test_otter_goes_straight_as_published() -> None:
 
 
 def test_otter_turns_as_by_an_independent_integrator_with_the_exact_integral() -> None:
-    found = solve_ivp(otter_rates, (0, 20), np.zeros(14), "DOP853", args=(restoring(),), rtol=1e-9, atol=1e-11).y[:, -1]
+    found = solve_ivp(
+        otter_rates, (0, 20), np.zeros(14), "DOP853", args=(restoring(),), rtol=1e-9, atol=1e-11
+    ).y[:, -1]
     state = sailed(0, 80.0, 60.0, 20.0)
     assert state[6:] == pytest.approx(found[6:12], rel=1e-6, abs=1e-9)
     assert state[:6] == pytest.approx(found[:6], rel=1e-5, abs=1e-9)
@@ -161,7 +197,9 @@ def test_a_heavier_otter_floats_deeper_by_her_weight() -> None:
     boat = vessel.load("otter", extra=[{"use": "payload", "mass": 5.5}])
     engine = Engine(boat)
     engine.advance(2000)
-    assert engine.state.z == pytest.approx(5.5 * 9.81 / 7541.4375 * (1 + 0.04 * 7541.4375 / 2551.7764024), rel=1e-3)
+    assert engine.state.z == pytest.approx(
+        5.5 * 9.81 / 7541.4375 * (1 + 0.04 * 7541.4375 / 2551.7764024), rel=1e-3
+    )
 
 
 def test_a_mass_ahead_sinks_and_trims_the_otter_by_its_weight() -> None:
@@ -180,18 +218,27 @@ def test_a_point_mass_is_the_body_that_has_it_in_its_inertia() -> None:
     ahead = (body.mass * body.centre[0] + mass * x) / (body.mass + mass)
     steiner = body.mass * (body.centre[0] - ahead) ** 2 + mass * (x - ahead) ** 2
     one = {
-        "mass": body.mass + mass, "centre": [ahead, 0.0], "yaw_inertia": body.yaw_inertia + steiner,
+        "mass": body.mass + mass,
+        "centre": [ahead, 0.0],
+        "yaw_inertia": body.yaw_inertia + steiner,
         "pitch_inertia": float(body.pitch_inertia or 0.0) + steiner,
-    }  # fmt: skip
+    }
     gained = []
     at_rest = State(z=0.01, phi=0.1, theta=-0.05)
     moving = at_rest._replace(u=1.0, v=0.3, w=0.1, p=0.2, q=-0.1, r=0.4)
     for laden in (
-        vessel.load("otter", settings={"body": level}, extra=[{"use": "extra_mass", "mass": mass, "x": x}]),
-        vessel.load("otter", settings={"body": one, "hydrostatics": {"displacement": body.mass + mass}}),
+        vessel.load(
+            "otter", settings={"body": level}, extra=[{"use": "extra_mass", "mass": mass, "x": x}]
+        ),
+        vessel.load(
+            "otter", settings={"body": one, "hydrostatics": {"displacement": body.mass + mass}}
+        ),
     ):
         engine, rates = Engine(laden, step=1e-4), []
-        for start in (moving, at_rest):  # their difference knows no weight, which trims the one boat alone
+        for start in (
+            moving,
+            at_rest,
+        ):  # their difference knows no weight, which trims the one boat alone
             engine.reset(start)
             engine.advance(1)
             rates.append((np.array(engine.state[7:]) - np.array(start[7:])) / 1e-4)
@@ -261,8 +308,13 @@ def sway_lever(below: float) -> Array:
 def floating(folder: Path, freedoms: tuple[str, ...], damped: bool = True) -> tuple[Vessel, Array]:
     """The hull with those freedoms, and its whole mass matrix (6, 6)."""
     level = not tilts(frozenset(freedoms))
-    centre, below = (0.05, 0.0 if level else -0.08), 0.0 if level and "roll" not in freedoms else 0.04
-    pitch = 0.8 if level else 0.7  # a level hull rolls about an axis through its mass centre, pitch as yaw
+    centre, below = (
+        (0.05, 0.0 if level else -0.08),
+        0.0 if level and "roll" not in freedoms else 0.04,
+    )
+    pitch = (
+        0.8 if level else 0.7
+    )  # a level hull rolls about an axis through its mass centre, pitch as yaw
     text = HULL.format(freedoms=list(freedoms), centre=list(centre), pitch=pitch, below=below)
     boat = vessel.load(str(boats.written(folder, "floating", text + (DAMPED if damped else ""))))
     c = skew(np.array([centre[0], 0.0, centre[1]]))
@@ -311,15 +363,25 @@ SETS = [
     ("surge", "sway", "roll", "pitch", "yaw"),
 ]
 MORE = [
-    ("surge", "heave", "pitch"), ("heave", "roll", "pitch"), ("surge", "sway", "heave", "yaw"), ("surge", "yaw"),
-    ("surge", "sway", "heave", "roll", "yaw"), ("pitch",), ("sway", "roll"), ("surge", "sway", "roll", "yaw"),
-]  # fmt: skip
+    ("surge", "heave", "pitch"),
+    ("heave", "roll", "pitch"),
+    ("surge", "sway", "heave", "yaw"),
+    ("surge", "yaw"),
+    ("surge", "sway", "heave", "roll", "yaw"),
+    ("pitch",),
+    ("sway", "roll"),
+    ("surge", "sway", "roll", "yaw"),
+]
 
 
 @pytest.mark.parametrize(
-    "freedoms", [*SETS, *(pytest.param(s, marks=pytest.mark.slow) for s in MORE)], ids=lambda s: " ".join(s)
+    "freedoms",
+    [*SETS, *(pytest.param(s, marks=pytest.mark.slow) for s in MORE)],
+    ids=lambda s: " ".join(s),
 )
-def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(tmp_path: Path, freedoms: tuple[str, ...]) -> None:
+def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(
+    tmp_path: Path, freedoms: tuple[str, ...]
+) -> None:
     boat, M = floating(tmp_path, freedoms)
     free = [AXES.index(a) for a in freedoms]
     pose = np.array([0.1, -0.2, 0.05, 0.3, -0.2, 0.7])
@@ -331,13 +393,19 @@ def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(tmp_path: Path, 
     full[free] = pose[free]
     J = jacobian(full, free, tilting)
     nu = J @ rate[free]
-    moving = dict(zip((s.symbol for s in signals_of(freedoms)), [*pose[free], *nu[free]], strict=True))
+    moving = dict(
+        zip((s.symbol for s in signals_of(freedoms)), [*pose[free], *nu[free]], strict=True)
+    )
     engine.reset(State(**moving))
     engine.advance(300)
     found = solve_ivp(
-        lagrange(boat, M, True), (0, 3), np.concatenate([start[: len(free)], J.T @ M @ nu]), "DOP853", rtol=1e-10,
+        lagrange(boat, M, True),
+        (0, 3),
+        np.concatenate([start[: len(free)], J.T @ M @ nu]),
+        "DOP853",
+        rtol=1e-10,
         atol=1e-12,
-    ).y[:, -1]  # fmt: skip
+    ).y[:, -1]
     full[free] = found[: len(free)]
     J = jacobian(full, free, tilting)
     wanted = [*found[: len(free)], *(J @ np.linalg.solve(J.T @ M @ J, found[len(free) :]))[free]]

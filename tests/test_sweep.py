@@ -22,15 +22,15 @@ from boatsim.errors import BadInput
 from boatsim.simulate.cases import content
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario, from_table
-from boatsim.sweep.axes import axis
-from boatsim.sweep.carry_out import swept
-from boatsim.sweep.designs import shares
-from boatsim.sweep.draws import draw
-from boatsim.sweep.indices import bootstrap, sobol
-from boatsim.sweep.journal import Journal
-from boatsim.sweep.keys import laid, slots, target
-from boatsim.sweep.plan import plan
-from boatsim.sweep.workers.processes import Processes
+from boatsim.sweeps.axes import axis
+from boatsim.sweeps.designs import shares
+from boatsim.sweeps.execute import swept
+from boatsim.sweeps.indices import bootstrap, sobol
+from boatsim.sweeps.journal import Journal
+from boatsim.sweeps.keys import laid, slots, target
+from boatsim.sweeps.plan import plan
+from boatsim.sweeps.sampled_keys import draw
+from boatsim.sweeps.workers.processes import Processes
 
 SHORT = """
 about = "Drifts for a moment."
@@ -92,7 +92,9 @@ def test_an_idea_stands_for_all_effects_of_it(short: str) -> None:
     assert value(scenario, "port", "x") == value(scenario, "starboard", "x") == -0.4
 
 
-@pytest.mark.parametrize(("key", "number", "found"), [("port.x+", 0.1, -0.4), ("port.x*", 2.0, -1.0)])
+@pytest.mark.parametrize(
+    ("key", "number", "found"), [("port.x+", 0.1, -0.4), ("port.x*", 2.0, -1.0)]
+)
 def test_a_change_is_of_what_is_stated(short: str, key: str, number: float, found: float) -> None:
     assert value(changed(short, key, number), "port", "x") == pytest.approx(found)
 
@@ -116,7 +118,10 @@ def test_a_load_takes_the_place_of_those_it_excludes(short: str) -> None:
 
 
 def test_another_controller_has_its_defaults_and_the_own_one_keeps_its_settings(short: str) -> None:
-    assert type(changed(short, "controller.use", "pid_autopilot").controller).__name__ == "PidAutopilot"
+    assert (
+        type(changed(short, "controller.use", "pid_autopilot").controller).__name__
+        == "PidAutopilot"
+    )
     assert changed(short, "controller.use", "l1_joystick").controller.pole == 2.0  # type: ignore[attr-defined]
 
 
@@ -149,7 +154,9 @@ def test_a_table_can_be_left_out() -> None:
         ("a..b", 1, "names with dots"),
     ],
 )
-def test_a_key_or_value_that_can_not_be_is_one_line(short: str, key: str, value: float | str, said: str) -> None:
+def test_a_key_or_value_that_can_not_be_is_one_line(
+    short: str, key: str, value: float | str, said: str
+) -> None:
     with pytest.raises(BadInput, match=said.replace("?", r"\?")) as told:
         changed(short, key, value)
     assert "\n" not in str(told.value)
@@ -172,8 +179,21 @@ def test_an_axis_is_a_range_or_a_list(text: str, values: tuple[object, ...]) -> 
     assert axis(text).values == values
 
 
-@pytest.mark.parametrize("text", ["a.b", "a.b=", "a.b=0:1", "a.b=0:1:1", "a.b=0:1:2.5", "a.b=1:1:3", "a.b=0:1:3:log",
-                                  "a.b=0:x:3", "a.b=1,1", "=1"])  # fmt: skip
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a.b",
+        "a.b=",
+        "a.b=0:1",
+        "a.b=0:1:1",
+        "a.b=0:1:2.5",
+        "a.b=1:1:3",
+        "a.b=0:1:3:log",
+        "a.b=0:x:3",
+        "a.b=1,1",
+        "=1",
+    ],
+)
 def test_an_axis_that_can_not_be_is_refused(text: str) -> None:
     with pytest.raises(BadInput, match="--vary"):
         axis(text)
@@ -202,9 +222,21 @@ def test_a_choice_is_made_as_often_of_each() -> None:
 
 @pytest.mark.parametrize(
     "law",
-    ["", "3", "norml(0,1)", "normal(0)", "normal(0,-1)", "uniform(2,1)", "normal(0,x)", "choice(1)", "loguniform(0,1)",
-     "truncated(0,1,2,1)", "triangular(0,5,4)", "lognormal(-1,1)"],
-)  # fmt: skip
+    [
+        "",
+        "3",
+        "norml(0,1)",
+        "normal(0)",
+        "normal(0,-1)",
+        "uniform(2,1)",
+        "normal(0,x)",
+        "choice(1)",
+        "loguniform(0,1)",
+        "truncated(0,1,2,1)",
+        "triangular(0,5,4)",
+        "lognormal(-1,1)",
+    ],
+)
 def test_a_draw_that_can_not_be_is_refused(law: str) -> None:
     with pytest.raises(BadInput, match="--draw"):
         draw(f"a.b={law}")
@@ -228,29 +260,43 @@ def columns(folder: Path) -> dict[str, list[Any]]:
     return parquet.read_table(folder / "sweep.parquet").to_pydict()
 
 
-def test_a_sweep_has_a_row_for_each_draw_at_each_point_and_the_same_draws_at_all(short: str, tmp_path: Path) -> None:
+def test_a_sweep_has_a_row_for_each_draw_at_each_point_and_the_same_draws_at_all(
+    short: str, tmp_path: Path
+) -> None:
     done = boatsim.sweep(
         short,
-        {"load": "light,heavy", "controller.use": ["pid_autopilot", "l1_joystick"], "start.y": "0:1:3"},
+        {
+            "load": "light,heavy",
+            "controller.use": ["pid_autopilot", "l1_joystick"],
+            "start.y": "0:1:3",
+        },
         {"port.x+": "normal(0,0.01)", "start.x": "uniform(1,2)"},
-        runs=4, out=tmp_path / "out", jobs=1,
-    )  # fmt: skip
+        runs=4,
+        out=tmp_path / "out",
+        jobs=1,
+    )
     found = columns(tmp_path / "out")
     assert done.complete and len(found["run"]) == 2 * 2 * 3 * 4
     assert found["run"] == sorted(found["run"]) and found["failure"] == [None] * 48
     for name in ("port.x+", "start.x", "seed"):
         by_point = np.array(found[name]).reshape(12, 4)
         assert (by_point == by_point[0]).all() and len(set(by_point[0])) == 4
-    assert {(p.first, p.second, p.pairs) for p in done.pairs} == {("pid_autopilot", "l1_joystick", 4)}
+    assert {(p.first, p.second, p.pairs) for p in done.pairs} == {
+        ("pid_autopilot", "l1_joystick", 4)
+    }
 
 
 def test_a_run_of_a_sweep_is_the_run_of_its_scenario(short: str, tmp_path: Path) -> None:
-    boatsim.sweep(short, {"start.x": [0.25]}, {"fan_wind.speed": "uniform(0,1)"}, 3, out=tmp_path, jobs=1)
+    boatsim.sweep(
+        short, {"start.x": [0.25]}, {"fan_wind.speed": "uniform(0,1)"}, 3, out=tmp_path, jobs=1
+    )
     found = columns(tmp_path)
     alone = run(changed(short, "fan_wind.speed", found["fan_wind.speed"][2]), found["seed"][2])
     moved = alone.recording["sway_mps" if "sway_mps" in alone.recording.signals else "v_mps"]
     assert np.isfinite(moved).all()
-    assert found["x_m_inf"][2] == pytest.approx(0.25 + np.abs(alone.recording["x_m"]).max(), abs=1e-3)
+    assert found["x_m_inf"][2] == pytest.approx(
+        0.25 + np.abs(alone.recording["x_m"]).max(), abs=1e-3
+    )
 
 
 def test_units_and_the_plan_stand_in_the_table(short: str, tmp_path: Path) -> None:
@@ -261,9 +307,13 @@ def test_units_and_the_plan_stand_in_the_table(short: str, tmp_path: Path) -> No
 
 
 def test_what_fails_is_told_with_its_reason_and_ends_nothing(short: str, tmp_path: Path) -> None:
-    done = boatsim.sweep(short, draw={"fan_wind.speed": "uniform(-1,2)"}, runs=12, out=tmp_path, jobs=1)
+    done = boatsim.sweep(
+        short, draw={"fan_wind.speed": "uniform(-1,2)"}, runs=12, out=tmp_path, jobs=1
+    )
     found = columns(tmp_path)
-    for speed, failure, norm in zip(found["fan_wind.speed"], found["failure"], found["x_m_inf"], strict=True):
+    for speed, failure, norm in zip(
+        found["fan_wind.speed"], found["failure"], found["x_m_inf"], strict=True
+    ):
         assert (failure is None) == (norm is not None) == (speed >= 0.0)
         assert speed >= 0.0 or "allowed 0 to 40 m/s" in failure
     assert done.complete and 0 < sum(done.failures.values()) < 12
@@ -272,7 +322,9 @@ def test_what_fails_is_told_with_its_reason_and_ends_nothing(short: str, tmp_pat
 def test_scenarios_side_by_side_share_their_draws(short: str, tmp_path: Path) -> None:
     other = tmp_path / "other.toml"
     other.write_text(SHORT.replace("wide", "narrow"))
-    boatsim.sweep([short, str(other)], draw={"start.x": "uniform(1,2)"}, runs=3, out=tmp_path / "out", jobs=1)
+    boatsim.sweep(
+        [short, str(other)], draw={"start.x": "uniform(1,2)"}, runs=3, out=tmp_path / "out", jobs=1
+    )
     found = columns(tmp_path / "out")
     assert found["scenario"] == [short] * 3 + [str(other)] * 3
     assert found["start.x"][:3] == found["start.x"][3:]
@@ -281,11 +333,18 @@ def test_scenarios_side_by_side_share_their_draws(short: str, tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"vary": {"start.x": "0:1:2"}, "draw": {"start.x": "uniform(0,1)"}}, "start.x is given twice"),
+        (
+            {"vary": {"start.x": "0:1:2"}, "draw": {"start.x": "uniform(0,1)"}},
+            "start.x is given twice",
+        ),
         ({"norms": "x_m_ing"}, "did you mean 'x_m_inf'?"),
         ({"design": "sobol", "draw": {"start.x": "uniform(0,1)"}}, "two --draw or more"),
         (
-            {"design": "sobol", "runs": 6, "draw": {"start.x": "uniform(0,1)", "start.y": "uniform(0,1)"}},
+            {
+                "design": "sobol",
+                "runs": 6,
+                "draw": {"start.x": "uniform(0,1)", "start.y": "uniform(0,1)"},
+            },
             "powers of two",
         ),
     ],
@@ -298,13 +357,20 @@ def test_a_sweep_that_can_not_be_is_refused_before_it_runs(
     assert not (tmp_path / "out").exists()
 
 
-def test_the_page_shows_every_norm_against_what_varied_and_fetches_nothing(short: str, tmp_path: Path) -> None:
+def test_the_page_shows_every_norm_against_what_varied_and_fetches_nothing(
+    short: str, tmp_path: Path
+) -> None:
     strange = tmp_path / "<b>&.toml"
     strange.write_text(SHORT)
     boatsim.sweep(
-        str(strange), {"start.x": "0:1:3", "load": "light,heavy"}, {"start.u": "uniform(0,1)"}, 5, out=tmp_path / "out",
-        jobs=1, norms="x_m_inf",
-    )  # fmt: skip
+        str(strange),
+        {"start.x": "0:1:3", "load": "light,heavy"},
+        {"start.u": "uniform(0,1)"},
+        5,
+        out=tmp_path / "out",
+        jobs=1,
+        norms="x_m_inf",
+    )
     page = (tmp_path / "out" / "report.html").read_text()
     for caption in ("over start.x", "by load", "over start.u, rank correlation"):
         assert page.count(f"<figcaption>x_m_inf [m] {caption}") == 1
@@ -324,9 +390,23 @@ def heeding() -> None:
 
 
 def begun(short: str, out: Path, jobs: int, runs: int) -> "subprocess.Popen[str]":
-    command = [sys.executable, "-m", "boatsim", "sweep", short, "--vary", "controller.use=pid_autopilot,l1_joystick",
-               "--draw", "fan_wind.speed=uniform(-0.1,1)", "--runs", str(runs), "--out", str(out),
-               "--jobs", str(jobs)]  # fmt: skip
+    command = [
+        sys.executable,
+        "-m",
+        "boatsim",
+        "sweep",
+        short,
+        "--vary",
+        "controller.use=pid_autopilot,l1_joystick",
+        "--draw",
+        "fan_wind.speed=uniform(-0.1,1)",
+        "--runs",
+        str(runs),
+        "--out",
+        str(out),
+        "--jobs",
+        str(jobs),
+    ]
     pipe = subprocess.PIPE
     return subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, preexec_fn=heeding)
 
@@ -339,7 +419,9 @@ def once_it_has(out: Path, lines: int, running: "subprocess.Popen[str]") -> None
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_killed_and_continued_it_ends_with_the_same_bytes(short: str, tmp_path: Path, jobs: int) -> None:
+def test_killed_and_continued_it_ends_with_the_same_bytes(
+    short: str, tmp_path: Path, jobs: int
+) -> None:
     whole, cut = tmp_path / "whole", tmp_path / "cut"
     assert begun(short, whole, jobs, 20).wait() == 0
     running = begun(short, cut, jobs, 20)
@@ -353,7 +435,9 @@ def test_killed_and_continued_it_ends_with_the_same_bytes(short: str, tmp_path: 
     assert (cut / "sweep.parquet").read_bytes() == (whole / "sweep.parquet").read_bytes()
 
 
-def test_an_interruption_keeps_what_there_is_and_the_same_command_goes_on(short: str, tmp_path: Path) -> None:
+def test_an_interruption_keeps_what_there_is_and_the_same_command_goes_on(
+    short: str, tmp_path: Path
+) -> None:
     running = begun(short, tmp_path / "out", 2, 500)
     once_it_has(tmp_path / "out", 5, running)
     running.send_signal(signal.SIGINT)
@@ -372,7 +456,8 @@ def test_a_folder_that_somebody_is_at_work_in_is_refused(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize(
-    "end", [b'{"run": 4', b'{"run": 4, "failure": null}', b"\0\0\0\n", b'{"run": 4, "fa\n{"run": 5}\n']
+    "end",
+    [b'{"run": 4', b'{"run": 4, "failure": null}', b"\0\0\0\n", b'{"run": 4, "fa\n{"run": 5}\n'],
 )
 def test_what_is_no_whole_line_of_a_journal_is_written_over(tmp_path: Path, end: bytes) -> None:
     with Journal(tmp_path, {"of": "one"}) as journal:
@@ -406,7 +491,9 @@ def test_processes_and_this_one_give_the_same_table(short: str, tmp_path: Path) 
     made = plan([short], [axis("load=light,heavy")], [draw("fan_wind.speed=uniform(0,1)")], 5, 0)
     for name, jobs in (("one", 1), ("two", 2)):
         swept(made, tmp_path / name, jobs)
-    assert (tmp_path / "one" / "sweep.parquet").read_bytes() == (tmp_path / "two" / "sweep.parquet").read_bytes()
+    assert (tmp_path / "one" / "sweep.parquet").read_bytes() == (
+        tmp_path / "two" / "sweep.parquet"
+    ).read_bytes()
 
 
 def deadly(told: tuple[str, int]) -> dict[str, Any]:
@@ -423,13 +510,17 @@ def test_a_task_that_kills_its_process_costs_nobody_else(tmp_path: Path) -> None
     tasks = [(n, (mark, n)) for n in (5, 0, 1, 2, 3, 4)]
     found = dict(Processes(2)(deadly, tasks, bool))
     assert found[3] is None
-    assert {n: e["number"] for n, e in found.items() if e is not None} == {n: n for n in (0, 1, 2, 4, 5)}
+    assert {n: e["number"] for n, e in found.items() if e is not None} == {
+        n: n for n in (0, 1, 2, 4, 5)
+    }
 
 
 # Sensitivity --------------------------------------------------------------------------------------------------------
 
 
-def blocks(law: Callable[..., np.ndarray], ends: Sequence[tuple[float, float]], runs: int) -> np.ndarray:
+def blocks(
+    law: Callable[..., np.ndarray], ends: Sequence[tuple[float, float]], runs: int
+) -> np.ndarray:
     """A function on Saltelli's design, in the order of its rows."""
     u = shares("sobol", [f"x{k}" for k in range(len(ends))], runs, 0)
     x = [low + (high - low) * u[:, k] for k, (low, high) in enumerate(ends)]
@@ -438,15 +529,23 @@ def blocks(law: Callable[..., np.ndarray], ends: Sequence[tuple[float, float]], 
 
 def test_sobol_indices_of_ishigamis_function_are_the_known_ones() -> None:
     a, b = 7.0, 0.1
-    found = blocks(lambda x, y, z: np.sin(x) + a * np.sin(y) ** 2 + b * z**4 * np.sin(x), [(-pi, pi)] * 3, 4096)
+    found = blocks(
+        lambda x, y, z: np.sin(x) + a * np.sin(y) ** 2 + b * z**4 * np.sin(x), [(-pi, pi)] * 3, 4096
+    )
     first, total = sobol(found)
     variance = a**2 / 8 + b * pi**4 / 5 + b**2 * pi**8 / 18 + 0.5
     alone = 0.5 * (1 + b * pi**4 / 5) ** 2, a**2 / 8, 0.0
     beside = b**2 * pi**8 * (1 / 18 - 1 / 50)
     assert first == pytest.approx(np.array(alone) / variance, abs=0.02)
-    assert total == pytest.approx(np.array([alone[0] + beside, alone[1], beside]) / variance, abs=0.02)
+    assert total == pytest.approx(
+        np.array([alone[0] + beside, alone[1], beside]) / variance, abs=0.02
+    )
     for known, ends in zip((first, total), bootstrap(found, 0), strict=True):
-        assert (ends[0] <= known).all() and (known <= ends[1]).all() and (ends[1] - ends[0] < 0.2).all()
+        assert (
+            (ends[0] <= known).all()
+            and (known <= ends[1]).all()
+            and (ends[1] - ends[0] < 0.2).all()
+        )
 
 
 def test_the_design_is_that_of_scipy() -> None:
@@ -460,7 +559,9 @@ def test_the_design_is_that_of_scipy() -> None:
 
 def test_a_norm_is_laid_to_the_quantity_it_depends_on(short: str, tmp_path: Path) -> None:
     drawn = {"start.x": "uniform(1,2)", "start.y": "uniform(1,2)"}
-    done = boatsim.sweep(short, draw=drawn, runs=16, design="sobol", out=tmp_path, jobs=1, norms="x_m_inf")
+    done = boatsim.sweep(
+        short, draw=drawn, runs=16, design="sobol", out=tmp_path, jobs=1, norms="x_m_inf"
+    )
     assert len(columns(tmp_path)["run"]) == 16 * 4
     found = {index.quantity: (index.first, index.total) for index in done.indices}
     assert found["start.x"] == pytest.approx((1.0, 1.0), abs=0.2)

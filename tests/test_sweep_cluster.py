@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 
 from boatsim.errors import BadInput
-from boatsim.sweep.axes import axis
-from boatsim.sweep.carry_out import swept
-from boatsim.sweep.draws import draw
-from boatsim.sweep.plan import Plan, plan
+from boatsim.sweeps.axes import axis
+from boatsim.sweeps.execute import swept
+from boatsim.sweeps.plan import Plan, plan
+from boatsim.sweeps.sampled_keys import draw
 
 ray = pytest.importorskip("ray")
 pytestmark = pytest.mark.slow
@@ -38,10 +38,18 @@ def cluster(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
 
 def study(runs: int) -> Plan:
     steered = axis("controller.use=pid_autopilot,l1_joystick")
-    return plan(["joystick_boat/sway_1"], [steered], [draw("weak_reverse.astern_factor=normal(0.7,0.05)")], runs, 0)
+    return plan(
+        ["joystick_boat/sway_1"],
+        [steered],
+        [draw("weak_reverse.astern_factor=normal(0.7,0.05)")],
+        runs,
+        0,
+    )
 
 
-def test_a_node_that_is_lost_costs_no_run_and_the_table_is_that_of_processes(cluster: Any, tmp_path: Path) -> None:
+def test_a_node_that_is_lost_costs_no_run_and_the_table_is_that_of_processes(
+    cluster: Any, tmp_path: Path
+) -> None:
     lost = cluster.add_node(num_cpus=1)
     cluster.wait_for_nodes()
     told: list[str] = []
@@ -63,9 +71,19 @@ def test_no_cluster_is_one_line(tmp_path: Path) -> None:
         swept(study(2), tmp_path / "out", ray="auto")
 
 
-def test_a_command_that_is_killed_on_a_cluster_goes_on_in_processes(cluster: Any, tmp_path: Path) -> None:
+def test_a_command_that_is_killed_on_a_cluster_goes_on_in_processes(
+    cluster: Any, tmp_path: Path
+) -> None:
     out, whole = tmp_path / "cut", tmp_path / "whole"
-    command = [sys.executable, "-m", "boatsim", "sweep", "joystick_boat/sway_1", "--vary", "fan_wind.speed=0:0.5:20"]
+    command = [
+        sys.executable,
+        "-m",
+        "boatsim",
+        "sweep",
+        "joystick_boat/sway_1",
+        "--vary",
+        "fan_wind.speed=0:0.5:20",
+    ]
     running = subprocess.Popen([*command, "--out", str(out), "--ray", cluster.address])
     journal = out / "journal.jsonl"
     while not journal.is_file() or journal.read_bytes().count(b"\n") < 4:
@@ -74,5 +92,7 @@ def test_a_command_that_is_killed_on_a_cluster_goes_on_in_processes(cluster: Any
     running.kill()
     running.wait()
     for folder in (out, whole):
-        subprocess.run([*command, "--out", str(folder), "--jobs", "1"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [*command, "--out", str(folder), "--jobs", "1"], check=True, stdout=subprocess.DEVNULL
+        )
     assert (out / "sweep.parquet").read_bytes() == (whole / "sweep.parquet").read_bytes()

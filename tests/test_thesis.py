@@ -27,7 +27,9 @@ EXACT = {
 
 @pytest.mark.parametrize("name", EXACT)
 def test_reference_models_respond_as_published(name: str) -> None:
-    assert thesis_models.response(*thesis_models.RESPONSES[name]) == pytest.approx(EXACT[name], rel=0.005)
+    assert thesis_models.response(*thesis_models.RESPONSES[name]) == pytest.approx(
+        EXACT[name], rel=0.005
+    )
 
 
 # T27 to its two decimals; N_rdot is printed -0.84, which would make the yaw inertia negative
@@ -48,7 +50,9 @@ def test_derivatives_are_clarkes_regressions() -> None:
 
 
 def test_lyapunov_matrix_of_the_reference_model() -> None:
-    assert lyapunov(SWAY_YAW) == pytest.approx(np.array([[99 / 70, -1 / 2], [-1 / 2, 5 / 7]]), abs=1e-12)
+    assert lyapunov(SWAY_YAW) == pytest.approx(
+        np.array([[99 / 70, -1 / 2], [-1 / 2, 5 / 7]]), abs=1e-12
+    )
 
 
 def test_reference_model_turns_in_a_pure_sway() -> None:
@@ -74,7 +78,9 @@ def inward(boat: Any, port: float, starboard: float, angle: float) -> Wrench:
     """Wrench of both motors at these thrusts [N], turned inward by an angle [deg]."""
     a = radians(angle)
     one = boat.effect("port").wrench(motion(), thrust=port, angle=a)
-    return Wrench(*np.add(one, boat.effect("starboard").wrench(motion(), thrust=starboard, angle=-a)))
+    return Wrench(
+        *np.add(one, boat.effect("starboard").wrench(motion(), thrust=starboard, angle=-a))
+    )
 
 
 @pytest.mark.parametrize(
@@ -86,7 +92,9 @@ def inward(boat: Any, port: float, starboard: float, angle: float) -> Wrench:
         ("heavy", "wide", 23.63),
     ],
 )
-def test_neutral_angles_of_the_boat_files_are_the_published_ones(load: str, spacing: str, published: float) -> None:
+def test_neutral_angles_of_the_boat_files_are_the_published_ones(
+    load: str, spacing: str, published: float
+) -> None:
     turning = moment(load, spacing)
     assert thesis_models.neutral_angle(load, spacing) == pytest.approx(published, abs=0.05)
     assert turning(published - 5.0) > 0.0 > turning(published + 5.0)
@@ -101,7 +109,9 @@ def test_neutral_angles_of_the_boat_files_are_the_published_ones(load: str, spac
         ("heavy", "wide", 0.280, -0.255),
     ],
 )
-def test_turning_lever_spans_the_published_range(load: str, spacing: str, straight: float, hard_over: float) -> None:
+def test_turning_lever_spans_the_published_range(
+    load: str, spacing: str, straight: float, hard_over: float
+) -> None:
     """The lever is the moment over the sum of both thrusts, here 2 N."""
     turning = moment(load, spacing)
     assert (turning(0.0) / 2, turning(45.0) / 2) == pytest.approx((straight, hard_over), abs=5e-4)

@@ -11,23 +11,32 @@ from alike import few
 from scipy.linalg import expm
 
 from boatsim.cli import diagnosis as commands
-from boatsim.measures.sway_hold import SwayHold
+from boatsim.metrics.sway_hold import SwayHold
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Wrench
 from boatsim.physics.content import names
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.norms import norms
+from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import Run, run
 from boatsim.view.outputs import run_into
 
-SHIPPED = [name.removeprefix("thesis_linear/") for name in names("scenario") if name.startswith("thesis_linear/")]
+SHIPPED = [
+    name.removeprefix("thesis_linear/")
+    for name in names("scenario")
+    if name.startswith("thesis_linear/")
+]
 A = {  # T10 to T14, states v and r
     "light": np.array([[-0.003884, 0.002266], [-0.001476, -0.001107]]),
     "heavy": np.array([[-0.003501, 0.001915], [-0.001247, -0.000599]]),
 }
-LEVERS = {"light": 0.60, "heavy": 0.64, "narrow": 0.19, "wide": 0.28}  # [m] L of the load, B of the motors
+LEVERS = {
+    "light": 0.60,
+    "heavy": 0.64,
+    "narrow": 0.19,
+    "wide": 0.28,
+}  # [m] L of the load, B of the motors
 INERTIA = {"light": (10.4, 1.98), "heavy": (12.8, 2.5)}  # [kg], [kg m^2]
 LOADS = [(load, motors) for load in ("light", "heavy") for motors in ("narrow", "wide")]
 
@@ -47,7 +56,12 @@ def peak(name: str, **controller: Any) -> float:
 
 def sideways(F: float, d: float) -> dict[str, float]:
     """Commands of both motors turned inward by d [rad], port ahead and starboard astern, F [N] together."""
-    return {"thrust_port_N": F / 2, "thrust_starboard_N": -F / 2, "steer_port_rad": d, "steer_starboard_rad": -d}
+    return {
+        "thrust_port_N": F / 2,
+        "thrust_starboard_N": -F / 2,
+        "steer_port_rad": d,
+        "steer_starboard_rad": -d,
+    }
 
 
 # The state space
@@ -75,14 +89,22 @@ def test_boat_is_practically_undamped(load: str) -> None:
 
 
 @pytest.mark.slow
-def test_boat_replays_a_recording_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_boat_replays_a_recording_of_its_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     steps = {
-        "controller": {"use": "open_loop", "period": 0.01}, "measure": None, "norms": {}, "step": 0.01,
+        "controller": {"use": "open_loop", "period": 0.01},
+        "measure": None,
+        "norms": {},
+        "step": 0.01,
         "goal": [{"from": t, **sideways(0.6, d)} for t, d in ((0.0, 0.0), (1.0, 0.6), (3.0, 0.3))],
-    }  # fmt: skip
+    }
     run_into(tmp_path / "run", scenario.load("thesis_linear/light_narrow", steps))
     assert commands.compare(tmp_path / "run" / "recording.csv", None, [], None, tmp_path) == 0
-    errors = {line.split()[0]: float(line.split()[1]) for line in capsys.readouterr().out.splitlines()[1:-1]}
+    errors = {
+        line.split()[0]: float(line.split()[1])
+        for line in capsys.readouterr().out.splitlines()[1:-1]
+    }
     assert errors.keys() == {"x_m", "y_m", "psi_rad"} and max(errors.values()) < 1e-6
 
 
@@ -106,7 +128,9 @@ def test_steering_finds_the_neutral_angle(load: str, motors: str) -> None:
 @pytest.mark.parametrize("name", few(SHIPPED, 1))
 def test_estimates_stay_inside_their_bounds(name: str) -> None:
     log = sailed(name).recording
-    found = [n for n in log.signals if n.startswith("estimate_") and not n.endswith(("_low", "_high"))]
+    found = [
+        n for n in log.signals if n.startswith("estimate_") and not n.endswith(("_low", "_high"))
+    ]
     assert len(found) == 8
     for n in found:
         assert np.all((log[n] >= log[f"{n}_low"]) & (log[n] <= log[f"{n}_high"])), n
@@ -115,8 +139,12 @@ def test_estimates_stay_inside_their_bounds(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("lag", [0.1, 0.2, 0.3])
 @pytest.mark.parametrize("power", [0.5, 4.0])
-def test_modulated_power_lowers_the_peak_yaw_rate_by_31_to_46_percent(power: float, lag: float) -> None:
-    fixed, modulated = (peak("heavy_wide", power=power, servo_lag=lag, modulated=m) for m in (False, True))
+def test_modulated_power_lowers_the_peak_yaw_rate_by_31_to_46_percent(
+    power: float, lag: float
+) -> None:
+    fixed, modulated = (
+        peak("heavy_wide", power=power, servo_lag=lag, modulated=m) for m in (False, True)
+    )
     assert 0.31 <= 1.0 - modulated / fixed <= 0.46
 
 
@@ -142,7 +170,9 @@ def test_controller_is_the_law_written_out() -> None:
     log = sailed("light_narrow").recording
     v, r = written_out(3.0)
     n = round(3.0 / 0.01) + 1
-    assert degrees(float(np.abs(r).max())) == pytest.approx(degrees(float(np.abs(log["r_radps"]).max())), rel=0.01)
+    assert degrees(float(np.abs(r).max())) == pytest.approx(
+        degrees(float(np.abs(log["r_radps"]).max())), rel=0.01
+    )
     assert v[::20][:n] == pytest.approx(log["v_mps"][:n], rel=0.01, abs=1e-5)
     assert r[::20][:n] == pytest.approx(log["r_radps"][:n], abs=5e-5)
 
@@ -158,7 +188,11 @@ def written_out(seconds: float) -> tuple[Array, Array]:
     for _ in range(round(seconds / h) + 1):
         out.append(x)
         e = P @ (xh - x)
-        omega, theta, sigma = omega - h * 1e4 * e * u, theta - h * 1e4 * np.outer(e, x), sigma - h * 1e4 * e
+        omega, theta, sigma = (
+            omega - h * 1e4 * e * u,
+            theta - h * 1e4 * np.outer(e, x),
+            sigma - h * 1e4 * e,
+        )
         over = omega[1] * u[1] + theta[1] @ x + sigma[1] + x[0]
         # 4.5 x 1.07 (s + 17.7)/(s (s + 50)) in partial fractions
         slow -= h * 4.5 * 1.07 * 17.7 / 50 * over
@@ -177,7 +211,11 @@ def written_out(seconds: float) -> tuple[Array, Array]:
 def test_sway_hold_measures_what_it_says() -> None:
     t = np.linspace(0.0, 10.0, 101)
     r = np.where(t < 5.0, 0.02, 0.01)
-    signals = {"r_radps": r, "psi_rad": 0.1 + 0.01 * t, "steer_port_rad": np.where(t < 5.0, 0.0, 0.3)}
+    signals = {
+        "r_radps": r,
+        "psi_rad": 0.1 + 0.01 * t,
+        "steer_port_rad": np.where(t < 5.0, 0.0, 0.3),
+    }
     found = SwayHold().values(Recording("x", t, signals))
     wanted = {"peak_yaw_rate": 0.02, "rest_yaw_rate": 0.01, "heading": 0.1, "steering": 0.3}
     assert found == pytest.approx({n: degrees(a) for n, a in wanted.items()})

@@ -18,8 +18,8 @@ from boatsim.physics.program import Program
 from boatsim.physics.signals import signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.twin import Twin
 
 WORKBOAT = """
 about = "workboat for tests: a bow thruster, a screw that is fixed, a pod that is steered, a rudder at either end"
@@ -95,8 +95,15 @@ also = [
     { use = "weak_reverse", name = "weak_pod", on = "pod_N" },
 ]
 """
-THRUSTERS = {"bow": (0.8, 0.0, 0.0), "screw": (-0.9, 0.1, 0.15), "pod": (-0.7, -0.2, 0.1)}  # [m] ahead, starboard, down
-RUDDERS = {"fore": (6.0, -0.5, 5.0), "aft": (-10.0, 1.0, 9.0)}  # per rad: sway [N], roll and yaw [N m]
+THRUSTERS = {
+    "bow": (0.8, 0.0, 0.0),
+    "screw": (-0.9, 0.1, 0.15),
+    "pod": (-0.7, -0.2, 0.1),
+}  # [m] ahead, starboard, down
+RUDDERS = {
+    "fore": (6.0, -0.5, 5.0),
+    "aft": (-10.0, 1.0, 9.0),
+}  # per rad: sway [N], roll and yaw [N m]
 COMMANDS = ("bow_N", "screw_N", "pod_N", "pod_rad", "fore_rad", "aft_rad")
 
 
@@ -133,18 +140,24 @@ def test_each_channel_drives_what_it_is_bound_to(place: Path) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_forces_and_moments_are_those_of_statics(tmp_path: Path, seed: int) -> None:
     six = '["surge", "sway", "heave", "roll", "pitch", "yaw"]'
-    text = WORKBOAT.replace('["surge", "sway", "yaw"]', six).replace("body = { ", "body = { pitch_inertia = 15.0, ")
+    text = WORKBOAT.replace('["surge", "sway", "yaw"]', six).replace(
+        "body = { ", "body = { pitch_inertia = 15.0, "
+    )
     boat = vessel.load(str(boats.written(tmp_path, "workboat", text)))
     program, (row,) = Program(boat), drawn(boat, 1, seed)
     act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
     program.module.settle(row, memory, program.values(), program.switches(), act)
     at_rest = np.zeros(12)
-    force = program.module.forces(0.0, at_rest, act, np.int64(0), program.values(), program.switches())
+    force = program.module.forces(
+        0.0, at_rest, act, np.int64(0), program.values(), program.switches()
+    )
     assert force == pytest.approx(statics(dict(zip(COMMANDS, row, strict=True))), abs=1e-12)
 
 
 def test_a_fixed_thruster_does_not_turn_with_the_only_rudder(tmp_path: Path) -> None:
-    text = WORKBOAT.replace('angle = "pod_rad"', "angle = 0.3").replace('angle = "fore_rad"', "angle = 0.0")
+    text = WORKBOAT.replace('angle = "pod_rad"', "angle = 0.3").replace(
+        'angle = "fore_rad"', "angle = 0.0"
+    )
     boat = vessel.load(str(boats.written(tmp_path, "workboat", text)))
     assert boat.angles == ("aft_rad",)
     screw = boat.effect("screw")
@@ -161,7 +174,9 @@ def test_engine_and_twin_sail_alike(place: Path) -> None:
     for row, then in zip(rows, wanted[1:], strict=True):
         engine.command(dict(zip(COMMANDS, row, strict=True)))
         engine.advance(50)
-        assert [getattr(engine.state, n) for n in pose_and_rates] == pytest.approx(then, rel=0.0, abs=1e-10)
+        assert [getattr(engine.state, n) for n in pose_and_rates] == pytest.approx(
+            then, rel=0.0, abs=1e-10
+        )
     assert np.ptp(wanted, axis=0).min() > 0.1
 
 
@@ -179,17 +194,31 @@ class Real:
 def moved(t: float, y: Array, c: Mapping[str, float], real: Real) -> list[float]:
     """Newton and Kirchhoff in the plane, about the mass centre."""
     psi, u, v, r = y[2:]
-    given = {n: c[f"{n}_N"] * (real.astern.get(n, 1.0) if c[f"{n}_N"] < 0.0 else 1.0) for n in THRUSTERS}
-    ahead, aside = given["screw"] + given["pod"] * cos(c["pod_rad"]), given["pod"] * sin(c["pod_rad"])
+    given = {
+        n: c[f"{n}_N"] * (real.astern.get(n, 1.0) if c[f"{n}_N"] < 0.0 else 1.0) for n in THRUSTERS
+    }
+    ahead, aside = (
+        given["screw"] + given["pod"] * cos(c["pod_rad"]),
+        given["pod"] * sin(c["pod_rad"]),
+    )
     X = ahead - real.damping * 20.0 * u
     Y = given["bow"] + aside + 6.0 * c["fore_rad"] - 10.0 * c["aft_rad"] - real.damping * 60.0 * v
-    N = 0.8 * given["bow"] - 0.1 * given["screw"] - 0.7 * aside + 0.2 * given["pod"] * cos(c["pod_rad"])
+    N = (
+        0.8 * given["bow"]
+        - 0.1 * given["screw"]
+        - 0.7 * aside
+        + 0.2 * given["pod"] * cos(c["pod_rad"])
+    )
     N += 5.0 * c["fore_rad"] + 9.0 * c["aft_rad"] - real.damping * 25.0 * r
     px, py = 44.0 * u, 65.0 * v  # [kg m/s] momentum of hull and water
     return [
-        u * cos(psi) - v * sin(psi), u * sin(psi) + v * cos(psi), r,
-        (X + r * py) / 44.0, (Y - r * px) / 65.0, (N + v * px - u * py) / 21.0,
-    ]  # fmt: skip
+        u * cos(psi) - v * sin(psi),
+        u * sin(psi) + v * cos(psi),
+        r,
+        (X + r * py) / 44.0,
+        (Y - r * px) / 65.0,
+        (N + v * px - u * py) / 21.0,
+    ]
 
 
 def recorded(real: Real, seed: int) -> Recording:
@@ -203,7 +232,9 @@ def recorded(real: Real, seed: int) -> Recording:
         c = dict(zip(COMMANDS, row, strict=True))
         y = solve_ivp(moved, (0.0, dt), y, args=(c, real), rtol=1e-9, atol=1e-10).y[:, -1]
     pose = np.array(seen) + 0.005 * rng.standard_normal((count, 3))
-    signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | dict(zip(COMMANDS, rows.T, strict=True))
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), pose.T, strict=True)) | dict(
+        zip(COMMANDS, rows.T, strict=True)
+    )
     return Recording(f"run_{seed}", dt * np.arange(count), signals)
 
 

@@ -14,7 +14,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 NO_COMMANDS = np.zeros((100, 0))
 
@@ -50,7 +50,9 @@ def test_body_and_joint_velocities_are_each_others_inverse(
     def inverse(state: list[float]) -> None:
         joints = program.joint_rates(np.array(state))
         assert program.body_rates(joints[None])[0] == pytest.approx(state, abs=1e-12)
-        assert np.linalg.norm(joints[n : n + moves]) == pytest.approx(np.linalg.norm(state[n : n + moves]))
+        assert np.linalg.norm(joints[n : n + moves]) == pytest.approx(
+            np.linalg.norm(state[n : n + moves])
+        )
 
     inverse()
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from pushed_boat import laid, push, sail
 
-from boatsim.diagnose.filter import Track, track
-from boatsim.diagnose.fit import fit
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search import carries
-from boatsim.diagnose.search import unseen as asked
-from boatsim.diagnose.search.screen import screen
-from boatsim.diagnose.search.sets import Sets
-from boatsim.diagnose.search.settle import beside
-from boatsim.diagnose.search.unseen import foretold, lawful, refuted, stood_for, told
+from boatsim.diagnosis.filter import Track, track
+from boatsim.diagnosis.fit import fit
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search import generalization
+from boatsim.diagnosis.search import validation as asked
+from boatsim.diagnosis.search.candidate_sets import Sets
+from boatsim.diagnosis.search.pruning import beside
+from boatsim.diagnosis.search.screening import screen
+from boatsim.diagnosis.search.validation import foretold, lawful, refuted, stood_for, told
 from boatsim.physics.base import Array
 
 Laid = tuple[Problem, Fit, Fit, list[Track]]
@@ -29,7 +29,12 @@ def weak() -> Laid:
     """Two runs with weak thrust astern, the fit that says so, and a third run."""
     problem, base = laid(*(sail(f"run_{k}", 50 + k, a_third_less_astern)[0] for k in range(2)))
     found = fit(problem, screen(problem, base, ["weak_reverse"])["weak_reverse"])
-    return problem, base, found, [track(sail("unseen", 60, a_third_less_astern)[0], problem.program)]
+    return (
+        problem,
+        base,
+        found,
+        [track(sail("unseen", 60, a_third_less_astern)[0], problem.program)],
+    )
 
 
 def sets_of(problem: Problem, base: Fit, *fits: Fit) -> Sets:
@@ -44,7 +49,9 @@ def as_likely(problem: Problem, base: Fit, found: Fit, name: str) -> Fit:
 
 
 @pytest.mark.parametrize("name", ["steady_force", "wave_forcing"])
-def test_a_look_alike_by_which_unseen_runs_are_foreseen_worse_is_none(weak: Laid, name: str) -> None:
+def test_a_look_alike_by_which_unseen_runs_are_foreseen_worse_is_none(
+    weak: Laid, name: str
+) -> None:
     problem, base, found, unseen = weak
     sets, rival = sets_of(problem, base, found), as_likely(problem, base, found, name)
     one = beside("weak_reverse", found, base, {name: rival})
@@ -55,7 +62,9 @@ def test_a_look_alike_by_which_unseen_runs_are_foreseen_worse_is_none(weak: Laid
     assert kept.tied_with == (name,)  # nothing unseen, nothing told
 
 
-def test_a_law_by_which_unseen_runs_are_foreseen_better_takes_the_place_of_its_look_alike(weak: Laid) -> None:
+def test_a_law_by_which_unseen_runs_are_foreseen_better_takes_the_place_of_its_look_alike(
+    weak: Laid,
+) -> None:
     problem, base, found, unseen = weak
     wrong = as_likely(problem, base, found, "steady_force")
     sets = sets_of(problem, base, found, wrong)
@@ -77,7 +86,9 @@ def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for
 ) -> None:
     problem, base, found, unseen = weak
     monkeypatch.setattr(asked, "left_over", lambda problem, best: 1000.0)
-    levels = replace(found.levels, force=50.0 * problem.ambient.force)  # as if nothing took any of it away
+    levels = replace(
+        found.levels, force=50.0 * problem.ambient.force
+    )  # as if nothing took any of it away
     much, none = replace(found, levels=levels), replace(base, levels=levels)
     sets = sets_of(problem, none, much)
     assert stood_for(sets, much, unseen) is much and not sets.banned
@@ -86,7 +97,11 @@ def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for
 
 def test_free_runs_of_a_boat_that_runs_away_have_grown() -> None:
     sound, away = {"position_rms_m": [1.0, 1.0, 1.0]}, {"position_rms_m": [1.0, np.inf, 1.0]}
-    assert carries.grew(sound, away, 2.0) and not carries.grew(away, sound, 2.0) and not carries.grew(away, away, 2.0)
+    assert (
+        generalization.grew(sound, away, 2.0)
+        and not generalization.grew(away, sound, 2.0)
+        and not generalization.grew(away, away, 2.0)
+    )
 
 
 def said(problem: Problem, found: Fit, factor: float) -> Fit:
@@ -103,7 +118,10 @@ def test_an_effect_by_which_unseen_runs_become_unlikelier_does_not_carry_over(we
     one = beside("weak_reverse", found, base, {})
     assert refuted(sets, found, [one], unseen) == ""
     wrong = said(problem, found, 1.5)  # stronger astern, where it is weaker
-    assert refuted(sets, wrong, [one], unseen) == "weak_reverse" and refuted(sets, wrong, [one], []) == ""
+    assert (
+        refuted(sets, wrong, [one], unseen) == "weak_reverse"
+        and refuted(sets, wrong, [one], []) == ""
+    )
 
 
 def test_what_all_recordings_together_hardly_ask_for_is_not_named(weak: Laid) -> None:
@@ -115,12 +133,19 @@ def test_what_all_recordings_together_hardly_ask_for_is_not_named(weak: Laid) ->
     sets = sets_of(problem, base, little)
     one = beside("weak_reverse", little, base, {})
     assert sets.price > 2.6 and refuted(sets, little, [one], unseen) == "weak_reverse"
-    assert refuted(sets, little, [replace(one, shared=sets.price + 20.0)], unseen) == ""  # with its look-alikes
+    assert (
+        refuted(sets, little, [replace(one, shared=sets.price + 20.0)], unseen) == ""
+    )  # with its look-alikes
 
 
-def test_what_unseen_runs_say_of_a_law_hangs_little_on_how_rough_the_water_was_before(weak: Laid) -> None:
+def test_what_unseen_runs_say_of_a_law_hangs_little_on_how_rough_the_water_was_before(
+    weak: Laid,
+) -> None:
     problem, base, found, unseen = weak
-    sets, rough = sets_of(problem, base), replace(found, levels=replace(found.levels, force=5.0 * found.levels.force))
+    sets, rough = (
+        sets_of(problem, base),
+        replace(found, levels=replace(found.levels, force=5.0 * found.levels.force)),
+    )
     by_law = foretold(sets, found, unseen) - foretold(sets, said(problem, found, 1.0), unseen)
     assert abs(foretold(sets, rough, unseen) - foretold(sets, found, unseen)) < 0.2 * by_law
 
@@ -128,9 +153,13 @@ def test_what_unseen_runs_say_of_a_law_hangs_little_on_how_rough_the_water_was_b
 def test_a_rival_that_is_behind_on_the_fitted_runs_only_is_a_look_alike(weak: Laid) -> None:
     problem, base, found, unseen = weak
     wrong = said(problem, found, 0.9)
-    gap = foretold(sets_of(problem, base), found, unseen) - foretold(sets_of(problem, base), wrong, unseen)
+    gap = foretold(sets_of(problem, base), found, unseen) - foretold(
+        sets_of(problem, base), wrong, unseen
+    )
     assert gap > 6.0
-    rival = replace(found, evidence=wrong.evidence - gap)  # as far behind there as it is ahead on the unseen run
+    rival = replace(
+        found, evidence=wrong.evidence - gap
+    )  # as far behind there as it is ahead on the unseen run
     one = beside("weak_reverse", wrong, base, {"steady_force": rival})
     assert not one.tied_with
     (all_told,) = told(sets_of(problem, base, wrong), wrong, [one], unseen)

@@ -7,9 +7,9 @@ from typing import Any
 import boats
 import pytest
 
-from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.problem import check_taken_up
-from boatsim.diagnose.tried import called, fittable, library_for, without_ruled_out
+from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis.candidates import called, fittable, library_for, without_ruled_out
+from boatsim.diagnosis.problem import check_taken_up
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
 from boatsim.physics.effects.added_mass import AddedMass
@@ -42,19 +42,40 @@ def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str
         vessel.check_bindings(vessel.added(boat, entry), name)
     there = {called(e.name) for e in library.entries}
     of_shelf = {n for n in content.names("effect") if fittable(content.load_class("effect", n))}
-    assert there | set(library.idle) | set(library.left_out) == of_shelf and not there & set(library.idle)
+    assert there | set(library.idle) | set(library.left_out) == of_shelf and not there & set(
+        library.idle
+    )
 
 
 def test_facts_and_the_vessels_reasons_leave_entries_out(tmp_path: Path) -> None:
     boat = vessel.load("trial_boat")
     everything = set(library_for(boat).tried)
-    facts = {"indoors": True, "still_water": True, "no_waves": True, "moored": False, "position_fix": "gnss"}
+    facts = {
+        "indoors": True,
+        "still_water": True,
+        "no_waves": True,
+        "moored": False,
+        "position_fix": "gnss",
+    }
     indoors = library_for(boat, (), facts | {"steering_measured": True})
     ruled_out = {n: why for n, why in indoors.left_out.items() if "--library" not in why}
-    assert everything - set(indoors.tried) == set(ruled_out) == {
-        "wind", "current", "wave_forcing", "tether", "camera_scale", "steering_backlash", "steering_rate_limit",
-    }  # fmt: skip
-    assert indoors.left_out["wind"] == "indoors = true" and indoors.entries == library_for(boat).entries
+    assert (
+        everything - set(indoors.tried)
+        == set(ruled_out)
+        == {
+            "wind",
+            "current",
+            "wave_forcing",
+            "tether",
+            "camera_scale",
+            "steering_backlash",
+            "steering_rate_limit",
+        }
+    )
+    assert (
+        indoors.left_out["wind"] == "indoors = true"
+        and indoors.entries == library_for(boat).entries
+    )
     blind = library_for(boat, (), None, ("t_s", "x_m", "y_m"))
     assert everything - set(blind.tried) == {"heading_offset", "heading_deviation"}
     reasons = '[diagnosis.leave_out]\ntether = "nothing is tied to it"\n'
@@ -69,35 +90,44 @@ def test_what_facts_rule_out_does_not_act_either_where_it_is_the_vessels_own() -
     ship = vessel.load("kvlcc2_mmg")
     measured = without_ruled_out(ship, {"steering_measured": True})
     assert [e.name for e in ship.effects if e not in measured.effects] == ["steering_rate_limit"]
-    assert without_ruled_out(ship, {"steering_measured": False, "indoors": True}).effects == ship.effects
+    assert (
+        without_ruled_out(ship, {"steering_measured": False, "indoors": True}).effects
+        == ship.effects
+    )
 
 
 def test_an_entry_that_shows_as_another_does_is_tried_where_it_is_asked_for() -> None:
     boat = vessel.load("trial_boat")
     usual = library_for(boat)
-    assert "shallow_water" not in usual.tried and "added_mass_error" in usual.left_out["shallow_water"]
+    assert (
+        "shallow_water" not in usual.tried and "added_mass_error" in usual.left_out["shallow_water"]
+    )
     assert set(library_for(boat, ["shallow_water"]).tried) == {*usual.tried, "shallow_water"}
 
 
 def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="rate takes the place of a rule; say why in reasons.rate"):
         of(boats.PLANAR + "[diagnosis]\nrate = 3.0\n", tmp_path)
-    boat = of(boats.PLANAR + '[diagnosis]\nrate = 3.0\nreasons = { rate = "a slow hull" }\n', tmp_path)
-    assert rules.rate(boat) == rules.rate(boat, 36_000.0) == 3.0
+    boat = of(
+        boats.PLANAR + '[diagnosis]\nrate = 3.0\nreasons = { rate = "a slow hull" }\n', tmp_path
+    )
+    assert priors.rate(boat) == priors.rate(boat, 36_000.0) == 3.0
 
 
-def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_than_a_quarter() -> None:
+def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_than_a_quarter() -> (
+    None
+):
     boat = vessel.load("trial_boat")
-    usual = rules.rate(boat)
-    assert rules.rate(boat, 300.0) == usual
-    assert 1200.0 * rules.rate(boat, 1200.0) == pytest.approx(rules.PLENTY)
-    assert rules.rate(boat, 36_000.0) == pytest.approx(rules.COARSEST * usual)
+    usual = priors.rate(boat)
+    assert priors.rate(boat, 300.0) == usual
+    assert 1200.0 * priors.rate(boat, 1200.0) == pytest.approx(priors.PLENTY)
+    assert priors.rate(boat, 36_000.0) == pytest.approx(priors.COARSEST * usual)
 
 
 @pytest.mark.parametrize("name", content.names("vessel"))
 def test_every_uncertainty_that_a_vessel_states_is_one_of_its_coefficients(name: str) -> None:
     boat = vessel.load(name)
-    check_taken_up(boat, rules.uncertainty(boat), name)
+    check_taken_up(boat, priors.uncertainty(boat), name)
 
 
 def test_an_uncertainty_that_nothing_takes_up_is_one_line(tmp_path: Path) -> None:
@@ -110,16 +140,30 @@ def test_an_uncertainty_that_nothing_takes_up_is_one_line(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("where", ["vessel", "notes"])
-def test_a_diagnosis_refuses_an_uncertainty_that_nothing_takes_up(tmp_path: Path, where: str) -> None:
+def test_a_diagnosis_refuses_an_uncertainty_that_nothing_takes_up(
+    tmp_path: Path, where: str
+) -> None:
     stated = "coefficient_uncertainty = { restoring = 0.1 }\n"
-    place = boats.written(tmp_path, "test_boat", boats.PLANAR + (f"[diagnosis]\n{stated}" if where == "vessel" else ""))
+    place = boats.written(
+        tmp_path,
+        "test_boat",
+        boats.PLANAR + (f"[diagnosis]\n{stated}" if where == "vessel" else ""),
+    )
     (tmp_path / "recording.toml").write_text(stated if where == "notes" else "")
     for name in ("one", "two"):
         rows = [f"{0.1 * i:.1f},{0.01 * i:g},0,0,0.1,0.1,0,0" for i in range(40)]
-        (tmp_path / f"{name}.csv").write_text("\n".join(["t_s,x_m,y_m,psi_rad," + ",".join(COMMANDS), *rows]))
-    label = "test_boat/vessel.toml: diagnosis: " if where == "vessel" else r"one\.csv by its recording\.toml: "
-    with pytest.raises(BadInput, match=f"{label}coefficient_uncertainty.restoring = 0.1, but test_boat has no"):
-        analysis.diagnose([tmp_path / "one.csv"], [tmp_path / "two.csv"], str(place))
+        (tmp_path / f"{name}.csv").write_text(
+            "\n".join(["t_s,x_m,y_m,psi_rad," + ",".join(COMMANDS), *rows])
+        )
+    label = (
+        "test_boat/vessel.toml: diagnosis: "
+        if where == "vessel"
+        else r"one\.csv by its recording\.toml: "
+    )
+    with pytest.raises(
+        BadInput, match=f"{label}coefficient_uncertainty.restoring = 0.1, but test_boat has no"
+    ):
+        pipeline.diagnose([tmp_path / "one.csv"], [tmp_path / "two.csv"], str(place))
 
 
 def test_a_load_changes_what_it_names_and_nothing_else(tmp_path: Path) -> None:
@@ -145,20 +189,31 @@ def test_settings_can_change_the_body(tmp_path: Path) -> None:
 
 
 def test_extra_effects_come_after_the_vessels_own() -> None:
-    boat = vessel.load("trial_boat", extra=[{"use": "current", "north": 0.1}, {"use": "weak_reverse"}])
+    boat = vessel.load(
+        "trial_boat", extra=[{"use": "current", "north": 0.1}, {"use": "weak_reverse"}]
+    )
     assert [e.name for e in boat.effects][-4:] == ["port", "starboard", "current", "weak_reverse"]
 
 
 def test_what_the_vessel_is_asked_for() -> None:
     boat = vessel.load("joystick_boat")
     assert boat.effect("wind") is None
-    assert boat.actuators == ("thrust_port_N", "thrust_starboard_N", "steer_port_rad", "steer_starboard_rad")
+    assert boat.actuators == (
+        "thrust_port_N",
+        "thrust_starboard_N",
+        "steer_port_rad",
+        "steer_starboard_rad",
+    )
     assert boat.limits()["pwm_port"] == (-255.0, 255.0)
     assert boat.roles["thrust_port_N"] == "thrust" and "pwm_port" not in boat.roles
     assert boat.angles == ("steer_port_rad", "steer_starboard_rad")
     fed = boat.effect("pwm_thrust")
     assert fed is not None and boat.feeder(fed, "thrust_starboard_N") == "pwm_starboard"
-    assert [boat.side(n) for n in ("thrust_port_N", "pwm_starboard", "steer_starboard_rad")] == [-1, 1, 1]
+    assert [boat.side(n) for n in ("thrust_port_N", "pwm_starboard", "steer_starboard_rad")] == [
+        -1,
+        1,
+        1,
+    ]
     assert boat.known_as("thruster") == ["port", "starboard"] and boat.known_as("port") == ["port"]
     assert boat.effect("thruster") is None  # which of them?
 
@@ -166,16 +221,31 @@ def test_what_the_vessel_is_asked_for() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("about =", "abuot ="), r"test_boat/vessel\.toml: key 'abuot' does not exist; did you mean 'about'"),
-        (("roll_inertia", "roll_inerta"), r"key in \[body\] 'roll_inerta' .*did you mean 'roll_inertia'"),
-        (("mass = 6.0", "mass = -6.0"), r"vessel\.toml: body\.mass = -6\.0; input should be greater than 0"),
+        (
+            ("about =", "abuot ="),
+            r"test_boat/vessel\.toml: key 'abuot' does not exist; did you mean 'about'",
+        ),
+        (
+            ("roll_inertia", "roll_inerta"),
+            r"key in \[body\] 'roll_inerta' .*did you mean 'roll_inertia'",
+        ),
+        (
+            ("mass = 6.0", "mass = -6.0"),
+            r"vessel\.toml: body\.mass = -6\.0; input should be greater than 0",
+        ),
         (("beam = 0.4\n", ""), r"vessel\.toml: beam is missing"),
         (
             ('"yaw"]', '"jaw"]'),
             r"freedoms\.2 = 'jaw'; input should be 'surge', 'sway', 'heave', 'roll', 'pitch' or 'yaw'",
         ),
-        (("high = 100.0 }", "high = 100.0, side = 1 }"), r"key in \[channels\.thrust_port_N\] 'side' does not exist"),
-        (('use = "current"', 'use = "curent"'), "effect 'curent' does not exist; did you mean 'current'"),
+        (
+            ("high = 100.0 }", "high = 100.0, side = 1 }"),
+            r"key in \[channels\.thrust_port_N\] 'side' does not exist",
+        ),
+        (
+            ('use = "current"', 'use = "curent"'),
+            "effect 'curent' does not exist; did you mean 'current'",
+        ),
         (
             ("sway = 3.0", "swai = 3.0"),
             "test_boat/vessel.toml: AddedMass: setting 'swai' does not exist; did you mean 'sway'",
@@ -192,7 +262,9 @@ def test_what_the_vessel_is_asked_for() -> None:
         ),
     ],
 )
-def test_a_mistake_in_a_vessel_file_is_one_line(tmp_path: Path, change: tuple[str, str], message: str) -> None:
+def test_a_mistake_in_a_vessel_file_is_one_line(
+    tmp_path: Path, change: tuple[str, str], message: str
+) -> None:
     assert change[0] in boats.PLANAR
     with pytest.raises(BadInput, match=message) as refused:
         of(boats.PLANAR.replace(*change, 1), tmp_path)
@@ -201,9 +273,13 @@ def test_a_mistake_in_a_vessel_file_is_one_line(tmp_path: Path, change: tuple[st
 
 @pytest.mark.usefixtures("trusted")
 def test_a_class_that_is_no_effect_is_one_line(tmp_path: Path) -> None:
-    boats.written(tmp_path, "test_boat", boats.PLANAR.replace('use = "current"', 'use = "plain.py"'))
+    boats.written(
+        tmp_path, "test_boat", boats.PLANAR.replace('use = "current"', 'use = "plain.py"')
+    )
     (tmp_path / "test_boat" / "plain.py").write_text("class Plain:\n    pass\n")
-    with pytest.raises(BadInput, match=r"plain\.py: class Plain is no effect; it must derive from one's base class"):
+    with pytest.raises(
+        BadInput, match=r"plain\.py: class Plain is no effect; it must derive from one's base class"
+    ):
         vessel.load(str(tmp_path / "test_boat" / "vessel.toml"))
 
 
@@ -226,7 +302,10 @@ BINDINGS = [
     ("on = { thrust = nan }", "port: on = {'thrust': nan}; allowed is a table of thrust, angle"),
 ]
 MORE = [
-    ('use = "thruster"\nname = "port"\non = { thrust = 1.0 }', "effect port is there 2 times; give each a name of"),
+    (
+        'use = "thruster"\nname = "port"\non = { thrust = 1.0 }',
+        "effect port is there 2 times; give each a name of",
+    ),
     ('use = "current"', "effect current is there 2 times; give each a name of its own"),
     (
         'use = "weak_reverse"\non = "thrust_prot_N"',
@@ -240,8 +319,14 @@ MORE = [
         'use = "pwm_thrust"\non = "thrust_port_N"\nfed_by = ["steer_port_rad", "steer_starboard_rad"]',
         "effect pwm_thrust: fed_by names 2 channels, on 1; each needs one",
     ),
-    ('use = "pwm_thrust"\non = "thrust_port_N"\nfed_by = "pwm"', "effect pwm_thrust: channel 'pwm' does not exist"),
-    ('use = "prop_walk"\non = "prot"', "effect prop_walk: thruster 'prot' does not exist; did you mean 'port'"),
+    (
+        'use = "pwm_thrust"\non = "thrust_port_N"\nfed_by = "pwm"',
+        "effect pwm_thrust: channel 'pwm' does not exist",
+    ),
+    (
+        'use = "prop_walk"\non = "prot"',
+        "effect prop_walk: thruster 'prot' does not exist; did you mean 'port'",
+    ),
     ('use = "steering_drag"', "effect steering_drag needs a vessel with rudder"),
 ]
 
@@ -250,7 +335,10 @@ MORE = [
     ("text", "message"),
     [
         *((boats.PLANAR.replace(PORT, wrong, 1), message) for wrong, message in BINDINGS),
-        *((boats.PLANAR.replace("[loads", f"[[effect]]\n{table}\n\n[loads", 1), message) for table, message in MORE),
+        *(
+            (boats.PLANAR.replace("[loads", f"[[effect]]\n{table}\n\n[loads", 1), message)
+            for table, message in MORE
+        ),
     ],
     ids=[message[:40] for _, message in BINDINGS + MORE],
 )
@@ -258,30 +346,54 @@ def test_a_bad_binding_is_one_line(tmp_path: Path, text: str, message: str) -> N
     assert PORT in boats.PLANAR
     with pytest.raises(BadInput, match=re.escape(message)) as refused:
         of(text, tmp_path)
-    assert str(refused.value).startswith("test_boat/vessel.toml: ") and "\n" not in str(refused.value)
+    assert str(refused.value).startswith("test_boat/vessel.toml: ") and "\n" not in str(
+        refused.value
+    )
 
 
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"loads": ["ladden"]}, r"test_boat/vessel\.toml: load 'ladden' does not exist; did you mean 'laden'"),
-        ({"settings": {"curent": {}}}, "table to change 'curent' does not exist; did you mean 'current'"),
-        ({"settings": {"current": 1.0}}, "test_boat/vessel.toml: current = 1.0; allowed is a table of its values"),
-        ({"settings": {"current": {"nort": 1.0}}}, "Current: setting 'nort' does not exist; did you mean 'north'"),
+        (
+            {"loads": ["ladden"]},
+            r"test_boat/vessel\.toml: load 'ladden' does not exist; did you mean 'laden'",
+        ),
+        (
+            {"settings": {"curent": {}}},
+            "table to change 'curent' does not exist; did you mean 'current'",
+        ),
+        (
+            {"settings": {"current": 1.0}},
+            "test_boat/vessel.toml: current = 1.0; allowed is a table of its values",
+        ),
+        (
+            {"settings": {"current": {"nort": 1.0}}},
+            "Current: setting 'nort' does not exist; did you mean 'north'",
+        ),
         ({"settings": {"current": {"north": 9.0}}}, r"Current\.north = 9 m/s; allowed -5 to 5 m/s"),
-        ({"settings": {"body": {"mas": 9.0}}}, r"key in \[body\] 'mas' does not exist; did you mean 'mass'"),
-        ({"extra": [{"use": "current"}]}, r"current is one of test_boat's own effects; .*\[set\.current\]"),
+        (
+            {"settings": {"body": {"mas": 9.0}}},
+            r"key in \[body\] 'mas' does not exist; did you mean 'mass'",
+        ),
+        (
+            {"extra": [{"use": "current"}]},
+            r"current is one of test_boat's own effects; .*\[set\.current\]",
+        ),
         ({"extra": [{"use": "wnid"}]}, "effect 'wnid' does not exist; did you mean 'wind'"),
     ],
 )
-def test_a_mistake_in_what_is_laid_over_it_is_one_line(tmp_path: Path, more: dict[str, Any], message: str) -> None:
+def test_a_mistake_in_what_is_laid_over_it_is_one_line(
+    tmp_path: Path, more: dict[str, Any], message: str
+) -> None:
     with pytest.raises(BadInput, match=message) as refused:
         of(boats.PLANAR, tmp_path, **more)
     assert "\n" not in str(refused.value)
 
 
 def test_a_vessel_that_does_not_exist_is_named_with_the_nearest() -> None:
-    with pytest.raises(BadInput, match="vessel 'joystik_boat' does not exist; did you mean 'joystick_boat'"):
+    with pytest.raises(
+        BadInput, match="vessel 'joystik_boat' does not exist; did you mean 'joystick_boat'"
+    ):
         vessel.load("joystik_boat")
 
 

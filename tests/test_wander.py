@@ -8,8 +8,8 @@ import pytest
 from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
-from boatsim.diagnose.filter import Levels, Track, inertia_of, track
-from boatsim.diagnose.tried import library_for
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.filter import Levels, Track, inertia_of, track
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.facts import wrong
@@ -67,14 +67,18 @@ def test_added_mass_does_not_calm_the_water() -> None:
     values = np.append(program.values(), program.body)
     heavier = values.copy()
     heavier[program.index("extra_mass", "mass")] = boat.body.mass
-    light, heavy = (inertia_of(program, v, program.switches(["extra_mass"])) for v in (values, heavier))
+    light, heavy = (
+        inertia_of(program, v, program.switches(["extra_mass"])) for v in (values, heavier)
+    )
     assert heavy[0] == pytest.approx(light[0] + boat.body.mass)
     x = np.random.default_rng(0).normal(0.0, 0.003, 200)
     _, laid = laid_at_rest(x, 0.2)
     levels = Levels(np.full(3, 0.05), 1.0, {"position_sd_m": 0.003, "heading_sd_rad": 0.01})
     on = program.switches(["extra_mass"])
     still, moved = (laid.likelihood(v, on, levels) for v in (values, heavier))
-    assert moved < still  # a boat that lies in calmer water than assumed: 10 nats for twice the mass, were it a force
+    assert (
+        moved < still
+    )  # a boat that lies in calmer water than assumed: 10 nats for twice the mass, were it a force
 
 
 def wandering(run: Recording, sd: float, time: float, seed: int) -> Recording:
@@ -91,11 +95,16 @@ def wandering(run: Recording, sd: float, time: float, seed: int) -> Recording:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("power", "names"), [(1.0, ["position_wander"]), (0.7, ["position_wander", "thrust_gain_error"])]
+    ("power", "names"),
+    [(1.0, ["position_wander"]), (0.7, ["position_wander", "thrust_gain_error"])],
 )
-def test_wander_is_named_as_such_and_physics_beside_it(tmp_path: Path, power: float, names: list[str]) -> None:
+def test_wander_is_named_as_such_and_physics_beside_it(
+    tmp_path: Path, power: float, names: list[str]
+) -> None:
     runs = [wandering(recorded(Real(power=(power, power)), s, 5), 0.1, 20.0, s) for s in (1, 2, 3)]
-    (tmp_path / "recording.toml").write_text('vessel = "trial_boat"\n[facts]\nposition_fix = "gnss"\n')
+    (tmp_path / "recording.toml").write_text(
+        'vessel = "trial_boat"\n[facts]\nposition_fix = "gnss"\n'
+    )
     said = diagnosed(runs, tmp_path, "trial_boat", FURTHER)
     found = {e["name"]: e["parameters"] for e in said["effects"]}
     assert sorted(found) == names and said["verdict"] == "named", said["sentence"]
@@ -118,7 +127,9 @@ def test_a_stated_wander_is_known_from_the_start(tmp_path: Path) -> None:
     facts = "position_wander_sd_m = 0.1\nposition_wander_time_s = 20.0\n"
     (tmp_path / "recording.toml").write_text(f'vessel = "trial_boat"\n[facts]\n{facts}')
     said = diagnosed(runs, tmp_path, "trial_boat", FURTHER)
-    assert [e["name"] for e in said["effects"]] == ["thrust_gain_error"] and said["verdict"] == "named"
+    assert [e["name"] for e in said["effects"]] == ["thrust_gain_error"] and said[
+        "verdict"
+    ] == "named"
     assert said["facts"]["position_wander_sd_m"] == 0.1
 
 

@@ -12,7 +12,7 @@ pytest.importorskip("warp")
 pytest.importorskip("mujoco_warp")
 
 from benchmarks import gpu
-from boatsim.diagnose.tried import library_for
+from boatsim.diagnosis.candidates import library_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -20,7 +20,7 @@ from boatsim.physics.program import Program
 from boatsim.physics.trust import trusting
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import batch as cores
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 from boatsim.warp import Batch
 from boatsim.warp.kernels import HEAD
 from boatsim.warp.on_mujoco import OnMujoco
@@ -75,7 +75,9 @@ def furthest(batch: Batch, boats_there: int) -> float:
     boat = batch.vessels[0]
     starts, commands = drawn_starts(boat, batch.n), drawn_commands(boat, (SECONDS, batch.n))
     found, twin = sailed(batch, starts, commands)[:, :boats_there], Twin(boat, batch.step)
-    wanted = np.stack([twin.rollout(starts[i], commands[:, i], 1.0) for i in range(boats_there)], axis=1)
+    wanted = np.stack(
+        [twin.rollout(starts[i], commands[:, i], 1.0) for i in range(boats_there)], axis=1
+    )
     return float((np.abs(found - wanted) / np.abs(wanted).max(axis=(0, 1))).max())
 
 
@@ -104,12 +106,18 @@ def test_accelerations_are_the_forces_by_the_whole_mass(tmp_path: Path) -> None:
     batch.reset([(0, 0, psi, 0, 0, 0) for psi in headings], [[commands[c] for c in boat.commands]])
     c, s = np.cos(0.6), np.sin(0.6)
     force = np.array([pushed[0] * c, pushed[0] * s, pushed[1] * c])
-    M = np.array([[6.0 + 0.6, 0, 0], [0, 6.0 + 3.0, 3.0 * 0.2], [0, 3.0 * 0.2, 0.5 + 0.3 + 3.0 * 0.2**2]])
+    M = np.array(
+        [[6.0 + 0.6, 0, 0], [0, 6.0 + 3.0, 3.0 * 0.2], [0, 3.0 * 0.2, 0.5 + 0.3 + 3.0 * 0.2**2]]
+    )
     ahead, aside, turning = np.linalg.solve(M, force)
     batch.send()
     assert isinstance(batch.motion, OnMujoco)
     for psi, found in zip(headings, batch.motion.accelerations(), strict=True):
-        turned = (np.cos(psi) * ahead - np.sin(psi) * aside, np.sin(psi) * ahead + np.cos(psi) * aside, turning)
+        turned = (
+            np.cos(psi) * ahead - np.sin(psi) * aside,
+            np.sin(psi) * ahead + np.cos(psi) * aside,
+            turning,
+        )
         assert found == pytest.approx(turned, rel=1e-5, abs=1e-6)
 
 
@@ -127,14 +135,21 @@ def test_the_whole_library_has_the_same_forces_and_actuators() -> None:
     on[:, :own] = 1.0
     s, act = rng.uniform(-0.5, 0.5, (n, 6)), rng.uniform(-1.0, 1.0, (n, program.held_size))
     t, commands = rng.uniform(0.0, 10.0, n), drawn_commands(boat, (n,))
-    memory, moved, pauses = np.zeros((n, program.memory_size)), np.zeros((n, program.held_size)), np.zeros(n)
+    memory, moved, pauses = (
+        np.zeros((n, program.memory_size)),
+        np.zeros((n, program.held_size)),
+        np.zeros(n),
+    )
 
     translation = Translation()
     translation.function(code.forces, [REAL, ROW, ROW, WHOLE, ROW, ROW])
     translation.function(code.until_bend, [ROW, ROW, REAL, REAL, ROW, ROW])
     translation.function(code.actuate_in_place, [ROW, ROW, REAL, ROW, ROW, ROW])
     wp, kernels = warp(), kept(HEAD.replace("{real}", "float64") + translation.text + CHECK)
-    there = [wp.array(x, dtype=wp.float64) for x in (t, s, act, values, on, commands, memory, moved, pauses, s[:, :3])]
+    there = [
+        wp.array(x, dtype=wp.float64)
+        for x in (t, s, act, values, on, commands, memory, moved, pauses, s[:, :3])
+    ]
     wp.launch(kernels.check, dim=n, inputs=there, device="cpu")
 
     force = [code.forces(t[i], s[i], act[i], np.int64(0), values[i], on[i]) for i in range(n)]
@@ -188,15 +203,25 @@ def test_what_comes_in_two_calls_is_what_comes_in_one(batch: Batch) -> None:
     ("does", "says"),
     [
         (lambda f: f.advance([[1.0]]), "commands of shape (1, 1); allowed are 6 a boat"),
-        (lambda f: f.reset([1.0, 2.0]), "states of shape (2,); allowed are 6 finite numbers a boat"),
+        (
+            lambda f: f.reset([1.0, 2.0]),
+            "states of shape (2,); allowed are 6 finite numbers a boat",
+        ),
         (lambda f: f.set("surge_drag.liner", 1.0), "did you mean 'surge_drag.linear'"),
         (lambda f: f.set("surge_drag.linear", -1.0), "surge_drag.linear = -1; allowed 0 to"),
         (lambda f: Batch(f.vessels[0], 2, device="moon"), "device = 'moon'; allowed here: cpu"),
         (lambda f: Batch(f.vessels[0], 2, double=True), "mujoco_warp knows single precision alone"),
-        (lambda f: Batch(vessel.load("kynoc", settings={"filtered_sea": {"realisation": 2**24 + 1}}), 2), "allowed to"),
+        (
+            lambda f: Batch(
+                vessel.load("kynoc", settings={"filtered_sea": {"realisation": 2**24 + 1}}), 2
+            ),
+            "allowed to",
+        ),
     ],
 )
-def test_a_mistake_is_named_in_one_line(batch: Batch, does: Callable[[Batch], object], says: str) -> None:
+def test_a_mistake_is_named_in_one_line(
+    batch: Batch, does: Callable[[Batch], object], says: str
+) -> None:
     with pytest.raises(BadInput) as caught:
         does(batch)
     assert says in str(caught.value) and "\n" not in str(caught.value)
@@ -213,12 +238,17 @@ def test_an_effect_that_has_no_form_there_is_named_with_its_line(tmp_path: Path)
     )
     place = boats.written(tmp_path, "odd_boat", boats.PLANAR + '\n[[effect]]\nuse = "odd.py"\n')
     (place / "odd.py").write_text(law)
-    with trusting(allowed=[tmp_path]), pytest.raises(BadInput, match=r"odd_boat: .*odd.py:10: .* has no Warp form"):
+    with (
+        trusting(allowed=[tmp_path]),
+        pytest.raises(BadInput, match=r"odd_boat: .*odd.py:10: .* has no Warp form"),
+    ):
         Batch(vessel.load(str(place)), 2)
 
 
 @pytest.mark.parametrize("missing", ["warp", "mujoco_warp"])
-def test_without_the_libraries_one_line_says_what_brings_them(missing: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_libraries_one_line_says_what_brings_them(
+    missing: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(BadInput, match=r'pip install "boatsim\[warp\]"'):
         Batch(vessel.load("joystick_boat"), 2)
@@ -230,7 +260,9 @@ def test_a_program_compiles_for_a_gpu_where_there_is_none(name: str, tmp_path: P
     assert any(path.stat().st_size > 10_000 for path in tmp_path.glob("*.cubin"))
 
 
-def test_the_benchmark_prints_a_rate_for_each_number_of_boats(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_benchmark_prints_a_rate_for_each_number_of_boats(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     gpu.main(["--vessel", "kvlcc2_roll", "--most", "10"])
     rows = [line.split() for line in capsys.readouterr().out.splitlines()[2:]]
     assert [row[0] for row in rows] == ["1", "10"]

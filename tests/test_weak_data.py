@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from real_boat import Real, recorded
 
-from boatsim.diagnose import analysis
+from boatsim.diagnosis import pipeline
 from boatsim.recordings.table import Notes, Recording, write_csv
 
 NOISE = (0.003, 0.003, 0.012)  # [m, m, rad] of camera and compass
@@ -28,16 +28,21 @@ def still(seed: int, seconds: float = 40.0) -> Recording:
 def steady(seed: int, seconds: float, thrust: float) -> Recording:
     """A boat at its steady speed straight ahead: both thrusts balance the surge damping of 3 N s/m."""
     rng, t = np.random.default_rng(seed), np.arange(0.0, seconds, 1 / 6)
-    place = np.column_stack([2.0 * thrust / 3.0 * t, 0.0 * t, 0.0 * t]) + rng.standard_normal((len(t), 3)) * NOISE
+    place = (
+        np.column_stack([2.0 * thrust / 3.0 * t, 0.0 * t, 0.0 * t])
+        + rng.standard_normal((len(t), 3)) * NOISE
+    )
     held = np.tile([thrust, thrust, 0.0, 0.0], (len(t), 1))
-    signals = dict(zip(("x_m", "y_m", "psi_rad"), place.T, strict=True)) | dict(zip(COMMANDS, held.T, strict=True))
+    signals = dict(zip(("x_m", "y_m", "psi_rad"), place.T, strict=True)) | dict(
+        zip(COMMANDS, held.T, strict=True)
+    )
     return Recording(f"{seed}", t, signals, Notes(vessel="trial_boat"))
 
 
 def answer(recording: Recording, folder: Path) -> dict[str, Any]:
     """Answer of a diagnosis of one run."""
     write_csv(replace(recording, notes=Notes()), folder / "run.csv")
-    return analysis.diagnose([folder / "run.csv"], vessel="trial_boat").findings.answer
+    return pipeline.diagnose([folder / "run.csv"], vessel="trial_boat").findings.answer
 
 
 def named(found: dict[str, Any]) -> set[str]:
@@ -60,7 +65,9 @@ def test_still_water_is_no_evidence_of_more_damping(tmp_path: Path) -> None:
     files = []
     for seed in (1, 2):
         rng, t = np.random.default_rng(seed), np.arange(0.0, 40.0, 0.15)
-        place = rng.standard_normal((6, len(t))) * np.array([[0.006], [0.006], [0.006], [0.004], [0.004], [0.004]])
+        place = rng.standard_normal((6, len(t))) * np.array(
+            [[0.006], [0.006], [0.006], [0.004], [0.004], [0.004]]
+        )
         columns = ("x_m", "y_m", "z_m", "phi_rad", "theta_rad", "psi_rad")
         signals = dict(zip(columns, place, strict=True))
         signals |= {
@@ -68,7 +75,7 @@ def test_still_water_is_no_evidence_of_more_damping(tmp_path: Path) -> None:
         }  # next to no thrust
         files.append(tmp_path / f"{seed}.csv")
         write_csv(Recording(str(seed), t, signals, Notes()), files[-1])
-    found = analysis.diagnose(files[:1], files[1:], "otter").findings.answer
+    found = pipeline.diagnose(files[:1], files[1:], "otter").findings.answer
     assert found["verdict"] == "nothing_missing" and not named(found), found["sentence"]
 
 
@@ -83,7 +90,9 @@ def test_a_run_at_rest_excludes_outer_forces_alone(tmp_path: Path) -> None:
     """No upper limit is claimed for what shows only in motion or under commands."""
     limits = answer(still(3), tmp_path)["upper_limits"]
     outer = {"wind", "current", "tether", "steady_force", "wave_forcing"}
-    assert {name for name, limit in limits.items() if limit} <= outer | {"damping_exponent"}  # without any at rest
+    assert {name for name, limit in limits.items() if limit} <= outer | {
+        "damping_exponent"
+    }  # without any at rest
     assert limits["wind"]["force_N"] < 0.1
 
 
@@ -99,7 +108,9 @@ EFFECTS = {
 
 @pytest.mark.parametrize("seconds", [6.0, 12.0])
 @pytest.mark.parametrize("case", EFFECTS)
-def test_a_short_run_names_what_is_there_or_nothing(case: str, seconds: float, tmp_path: Path) -> None:
+def test_a_short_run_names_what_is_there_or_nothing(
+    case: str, seconds: float, tmp_path: Path
+) -> None:
     real, right = EFFECTS[case]
     found = answer(short(real, 7, seconds), tmp_path)
     for effect in found["effects"]:

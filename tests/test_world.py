@@ -20,7 +20,11 @@ from boatsim.simulate.world import Tank
 
 MODELS = root() / "models"
 VESSELS = ("joystick_boat", "trial_boat", "kvlcc2_roll")
-JOINTS = {"joystick_boat": ["x", "y", "psi"], "trial_boat": ["x", "y", "psi"], "kvlcc2_roll": ["phi"]}
+JOINTS = {
+    "joystick_boat": ["x", "y", "psi"],
+    "trial_boat": ["x", "y", "psi"],
+    "kvlcc2_roll": ["phi"],
+}
 WALLS = {"wall_ahead", "wall_astern", "wall_port", "wall_starboard"}
 RHO = 1000.0  # [kg/m^3] fresh water
 WALLED = Tank(length=1.5, width=3.0, depth=0.1)
@@ -50,8 +54,14 @@ def mass_matrix(model: mujoco.MjModel) -> np.ndarray:
 def corners(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
     """(n, 3) vertices of the shape that touches, in world axes."""
     geom = model.geom("collision").id
-    at, count = model.mesh_vertadr[model.geom_dataid[geom]], model.mesh_vertnum[model.geom_dataid[geom]]
-    return data.geom_xpos[geom] + model.mesh_vert[at : at + count] @ data.geom_xmat[geom].reshape(3, 3).T
+    at, count = (
+        model.mesh_vertadr[model.geom_dataid[geom]],
+        model.mesh_vertnum[model.geom_dataid[geom]],
+    )
+    return (
+        data.geom_xpos[geom]
+        + model.mesh_vert[at : at + count] @ data.geom_xmat[geom].reshape(3, 3).T
+    )
 
 
 def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -72,12 +82,18 @@ def test_joints_follow_the_freedoms_in_order(name: str) -> None:
     assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
 
 
-@pytest.mark.parametrize("show", [True, False])  # a hull without child bodies is what MuJoCo calls simple
-@pytest.mark.parametrize("freedoms", [("surge", "sway", "yaw"), ("roll",), ("surge", "sway", "roll", "yaw")])
+@pytest.mark.parametrize(
+    "show", [True, False]
+)  # a hull without child bodies is what MuJoCo calls simple
+@pytest.mark.parametrize(
+    "freedoms", [("surge", "sway", "yaw"), ("roll",), ("surge", "sway", "roll", "yaw")]
+)
 def test_mass_matrix_stores_its_whole_lower_triangle(
     boat: vessel.Vessel, freedoms: tuple[str, ...], show: bool
 ) -> None:
-    level = boat.geometry | {"cg_above_keel": boat.draught}  # mass centre in the waterline: nothing offset
+    level = boat.geometry | {
+        "cg_above_keel": boat.draught
+    }  # mass centre in the waterline: nothing offset
     model = world.build(replace(boat, freedoms=freedoms, geometry=level), WALLED, show=show)
     n = len(freedoms)
     assert model.M_rownnz.tolist() == list(range(1, n + 1))
@@ -94,7 +110,9 @@ def test_a_model_that_would_lose_added_mass_is_refused(boat: vessel.Vessel) -> N
 
 
 @pytest.mark.parametrize("loads", [(), ("heavy",)])
-def test_mass_and_inertia_are_those_of_the_vessel_about_its_mass_centre(loads: tuple[str, ...]) -> None:
+def test_mass_and_inertia_are_those_of_the_vessel_about_its_mass_centre(
+    loads: tuple[str, ...],
+) -> None:
     boat = replace(vessel.load("joystick_boat", loads), freedoms=("surge", "sway", "roll", "yaw"))
     body = boat.body
     expected = np.diag([body.mass, body.mass, body.yaw_inertia, body.roll_inertia])
@@ -115,8 +133,13 @@ def test_hull_opens_alone_and_agrees_with_the_vessel_file(name: str) -> None:
 @pytest.mark.parametrize("name", VESSELS)
 def test_what_is_drawn_weighs_and_touches_nothing(name: str) -> None:
     model = world.build(vessel.load(name), WALLED)
-    assert not model.geom_contype.any() and not model.geom_conaffinity.any()  # contacts only by explicit pair
-    pairs = {(model.geom(a).name, model.geom(b).name) for a, b in zip(model.pair_geom1, model.pair_geom2, strict=True)}
+    assert (
+        not model.geom_contype.any() and not model.geom_conaffinity.any()
+    )  # contacts only by explicit pair
+    pairs = {
+        (model.geom(a).name, model.geom(b).name)
+        for a, b in zip(model.pair_geom1, model.pair_geom2, strict=True)
+    }
     assert {n for pair in pairs for n in pair} == {"collision"} | WALLS and len(pairs) == 4
     assert model.body_mass.sum() == vessel.load(name).body.mass
 
@@ -136,8 +159,12 @@ def test_leaving_out_what_is_only_seen_changes_no_motion(boat: vessel.Vessel) ->
 # --- walls ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("velocity", [(0.3, 0, 0), (-0.3, 0, 0), (0, 0.3, 0), (0, -0.3, 0), (0.2, 0.3, 0.5)])
-def test_boat_thrown_at_a_wall_stays_inside(boat: vessel.Vessel, velocity: tuple[float, float, float]) -> None:
+@pytest.mark.parametrize(
+    "velocity", [(0.3, 0, 0), (-0.3, 0, 0), (0, 0.3, 0), (0, -0.3, 0), (0.2, 0.3, 0.5)]
+)
+def test_boat_thrown_at_a_wall_stays_inside(
+    boat: vessel.Vessel, velocity: tuple[float, float, float]
+) -> None:
     tank = Tank(length=1.6, width=2.0, centre=(0.1, 0.2))
     model = world.build(boat, tank)
     data = mujoco.MjData(model)
@@ -162,15 +189,23 @@ def restitution(boat: vessel.Vessel, speed: float, step: float) -> float:
     return float(-data.qvel[0] / speed)
 
 
-def test_a_wall_sends_a_hull_back_with_the_share_of_a_critically_damped_spring(boat: vessel.Vessel) -> None:
+def test_a_wall_sends_a_hull_back_with_the_share_of_a_critically_damped_spring(
+    boat: vessel.Vessel,
+) -> None:
     """Spring and damper that can not pull: v e^-wt (1 - wt) until the force is zero at wt = 2, so e^-2."""
     assert restitution(boat, 0.5, 0.001) == pytest.approx(math.exp(-2.0), abs=0.02)
 
 
-@pytest.mark.parametrize(("name", "speed"), [("joystick_boat", 0.1), ("joystick_boat", 0.5), ("mariner", 0.5)])
+@pytest.mark.parametrize(
+    ("name", "speed"), [("joystick_boat", 0.1), ("joystick_boat", 0.5), ("mariner", 0.5)]
+)
 def test_a_wall_gives_little_back_at_the_usual_step(name: str, speed: float) -> None:
     step = 0.02  # [s]
-    assert 0.09 < restitution(vessel.load(name), speed * max(1.0, vessel.load(name).length / 50), step) < 0.19
+    assert (
+        0.09
+        < restitution(vessel.load(name), speed * max(1.0, vessel.load(name).length / 50), step)
+        < 0.19
+    )
 
 
 def test_elastic_wall_without_friction_turns_a_head_on_velocity_round(boat: vessel.Vessel) -> None:
@@ -200,12 +235,22 @@ def test_open_water_never_stops_the_boat(boat: vessel.Vessel) -> None:
     assert data.qpos == pytest.approx((6.0, -8.0, 0.0), abs=1e-9) and data.ncon == 0
 
 
-def test_port_is_up_in_mujoco_and_the_tank_lies_where_start_axes_put_it(boat: vessel.Vessel) -> None:
-    model = world.build(boat, Tank(length=2.0, width=4.0, centre=(0.3, 0.9)))  # most of the water to starboard
+def test_port_is_up_in_mujoco_and_the_tank_lies_where_start_axes_put_it(
+    boat: vessel.Vessel,
+) -> None:
+    model = world.build(
+        boat, Tank(length=2.0, width=4.0, centre=(0.3, 0.9))
+    )  # most of the water to starboard
     ends = {name: model.geom(name).pos for name in WALLS}
-    assert ends["wall_ahead"][0] == pytest.approx(1.3) and ends["wall_astern"][0] == pytest.approx(-0.7)
-    assert ends["wall_port"][1] == pytest.approx(1.1) and ends["wall_starboard"][1] == pytest.approx(-2.9)
-    assert model.body("fan").pos[1] > 1.1  # the fan stands behind the port wall and blows to starboard
+    assert ends["wall_ahead"][0] == pytest.approx(1.3) and ends["wall_astern"][0] == pytest.approx(
+        -0.7
+    )
+    assert ends["wall_port"][1] == pytest.approx(1.1) and ends["wall_starboard"][
+        1
+    ] == pytest.approx(-2.9)
+    assert (
+        model.body("fan").pos[1] > 1.1
+    )  # the fan stands behind the port wall and blows to starboard
 
 
 @pytest.mark.parametrize("name", ["joystick_boat", "mariner", "kvlcc2_full_scale"])
@@ -223,7 +268,9 @@ def test_all_of_the_water_lies_before_the_sun(name: str, centre: tuple[float, fl
             assert (corner - sun) @ way > boat.length
 
 
-def test_tank_without_size_and_hull_without_body_are_refused(boat: vessel.Vessel, tmp_path: Path) -> None:
+def test_tank_without_size_and_hull_without_body_are_refused(
+    boat: vessel.Vessel, tmp_path: Path
+) -> None:
     with pytest.raises(BadInput, match="tank.width = 0 m"):
         Tank(length=1.5, width=0.0)
     (tmp_path / "hull.xml").write_text('<mujoco><worldbody><body name="hul"/></worldbody></mujoco>')
@@ -237,7 +284,9 @@ def test_tank_without_size_and_hull_without_body_are_refused(boat: vessel.Vessel
 # --- loads ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("loads", "half"), [((), 0.19), (("wide",), 0.28), (("heavy", "wide"), 0.28)])
+@pytest.mark.parametrize(
+    ("loads", "half"), [((), 0.19), (("wide",), 0.28), (("heavy", "wide"), 0.28)]
+)
 def test_outboards_stand_where_the_load_has_them(loads: tuple[str, ...], half: float) -> None:
     boat = vessel.load("joystick_boat", loads)
     model = world.build(boat, WALLED)
@@ -251,11 +300,15 @@ def test_ballast_is_there_only_when_it_weighs_something() -> None:
     light, heavy = (world.build(vessel.load("joystick_boat", loads)) for loads in ((), ("heavy",)))
     names = [light.geom(i).name for i in range(light.ngeom)]
     assert "ballast" not in names and "led" in names
-    assert heavy.geom("ballast").pos[0] == pytest.approx(0.9 - 0.571)  # bayless 2017: 0.9 m from the transom
+    assert heavy.geom("ballast").pos[0] == pytest.approx(
+        0.9 - 0.571
+    )  # bayless 2017: 0.9 m from the transom
 
 
 @pytest.mark.parametrize(("loads", "length"), [((), 1.2), (("heavy",), 1.25)])
-def test_hull_reaches_from_transom_to_bow_about_its_mass_centre(loads: tuple[str, ...], length: float) -> None:
+def test_hull_reaches_from_transom_to_bow_about_its_mass_centre(
+    loads: tuple[str, ...], length: float
+) -> None:
     boat = vessel.load("joystick_boat", loads)
     model = world.build(boat, WALLED)
     data = mujoco.MjData(model)
@@ -299,13 +352,17 @@ def test_hull_displaces_its_mass_and_floats_level() -> None:
     areas = []
     for x in stations:
         side = np.unique(points[(points[:, 0] == x) & (points[:, 1] >= 0)], axis=0)
-        side = side[(side[:, 1] > 0) | (side[:, 2] == side[:, 2].min())]  # drop the transom's centreline
+        side = side[
+            (side[:, 1] > 0) | (side[:, 2] == side[:, 2].min())
+        ]  # drop the transom's centreline
         side = side[np.lexsort((side[:, 1], side[:, 2]))]
         half = np.interp(depths, side[:, 2], side[:, 1], left=0.0)
         areas.append(2 * np.trapezoid(half, depths))
     volume = np.trapezoid(areas, stations)
     assert volume * RHO == pytest.approx(4.6, rel=0.02)  # table 27: 4.6 kg at 0.06 m
-    assert np.trapezoid(areas * stations, stations) / volume == pytest.approx(0.5, abs=0.01)  # under the mass centre
+    assert np.trapezoid(areas * stations, stations) / volume == pytest.approx(
+        0.5, abs=0.01
+    )  # under the mass centre
 
 
 @pytest.mark.parametrize("part", ["shell", "outboard_cowl", "collision"])

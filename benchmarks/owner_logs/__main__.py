@@ -27,18 +27,29 @@ def show(results: list[Result]) -> None:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--cases", type=int, default=12)
-    parser.add_argument("--only", type=int, nargs="*", help="numbers of cases, of those of the seed")
-    parser.add_argument("--log-only", action="store_true", help="import and check alone, no diagnosis")
-    parser.add_argument("--show", action="store_true", help="the table of what lies in the folder, nothing run")
+    parser.add_argument(
+        "--only", type=int, nargs="*", help="numbers of cases, of those of the seed"
+    )
+    parser.add_argument(
+        "--log-only", action="store_true", help="import and check alone, no diagnosis"
+    )
+    parser.add_argument(
+        "--show", action="store_true", help="the table of what lies in the folder, nothing run"
+    )
     parser.add_argument("--jobs", type=int, default=1)
     given = parser.parse_args()
     if given.show:
         show(
-            [Result(**json.loads(f.read_text(encoding="utf-8"))) for f in sorted(given.out.glob("case_*/result.json"))]
+            [
+                Result(**json.loads(f.read_text(encoding="utf-8")))
+                for f in sorted(given.out.glob("case_*/result.json"))
+            ]
         )
         return
     begin = time.time()
@@ -46,7 +57,9 @@ def main() -> None:
     asked = [c for c in all_of_them if not given.only or c.number in given.only]
     results = []
     with ProcessPoolExecutor(given.jobs) as pool:
-        for result in pool.map(judged, asked, [given.out] * len(asked), [given.log_only] * len(asked)):
+        for result in pool.map(
+            judged, asked, [given.out] * len(asked), [given.log_only] * len(asked)
+        ):
             results.append(result)
             print(line(result), flush=True)
     print()

@@ -50,14 +50,27 @@ def hull(rng: Rng, length: float, beam: float, draught: float, mass: float, hull
     wetted = hulls * about(rng, 1.7 * length * draught + 0.75 * length * wide, 0.1)
     sway = about(rng, 0.45 * RHO * pi * draught**2 * length * hulls, 0.3)
     yaw = about(rng, 0.07 * sway * length**2, 0.3)
-    inertia = mass * about(rng, 0.25, 0.1) ** 2 * length**2 + (mass * 0.12 * beam**2 if hulls == 2 else 0.0)
+    inertia = mass * about(rng, 0.25, 0.1) ** 2 * length**2 + (
+        mass * 0.12 * beam**2 if hulls == 2 else 0.0
+    )
     return Hull(
-        length, beam, draught, hulls, mass, inertia,
+        length,
+        beam,
+        draught,
+        hulls,
+        mass,
+        inertia,
         (about(rng, 0.09, 0.4) * mass, sway, yaw, sway * length * rng.uniform(-0.03, 0.05)),
-        wetted, about(rng, 0.35, 0.5), about(rng, 0.006, 0.5), about(rng, 0.9, 0.3), rng.uniform(-0.3, 0.2),
-        about(rng, 0.8, 0.3), rng.uniform(-0.4, -0.2), about(rng, 0.12, 0.5) * (inertia + yaw) / sqrt(length / 2.0),
+        wetted,
+        about(rng, 0.35, 0.5),
+        about(rng, 0.006, 0.5),
+        about(rng, 0.9, 0.3),
+        rng.uniform(-0.3, 0.2),
+        about(rng, 0.8, 0.3),
+        rng.uniform(-0.4, -0.2),
+        about(rng, 0.12, 0.5) * (inertia + yaw) / sqrt(length / 2.0),
         (0.35 * beam * beam, 0.3 * beam * length, rng.uniform(-0.05, 0.1) * length),
-    )  # fmt: skip
+    )
 
 
 def top_speed(plant: Plant) -> float:
@@ -73,14 +86,21 @@ def top_speed(plant: Plant) -> float:
 def told(rng: Rng, plant: Plant, thrusts: bool, draught: bool, top: bool) -> list[str]:
     """Sizes as an owner states them; `top`: he knows the top speed."""
     h = plant.hull
-    found = ["--length", f"{about(rng, h.length, 0.01):.2f}", "--beam", f"{about(rng, h.beam, 0.02):.2f}"]
+    found = [
+        "--length",
+        f"{about(rng, h.length, 0.01):.2f}",
+        "--beam",
+        f"{about(rng, h.beam, 0.02):.2f}",
+    ]
     found += ["--mass", f"{about(rng, h.mass, 0.1):.3g}", "--hulls", str(h.hulls)]
     found += ["--draught", f"{about(rng, h.draught, 0.08):.2g}"] if draught else []
     found += ["--speed", f"{about(rng, top_speed(plant), 0.06):.2g}"] if top or not thrusts else []
     return found
 
 
-def mounts(rng: Rng, plant: Plant, option: str, thrusts: bool, astern: bool) -> tuple[list[str], list[float]]:
+def mounts(
+    rng: Rng, plant: Plant, option: str, thrusts: bool, astern: bool
+) -> tuple[list[str], list[float]]:
     """Where the drives are and how hard they push, and the full thrusts [N] that are stated."""
     found, full = [], []
     factor = about(rng, 1.0, 0.12)
@@ -95,25 +115,55 @@ def mounts(rng: Rng, plant: Plant, option: str, thrusts: bool, astern: bool) -> 
 
 def named(plant: Plant) -> tuple[str, ...]:
     """Drives as `boatsim new` calls them."""
-    return ("motor",) if len(plant.propellers) == 1 else tuple("starboard" if p.y > 0 else "port"
-                                                               for p in plant.propellers)  # fmt: skip
+    return (
+        ("motor",)
+        if len(plant.propellers) == 1
+        else tuple("starboard" if p.y > 0 else "port" for p in plant.propellers)
+    )
 
 
 def built(
-    rng: Rng, name: str, plant: Plant, option: str, helm_most: float, curve: float, lag: float, helm_rate: float,
-    top_rpm: float, thrusts: bool = True, draught: bool = True, top: bool = True, astern: bool = True,
-) -> Boat:  # fmt: skip
+    rng: Rng,
+    name: str,
+    plant: Plant,
+    option: str,
+    helm_most: float,
+    curve: float,
+    lag: float,
+    helm_rate: float,
+    top_rpm: float,
+    thrusts: bool = True,
+    draught: bool = True,
+    top: bool = True,
+    astern: bool = True,
+) -> Boat:
     """The boat with its owner's words."""
     places, full = mounts(rng, plant, option, thrusts, astern)
     options = [*told(rng, plant, thrusts, draught, top), *places]
     if plant.rudder:
         options.append(f"--rudder={plant.rudder.x:.2f},{about(rng, plant.rudder.area, 0.1):.2g}")
     names = named(plant)
-    steers = ("rudder_rad",) if plant.rudder else tuple(f"steer_{n}_rad" for n in names) if helm_most else ()
+    steers = (
+        ("rudder_rad",)
+        if plant.rudder
+        else tuple(f"steer_{n}_rad" for n in names)
+        if helm_most
+        else ()
+    )
     return Boat(
-        name, plant, helm_most, curve, lag, helm_rate, top_rpm, tuple(options), tuple(f"thrust_{n}_N" for n in names),
-        steers, 1.0 if plant.rudder else -1.0, tuple(full) if thrusts else (),
-    )  # fmt: skip
+        name,
+        plant,
+        helm_most,
+        curve,
+        lag,
+        helm_rate,
+        top_rpm,
+        tuple(options),
+        tuple(f"thrust_{n}_N" for n in names),
+        steers,
+        1.0 if plant.rudder else -1.0,
+        tuple(full) if thrusts else (),
+    )
 
 
 def workboat(rng: Rng) -> Boat:
@@ -122,7 +172,9 @@ def workboat(rng: Rng) -> Boat:
     mass = about(rng, 620.0, 0.15) * (L / 4.6) ** 3
     full, y = about(rng, 650.0, 0.15), about(rng, 0.38, 0.1)
     motors = tuple(
-        Propeller(-0.47 * L, side * y, full, about(rng, 0.7, 0.1), about(rng, 7.0, 0.1), 0.05, 0.045, True)
+        Propeller(
+            -0.47 * L, side * y, full, about(rng, 0.7, 0.1), about(rng, 7.0, 0.1), 0.05, 0.045, True
+        )
         for side in (-1.0, 1.0)
     )
     plant = Plant(hull(rng, L, 0.4 * L, about(rng, 0.26, 0.1), mass), motors)
@@ -134,7 +186,9 @@ def survey_catamaran(rng: Rng) -> Boat:
     L = rng.uniform(1.6, 2.4)
     mass = about(rng, 60.0, 0.15) * (L / 2.0) ** 3
     full, y, astern = about(rng, 95.0, 0.2), about(rng, 0.36, 0.1), about(rng, 0.75, 0.1)
-    motors = tuple(Propeller(-0.4 * L, side * y, full, astern, 4.2, 0.05, 0.012) for side in (-1.0, 1.0))
+    motors = tuple(
+        Propeller(-0.4 * L, side * y, full, astern, 4.2, 0.05, 0.012) for side in (-1.0, 1.0)
+    )
     plant = Plant(hull(rng, L, 0.52 * L, about(rng, 0.14, 0.1), mass, 2), motors)
     return built(rng, "survey_catamaran", plant, "--thruster", 0.0, 0.5, 0.15, 1.0, 1800.0)
 
@@ -143,8 +197,12 @@ def launch(rng: Rng) -> Boat:
     """6 to 8 m with one screw and a rudder."""
     L = rng.uniform(6.2, 7.8)
     mass = about(rng, 3600.0, 0.15) * (L / 7.0) ** 3
-    screw = Propeller(-0.40 * L, 0.0, about(rng, 3600.0, 0.15), about(rng, 0.6, 0.1), 5.6, 0.2, 0.28)
-    plant = Plant(hull(rng, L, 0.34 * L, about(rng, 0.6, 0.1), mass), (screw,), Rudder(-0.46 * L, 0.21, 2.4))
+    screw = Propeller(
+        -0.40 * L, 0.0, about(rng, 3600.0, 0.15), about(rng, 0.6, 0.1), 5.6, 0.2, 0.28
+    )
+    plant = Plant(
+        hull(rng, L, 0.34 * L, about(rng, 0.6, 0.1), mass), (screw,), Rudder(-0.46 * L, 0.21, 2.4)
+    )
     return built(rng, "launch", plant, "--thruster", 0.6, 1.0, 0.8, 0.25, 1500.0, draught=True)
 
 
@@ -152,8 +210,14 @@ def ship_model(rng: Rng) -> Boat:
     """A 3 m model with a screw and a rudder."""
     L = rng.uniform(2.7, 3.4)
     mass = about(rng, 150.0, 0.15) * (L / 3.0) ** 3
-    screw = Propeller(-0.44 * L, 0.0, about(rng, 32.0, 0.15), about(rng, 0.65, 0.1), 2.4, 0.25, 0.012)
-    plant = Plant(hull(rng, L, 0.16 * L, about(rng, 0.16, 0.08), mass), (screw,), Rudder(-0.48 * L, 0.011, 2.5))
+    screw = Propeller(
+        -0.44 * L, 0.0, about(rng, 32.0, 0.15), about(rng, 0.65, 0.1), 2.4, 0.25, 0.012
+    )
+    plant = Plant(
+        hull(rng, L, 0.16 * L, about(rng, 0.16, 0.08), mass),
+        (screw,),
+        Rudder(-0.48 * L, 0.011, 2.5),
+    )
     return built(rng, "ship_model", plant, "--thruster", 0.6, 0.5, 0.25, 0.35, 900.0)
 
 
@@ -161,9 +225,15 @@ def rib(rng: Rng) -> Boat:
     """5 to 6 m with one steered outboard, driven at displacement speeds."""
     L = rng.uniform(4.8, 6.0)
     mass = about(rng, 850.0, 0.15) * (L / 5.4) ** 3
-    motor = (Propeller(-0.46 * L, 0.0, about(rng, 1500.0, 0.15), about(rng, 0.6, 0.1), 8.5, 0.05, 0.06, True),)
+    motor = (
+        Propeller(
+            -0.46 * L, 0.0, about(rng, 1500.0, 0.15), about(rng, 0.6, 0.1), 8.5, 0.05, 0.06, True
+        ),
+    )
     plant = Plant(hull(rng, L, 0.42 * L, about(rng, 0.3, 0.1), mass), motor)
-    return built(rng, "rib", plant, "--steered", 0.55, 0.5, 0.4, 0.7, 5000.0, thrusts=True, draught=False)
+    return built(
+        rng, "rib", plant, "--steered", 0.55, 0.5, 0.4, 0.7, 5000.0, thrusts=True, draught=False
+    )
 
 
 KINDS: tuple[Callable[[Rng], Boat], ...] = (workboat, survey_catamaran, launch, ship_model, rib)

@@ -17,7 +17,20 @@ from benchmarks.owner_logs.pilot import Owner, pilot
 from benchmarks.owner_logs.sail import Linkage, sail
 
 FORMATS = ("csv", "BIN", "mcap", "ros", "ulog", "nmea", "parquet")
-KINDS = ("good", "fault", "cause", "good", "fault", "cause", "good", "both", "cause", "good", "fault", "both")
+KINDS = (
+    "good",
+    "fault",
+    "cause",
+    "good",
+    "fault",
+    "cause",
+    "good",
+    "both",
+    "cause",
+    "good",
+    "fault",
+    "both",
+)
 SHORTEST, LONGEST = 240.0, 360.0  # [s] of a log
 
 
@@ -58,7 +71,9 @@ def cases(seed: int, count: int) -> list[Case]:
         if kind in ("cause", "both"):
             cause = _next(causes, list(CAUSES), partial(_can, boat), rng)
         lasts = tuple(float(np.round(rng.uniform(SHORTEST, LONGEST))) for _ in range(2))
-        found.append(Case(i + 1, kind, boat, form, fault, cause, "", lasts, int(rng.integers(2**31))))  # type: ignore[arg-type]
+        found.append(
+            Case(i + 1, kind, boat, form, fault, cause, "", lasts, int(rng.integers(2**31)))
+        )  # type: ignore[arg-type]
     return found
 
 
@@ -66,7 +81,11 @@ def _may(boat: Boat, kind: str, name: str) -> bool:
     """Whether a boat's log may have a fault; a table in newtons needs an owner who stated some."""
     fault = FAULTS[name]
     in_newtons = "plain.csv" in fault.formats
-    return fault.fits(boat) and not (in_newtons and not boat.stated) and not (fault.blind and kind == "both")
+    return (
+        fault.fits(boat)
+        and not (in_newtons and not boat.stated)
+        and not (fault.blind and kind == "both")
+    )
 
 
 def _can(boat: Boat, name: str) -> bool:
@@ -119,7 +138,15 @@ def make(case: Case, folder: Path) -> tuple[Logs, Case]:
 
 
 def _log(
-    case: Case, boat: Boat, link: Linkage, wrong: Fault | None, on: Fit, lasts: float, folder: Path, stem: str, rng: Rng
+    case: Case,
+    boat: Boat,
+    link: Linkage,
+    wrong: Fault | None,
+    on: Fit,
+    lasts: float,
+    folder: Path,
+    stem: str,
+    rng: Rng,
 ) -> Written:
     hand = pilot(boat, rng, lasts, wrong.without if wrong else ())
     if wrong and wrong.limit > 1.0:
@@ -130,7 +157,9 @@ def _log(
     return write(case, boat, seen, wrong, folder, stem)
 
 
-def write(case: Case, boat: Boat, seen: Seen, wrong: Fault | None, folder: Path, stem: str) -> Written:
+def write(
+    case: Case, boat: Boat, seen: Seen, wrong: Fault | None, folder: Path, stem: str
+) -> Written:
     """In the format of the case."""
     form = case.form
     if form.startswith("plain."):
@@ -144,4 +173,6 @@ def write(case: Case, boat: Boat, seen: Seen, wrong: Fault | None, folder: Path,
         ned = bool(wrong and wrong.ned)
         local = ned or bool(case.wrong and case.wrong.ned) or case.seed % 2 == 0
         return writer(seen, boat, folder, stem, local, ned)
-    return {"BIN": ardupilot.write, "ulog": px4.write, "nmea": nmea.write}[form](seen, boat, folder, stem)
+    return {"BIN": ardupilot.write, "ulog": px4.write, "nmea": nmea.write}[form](
+        seen, boat, folder, stem
+    )

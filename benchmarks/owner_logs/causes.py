@@ -117,10 +117,15 @@ CAUSES: dict[str, Cause] = {
     "one motor weaker": Cause(weak_motor, ("thrust_imbalance",), _twins),
     "lag": Cause(lag, ("thrust_lag", "command_delay")),
     "delay": Cause(delay, ("command_delay", "thrust_lag")),
-    "dead band": Cause(dead_band, ("thrust_deadband", "drive_map", "shaft_deadband", "pulse_thrust", "pwm_thrust")),
+    "dead band": Cause(
+        dead_band, ("thrust_deadband", "drive_map", "shaft_deadband", "pulse_thrust", "pwm_thrust")
+    ),
     "steering offset": Cause(steering_offset, ("steering_offset",), _steers),
     "slow helm": Cause(slow_helm, ("rate_limit", "steering_rate_limit", "servo"), _steers),
     "load off centre": Cause(load, ("extra_mass", "mass_centre_shift", "payload")),
-    "drag": Cause(fouling, ("surge_drag", "quadratic_damping", "cubic_damping", "damping_error", "damping_exponent")),
+    "drag": Cause(
+        fouling,
+        ("surge_drag", "quadratic_damping", "cubic_damping", "damping_error", "damping_exponent"),
+    ),
 }
 """Every cause; the entries of the library that name it, ties among them."""

@@ -67,7 +67,9 @@ def findings(said: Said) -> list[Finding]:
     found: list[Finding] = []
     for line in said.out.splitlines():
         if match := FOUND.match(line):
-            found.append(Finding(match["name"].strip().replace(" ", "_"), float(match["sure"]) / 100.0))
+            found.append(
+                Finding(match["name"].strip().replace(" ", "_"), float(match["sure"]) / 100.0)
+            )
         elif line.startswith(WRITE) and found:
             found[-1] = replace(found[-1], lines=tuple(line.removeprefix(WRITE).split(" / ")))
         elif line.strip() == ALLOWED and found:
@@ -77,17 +79,23 @@ def findings(said: Said) -> list[Finding]:
 
 def limits(said: Said) -> list[str]:
     """What check says can not be told."""
-    return [line.strip() for line in said.out.splitlines() if line.startswith("  can not be told: ")]
+    return [
+        line.strip() for line in said.out.splitlines() if line.startswith("  can not be told: ")
+    ]
 
 
 def write_into(file: Path, lines: Sequence[str]) -> None:
     """Do what check advised: add the lines to a recording.toml."""
     table = tomllib.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-    file.write_text("\n".join(_text(_together(table, tomllib.loads("\n".join(lines))))) + "\n", encoding="utf-8")
+    file.write_text(
+        "\n".join(_text(_together(table, tomllib.loads("\n".join(lines))))) + "\n", encoding="utf-8"
+    )
 
 
 def _together(table: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
-    merged = {k: _together(table.get(k, {}), v) if isinstance(v, dict) else v for k, v in more.items()}
+    merged = {
+        k: _together(table.get(k, {}), v) if isinstance(v, dict) else v for k, v in more.items()
+    }
     return {**table, **merged}
 
 

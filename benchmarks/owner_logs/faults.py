@@ -12,7 +12,12 @@ from benchmarks.owner_logs.instruments import Seen, Series
 
 PLAIN = ("plain.csv", "plain.parquet")
 ROS = ("mcap", "ros1", "ros2")
-MIRROR = ("mirrored", "thrusters_exchanged", "rudder_reversed", "rudder_sense")  # no boat can tell these apart
+MIRROR = (
+    "mirrored",
+    "thrusters_exchanged",
+    "rudder_reversed",
+    "rudder_sense",
+)  # no boat can tell these apart
 
 
 @dataclass(frozen=True)
@@ -65,7 +70,9 @@ def _bursts(seen: Seen, boat: Boat, rng: Rng) -> Seen:
     t = seen.fixes.t
     off = np.zeros(len(t))
     for begin in rng.uniform(0.1, 0.9, 3) * t[-1]:
-        off[(t >= begin) & (t < begin + rng.uniform(0.5, 1.5))] = rng.uniform(1.0, 3.0) * boat.length
+        off[(t >= begin) & (t < begin + rng.uniform(0.5, 1.5))] = (
+            rng.uniform(1.0, 3.0) * boat.length
+        )
     return _moved(seen, off, -0.7 * off)
 
 
@@ -109,37 +116,59 @@ def _stalled(columns: Columns, boat: Boat) -> Columns:
 FAULTS: dict[str, Fault] = {
     "thrusters exchanged": Fault(MIRROR, seen=_exchanged, fits=_twins),
     "helm to the other side": Fault(MIRROR, seen=_other_helm, fits=lambda b: b.helm_most > 0.0),
-    "heading turned": Fault(("heading_turned", "heading_from_east"), ("heading_offset",), seen=_turned),
+    "heading turned": Fault(
+        ("heading_turned", "heading_from_east"), ("heading_offset",), seen=_turned
+    ),
     "position held": Fault(("position_held",), ("late_fixes",), seen=_held, mendable=False),
     "outliers in bursts": Fault(("outliers", "position_leaps"), seen=_bursts, mendable=False),
     "position leaps": Fault(("position_leaps",), seen=_leap),
     "ROS in axes of NED": Fault(MIRROR, ned=True, formats=ROS),
     "y to port": Fault(("y_to_port",), columns=_columns(y_m=lambda c: -c["y_m"]), formats=PLAIN),
     "y and heading to port": Fault(
-        MIRROR, columns=_columns(y_m=lambda c: -c["y_m"], psi_rad=lambda c: -c["psi_rad"]), formats=PLAIN
+        MIRROR,
+        columns=_columns(y_m=lambda c: -c["y_m"], psi_rad=lambda c: -c["psi_rad"]),
+        formats=PLAIN,
     ),
     "ENU for NED": Fault(
         MIRROR,
-        columns=_columns(x_m=lambda c: c["y_m"], y_m=lambda c: c["x_m"], psi_rad=lambda c: np.pi / 2 - c["psi_rad"]),
+        columns=_columns(
+            x_m=lambda c: c["y_m"],
+            y_m=lambda c: c["x_m"],
+            psi_rad=lambda c: np.pi / 2 - c["psi_rad"],
+        ),
         formats=PLAIN,
     ),
     "heading from east": Fault(
-        ("heading_from_east",), columns=_columns(psi_rad=lambda c: np.pi / 2 - c["psi_rad"]), formats=PLAIN
+        ("heading_from_east",),
+        columns=_columns(psi_rad=lambda c: np.pi / 2 - c["psi_rad"]),
+        formats=PLAIN,
     ),
     "heading in degrees": Fault(
-        ("heading_in_degrees",), columns=_columns(psi_rad=lambda c: np.round(np.degrees(c["psi_rad"]) % 360.0, 2)),
+        ("heading_in_degrees",),
+        columns=_columns(psi_rad=lambda c: np.round(np.degrees(c["psi_rad"]) % 360.0, 2)),
         formats=PLAIN,
     ),
     "latitude as metres": Fault(("latitude_as_metres",), columns=_geographic, formats=PLAIN),
     "orders in per cent": Fault(("command_unit",), columns=_percent, formats=PLAIN),
-    "time in ms": Fault(("time_unit",), columns=_columns(t_s=lambda c: 1000.0 * c["t_s"]), formats=PLAIN),
+    "time in ms": Fault(
+        ("time_unit",), columns=_columns(t_s=lambda c: 1000.0 * c["t_s"]), formats=PLAIN
+    ),
     "gaps bridged": Fault(("bridged",), columns=_bridged, formats=PLAIN, mendable=False),
-    "clock stalls": Fault(("clock_stalls",), columns=_stalled, formats=PLAIN, mendable=False, blind=True),
+    "clock stalls": Fault(
+        ("clock_stalls",), columns=_stalled, formats=PLAIN, mendable=False, blind=True
+    ),
     "never turned": Fault(
-        ("never_turned",), without=("zigzag", "turn", "weave", "drift", "astern"), mendable=False, blind=True
+        ("never_turned",),
+        without=("zigzag", "turn", "weave", "drift", "astern"),
+        mendable=False,
+        blind=True,
     ),
     "always flat out": Fault(
-        ("saturated", "one_speed"), limit=9.0, without=("stop", "astern", "drift"), mendable=False, blind=True
+        ("saturated", "one_speed"),
+        limit=9.0,
+        without=("stop", "astern", "drift"),
+        mendable=False,
+        blind=True,
     ),
-}  # fmt: skip
+}
 """Every fault of the rehearsal, by what a person would call it."""

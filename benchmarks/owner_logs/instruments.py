@@ -50,9 +50,13 @@ def fit(boat: Boat, rng: Rng) -> Fit:
     """Some equipment; the better receivers are as likely as the plain ones."""
     sd = float(np.exp(rng.uniform(np.log(0.02), np.log(0.3))))
     return Fit(
-        float(rng.choice([5.0, 10.0])), min(sd, 0.08 * boat.length), float(np.radians(rng.uniform(0.7, 1.6))),
-        float(rng.uniform(0.002, 0.006)), float(rng.normal(0.0, 0.001)), 0.03 * boat.length * rng.uniform(-1.0, 1.0),
-    )  # fmt: skip
+        float(rng.choice([5.0, 10.0])),
+        min(sd, 0.08 * boat.length),
+        float(np.radians(rng.uniform(0.7, 1.6))),
+        float(rng.uniform(0.002, 0.006)),
+        float(rng.normal(0.0, 0.001)),
+        0.03 * boat.length * rng.uniform(-1.0, 1.0),
+    )
 
 
 def names(boat: Boat) -> tuple[str, ...]:
@@ -71,16 +75,27 @@ def see(boat: Boat, v: Voyage, on: Fit, rng: Rng) -> Seen:
     north, east, psi = v.states[rows, :3].T
     noise = on.fix_sd * rng.standard_normal((2, len(rows)))
     ahead = on.antenna * np.array([np.cos(psi), np.sin(psi)])
-    velocity = np.gradient(v.states[:, :2], DT, axis=0)[rows].T + 0.05 * rng.standard_normal((2, len(rows)))
-    fixes = Series(v.t[rows], {
-        "north": north + ahead[0] + noise[0], "east": east + ahead[1] + noise[1],
-        "speed": np.hypot(*velocity), "course": np.arctan2(velocity[1], velocity[0]),
-    })  # fmt: skip
+    velocity = np.gradient(v.states[:, :2], DT, axis=0)[rows].T + 0.05 * rng.standard_normal(
+        (2, len(rows))
+    )
+    fixes = Series(
+        v.t[rows],
+        {
+            "north": north + ahead[0] + noise[0],
+            "east": east + ahead[1] + noise[1],
+            "speed": np.hypot(*velocity),
+            "course": np.arctan2(velocity[1], velocity[0]),
+        },
+    )
     rows = sampled(v, 10.0)
-    compass = Series(v.t[rows], {"psi": v.states[rows, 2] + on.compass_sd * rng.standard_normal(len(rows))})
+    compass = Series(
+        v.t[rows], {"psi": v.states[rows, 2] + on.compass_sd * rng.standard_normal(len(rows))}
+    )
     rows = sampled(v, 25.0)
     r = v.states[rows, 5] + on.gyro_sd * rng.standard_normal(len(rows)) + on.gyro_bias
     rows_of_orders = sampled(v, 10.0)
     orders = {n: v.throttles[rows_of_orders, i] for i, n in enumerate(names(boat))}
     helm = {"helm": v.helm[rows_of_orders] * boat.helm_most} if boat.helm_most else {}
-    return Seen(fixes, compass, Series(v.t[rows], {"r": r}), Series(v.t[rows_of_orders], orders | helm))
+    return Seen(
+        fixes, compass, Series(v.t[rows], {"r": r}), Series(v.t[rows_of_orders], orders | helm)
+    )

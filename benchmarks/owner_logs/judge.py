@@ -70,7 +70,9 @@ class Judge:
         """A command, kept in history.txt."""
         said = boatsim(*arguments)
         shown = " ".join(str(a) for a in arguments)
-        self.history.append(f"$ boatsim {shown}\n{said.out}{said.err}[exit {said.code}, {said.seconds:.1f} s]\n")
+        self.history.append(
+            f"$ boatsim {shown}\n{said.out}{said.err}[exit {said.code}, {said.seconds:.1f} s]\n"
+        )
         (self.folder / "history.txt").write_text("\n".join(self.history), encoding="utf-8")
         self.result.seconds += said.seconds
         return said
@@ -84,7 +86,9 @@ class Judge:
             self.log(run)
             if not self.log_only:
                 self.physics(run)
-        (self.folder / "result.json").write_text(json.dumps(asdict(self.result), indent=1), encoding="utf-8")
+        (self.folder / "result.json").write_text(
+            json.dumps(asdict(self.result), indent=1), encoding="utf-8"
+        )
         return self.result
 
     def recording(self, log: Written, number: int) -> Path | None:
@@ -94,7 +98,9 @@ class Judge:
         if self.case.form.startswith("plain."):
             run = home / log.path.name
             shutil.copy(log.path, run)
-            write_into(home / "recording.toml", [f"vessel = {json.dumps('../' + self.case.boat.name)}"])
+            write_into(
+                home / "recording.toml", [f"vessel = {json.dumps('../' + self.case.boat.name)}"]
+            )
             self.result.read = True
             return run
         return self.imported(log, home, number)
@@ -132,7 +138,10 @@ class Judge:
             r.accused = any(f.name not in ("position_held",) for f in found)
             return
         r.fault_named = bool({f.name for f in found} & set(wrong.named)) or any(
-            re.search(LIMITS[n], text.lower()) for n in wrong.named if n in LIMITS for text in limits(said)
+            re.search(LIMITS[n], text.lower())
+            for n in wrong.named
+            if n in LIMITS
+            for text in limits(said)
         )
         advice = [f for f in found if f.lines]
         if not wrong.mendable:
@@ -159,11 +168,15 @@ class Judge:
             return
         answer = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
         r.verdict = answer["verdict"]
-        r.effects = [n for e in answer["effects"] for n in dict.fromkeys([e["name"], *e["tied_with"]])]
+        r.effects = [
+            n for e in answer["effects"] for n in dict.fromkeys([e["name"], *e["tied_with"]])
+        ]
         if self.case.cause:
             r.physics_named = bool(set(r.effects) & set(CAUSES[self.case.cause].named))
         if self.case.wrong:
-            told = r.fault_named or any(e["name"] in self.case.wrong.named for e in answer.get("log", []))
+            told = r.fault_named or any(
+                e["name"] in self.case.wrong.named for e in answer.get("log", [])
+            )
             told = r.fault_named = bool(told or set(r.effects) & set(self.case.wrong.entries))
             r.called_physics = not told and r.verdict != "nothing_missing"
         self.foretell(out / "patched.toml")
@@ -181,7 +194,9 @@ class Judge:
 
     def error(self, run: Path, vessel: Path, horizon: str) -> float:
         """[m] rms of free runs."""
-        said = self.call("replay", run, "--vessel", vessel, "--horizon", horizon, "--out", self.folder / "replay")
+        said = self.call(
+            "replay", run, "--vessel", vessel, "--horizon", horizon, "--out", self.folder / "replay"
+        )
         match = POSITION.search(said.out)
         if not match:
             self.result.trouble = f"replay: {said.last}"

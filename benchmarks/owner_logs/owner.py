@@ -29,7 +29,9 @@ def wanted(boat: Boat, vessel: Path, scales: dict[str, Scale]) -> list[Line]:
     channels = tomllib.loads(vessel.read_text(encoding="utf-8"))["channels"]
     found = []
     for name, channel in zip(names(boat), boat.channels, strict=True):
-        found.append(_line(channel, scales[name], channels[channel]["low"], channels[channel]["high"]))
+        found.append(
+            _line(channel, scales[name], channels[channel]["low"], channels[channel]["high"])
+        )
     most = boat.helm_sign * boat.helm_most
     found += [_line(channel, scales["helm"], -most, most) for channel in boat.helms]
     return found
@@ -37,7 +39,15 @@ def wanted(boat: Boat, vessel: Path, scales: dict[str, Scale]) -> list[Line]:
 
 def _line(channel: str, s: Scale, least: float, most: float) -> Line:
     ends = f"low = {s.low:g}, neutral = {s.neutral:g}, high = {s.high:g}, least = {least:.4g}, most = {most:.4g}"
-    return Line(channel, f'{channel} = {{ signal = "{s.signal}", {ends} }}', s.signal, least, most, s.low, s.high)
+    return Line(
+        channel,
+        f'{channel} = {{ signal = "{s.signal}", {ends} }}',
+        s.signal,
+        least,
+        most,
+        s.low,
+        s.high,
+    )
 
 
 def accept(text: str, lines: list[Line]) -> tuple[str, list[str]]:

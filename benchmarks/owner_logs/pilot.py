@@ -6,7 +6,15 @@ import numpy as np
 
 from benchmarks.owner_logs.boats import Boat, Rng
 
-LEG = {"straight": 18.0, "zigzag": 30.0, "turn": 20.0, "weave": 25.0, "stop": 12.0, "astern": 16.0, "drift": 8.0}
+LEG = {
+    "straight": 18.0,
+    "zigzag": 30.0,
+    "turn": 20.0,
+    "weave": 25.0,
+    "stop": 12.0,
+    "astern": 16.0,
+    "drift": 8.0,
+}
 """Seconds of each stretch on a boat of 2 m."""
 
 
@@ -61,7 +69,11 @@ def plan(boat: Boat, rng: Rng, lasts: float, without: tuple[str, ...] = ()) -> l
         t += LEG[kind] * boat.scale * rng.uniform(0.7, 1.3)
         throttle = round(float(rng.choice([0.3, 0.45, 0.6, 0.75])), 2)
         helm = round(float(rng.choice([-1.0, 1.0]) * rng.uniform(0.25, 0.8)), 2)
-        throttle = {"stop": -0.6, "astern": -round(float(rng.uniform(0.35, 0.7)), 2), "drift": 0.0}.get(kind, throttle)
+        throttle = {
+            "stop": -0.6,
+            "astern": -round(float(rng.uniform(0.35, 0.7)), 2),
+            "drift": 0.0,
+        }.get(kind, throttle)
         helm = 0.0 if kind in ("drift", "stop") else 0.4 * helm if kind == "astern" else helm
         if kind == "weave":
             helm *= 0.5

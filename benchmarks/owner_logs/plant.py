@@ -87,9 +87,11 @@ class Plant:
         """Surge, sway [kg], yaw [kg m^2] and sway by yaw [kg m], the water and the load in them."""
         h, a = self.hull, self.around
         return (
-            h.mass + a.load + h.added[0], h.mass + a.load + h.added[1],
-            h.inertia + a.load * a.load_at**2 + h.added[2], h.added[3] + a.load * a.load_at,
-        )  # fmt: skip
+            h.mass + a.load + h.added[0],
+            h.mass + a.load + h.added[1],
+            h.inertia + a.load * a.load_at**2 + h.added[2],
+            h.added[3] + a.load * a.load_at,
+        )
 
 
 def resistance(hull: Hull, u: float) -> float:
@@ -124,7 +126,9 @@ def thrust(p: Propeller, share: float, u: float) -> float:
     return found if share >= 0.0 else p.astern * found
 
 
-def steered(rudder: Rudder, p: Propeller, push: float, angle: float, u: float, v: float, r: float) -> float:
+def steered(
+    rudder: Rudder, p: Propeller, push: float, angle: float, u: float, v: float, r: float
+) -> float:
     """[N] normal force of the blade, positive to port."""
     own = (1.0 - p.wake) * u
     race = sqrt(own * own + RACE * max(push, 0.0) / (0.5 * RHO * p.disc)) if u > -0.05 else abs(u)
@@ -132,7 +136,9 @@ def steered(rudder: Rudder, p: Propeller, push: float, angle: float, u: float, v
     return 0.5 * RHO * rudder.area * rudder.slope * 0.5 * sin(2.0 * attack) * race * race
 
 
-def forces(plant: Plant, s: State, revs: tuple[float, ...], helm: float) -> tuple[float, float, float]:
+def forces(
+    plant: Plant, s: State, revs: tuple[float, ...], helm: float
+) -> tuple[float, float, float]:
     """X, Y [N], N [N m] of hull, drives and wind; `helm` [rad] is positive to starboard."""
     _, _, psi, u, v, r = s
     Y, N = across(plant.hull, u, v, r)
@@ -151,7 +157,9 @@ def forces(plant: Plant, s: State, revs: tuple[float, ...], helm: float) -> tupl
     return blown(plant, psi, u, v, X, Y, N)
 
 
-def blown(plant: Plant, psi: float, u: float, v: float, X: float, Y: float, N: float) -> tuple[float, float, float]:
+def blown(
+    plant: Plant, psi: float, u: float, v: float, X: float, Y: float, N: float
+) -> tuple[float, float, float]:
     """With what the wind adds."""
     wind, current = plant.around.wind, plant.around.current
     if wind == (0.0, 0.0):
@@ -161,10 +169,16 @@ def blown(plant: Plant, psi: float, u: float, v: float, X: float, Y: float, N: f
     ahead, side = north * c + east * s - u, -north * s + east * c - v
     q = 0.5 * AIR * sqrt(ahead * ahead + side * side)
     front, lateral, at = plant.hull.windage
-    return X + q * 0.7 * front * ahead, Y + q * 0.9 * lateral * side, N + q * 0.9 * lateral * side * at
+    return (
+        X + q * 0.7 * front * ahead,
+        Y + q * 0.9 * lateral * side,
+        N + q * 0.9 * lateral * side * at,
+    )
 
 
-def slope(plant: Plant, s: State, revs: tuple[float, ...], helm: float, push: tuple[float, float, float]) -> State:
+def slope(
+    plant: Plant, s: State, revs: tuple[float, ...], helm: float, push: tuple[float, float, float]
+) -> State:
     """Rate of change of the state."""
     _, _, psi, u, v, r = s
     X, Y, N = forces(plant, s, revs, helm)
@@ -175,13 +189,22 @@ def slope(plant: Plant, s: State, revs: tuple[float, ...], helm: float, push: tu
     c, n = cos(psi), sin(psi)
     current = plant.around.current
     return (
-        u * c - v * n + current[0], u * n + v * c + current[1], r,
-        X / mx, (mz * Y - myz * N) / det, (my * N - myz * Y) / det,
-    )  # fmt: skip
+        u * c - v * n + current[0],
+        u * n + v * c + current[1],
+        r,
+        X / mx,
+        (mz * Y - myz * N) / det,
+        (my * N - myz * Y) / det,
+    )
 
 
 def step(
-    plant: Plant, s: State, revs: tuple[float, ...], helm: float, dt: float, push: tuple[float, float, float]
+    plant: Plant,
+    s: State,
+    revs: tuple[float, ...],
+    helm: float,
+    dt: float,
+    push: tuple[float, float, float],
 ) -> State:
     """One Runge-Kutta step with drives and ambient push held."""
 

@@ -79,7 +79,10 @@ def shares(boat: Boat, throttle: float, helm: float) -> tuple[float, ...]:
     """The order of each drive; thrusters that do not turn steer by their difference."""
     if boat.helm_most:
         return (throttle,) * len(boat.plant.propellers)
-    return tuple(float(np.clip(throttle - np.sign(p.y) * 0.5 * helm, -1.0, 1.0)) for p in boat.plant.propellers)
+    return tuple(
+        float(np.clip(throttle - np.sign(p.y) * 0.5 * helm, -1.0, 1.0))
+        for p in boat.plant.propellers
+    )
 
 
 def sail(boat: Boat, link: Linkage, pilot: Pilot, lasts: float, rng: Rng) -> Voyage:
@@ -92,7 +95,11 @@ def sail(boat: Boat, link: Linkage, pilot: Pilot, lasts: float, rng: Rng) -> Voy
     kicks = rng.standard_normal((count, 3)) * rms * np.sqrt(1.0 - keep * keep)
     push = np.zeros(3)
     s: State = (0.0, 0.0, float(rng.uniform(0.0, 2.0 * np.pi)), 0.0, 0.0, 0.0)
-    states, throttles, helms = np.empty((count, 6)), np.empty((count, len(plant.propellers))), np.empty(count)
+    states, throttles, helms = (
+        np.empty((count, 6)),
+        np.empty((count, len(plant.propellers))),
+        np.empty(count),
+    )
     for k in range(count):
         if k % 5 == 0:
             throttle, helm = pilot.order(k * DT, s[2], s[3], s[5])

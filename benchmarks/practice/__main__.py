@@ -25,18 +25,26 @@ def make_set(out: Path, seed: int, per_vessel: int = PER_VESSEL, vessel: str | N
         seen = "" if not answer["effects"] else "visible" if answer["visible"] else "invisible"
         how = "kept" if answer["concealed"] else "hand"
         close = " (borderline)" if answer.get("borderline") else ""
-        print(f"{trial.name:24s} {answer['kind']:8s} {how} {what:42s} {seen}{close} "
-              f"{answer.get('marginal_gain_nats', '')}")  # fmt: skip
+        print(
+            f"{trial.name:24s} {answer['kind']:8s} {how} {what:42s} {seen}{close} "
+            f"{answer.get('marginal_gain_nats', '')}"
+        )
     print(f"written to {out} in {time.time() - begin:.0f} s")
 
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--per-vessel", type=int, default=PER_VESSEL)
-    parser.add_argument("--vessel", choices=sorted(PLANS), help="this one alone; its trials are those of the whole set")
+    parser.add_argument(
+        "--vessel",
+        choices=sorted(PLANS),
+        help="this one alone; its trials are those of the whole set",
+    )
     args = parser.parse_args()
     make_set(args.out, args.seed, args.per_vessel, args.vessel)
 

@@ -27,22 +27,36 @@ class File:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.table: dict[str, Any] = tomllib.loads((MODELS / name / "vessel.toml").read_text(encoding="utf-8"))
+        self.table: dict[str, Any] = tomllib.loads(
+            (MODELS / name / "vessel.toml").read_text(encoding="utf-8")
+        )
 
     def effect(self, name: str) -> dict[str, Any]:
         """The table of an effect."""
         return next(e for e in self.table["effect"] if e.get("name", e["use"]) == name)
 
-    def boat(self, mass: tuple[Array, Array], law: Any, drive: Drive, c: Mapping[str, float], **more: Any) -> Boat:
+    def boat(
+        self, mass: tuple[Array, Array], law: Any, drive: Drive, c: Mapping[str, float], **more: Any
+    ) -> Boat:
         """With what every file states."""
         t = self.table
         free = tuple(i for i, a in enumerate(AXES) if a in t["freedoms"])
         kinds = {k: kind for kind in ("damping", "thrust", "restoring") for k in more.pop(kind, ())}
         return Boat(
-            self.name, free, t["length"], t["draught"], t["body"]["mass"], *mass, c, kinds,
-            t.get("diagnosis", {}).get("coefficient_uncertainty", {}), law, drive,
-            {n: (v["low"], v["high"]) for n, v in t.get("channels", {}).items()}, **more,
-        )  # fmt: skip
+            self.name,
+            free,
+            t["length"],
+            t["draught"],
+            t["body"]["mass"],
+            *mass,
+            c,
+            kinds,
+            t.get("diagnosis", {}).get("coefficient_uncertainty", {}),
+            law,
+            drive,
+            {n: (v["low"], v["high"]) for n, v in t.get("channels", {}).items()},
+            **more,
+        )
 
 
 def rigid(body: Mapping[str, Any]) -> Array:
@@ -50,7 +64,9 @@ def rigid(body: Mapping[str, Any]) -> Array:
     x, z = body.get("centre", (0.0, 0.0))
     lever = np.array([[0.0, -z, 0.0], [z, 0.0, -x], [0.0, x, 0.0]])
     m = body["mass"]
-    own = np.diag([body["roll_inertia"], body.get("pitch_inertia", body["yaw_inertia"]), body["yaw_inertia"]])
+    own = np.diag(
+        [body["roll_inertia"], body.get("pitch_inertia", body["yaw_inertia"]), body["yaw_inertia"]]
+    )
     return np.block([[m * np.eye(3), -m * lever], [m * lever, own - m * lever @ lever]])
 
 
@@ -115,11 +131,17 @@ def catamaran() -> Boat:
 def joystick_boat() -> Boat:
     """The thesis' boat: cross-flow drag, two steered outboards behind lags and servos, fed by motor duty."""
     file = File("joystick_boat")
-    flow, drag, pwm, servo = (file.effect(n) for n in ("cross_flow_drag", "surge_drag", "pwm_thrust", "servo"))
+    flow, drag, pwm, servo = (
+        file.effect(n) for n in ("cross_flow_drag", "surge_drag", "pwm_thrust", "servo")
+    )
     length, draught = file.table["length"], file.table["draught"]
     a = flow["centre"]
     mounts = tuple((file.effect(n)["x"], file.effect(n)["y"]) for n in ("port", "starboard"))
-    c = {"section": flow["section_drag_coefficient"], "linear": drag["linear"], "quadratic": drag["quadratic"]}
+    c = {
+        "section": flow["section_drag_coefficient"],
+        "linear": drag["linear"],
+        "quadratic": drag["quadratic"],
+    }
     c |= {"even": flow["linear"], "gain": 1.0}
 
     def law(c: Mapping[str, float], m: Motion) -> Array:
@@ -142,11 +164,17 @@ def joystick_boat() -> Boat:
 
     lag = file.effect("thrust_lag")["time_constant"]
     drive = Drive(
-        goals, np.array([lag, lag, servo["lag"], servo["lag"]]), np.array([AT_ONCE, AT_ONCE, *[servo["rate"]] * 2]),
-        (0, 1), (2, 3), mounts,
-    )  # fmt: skip
+        goals,
+        np.array([lag, lag, servo["lag"], servo["lag"]]),
+        np.array([AT_ONCE, AT_ONCE, *[servo["rate"]] * 2]),
+        (0, 1),
+        (2, 3),
+        mounts,
+    )
     mass = rigid(file.table["body"]), added(file.effect("added_mass"))
-    return file.boat(mass, law, drive, c, damping=("section", "linear", "quadratic"), thrust=("gain",))
+    return file.boat(
+        mass, law, drive, c, damping=("section", "linear", "quadratic"), thrust=("gain",)
+    )
 
 
 def otter() -> Boat:
@@ -179,15 +207,23 @@ def otter() -> Boat:
     lag = file.effect("shaft_lag")["time_constant"]
     drive = Drive(lambda u: u, np.full(2, lag), np.full(2, AT_ONCE), (0, 1))
     return file.boat(
-        (rigid(file.table["body"]), added(file.effect("added_mass"))), law, drive, c,
-        damping=(*AXES, "turning", "section"), thrust=("gain",), restoring=("buoyancy", "righting", "trimming"),
-    )  # fmt: skip
+        (rigid(file.table["body"]), added(file.effect("added_mass"))),
+        law,
+        drive,
+        c,
+        damping=(*AXES, "turning", "section"),
+        thrust=("gain",),
+        restoring=("buoyancy", "righting", "trimming"),
+    )
 
 
 def martin_tank_model() -> Boat:
     """The tank model that rolls."""
     file = File("martin_tank_model")
-    c = {"roll": file.effect("linear_damping")["roll"], "righting": file.effect("righting_arm")["stiffness"]}
+    c = {
+        "roll": file.effect("linear_damping")["roll"],
+        "righting": file.effect("righting_arm")["stiffness"],
+    }
 
     def law(c: Mapping[str, float], m: Motion) -> Array:
         return forces(m.t.size, K=-c["roll"] * m.through[3] - c["righting"] * m.q[3])
@@ -213,7 +249,15 @@ def eastward_ho() -> Boat:
     ratio = file.effect("roll_damping")["at_rest"]
     ratio += 0.00085 * L / t["beam"] * sqrt(L / height) * f * (1 + f + 2 * f * f)
     c["roll"] = 2 * ratio * sqrt(c["righting"] * (t["body"]["roll_inertia"] + water[3, 3]))
-    blade = 0.5 * SEA * 6.13 * rudder["aspect"] / (rudder["aspect"] + 2.25) * rudder["area"] * rudder["inflow"] ** 2
+    blade = (
+        0.5
+        * SEA
+        * 6.13
+        * rudder["aspect"]
+        / (rudder["aspect"] + 2.25)
+        * rudder["area"]
+        * rudder["inflow"] ** 2
+    )
     c["steer"] = -(1 + 0.627 * hull["block"] - 0.153) * blade
 
     def law(c: Mapping[str, float], motion: Motion) -> Array:
@@ -221,16 +265,28 @@ def eastward_ho() -> Boat:
         phi, delta = motion.q[3], motion.act[0]
         Y = -c["sway"] * v - c["sway_by_yaw"] * r
         steer = c["steer"] * delta
-        K = -below * Y + arm * (Y - m * u * r) - c["righting"] * phi - c["roll"] * p + (arm - rudder["below"]) * steer
+        K = (
+            -below * Y
+            + arm * (Y - m * u * r)
+            - c["righting"] * phi
+            - c["roll"] * p
+            + (arm - rudder["below"]) * steer
+        )
         N = -c["yaw_by_sway"] * v - c["yaw"] * r + c["heeled"] * phi + rudder["at"] * steer
         return forces(u.size, X=-m * v * r - hold["gain"] * (u - U), Y=Y + steer, K=K, N=N)
 
     drive = Drive(lambda u: u, np.zeros(1), np.full(1, AT_ONCE), (), (0,))
     return file.boat(
-        (rigid(t["body"]), water), law, drive, c, coriolis=0.0, cruise=U,
-        damping=("sway", "sway_by_yaw", "yaw_by_sway", "yaw", "roll", "heeled"), thrust=("steer",),
+        (rigid(t["body"]), water),
+        law,
+        drive,
+        c,
+        coriolis=0.0,
+        cruise=U,
+        damping=("sway", "sway_by_yaw", "yaw_by_sway", "yaw", "roll", "heeled"),
+        thrust=("steer",),
         restoring=("righting",),
-    )  # fmt: skip
+    )
 
 
 def spheroid(t: Mapping[str, Any]) -> Array:
@@ -241,10 +297,21 @@ def spheroid(t: Mapping[str, Any]) -> Array:
     b = 1 / e**2 - flat / e**3 * atanh(e)
     turn = e**4 * (b - a) / ((2 - e * e) * (2 * e * e - (2 - e * e) * (b - a)))
     m, body = t["body"]["mass"], t["body"]
-    return np.diag([m * a / (2 - a), m * b / (2 - b), 0, 0.2 * body["roll_inertia"], 0, turn * body["yaw_inertia"]])
+    return np.diag(
+        [
+            m * a / (2 - a),
+            m * b / (2 - b),
+            0,
+            0.2 * body["roll_inertia"],
+            0,
+            turn * body["yaw_inertia"],
+        ]
+    )
 
 
-def hull_derivatives(t: Mapping[str, Any], hull: Mapping[str, float], U: float, m_x: float) -> dict[str, float]:
+def hull_derivatives(
+    t: Mapping[str, Any], hull: Mapping[str, float], U: float, m_x: float
+) -> dict[str, float]:
     """Linear derivatives about the mass centre at speed U [m/s]; `m_x` added mass of surge [kg]."""
     L, T = t["length"], t["draught"]
     k, tau = 2 * T / L, hull["trim"] / T
@@ -253,9 +320,12 @@ def hull_derivatives(t: Mapping[str, Any], hull: Mapping[str, float], U: float, 
     Nv, Nr = -k * (1 - 0.27 * tau * lift / k), -(0.54 * k - k * k) * (1 + 0.3 * tau)
     q, x = 0.5 * SEA * L * T * U, -hull["ahead"]
     return {
-        "sway": -q * Yv, "sway_by_yaw": -q * L * Yr + m_x * U, "yaw_by_sway": -q * (L * Nv + Yv * x),
-        "yaw": -q * L * (L * Nr + Yr * x), "heeled": q * L * U * -0.0076,
-    }  # fmt: skip
+        "sway": -q * Yv,
+        "sway_by_yaw": -q * L * Yr + m_x * U,
+        "yaw_by_sway": -q * (L * Nv + Yv * x),
+        "yaw": -q * L * (L * Nr + Yr * x),
+        "heeled": q * L * U * -0.0076,
+    }
 
 
 BOATS: dict[str, Callable[[], Boat]] = {

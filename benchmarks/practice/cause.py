@@ -8,7 +8,9 @@ import numpy as np
 from benchmarks.practice.motion import RUNS, Array, Boat, Flow, Motion, Whole
 
 Rng = np.random.Generator
-Given = Callable[[Array, int], Array]  # goals (A, RUNS) and number of the step, from the first row on -> goals
+Given = Callable[
+    [Array, int], Array
+]  # goals (A, RUNS) and number of the step, from the first row on -> goals
 Shown = Callable[[Array], Array]  # pose (6, B) -> as the recording shows it
 
 
@@ -19,7 +21,9 @@ class Cause:
     name: str  # as the library calls it, or outside_library:what
     parameters: Mapping[str, float] = field(default_factory=dict)  # those the library's law has too
     boat: Callable[[Boat], Boat] | None = None
-    drive: Callable[[Boat, float], Given] | None = None  # of the step [s]; the closure keeps what it remembers
+    drive: Callable[[Boat, float], Given] | None = (
+        None  # of the step [s]; the closure keeps what it remembers
+    )
     force: Callable[[Boat, Motion], Array] | None = None
     water: Callable[[Array, Array, Whole], Flow] | None = None
     show: Shown | None = None
@@ -62,7 +66,11 @@ def water(causes: Sequence[Cause]) -> Callable[[Array, Array, Whole], Flow | Non
     def velocity(t: Array, q: Array, run: Whole) -> Flow | None:
         found = [f(t, q, run) for f in flows]
         still = np.zeros(())
-        return Flow(sum((f.north for f in found), still), sum((f.east for f in found), still)) if found else None
+        return (
+            Flow(sum((f.north for f in found), still), sum((f.east for f in found), still))
+            if found
+            else None
+        )
 
     return velocity
 
@@ -108,6 +116,13 @@ def resistance(boat: Boat, axis: int, speed: float) -> float:
     nu[0] = boat.cruise
     nu[axis, 0] += speed
     none = np.zeros(2)
-    still = Motion(none, np.zeros(2, dtype=np.int64), np.zeros((6, 2)), nu, nu, np.zeros((len(boat.drive.lag), 2)))
+    still = Motion(
+        none,
+        np.zeros(2, dtype=np.int64),
+        np.zeros((6, 2)),
+        nu,
+        nu,
+        np.zeros((len(boat.drive.lag), 2)),
+    )
     force = boat.law(boat.c, still)
     return float((force[axis, 1] - force[axis, 0]) / speed)

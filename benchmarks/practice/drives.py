@@ -45,7 +45,9 @@ def weak_reverse(boat: Boat, rng: Rng, s: float) -> Cause:
     def curve(T: Array) -> Array:
         return np.asarray(T * (1.0 - (1.0 - k) / (1.0 + np.exp(np.clip(T / soft, -50, 50)))))
 
-    return Cause("weak_reverse", {"astern_factor": k}, drive=lambda b, dt: each(b.drive.thrusts, curve))
+    return Cause(
+        "weak_reverse", {"astern_factor": k}, drive=lambda b, dt: each(b.drive.thrusts, curve)
+    )
 
 
 def thrust_lag(boat: Boat, rng: Rng, s: float) -> Cause:
@@ -83,9 +85,10 @@ def thrust_deadband(boat: Boat, rng: Rng, s: float) -> Cause:
     """Friction of the shaft, smooth where it lets go."""
     w = 0.2 * s * strongest(boat)
     return Cause(
-        "thrust_deadband", {"width_N": w},
+        "thrust_deadband",
+        {"width_N": w},
         drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T - w * np.tanh(T / w))),
-    )  # fmt: skip
+    )
 
 
 def thrust_imbalance(boat: Boat, rng: Rng, s: float) -> Cause:
@@ -96,7 +99,9 @@ def thrust_imbalance(boat: Boat, rng: Rng, s: float) -> Cause:
         side = np.array([[1.0], [-1.0]]) * f
         return np.asarray(T * (1.0 + side * (0.9 + 0.2 * np.minimum(np.abs(T) / usual, 1.5))))
 
-    return Cause("thrust_imbalance", {"fraction": f}, drive=lambda b, dt: each(b.drive.thrusts, curve))
+    return Cause(
+        "thrust_imbalance", {"fraction": f}, drive=lambda b, dt: each(b.drive.thrusts, curve)
+    )
 
 
 def steering_offset(boat: Boat, rng: Rng, s: float) -> Cause:
@@ -107,7 +112,9 @@ def steering_offset(boat: Boat, rng: Rng, s: float) -> Cause:
     return Cause(
         "steering_offset",
         stated,
-        drive=lambda b, dt: each(b.drive.angles, lambda x: np.asarray((1 - 0.15 * np.abs(off)) * x + off)),
+        drive=lambda b, dt: each(
+            b.drive.angles, lambda x: np.asarray((1 - 0.15 * np.abs(off)) * x + off)
+        ),
     )
 
 
@@ -133,7 +140,9 @@ def steering_rate_limit(boat: Boat, rng: Rng, s: float) -> Cause:
 
     def drive(b: Boat, dt: float) -> Given:
         near = 0.03  # [rad]
-        return remembering(b.drive.angles, lambda y, goal: np.asarray(y + rate * dt * np.tanh((goal - y) / near)))
+        return remembering(
+            b.drive.angles, lambda y, goal: np.asarray(y + rate * dt * np.tanh((goal - y) / near))
+        )
 
     return Cause("steering_rate_limit", {"rate_radps": rate}, drive=drive)
 
@@ -187,9 +196,10 @@ def thrust_gain_error(boat: Boat, rng: Rng, s: float) -> Cause:
     """Another propeller than the one in the file; a bend would be evidence of a bend, not of a gain."""
     factor = 1.0 + 0.5 * s * sign(rng)
     return Cause(
-        "thrust_gain_error", {"factor": factor},
+        "thrust_gain_error",
+        {"factor": factor},
         drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T * factor)),
-    )  # fmt: skip
+    )
 
 
 # ---- outside the library

@@ -13,7 +13,9 @@ UNITS = {0: "surge_Ns{p}pm{p}", 1: "sway_Ns{p}pm{p}", 3: "roll_Nms{p}", 5: "yaw_
 
 def usual_rate(boat: Boat, axis: int) -> float:
     """A rate of the boat's manoeuvres [m/s, rad/s]."""
-    return {0: 0.4 * boat.scale, 1: 0.15 * boat.scale, 3: 0.6 / boat.scale, 5: 0.35 / boat.scale}[axis]
+    return {0: 0.4 * boat.scale, 1: 0.15 * boat.scale, 3: 0.6 / boat.scale, 5: 0.35 / boat.scale}[
+        axis
+    ]
 
 
 def point(mass: float, x: float, y: float = 0.0) -> Array:
@@ -32,16 +34,21 @@ def extra_mass(boat: Boat, rng: Rng, s: float) -> Cause:
         return forces(Z.size, Z=Z, M=-x * Z)
 
     return Cause(
-        "extra_mass", {"mass_kg": mass, "x_m": x}, boat=lambda b: replace(b, hull=b.hull + point(mass, x) + own),
-        force=weight if boat.tilts else None, same=("payload",) if abs(x) < 0.06 * boat.length else (),
-    )  # fmt: skip
+        "extra_mass",
+        {"mass_kg": mass, "x_m": x},
+        boat=lambda b: replace(b, hull=b.hull + point(mass, x) + own),
+        force=weight if boat.tilts else None,
+        same=("payload",) if abs(x) < 0.06 * boat.length else (),
+    )
 
 
 def mass_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
     """Gear stowed at the other end: half of the mass lies twice as far off."""
     shift = 0.09 * s * boat.length * sign(rng)
     moved = point(boat.mass / 2, 2 * shift) - point(boat.mass / 2, 0.0)
-    return Cause("mass_centre_shift", {"shift_m": shift}, boat=lambda b: replace(b, hull=b.hull + moved))
+    return Cause(
+        "mass_centre_shift", {"shift_m": shift}, boat=lambda b: replace(b, hull=b.hull + moved)
+    )
 
 
 def lateral_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
@@ -52,14 +59,20 @@ def lateral_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
 
     def force(b: Boat, m: Motion) -> Array:
         d, v, r = share * b.c["sway"], m.through[1], m.through[5]
-        return forces(v.size, Y=d * v - d * (v + at * r), N=-d * at * (v + at * r) * (1.0 - 0.3 * abs(share)))
+        return forces(
+            v.size, Y=d * v - d * (v + at * r), N=-d * at * (v + at * r) * (1.0 - 0.3 * abs(share))
+        )
 
     return Cause("lateral_centre_shift", {"shift_m": shift}, force=force)
 
 
-def steeper(boat: Boat, s: float, name: str, power: float, like: int, axes: tuple[int, ...]) -> Cause:
+def steeper(
+    boat: Boat, s: float, name: str, power: float, like: int, axes: tuple[int, ...]
+) -> Cause:
     """Damping of a power that is not whole, on top of the boat's own; at a usual rate a share of it."""
-    gains = {a: 0.9 * s * resistance(boat, a, usual_rate(boat, a)) * usual_rate(boat, a) for a in axes}
+    gains = {
+        a: 0.9 * s * resistance(boat, a, usual_rate(boat, a)) * usual_rate(boat, a) for a in axes
+    }
 
     def force(b: Boat, m: Motion) -> Array:
         found = np.zeros_like(m.nu)
@@ -68,7 +81,9 @@ def steeper(boat: Boat, s: float, name: str, power: float, like: int, axes: tupl
             found[a] = -gain * np.sign(part) * np.abs(part / usual_rate(b, a)) ** power
         return found
 
-    stated = {UNITS[a].format(p=like): gain / usual_rate(boat, a) ** like for a, gain in gains.items()}
+    stated = {
+        UNITS[a].format(p=like): gain / usual_rate(boat, a) ** like for a, gain in gains.items()
+    }
     return Cause(name, stated, force=force, not_compared=tuple(stated))
 
 
@@ -94,7 +109,11 @@ def damping_error(boat: Boat, rng: Rng, s: float) -> Cause:
 def added_mass_coriolis(boat: Boat, rng: Rng, s: float) -> Cause:
     """Separation takes a part of the Munk moment away, or the model has it too small."""
     missing = 0.7 * s * sign(rng)
-    return Cause("added_mass_coriolis", {"fraction": missing}, boat=lambda b: replace(b, coriolis=b.coriolis + missing))
+    return Cause(
+        "added_mass_coriolis",
+        {"fraction": missing},
+        boat=lambda b: replace(b, coriolis=b.coriolis + missing),
+    )
 
 
 # ---- roll
@@ -111,19 +130,28 @@ def righting_arm_stiffening(boat: Boat, rng: Rng, s: float) -> Cause:
         return forces(phi.size, K=-k * (lever - phi))
 
     cubic = float(-n * n / 6 if bends else wall / 2 - 1 / 6)
-    return Cause("righting_arm_stiffening", {"cubic_perrad2": cubic}, force=force, not_compared=("cubic_perrad2",))
+    return Cause(
+        "righting_arm_stiffening",
+        {"cubic_perrad2": cubic},
+        force=force,
+        not_compared=("cubic_perrad2",),
+    )
 
 
 def metacentric_height_error(boat: Boat, rng: Rng, s: float) -> Cause:
     """Ballast higher or lower than stated."""
     factor = 1.0 + 0.3 * s * sign(rng)
-    return Cause("metacentric_height_error", {"factor": factor}, boat=lambda b: scaled(b, righting=factor))
+    return Cause(
+        "metacentric_height_error", {"factor": factor}, boat=lambda b: scaled(b, righting=factor)
+    )
 
 
 def steady_force(boat: Boat, rng: Rng, s: float) -> Cause:
     """Ballast off the centre line: a moment that falls with the cosine of the heel."""
     K = 0.05 * s * boat.c["righting"] * sign(rng)
-    return Cause("steady_force", {"roll_Nm": K}, force=lambda b, m: forces(m.t.size, K=K * np.cos(m.q[3])))
+    return Cause(
+        "steady_force", {"roll_Nm": K}, force=lambda b, m: forces(m.t.size, K=K * np.cos(m.q[3]))
+    )
 
 
 # ---- instruments
@@ -133,7 +161,9 @@ def camera_scale(boat: Boat, rng: Rng, s: float) -> Cause:
     """Each axis of the camera has a length of its own."""
     x, y = 0.12 * s * sign(rng), 0.12 * s * sign(rng)
     stretch = np.array([[1 + x], [1 + y], [1.0], [1.0], [1.0], [1.0]])
-    return Cause("camera_scale", {"x_fraction": x, "y_fraction": y}, show=lambda q: np.asarray(q * stretch))
+    return Cause(
+        "camera_scale", {"x_fraction": x, "y_fraction": y}, show=lambda q: np.asarray(q * stretch)
+    )
 
 
 def heading_deviation(boat: Boat, rng: Rng, s: float) -> Cause:
@@ -215,12 +245,16 @@ def lifting_hull(boat: Boat, rng: Rng, s: float) -> Cause:
 def stiction(boat: Boat, rng: Rng, s: float) -> Cause:
     """A rubbing stern gland or guide: dry friction in roll."""
     K = 0.004 * s * boat.c["righting"]
-    return Cause("outside_library:stiction", force=lambda b, m: forces(m.t.size, K=-K * np.tanh(m.nu[3] / 0.02)))
+    return Cause(
+        "outside_library:stiction",
+        force=lambda b, m: forces(m.t.size, K=-K * np.tanh(m.nu[3] / 0.02)),
+    )
 
 
 def shifting_cargo(boat: Boat, rng: Rng, s: float) -> Cause:
     """Something loose that rolls from side to side every now and then."""
     K, slow = 0.04 * s * boat.c["righting"], wavy(rng, 0.3 / boat.scale, 1.2 / boat.scale, 4)
     return Cause(
-        "outside_library:shifting_cargo", force=lambda b, m: forces(m.t.size, K=K * np.tanh(6 * slow(m.t, m.run)))
+        "outside_library:shifting_cargo",
+        force=lambda b, m: forces(m.t.size, K=K * np.tanh(6 * slow(m.t, m.run))),
     )

@@ -21,12 +21,22 @@ FAMILIES = ("position", "position", "heave", "roll", "pitch", "heading")
 UNITS = {"position": "m", "heave": "m", "roll": "rad", "pitch": "rad", "heading": "rad"}
 STATED = ("position_sd_m", "heading_sd_rad", "roll_sd_rad")  # what a recording.toml may say
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-KINDS = ("none", "single", "single", "single", "pair", "unknown")  # by turns steered by hand and kept on its track
+KINDS = (
+    "none",
+    "single",
+    "single",
+    "single",
+    "pair",
+    "unknown",
+)  # by turns steered by hand and kept on its track
 CALIBRATION = 0.03  # sd of a real boat's own damping and thrust
 RIGHTING = 0.005  # and of its righting levers
 SEEN, SURE = 12.0, (5.0, 20.0)  # [nats] visible from, borderline between
 STRANGE_SEEN, STRANGE_SURE = 20.0, (10.0, 40.0)  # [nats] the same of causes outside the library
-FIRST, WEAK_TO_STRONG = 0.5, (0.03, 1.2)  # strength of a first try, from which that with the wanted evidence follows
+FIRST, WEAK_TO_STRONG = (
+    0.5,
+    (0.03, 1.2),
+)  # strength of a first try, from which that with the wanted evidence follows
 WANTED, STRANGE_WANTED = (6.0, 300.0), (40.0, 400.0)  # [nats] drawn evenly by ratio
 OUTLIERS, FAR = 0.02, 15.0  # share of the rows, and how far off in sd of the instrument
 
@@ -51,9 +61,15 @@ def trials(seed: int, per_vessel: int) -> Iterator[Trial]:
         known, strange = Deck(plan.single, rng), Deck(plan.strange, rng)
         for i in range(per_vessel):
             kind, number = KINDS[i % len(KINDS)], number + 1
-            drawn = strange.draw(1) if kind == "unknown" else known.draw({"none": 0, "single": 1, "pair": 2}[kind])
+            drawn = (
+                strange.draw(1)
+                if kind == "unknown"
+                else known.draw({"none": 0, "single": 1, "pair": 2}[kind])
+            )
             concealed = plan.kept and kind != "none" and (i // len(KINDS) + i) % 2 == 1
-            yield Trial(f"T{number:03d}_{vessel}", vessel, kind, concealed, kind == "none" and i > 0, drawn)
+            yield Trial(
+                f"T{number:03d}_{vessel}", vessel, kind, concealed, kind == "none" and i > 0, drawn
+            )
 
 
 class Deck:
@@ -79,17 +95,28 @@ def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
     plan, strange = PLANS[trial.vessel], trial.kind == "unknown"
     strengths, oracle, gains = chosen(trial, lots)
     answer = {
-        "kind": trial.kind, "vessel": trial.vessel, "concealed": trial.concealed,
-        "strength": [round(float(s), 3) for s in strengths], "outliers": trial.outliers,
-        "calibration_error": CALIBRATION, "effects": [described(c) for c in oracle.causes],
-        **{f"noise_{f}_{UNITS[f]}": float(f"{s:.3g}") for f, s in zip(FAMILIES, oracle.noise, strict=True) if s},
-        **told(strange, gains), **same(trial, oracle.causes),
-    }  # fmt: skip
+        "kind": trial.kind,
+        "vessel": trial.vessel,
+        "concealed": trial.concealed,
+        "strength": [round(float(s), 3) for s in strengths],
+        "outliers": trial.outliers,
+        "calibration_error": CALIBRATION,
+        "effects": [described(c) for c in oracle.causes],
+        **{
+            f"noise_{f}_{UNITS[f]}": float(f"{s:.3g}")
+            for f, s in zip(FAMILIES, oracle.noise, strict=True)
+            if s
+        },
+        **told(strange, gains),
+        **same(trial, oracle.causes),
+    }
     rng = np.random.default_rng([*lots, 1])
     if 0 in oracle.nominal.free:
         rms = oracle.free_runs(6.0 * oracle.nominal.scale, rng)
         left_out = "true_structure" if strange else ""
-        answer["reference_position_rms_m"] = {k: round(v, 6) for k, v in rms.items() if k != left_out}
+        answer["reference_position_rms_m"] = {
+            k: round(v, 6) for k, v in rms.items() if k != left_out
+        }
     voyage = spoilt(oracle.voyage, oracle.noise, rng) if trial.outliers else oracle.voyage
     write(out / trial.name, oracle.nominal, plan, voyage, answer)
     return answer
@@ -146,13 +173,18 @@ def own(nominal: Boat, rng: Rng) -> Boat:
 
 def described(cause: Cause) -> dict[str, Any]:
     """An effect of an answer."""
-    found: dict[str, Any] = {"name": cause.name, "parameters": {k: float(v) for k, v in cause.parameters.items()}}
+    found: dict[str, Any] = {
+        "name": cause.name,
+        "parameters": {k: float(v) for k, v in cause.parameters.items()},
+    }
     return found | ({"not_compared": list(cause.not_compared)} if cause.not_compared else {})
 
 
 def evidence(oracle: Oracle, strange: bool) -> Array:
     """Nats that each cause adds to the others, or to the library."""
-    return np.array([oracle.beyond_library(c) if strange else oracle.marginal(c) for c in oracle.causes])
+    return np.array(
+        [oracle.beyond_library(c) if strange else oracle.marginal(c) for c in oracle.causes]
+    )
 
 
 def told(strange: bool, gains: Array) -> dict[str, Any]:
@@ -162,9 +194,10 @@ def told(strange: bool, gains: Array) -> dict[str, Any]:
     seen, (low, high) = (STRANGE_SEEN, STRANGE_SURE) if strange else (SEEN, SURE)
     least = float(gains.min())
     return {
-        "visible": least > seen, "borderline": low < least < high,
+        "visible": least > seen,
+        "borderline": low < least < high,
         "marginal_gain_nats": [round(float(g), 1) for g in gains],
-    }  # fmt: skip
+    }
 
 
 def same(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any]:
@@ -197,6 +230,10 @@ def write(folder: Path, boat: Boat, plan: Plan, voyage: Voyage, answer: dict[str
     used = [i for i in range(len(boat.channels)) if np.any(voyage.commands[:, i])]
     names = ["t_s", *(COLUMNS[i] for i in boat.free), *(list(boat.channels)[i] for i in used)]
     for run in range(RUNS):
-        table = np.column_stack([t, voyage.recorded[:, boat.free, run], voyage.commands[:, used, run]])
-        np.savetxt(folder / f"run_{run + 1}.csv", table, "%.7g", ",", header=",".join(names), comments="")
+        table = np.column_stack(
+            [t, voyage.recorded[:, boat.free, run], voyage.commands[:, used, run]]
+        )
+        np.savetxt(
+            folder / f"run_{run + 1}.csv", table, "%.7g", ",", header=",".join(names), comments=""
+        )
     (folder / "answer.json").write_text(json.dumps(answer, indent=1) + "\n")

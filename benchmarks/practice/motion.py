@@ -67,7 +67,9 @@ class Boat:
     hull: Array  # (6, 6) rigid body about the origin
     water: Array  # (6, 6) added mass
     c: Mapping[str, float]
-    kinds: Mapping[str, str]  # of the coefficients that are never known exactly: damping, thrust, restoring
+    kinds: Mapping[
+        str, str
+    ]  # of the coefficients that are never known exactly: damping, thrust, restoring
     uncertainty: Mapping[str, float]  # relative sd of each kind, as the vessel's file states it
     law: Law
     drive: Drive
@@ -105,14 +107,18 @@ class Boat:
 
 def cross(a: Array, b: Array) -> Array:
     """Vector product of (3, B)."""
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
 
 
 def kirchhoff(mass: Array, nu: Array) -> Array:
     """-C(nu) nu (6, B) of a mass matrix, in axes fixed in the hull."""
     momentum = mass @ nu
     v, spin = nu[:3], nu[3:]
-    return -np.concatenate([cross(spin, momentum[:3]), cross(spin, momentum[3:]) + cross(v, momentum[:3])])
+    return -np.concatenate(
+        [cross(spin, momentum[:3]), cross(spin, momentum[3:]) + cross(v, momentum[:3])]
+    )
 
 
 def level(mass: Array, nu: Array) -> Array:
@@ -182,9 +188,18 @@ def load(boat: Boat, m: Motion, carried: Array, extra: Extra) -> Array:
 
 
 def step(
-    boat: Boat, t: Array, run: Whole, q: Array, nu: Array, acts: tuple[Array, Array, Array], dt: float, push: Array,
-    extra: Extra, water: Water, inverse: Array,
-) -> tuple[Array, Array]:  # fmt: skip
+    boat: Boat,
+    t: Array,
+    run: Whole,
+    q: Array,
+    nu: Array,
+    acts: tuple[Array, Array, Array],
+    dt: float,
+    push: Array,
+    extra: Extra,
+    water: Water,
+    inverse: Array,
+) -> tuple[Array, Array]:
     """One Runge-Kutta step; `acts` at its begin, middle and end, `push` (6, B) a force held over it."""
 
     def slopes(ahead: float, q: Array, nu: Array, act: Array) -> tuple[Array, Array]:

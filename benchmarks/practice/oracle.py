@@ -36,9 +36,17 @@ def flat(x: Array) -> Array:
 class Oracle:
     """One trial's truth."""
 
-    def __init__(self, nominal: Boat, real: Boat, causes: Sequence[Cause], voyage: Voyage, noise: Array) -> None:
+    def __init__(
+        self, nominal: Boat, real: Boat, causes: Sequence[Cause], voyage: Voyage, noise: Array
+    ) -> None:
         """`real` has its own coefficients and no cause yet; `noise` (6,) of the instruments."""
-        self.nominal, self.real, self.causes, self.voyage, self.noise = nominal, real, tuple(causes), voyage, noise
+        self.nominal, self.real, self.causes, self.voyage, self.noise = (
+            nominal,
+            real,
+            tuple(causes),
+            voyage,
+            noise,
+        )
         grid = voyage.grid
         self.inside = slice(grid.lead, grid.lead + grid.steps + 1)
         count = grid.steps + 1
@@ -46,8 +54,12 @@ class Oracle:
         self.run = np.tile(np.arange(RUNS), count)
         self.own = voyage.acts(nominal, ())
         q, nu = (x[self.inside] for x in (voyage.q, voyage.nu))
-        still = self.needed(real, self.causes, self.acts(self.causes), Course(q, nu, np.zeros_like(nu)))
-        nudot = np.einsum("ij,kjb->kib", changed(real, self.causes).inverse(), voyage.push[self.inside] - still)
+        still = self.needed(
+            real, self.causes, self.acts(self.causes), Course(q, nu, np.zeros_like(nu))
+        )
+        nudot = np.einsum(
+            "ij,kjb->kib", changed(real, self.causes).inverse(), voyage.push[self.inside] - still
+        )
         self.true = Course(q, nu, nudot)
         self.seen = self.recorded(self.causes)
         self.spectra = self._spectra()
@@ -61,7 +73,9 @@ class Oracle:
         model = changed(boat, causes)
         q, nu, act = flat(course.q), flat(course.nu), flat(acts.begin[self.inside])
         m, _, carried = seen(model, self.t, self.run, q, nu, act, water(causes))
-        found = (model.hull + model.water) @ flat(course.nudot) - load(model, m, carried, extra(model, causes))
+        found = (model.hull + model.water) @ flat(course.nudot) - load(
+            model, m, carried, extra(model, causes)
+        )
         return np.moveaxis(found.reshape(6, -1, RUNS), 0, 1)
 
     def recorded(self, causes: Sequence[Cause]) -> Course:
@@ -72,7 +86,9 @@ class Oracle:
         dt, late = self.voyage.grid.dt, round(sum(c.late for c in measured) / self.voyage.grid.dt)
         late_q = self.voyage.q[self.inside.start - late :][: len(self.true.q)]
         if late < 0:
-            late_q = np.concatenate([late_q, np.repeat(late_q[-1:], len(self.true.q) - len(late_q), axis=0)])
+            late_q = np.concatenate(
+                [late_q, np.repeat(late_q[-1:], len(self.true.q) - len(late_q), axis=0)]
+            )
         q = shown(measured, flat(late_q)).reshape(6, -1, RUNS)
         q = np.moveaxis(q, 0, 1)
         off = level_rates(q, dt) - level_rates(self.true.q, dt)
@@ -86,7 +102,9 @@ class Oracle:
                 self.real, self.causes, acts, self.true
             )
         rest = [c for c in self.causes if c is not cause]
-        return self.needed(self.real, rest, self.acts(rest), self.true) - self.voyage.push[self.inside]
+        return (
+            self.needed(self.real, rest, self.acts(rest), self.true) - self.voyage.push[self.inside]
+        )
 
     def _spectra(self) -> Array:
         """(6, F) two-sided [N^2 s]: ambient force, and noise of the instruments through the hull's impedance."""
@@ -117,7 +135,10 @@ class Oracle:
         grid = self.voyage.grid
         heard = np.fft.rfftfreq(grid.steps + 1, grid.dt) < 0.5 / grid.row
         axes = list(self.nominal.free)
-        spectrum = np.moveaxis(np.fft.rfft(force[:, axes][:, :, list(runs)], axis=0)[heard], 1, 0) * grid.dt
+        spectrum = (
+            np.moveaxis(np.fft.rfft(force[:, axes][:, :, list(runs)], axis=0)[heard], 1, 0)
+            * grid.dt
+        )
         weight = np.where(np.arange(heard.sum()) == 0, 1.0, 2.0) / ((grid.steps + 1) * grid.dt)
         scaled = spectrum * np.sqrt(weight / self.spectra[axes][:, heard])[:, :, None]
         return np.stack([scaled.real, scaled.imag], 1).ravel()
@@ -128,7 +149,9 @@ class Oracle:
         found = {}
         for name, kind in self.nominal.kinds.items():
             sd = self.nominal.uncertainty.get(kind, 0.05)
-            other = replace(self.nominal, c={**self.nominal.c, name: self.nominal.c[name] * (1 + 0.01 * sd)})
+            other = replace(
+                self.nominal, c={**self.nominal.c, name: self.nominal.c[name] * (1 + 0.01 * sd)}
+            )
             found[name] = (self.needed(other, (), self.own, self.seen) - base) / 0.01
         return found
 
@@ -139,7 +162,11 @@ class Oracle:
         """
         y = self.white(force)
         columns = [self.white(f) for f in self.coefficients().values()]
-        free = [30.0 * v / np.linalg.norm(v) for f in others if np.linalg.norm(v := self.white(f)) > 1e-9]
+        free = [
+            30.0 * v / np.linalg.norm(v)
+            for f in others
+            if np.linalg.norm(v := self.white(f)) > 1e-9
+        ]
         A = np.array([*columns, *free]).T
         theta = np.linalg.solve(A.T @ A + np.eye(A.shape[1]), A.T @ y)  # in prior sd
         left = y - A @ theta
@@ -147,14 +174,20 @@ class Oracle:
         heard = np.fft.rfftfreq(grid.steps + 1, grid.dt) < 0.5 / grid.row
         share = (self.ambient[axes] / self.spectra[axes])[:, heard]
         square = (left**2).reshape(len(axes), 2, heard.sum(), -1).sum(axis=(1, 3))
-        count = np.full(heard.sum(), 2.0 * len(FITTED)) - (np.arange(heard.sum()) == 0) * len(FITTED)
-        more = 1.0 + (np.geomspace(1.0, 30.0, 80)[:, None, None] ** 2 - 1.0) * share  # spectrum per true one
+        count = np.full(heard.sum(), 2.0 * len(FITTED)) - (np.arange(heard.sum()) == 0) * len(
+            FITTED
+        )
+        more = (
+            1.0 + (np.geomspace(1.0, 30.0, 80)[:, None, None] ** 2 - 1.0) * share
+        )  # spectrum per true one
         nats = 0.5 * (count * (np.log(more) + 1.0 / more - 1.0) + square / more).sum(axis=2)
         return float(nats.min(axis=0).sum() + 0.5 * theta @ theta)
 
     def marginal(self, cause: Cause) -> float:
         """Gain of a true cause on top of the trial's others."""
-        return self.gain(self.force_of(cause), [self.force_of(c) for c in self.causes if c is not cause])
+        return self.gain(
+            self.force_of(cause), [self.force_of(c) for c in self.causes if c is not cause]
+        )
 
     def beyond_library(self, cause: Cause) -> float:
         """Gain of a cause on top of simple forces like those of the library, each of any size."""
@@ -185,7 +218,9 @@ class Oracle:
         base = self.needed(self.nominal, (), self.own, c)
         for i in range(len(self.nominal.drive.lag)):
             size = np.abs(self.own.begin[:, i]).max() + 1e-9
-            lag = np.gradient(self.own.begin[:, i], self.voyage.grid.dt, axis=0) * self.nominal.scale
+            lag = (
+                np.gradient(self.own.begin[:, i], self.voyage.grid.dt, axis=0) * self.nominal.scale
+            )
             for change in (0.01 * size, 0.01 * self.own.begin[:, i], 0.01 * lag):
                 begin = self.own.begin.copy()
                 begin[:, i] += change
@@ -203,10 +238,15 @@ class Oracle:
         A = np.array([self.white(f).reshape(axes, -1) for f in self.coefficients().values()])
         theta, heard = np.zeros(len(names)), max(int((y[0] != 0.0).sum()), 1)
         for _ in range(4):
-            rms = np.sqrt(np.maximum(((y + np.tensordot(theta, A, 1)) ** 2).sum(axis=1) / heard, 1.0))[:, None]
+            rms = np.sqrt(
+                np.maximum(((y + np.tensordot(theta, A, 1)) ** 2).sum(axis=1) / heard, 1.0)
+            )[:, None]
             B, z = (A / rms).reshape(len(names), -1), (y / rms).ravel()
             theta = -np.linalg.solve(B @ B.T + np.eye(len(names)), B @ z)
-        fitted = {n: self.nominal.c[n] * max(1 + s * x, 0.05) for n, s, x in zip(names, sd, theta, strict=True)}
+        fitted = {
+            n: self.nominal.c[n] * max(1 + s * x, 0.05)
+            for n, s, x in zip(names, sd, theta, strict=True)
+        }
         return replace(self.nominal, c={**self.nominal.c, **fitted})
 
     def free_runs(self, horizon: float, rng: np.random.Generator) -> dict[str, float]:
@@ -221,7 +261,9 @@ class Oracle:
         fitted = self.recalibrated()
         return {
             "nominal": self._runs(self.nominal, (), self.own, horizon, off, self.seen, 0),
-            "recalibrated": self._runs(fitted, (), self.voyage.acts(fitted, ()), horizon, off, self.seen, 0),
+            "recalibrated": self._runs(
+                fitted, (), self.voyage.acts(fitted, ()), horizon, off, self.seen, 0
+            ),
             "true_structure": self._runs(real, causes, acts, horizon, off, None, late),
         }
 
@@ -232,14 +274,22 @@ class Oracle:
         """
         r = self.noise**2 * self.voyage.grid.row + 1e-18
         mass = np.maximum(np.diag(self.nominal.hull + self.nominal.water), 1e-9)
-        w = np.minimum((2 * self.nominal.ambient() ** 2 * self.nominal.scale / mass**2 / r) ** 0.25, 10.0)
+        w = np.minimum(
+            (2 * self.nominal.ambient() ** 2 * self.nominal.scale / mass**2 / r) ** 0.25, 10.0
+        )
         pose = np.sqrt(r * w / np.sqrt(8.0))
         return np.array([pose, pose * w]) * np.isin(np.arange(6), self.nominal.free)
 
     def _runs(
-        self, boat: Boat, causes: Sequence[Cause], acts: Acts, horizon: float, off: Array, start: Course | None,
+        self,
+        boat: Boat,
+        causes: Sequence[Cause],
+        acts: Acts,
+        horizon: float,
+        off: Array,
+        start: Course | None,
         late: int,
-    ) -> float:  # fmt: skip
+    ) -> float:
         """Rms over all free runs at once, one a column; `start` None: from the true state, shown as recorded."""
         grid, v = self.voyage.grid, self.voyage
         rows = round(horizon / grid.row)
@@ -249,7 +299,12 @@ class Oracle:
         if start is not None:
             q, nu = start.q[first, :, HELD_OUT].T, start.nu[first, :, HELD_OUT].T
         q, nu = q + off[0, :, : len(first)], nu + off[1, :, : len(first)]
-        force, flow, inverse, none = extra(boat, causes), water(causes), boat.inverse(), np.zeros_like(q)
+        force, flow, inverse, none = (
+            extra(boat, causes),
+            water(causes),
+            boat.inverse(),
+            np.zeros_like(q),
+        )
         squares = []
         for i in range(rows * grid.every + 1):
             if i % grid.every == 0:
@@ -258,7 +313,19 @@ class Oracle:
             now = np.minimum(at + i, len(v.q) - 1)
             three = tuple(part[now, :, HELD_OUT].T for part in acts)
             t = (now - grid.lead) * grid.dt
-            q, nu = step(boat, t, run, q, nu, (three[0], three[1], three[2]), grid.dt, none, force, flow, inverse)
+            q, nu = step(
+                boat,
+                t,
+                run,
+                q,
+                nu,
+                (three[0], three[1], three[2]),
+                grid.dt,
+                none,
+                force,
+                flow,
+                inverse,
+            )
         return float(np.sqrt(np.mean(squares)))
 
 

@@ -9,7 +9,11 @@ from benchmarks.practice.motion import RUNS, Array, Boat
 from benchmarks.practice.sail import Grid
 
 HELM = np.radians([5.0, 10.0, 20.0, 30.0])  # of the ship's zig-zags
-RELEASES = (0.32, 0.12, 0.22)  # [rad] heel from which the tank model is let go; the last lies between the others
+RELEASES = (
+    0.32,
+    0.12,
+    0.22,
+)  # [rad] heel from which the tank model is let go; the last lies between the others
 
 
 @dataclass
@@ -32,7 +36,9 @@ class Hand:
 def hand(boat: Boat, grid: Grid, rng: Rng) -> Hand:
     """A pilot by lot; the ship zig-zags at several helms, the tank model is released from several heels."""
     table = np.zeros((grid.rows, len(boat.channels), RUNS))
-    shortest, longest = (8.0, 28.0) if boat.name == "eastward_ho" else (1.5 * boat.scale, 4.0 * boat.scale)
+    shortest, longest = (
+        (8.0, 28.0) if boat.name == "eastward_ho" else (1.5 * boat.scale, 4.0 * boat.scale)
+    )
     for run in range(RUNS):
         row = 0
         while row < grid.rows and len(boat.channels):
@@ -51,13 +57,18 @@ def hand(boat: Boat, grid: Grid, rng: Rng) -> Hand:
 def drawn(boat: Boat, rng: Rng) -> Array:
     """Commands of one level."""
     if boat.name == "catamaran":
-        return np.array([rng.choice([0.0, 1.5, 3.0, 6.0, 9.0]), rng.choice([0.0, *rng.uniform(-1.2, 1.2, 4)])])
+        return np.array(
+            [rng.choice([0.0, 1.5, 3.0, 6.0, 9.0]), rng.choice([0.0, *rng.uniform(-1.2, 1.2, 4)])]
+        )
     if boat.name == "joystick_boat":
         port, starboard = rng.choice([-200, -120, -60, 0, 60, 120, 200], 2)
         angle, toe = rng.uniform(-0.6, 0.6), rng.choice([0.0, 0.0, 0.15])
         return np.array([0.0, 0.0, angle + toe, angle - toe, port, starboard])
     if boat.name == "otter":
-        both, turn = rng.choice([-50.0, 0.0, 40.0, 60.0, 78.0]), rng.choice([-25.0, -10.0, 0.0, 10.0, 25.0])
+        both, turn = (
+            rng.choice([-50.0, 0.0, 40.0, 60.0, 78.0]),
+            rng.choice([-25.0, -10.0, 0.0, 10.0, 25.0]),
+        )
         return np.array([both + turn, both - turn])
     helm = rng.choice([*HELM, 0.0])
     return np.array([helm if rng.integers(2) else -helm])
@@ -73,7 +84,9 @@ class Keeper:
     boat: Boat
     grid: Grid
     rng: Rng
-    legs: Array = field(init=False)  # (J, 2, RUNS) corners [m], or for the ship (J, 1, RUNS) courses [rad]
+    legs: Array = field(
+        init=False
+    )  # (J, 2, RUNS) corners [m], or for the ship (J, 1, RUNS) courses [rad]
     speeds: Array = field(init=False)  # (J, RUNS) m/s
 
     def __post_init__(self) -> None:
@@ -84,7 +97,9 @@ class Keeper:
         else:
             turns = self.rng.uniform(0.9, 1.9, (count, RUNS)) * self.rng.choice([-1.0, 1.0], RUNS)
             along = np.cumsum(turns, axis=0)
-            self.legs = np.cumsum(4.0 * b.length * np.stack([np.cos(along), np.sin(along)], 1), axis=0)
+            self.legs = np.cumsum(
+                4.0 * b.length * np.stack([np.cos(along), np.sin(along)], 1), axis=0
+            )
         self.leg = np.zeros(RUNS, dtype=np.int64)
         self.filtered = np.zeros((6, RUNS))  # x y psi and their rates
         self.sums = np.zeros((2, RUNS))  # integrals of speed and heading errors
@@ -92,7 +107,9 @@ class Keeper:
     def begin(self) -> tuple[Array, Array]:
         """Heading for the first corner."""
         q, nu = np.zeros((6, RUNS)), np.zeros((6, RUNS))
-        q[5] = self.wanted(0)[0] if self.boat.cruise else np.arctan2(self.legs[0, 1], self.legs[0, 0])
+        q[5] = (
+            self.wanted(0)[0] if self.boat.cruise else np.arctan2(self.legs[0, 1], self.legs[0, 0])
+        )
         nu[0] = self.boat.cruise or self.speeds[0]
         c, s = np.cos(q[5]), np.sin(q[5])
         self.filtered = np.array([q[0], q[1], q[5], nu[0] * c, nu[0] * s, 0.0 * c])
@@ -103,9 +120,13 @@ class Keeper:
         runs = np.arange(RUNS)
         if self.boat.cruise:
             leg = int(row * self.grid.row / 25.0)
-            return np.asarray(self.legs[min(leg, len(self.legs) - 1), 0]), np.full(RUNS, self.boat.cruise)
+            return np.asarray(self.legs[min(leg, len(self.legs) - 1), 0]), np.full(
+                RUNS, self.boat.cruise
+            )
         ahead = self.legs[self.leg, :, runs].T - self.filtered[:2]
-        self.leg = np.minimum(self.leg + (np.hypot(*ahead) < 0.8 * self.boat.length), len(self.legs) - 1)
+        self.leg = np.minimum(
+            self.leg + (np.hypot(*ahead) < 0.8 * self.boat.length), len(self.legs) - 1
+        )
         ahead = self.legs[self.leg, :, runs].T - self.filtered[:2]
         return np.arctan2(ahead[1], ahead[0]), self.speeds[self.leg, runs]
 
@@ -138,7 +159,9 @@ def allocated(boat: Boat, X: Array, N: Array) -> Array:
     if boat.name == "catamaran":
         side = N / 0.4
         ahead = np.maximum(X, 0.3)
-        return np.array([np.minimum(np.hypot(ahead, side), 15.0), np.clip(np.arctan2(side, ahead), -1.3, 1.3)])
+        return np.array(
+            [np.minimum(np.hypot(ahead, side), 15.0), np.clip(np.arctan2(side, ahead), -1.3, 1.3)]
+        )
     if boat.name == "otter":
         thrust = np.array([X / 2 + N / 0.79, X / 2 - N / 0.79])
         k = np.where(thrust > 0.0, 0.01108, 0.006445)

@@ -92,8 +92,10 @@ class Voyage:
     def acts(self, boat: Boat, causes: Sequence[Cause]) -> Acts:
         """What another boat's actuators would have done of the same commands."""
         chain = Actuators(boat, causes, self.grid.dt)
-        found = [chain.step(self.commands[self.row_of(i - self.grid.lead)], i - self.grid.lead)
-                 for i in range(len(self.q))]  # fmt: skip
+        found = [
+            chain.step(self.commands[self.row_of(i - self.grid.lead)], i - self.grid.lead)
+            for i in range(len(self.q))
+        ]
         return Acts(*(np.array(part) for part in zip(*found, strict=True)))
 
 
@@ -105,14 +107,21 @@ def ambient(boat: Boat, n: int, dt: float, rng: Rng) -> Array:
     return np.asarray(lfilter([1.0], [1.0, -keep], white, axis=0) * boat.ambient()[:, None])
 
 
-def sail(boat: Boat, causes: Sequence[Cause], pilot: Pilot, grid: Grid, noise: Array, rng: Rng) -> Voyage:
+def sail(
+    boat: Boat, causes: Sequence[Cause], pilot: Pilot, grid: Grid, noise: Array, rng: Rng
+) -> Voyage:
     """The real boat, `noise` (6,) of its instruments."""
     real = changed(boat, causes)
     count = grid.lead + grid.steps + 1
     push = ambient(boat, count, grid.dt, rng)
     errors = noise[:, None] * rng.standard_normal((grid.rows, 6, RUNS))
     late = round(max((c.late for c in causes), key=abs, default=0.0) / grid.dt)
-    chain, force, flow, inverse = Actuators(real, causes, grid.dt), extra(real, causes), water(causes), real.inverse()
+    chain, force, flow, inverse = (
+        Actuators(real, causes, grid.dt),
+        extra(real, causes),
+        water(causes),
+        real.inverse(),
+    )
     q, nu = pilot.begin()
     u = pilot.command(0, shown(causes, q))
     Q, NU, commands, recorded = [], [], [], []
@@ -125,6 +134,17 @@ def sail(boat: Boat, causes: Sequence[Cause], pilot: Pilot, grid: Grid, noise: A
             recorded.append(shown(causes, Q[max(i - late, 0)]) + errors[k // grid.every])
             u = pilot.command(k // grid.every, recorded[-1]) if k else u
             commands.append(u)
-        q, nu = step(real, np.full(RUNS, k * grid.dt), run, q, nu, chain.step(u, k), grid.dt, push[i], force, flow,
-                     inverse)  # fmt: skip
+        q, nu = step(
+            real,
+            np.full(RUNS, k * grid.dt),
+            run,
+            q,
+            nu,
+            chain.step(u, k),
+            grid.dt,
+            push[i],
+            force,
+            flow,
+            inverse,
+        )
     return Voyage(grid, np.array(Q), np.array(NU), push, np.array(commands), np.array(recorded))

@@ -15,14 +15,14 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.real.common import print_verdict, report, runs_of, table
-from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.correlation_time import timed
-from boatsim.diagnose.filter import Track, noise_of, segments, track
-from boatsim.diagnose.fit import converge, fit
-from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.rank import selection
+from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis.correlation_time import timed
+from boatsim.diagnosis.filter import Track, noise_of, segments, track
+from boatsim.diagnosis.fit import converge, fit
+from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.ranking import selection
 from boatsim.physics.base import Array, Measurement, Shown
 from boatsim.recordings.table import Recording
 
@@ -31,14 +31,18 @@ UNSEEN = ("run_220", "run_225")
 GROUPS = 3  # of four runs each, for which what is missing is chosen on the other eight
 GOALS = {"free runs": 0.75, "dead reckoning": 0.6}
 HORIZON = 10.0  # [s] of a free run
-WINDOW, SHORTEST = 20.0, 5.0  # [s] of dead reckoning; [m] of path below which a window tells nothing
+WINDOW, SHORTEST = (
+    20.0,
+    5.0,
+)  # [s] of dead reckoning; [m] of path below which a window tells nothing
 
 
 def instruments(problem: Problem, found: Fit) -> list[Measurement]:
     """The measurement effects of a fit, with their fitted values."""
     kinds = {e.name: type(e) for e in problem.program.suspects if isinstance(e, Measurement)}
     values = {
-        n: {f.name: float(x) for f, x in zip(found.free, found.theta, strict=True) if f.effect == n} for n in kinds
+        n: {f.name: float(x) for f, x in zip(found.free, found.theta, strict=True) if f.effect == n}
+        for n in kinds
     }
     return [kinds[n](**values[n]) for n in found.suspects if n in kinds]
 
@@ -69,7 +73,9 @@ def dead_reckoning(run: Recording, heading: Array) -> list[float]:
     errors = []
     for a, b in zip(*segments(run.t, WINDOW), strict=True):
         if (travelled := float(path[a:b].sum())) >= SHORTEST:
-            errors.append(float(np.hypot(*(place[b] - place[a] - steps[a:b].sum(axis=0)))) / travelled)
+            errors.append(
+                float(np.hypot(*(place[b] - place[a] - steps[a:b].sum(axis=0)))) / travelled
+            )
     return errors
 
 
@@ -86,12 +92,14 @@ class LeftOut:
 
 def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
     """Each run judged by a model chosen without its group and fitted without it; one compiled program serves all."""
-    whole = [analysis.open_recording(path, VESSEL, ())[0] for path in runs.values()]
-    stated, rate = noise_of(found.vessel, whole), rules.rate(found.vessel)
+    whole = [pipeline.open_recording(path, VESSEL, ())[0] for path in runs.values()]
+    stated, rate = noise_of(found.vessel, whole), priors.rate(found.vessel)
     tracks = [track(run.thinned(rate), found.problem.program, stated) for run in whole]
     recorded = dict(zip((t.name for t in tracks), whole, strict=True))
-    of_hull = replace(found.problem.ambient, time_constant=rules.time_constant(found.vessel))
-    usual = Problem(tracks, of_hull, found.problem.uncertainty)  # of how long forces last a run left out tells nothing
+    of_hull = replace(found.problem.ambient, time_constant=priors.time_constant(found.vessel))
+    usual = Problem(
+        tracks, of_hull, found.problem.uncertainty
+    )  # of how long forces last a run left out tells nothing
     out = []
     for group in (tracks[i::GROUPS] for i in range(GROUPS)):
         rest = without(usual, tracks, group)
@@ -111,7 +119,10 @@ def without(problem: Problem, tracks: Sequence[Track], unseen: Sequence[Track]) 
 
 def _judged(rest: Problem, chosen: tuple[Fit, Fit], unseen: Track, run: Recording) -> LeftOut:
     """Coefficients of the recalibrated and the patched boat fitted on `rest`, both judged on the run left out."""
-    fits = {name: converge(rest, fit(rest, f)) for name, f in zip(("recalibrated", "patched"), chosen, strict=True)}
+    fits = {
+        name: converge(rest, fit(rest, f))
+        for name, f in zip(("recalibrated", "patched"), chosen, strict=True)
+    }
     stretches = free_runs(rest, fits, [unseen], HORIZON)
     heading = corrected(run["psi_rad"], instruments(rest, fits["patched"]))
     reckoned = dead_reckoning(run, run["psi_rad"]), dead_reckoning(run, heading)
@@ -120,13 +131,30 @@ def _judged(rest: Problem, chosen: tuple[Fit, Fit], unseen: Track, run: Recordin
 
 def print_left_out(folds: Sequence[LeftOut]) -> None:
     """A row per run, then all of them pooled against the goals; what each fold chose."""
-    header = ["left out", "recalibrated [m]", "patched [m]", "ratio", "as recorded", "corrected", "ratio"]
+    header = [
+        "left out",
+        "recalibrated [m]",
+        "patched [m]",
+        "ratio",
+        "as recorded",
+        "corrected",
+        "ratio",
+    ]
     rows = [[f.run, *_free(f.stretches), *_medians(f.as_recorded, f.corrected)] for f in folds]
     stretches = [s for f in folds for s in f.stretches]
-    before, after = [e for f in folds for e in f.as_recorded], [e for f in folds for e in f.corrected]
+    before, after = (
+        [e for f in folds for e in f.as_recorded],
+        [e for f in folds for e in f.corrected],
+    )
     rows.append(["all", *_free(stretches), *_medians(before, after)])
-    rows.append(["goal", "", "", f"<= {GOALS['free runs']}", "", "", f"<= {GOALS['dead reckoning']}"])
-    table("each run left out once: position rms of free runs of 10 s; error per path of dead reckoning", header, rows)
+    rows.append(
+        ["goal", "", "", f"<= {GOALS['free runs']}", "", "", f"<= {GOALS['dead reckoning']}"]
+    )
+    table(
+        "each run left out once: position rms of free runs of 10 s; error per path of dead reckoning",
+        header,
+        rows,
+    )
     chosen = Counter(n for f in folds for n in f.suspects)
     table(
         "chosen without the run, and for how many of them",
@@ -154,7 +182,7 @@ def main() -> None:
     """Diagnose, then leave one run out."""
     runs = runs_of(NAME)
     fitted = [path for name, path in runs.items() if name not in UNSEEN]
-    found = analysis.diagnose(fitted, [runs[name] for name in UNSEEN], VESSEL, horizon=HORIZON)
+    found = pipeline.diagnose(fitted, [runs[name] for name in UNSEEN], VESSEL, horizon=HORIZON)
     report(found, NAME)
     print_verdict(found)
     print_left_out(left_out(found, runs))

@@ -19,27 +19,34 @@ import numpy as np
 
 from benchmarks.real.common import OUT, RECORDINGS, report, runs_of, table
 from benchmarks.real.esso_osaka_vessel import NAME, SOURCE, written
-from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.climb import climbed
-from boatsim.diagnose.filter import Track, noise_of, segments
-from boatsim.diagnose.fit import converge, fit
-from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
-from boatsim.diagnose.log.outlying_fixes import without_outliers
-from boatsim.diagnose.problem import Fit, Free, Problem
+from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis.checks.position_outliers import without_outliers
+from boatsim.diagnosis.coordinate_search import climbed
+from boatsim.diagnosis.filter import Track, noise_of, segments
+from boatsim.diagnosis.fit import converge, fit
+from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.problem import Fit, Free, Problem
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 FITTED, JUDGED = ("random", "zigzag"), ("turn", "berthing")
-UNSEEN = ("random_0731_1248", "random_0806_1624_6", "zigzag_0731_1403")  # of the fitted days, for the diagnosis itself
+UNSEEN = (
+    "random_0731_1248",
+    "random_0806_1624_6",
+    "zigzag_0731_1403",
+)  # of the fitted days, for the diagnosis itself
 WINDOW = 300.0  # [s] of each run that the diagnosis is given at most, for the time it takes
 HORIZON = 60.0  # [s] of a free run
 MODELS = ("nominal", "recalibrated", "patched")
 TITLE = f"fitted on {' and '.join(FITTED)} runs, judged on {' and '.join(JUDGED)}"
 KEPT = OUT / NAME / "judged.json"
 GOALS = {"nominal": 0.75, "recalibrated": 0.9}  # position, patched over this one
-UNITS = {"position_rms_m": ("position [m]", np.sqrt(2.0)), "heading_rms_rad": ("heading [deg]", 57.29578)}
+UNITS = {
+    "position_rms_m": ("position [m]", np.sqrt(2.0)),
+    "heading_rms_rad": ("heading [deg]", 57.29578),
+}
 LONG = 250.0  # [s] of a run in which a ship of 3 m has met the wind from several sides
 NEAR_DIRECTION, NEAR_SIZE, SHARE = 30.0, 0.3, 0.75  # [deg], relative, of the runs
 WEATHER = ("force", "toward")  # of the wind: the rest says how the hull takes it
@@ -50,7 +57,10 @@ NEARLY = 0.1  # [nats] that a wind is near enough its best
 SHORTEST = 15.0  # [s] of a stretch that is used
 SMOOTH, AROUND = 2.0, 5.0  # [s] over which a rate is taken; about a defect not compared
 LEAP, STEP = 0.1, 0.03  # [m], [rad] in a row of 0.1 s: twice as fast as the ship ever goes or turns
-LATE, SOON = 2.5, 0.2  # [s] before a leap back, and behind it, in which fixes are late: the longest gap is as long
+LATE, SOON = (
+    2.5,
+    0.2,
+)  # [s] before a leap back, and behind it, in which fixes are late: the longest gap is as long
 
 
 # ---- the recordings themselves
@@ -83,7 +93,9 @@ def checked(path: Path) -> Checked:
     north, east = slope(d["x_m"]), slope(d["y_m"])
     u, v = np.cos(psi) * north + np.sin(psi) * east, np.cos(psi) * east - np.sin(psi) * north
     mean = np.ones(2 * n + 1) / (2 * n + 1)
-    said_u, said_v, said_r = (np.convolve(d[c], mean, "same") for c in ("u_mps", "v_mps", "r_radps"))
+    said_u, said_v, said_r = (
+        np.convolve(d[c], mean, "same") for c in ("u_mps", "v_mps", "r_radps")
+    )
 
     def off(k: int) -> tuple[float, Array]:
         """Misfit with the velocities taken k rows earlier, and sway velocity by positions as v, r and 1 make it."""
@@ -95,7 +107,11 @@ def checked(path: Path) -> Checked:
     shift = min(range(-10, 16), key=lambda k: off(k)[0])
     made = off(shift)[1]
     return Checked(
-        float(np.mean(d["filled"] > 0.0)), int(leaps.sum()), shift * dt, float(made[1]), 1.0 / float(made[0])
+        float(np.mean(d["filled"] > 0.0)),
+        int(leaps.sum()),
+        shift * dt,
+        float(made[1]),
+        1.0 / float(made[0]),
     )
 
 
@@ -108,7 +124,9 @@ def _derivative(n: int, dt: float) -> Array:
 def defects(d: Array) -> tuple[Array, Array]:
     """Rows whose fix is bridged, rows from which position or heading leaps to the next (booleans)."""
     moved = np.hypot(np.diff(d["x_m"], append=d["x_m"][-1]), np.diff(d["y_m"], append=d["y_m"][-1]))
-    turned = np.diff(d["psi_rad"], append=d["psi_rad"][-1]) - d["r_radps"] * np.diff(d["t_s"], append=d["t_s"][-1])
+    turned = np.diff(d["psi_rad"], append=d["psi_rad"][-1]) - d["r_radps"] * np.diff(
+        d["t_s"], append=d["t_s"][-1]
+    )
     return d["filled"] > 0.0, (moved > LEAP) | (np.abs(turned) > STEP)
 
 
@@ -121,7 +139,11 @@ def sound(recording: Recording, path: Path, shortest: float) -> list[Recording]:
     whole = replace(recording, signals={**recording.signals, **fixes})
     at = d["t_s"][leaps]
     begins, ends = [whole.t[0], *(at + SOON)], [*(at - LATE), whole.t[-1]]
-    return [whole.between(float(a), float(b)) for a, b in zip(begins, ends, strict=True) if b - a >= shortest]
+    return [
+        whole.between(float(a), float(b))
+        for a, b in zip(begins, ends, strict=True)
+        if b - a >= shortest
+    ]
 
 
 def print_recordings(runs: Mapping[str, Path]) -> None:
@@ -129,13 +151,29 @@ def print_recordings(runs: Mapping[str, Path]) -> None:
     rows = []
     for kind in (*FITTED, *JUDGED):
         found = [checked(p) for n, p in runs.items() if n.startswith(kind)]
-        middle = [float(np.median([getattr(c, f) for c in found])) for f in ("late_s", "aft_m", "drift")]
+        middle = [
+            float(np.median([getattr(c, f) for c in found])) for f in ("late_s", "aft_m", "drift")
+        ]
         bridged = float(np.mean([c.bridged for c in found]))
-        cells = (f"{100 * bridged:.1f} %", str(sum(c.leaps for c in found)), *(f"{x:.2f}" for x in middle))
+        cells = (
+            f"{100 * bridged:.1f} %",
+            str(sum(c.leaps for c in found)),
+            *(f"{x:.2f}" for x in middle),
+        )
         rows.append([kind, str(len(found)), *cells])
-    header = ["", "runs", "bridged", "leaps", "u, v late [s]", "v's point aft [m]", "v / that of x, y"]
+    header = [
+        "",
+        "runs",
+        "bridged",
+        "leaps",
+        "u, v late [s]",
+        "v's point aft [m]",
+        "v / that of x, y",
+    ]
     table("what is wrong with the recordings (medians over runs)", header, rows)
-    print("(fixes held over are bridged: left out; behind some of them position or heading leaps, by up to 10 deg that")
+    print(
+        "(fixes held over are bridged: left out; behind some of them position or heading leaps, by up to 10 deg that"
+    )
     print(
         " the yaw rate has not got: runs are cut there; recorded u, v lag behind x, y and are those of another point of"
     )
@@ -204,7 +242,9 @@ class Weather:
     def _part(self, at: Sequence[int], theta: Array | None = None) -> Fit:
         free = tuple(self.ship.free[i] for i in at)
         x = self.ship.theta[at] if theta is None else theta
-        return Fit(self.ship.suspects, free, x, np.diag([f.sd**2 for f in free]), self.ship.levels, -np.inf)
+        return Fit(
+            self.ship.suspects, free, x, np.diag([f.sd**2 for f in free]), self.ship.levels, -np.inf
+        )
 
     def wind(self, tracks: Sequence[Track]) -> Wind:
         """The wind common to some tracks, with the ship as fitted.
@@ -223,7 +263,9 @@ class Weather:
             return likelihood - 0.5 * float(x @ x) / usual**2
 
         begun = [USUAL * np.array([np.cos(a), np.sin(a)]) for a in STARTS]
-        return towards(max((climbed(score, x, USUAL, NEARLY) for x in begun), key=lambda found: found[0])[1])
+        return towards(
+            max((climbed(score, x, USUAL, NEARLY) for x in begun), key=lambda found: found[0])[1]
+        )
 
     def blown(self, one: Track, wind: Wind) -> Track:
         """A track with that wind among its own values."""
@@ -244,7 +286,9 @@ class Weather:
 
     def free_runs(self, one: Track, wind: Wind) -> list[FreeRun]:
         """Free runs of the ship over a run in that wind."""
-        return free_runs(self.problem, {"patched": self._part(self.rest)}, [self.blown(one, wind)], HORIZON)
+        return free_runs(
+            self.problem, {"patched": self._part(self.rest)}, [self.blown(one, wind)], HORIZON
+        )
 
 
 def around(stretches: Sequence[Recording], a: float, b: float) -> list[Recording]:
@@ -277,7 +321,16 @@ def print_winds(found: Mapping[str, Wind], seconds: Mapping[str, float]) -> None
             "yes" if good else "-",
         )
         rows.append([name, *cells])
-    header = ["run", "blows to [deg]", "measured", "off", "speed [m/s]", "measured", "ratio", "both near"]
+    header = [
+        "run",
+        "blows to [deg]",
+        "measured",
+        "off",
+        "speed [m/s]",
+        "measured",
+        "ratio",
+        "both near",
+    ]
     table("steady wind per run, found without the anemometer", header, rows)
     near_to = f"{NEAR_DIRECTION:g} deg and {100 * NEAR_SIZE:g} %"
     print(f"within {near_to}: {len(near)} of {len(rows)} runs (goal {SHARE:g} of them);")
@@ -296,16 +349,39 @@ def print_judged(stretches: Sequence[FreeRun], title: str) -> None:
         off = errors(some)
         for family, (what, factor) in UNITS.items():
             a, b, c = (off[family][m] * factor for m in MODELS)
-            goals = [f"<= {GOALS[m]:g}" if not kind and family.startswith("position") else "" for m in GOALS]
-            cells = [f"{a:.3f}", f"{b:.3f}", f"{c:.3f}", f"{c / a:.2f}", goals[0], f"{c / b:.2f}", goals[1]]
+            goals = [
+                f"<= {GOALS[m]:g}" if not kind and family.startswith("position") else ""
+                for m in GOALS
+            ]
+            cells = [
+                f"{a:.3f}",
+                f"{b:.3f}",
+                f"{c:.3f}",
+                f"{c / a:.2f}",
+                goals[0],
+                f"{c / b:.2f}",
+                goals[1],
+            ]
             rows.append([f"{kind or 'all'}, {what}", str(len(some)), *cells])
-    header = ["rms", "free runs", "captive", "recalibrated", "patched", "/ captive", "goal", "/ recalibrated", "goal"]
+    header = [
+        "rms",
+        "free runs",
+        "captive",
+        "recalibrated",
+        "patched",
+        "/ captive",
+        "goal",
+        "/ recalibrated",
+        "goal",
+    ]
     table(title, header, rows)
 
 
 def keep(stretches: Sequence[FreeRun]) -> None:
     """What was judged, for the second mode to be laid beside it."""
-    found = {kind: errors([s for s in stretches if s.run.startswith(kind)]) for kind in (*JUDGED, "")}
+    found = {
+        kind: errors([s for s in stretches if s.run.startswith(kind)]) for kind in (*JUDGED, "")
+    }
     KEPT.parent.mkdir(parents=True, exist_ok=True)
     KEPT.write_text(json.dumps(found, indent=1), encoding="utf-8")
 
@@ -318,7 +394,9 @@ def with_model(stretches: Sequence[FreeRun], patched: Sequence[FreeRun]) -> list
     ]
 
 
-def in_rests_wind(weather: Weather, whole: Track, stretches: Sequence[Recording], laid: Laid) -> list[FreeRun]:
+def in_rests_wind(
+    weather: Weather, whole: Track, stretches: Sequence[Recording], laid: Laid
+) -> list[FreeRun]:
     """Free runs over each minute of a run, in the wind found in the rest of that run."""
     out = []
     for a, b in zip(*segments(whole.times, HORIZON), strict=True):
@@ -348,13 +426,15 @@ def as_recorded(name: str, recording: Recording) -> Recording:
 
 
 def opened(
-    runs: Mapping[str, Path], vessel: str, completed: Callable[[str, Recording], Recording] = as_recorded
+    runs: Mapping[str, Path],
+    vessel: str,
+    completed: Callable[[str, Recording], Recording] = as_recorded,
 ) -> tuple[dict[str, Opened], Vessel]:
     """Every run, thinned, once what there is beside it is laid there."""
-    boat = analysis.vessel_for(next(iter(runs.values())), vessel, ())
-    rate, found = rules.rate(boat), {}
+    boat = pipeline.vessel_for(next(iter(runs.values())), vessel, ())
+    rate, found = priors.rate(boat), {}
     for name, path in runs.items():
-        recording = completed(name, analysis.open_recording(path, vessel, ())[0])
+        recording = completed(name, pipeline.open_recording(path, vessel, ())[0])
         parts = [r.thinned(rate) for r in sound(recording, path, SHORTEST)]
         found[name] = Opened(without_outliers(recording.thinned(rate), boat), parts)
     return found, boat
@@ -367,7 +447,7 @@ def diagnosed(recordings: Mapping[str, Opened], boat: Vessel) -> Diagnosis:
     unseen = [some[n].whole for n in UNSEEN]
     boats = {r.path: boat for r in (*fitted, *unseen)}
     note = f"kept unseen: {', '.join(UNSEEN)}; of the others the longest stretch without a leap, {WINDOW:g} s at most"
-    return analysis.diagnose_recordings(fitted, unseen, boats, note, horizon=HORIZON)
+    return pipeline.diagnose_recordings(fitted, unseen, boats, note, horizon=HORIZON)
 
 
 def print_named(found: Diagnosis) -> None:
@@ -375,7 +455,9 @@ def print_named(found: Diagnosis) -> None:
     answer = found.findings.answer
     print(f"\nverdict: {answer['verdict']}")
     for e in answer["effects"]:
-        values = ", ".join(f"{k} {p['value']:.3g} +- {p['sd']:.2g}" for k, p in e["parameters"].items())
+        values = ", ".join(
+            f"{k} {p['value']:.3g} +- {p['sd']:.2g}" for k, p in e["parameters"].items()
+        )
         tied = f"; hardly to be told from {', '.join(e['tied_with'])}" if e["tied_with"] else ""
         print(f"  {e['kind']}: {e['name']} ({e['gain_nats']:.0f} nats): {values}{tied}")
 
@@ -406,7 +488,11 @@ def main() -> None:
     print_winds({n: weather.wind(some) for n, some in tracks.items()}, seconds)
     fits = {"nominal": ranking.nominal, "recalibrated": recalibrated}
     before = free_runs(problem, fits, list(judged.values()), HORIZON)
-    after = [s for n, t in judged.items() for s in in_rests_wind(weather, t, recordings[n].stretches, laid)]
+    after = [
+        s
+        for n, t in judged.items()
+        for s in in_rests_wind(weather, t, recordings[n].stretches, laid)
+    ]
     judgement = with_model(before, after)
     print_judged(judgement, TITLE)
     keep(judgement)

@@ -16,7 +16,9 @@ from benchmarks.real.common import OUT, RECORDINGS
 NAME = "esso_osaka"
 BLANKS = Path(__file__).parent / NAME
 SOURCE = RECORDINGS / NAME / "vessel.json"
-WATERS_SHARE = 0.36  # of I_zz + J_zz, about as of KVLCC2 (6075 of 16089 kg m^2); the sum alone moves the ship
+WATERS_SHARE = (
+    0.36  # of I_zz + J_zz, about as of KVLCC2 (6075 of 16089 kg m^2); the sum alone moves the ship
+)
 
 
 def written(folder: Path = OUT / NAME / "vessel" / NAME, wind_known: bool = False) -> Path:
@@ -42,7 +44,9 @@ def filled(particulars: Mapping[str, Any]) -> dict[str, float]:
     """Every blank's number: those of the particulars by their own names, and what is made of them."""
     p = dict(_numbers(particulars))
     p |= {
-        f"{short}_{i}": x for short, name in LISTS.items() for i, x in enumerate(particulars["mmg"]["propeller"][name])
+        f"{short}_{i}": x
+        for short, name in LISTS.items()
+        for i, x in enumerate(particulars["mmg"]["propeller"][name])
     }
     p["D_m"] = particulars["propeller"]["D_m"]  # the side thrusters have one too
     unit = 0.5 * p["density_water_kgm3"] * p["Lpp_m"] ** 2 * p["draught_m"]  # [kg]
@@ -62,7 +66,10 @@ def filled(particulars: Mapping[str, Any]) -> dict[str, float]:
         "wind_front": front,
         "wind_side": side,
         "wind_arm": wind["N1"] / wind["Y1"] * p["Lpp_m"],
-        "wind_swing": -2.0 * wind["N2"] / wind["Y1"] * p["Lpp_m"],  # its angle is counted from the wind against it
+        "wind_swing": -2.0
+        * wind["N2"]
+        / wind["Y1"]
+        * p["Lpp_m"],  # its angle is counted from the wind against it
     }
 
 

@@ -25,20 +25,25 @@ from benchmarks.real.esso_osaka_pond import (
     print_named,
 )
 from benchmarks.real.esso_osaka_vessel import NAME, written
-from boatsim.diagnose.filter import noise_of
-from boatsim.diagnose.fit import converge
-from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.filter import noise_of
+from boatsim.diagnosis.fit import converge
+from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.recordings.table import Recording
 
 CALLED = f"{NAME}_wind"
-STEADY = 0.5  # [s] of readings taken together: the vessel's rate, in less a hull of 3 m does nothing
+STEADY = (
+    0.5  # [s] of readings taken together: the vessel's rate, in less a hull of 3 m does nothing
+)
 
 
 def with_wind(name: str, recording: Recording) -> Recording:
     """A run with its anemometer's columns, the mean of each `STEADY` seconds; the direction without jumps of a turn."""
     d = np.genfromtxt(RECORDINGS / NAME / "wind" / f"{name}.csv", delimiter=",", names=True)
     good = np.isfinite(d["true_speed_mps"]) & np.isfinite(d["true_direction_rad"])
-    read = {"wind_mps": d["true_speed_mps"][good], "wind_from_rad": np.unwrap(d["true_direction_rad"][good])}
+    read = {
+        "wind_mps": d["true_speed_mps"][good],
+        "wind_from_rad": np.unwrap(d["true_direction_rad"][good]),
+    }
     part = np.floor(recording.t / STEADY + 1e-6).astype(int)
     laid = {n: np.interp(recording.t, d["t_s"][good], x) for n, x in read.items()}
     rows = np.maximum(np.bincount(part), 1)
@@ -46,7 +51,9 @@ def with_wind(name: str, recording: Recording) -> Recording:
     return replace(recording, signals=recording.signals | means)
 
 
-def print_against(known: Sequence[FreeRun], concealed: Mapping[str, Mapping[str, Mapping[str, float]]]) -> None:
+def print_against(
+    known: Sequence[FreeRun], concealed: Mapping[str, Mapping[str, Mapping[str, float]]]
+) -> None:
     """Errors of the three models with the wind as an input, beside those of the first mode where they are kept."""
     rows = []
     for kind in (*JUDGED, ""):
@@ -65,8 +72,12 @@ def print_against(known: Sequence[FreeRun], concealed: Mapping[str, Mapping[str,
                     f"{now[2] / then[2]:.2f}",
                 ]
             )
-    models = [f"{m}{end}" for m in ("captive", "recalibrated", "patched") for end in ("", " + wind")]
-    table(TITLE, ["rms", "free runs", *models, "patched / captive, + wind", "+ wind / without"], rows)
+    models = [
+        f"{m}{end}" for m in ("captive", "recalibrated", "patched") for end in ("", " + wind")
+    ]
+    table(
+        TITLE, ["rms", "free runs", *models, "patched / captive, + wind", "+ wind / without"], rows
+    )
     if not concealed:
         print(f"(nothing to lay beside it: benchmarks.real.esso_osaka_pond writes {KEPT})")
 

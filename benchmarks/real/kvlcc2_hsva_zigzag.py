@@ -8,12 +8,12 @@ Z_20_05; then each of the ten runs is left out once, with the couplings kept and
 from collections.abc import Mapping
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import Track
-from boatsim.diagnose.fit import converge, descend
-from boatsim.diagnose.free_runs import errors, free_runs
-from boatsim.diagnose.report import show
+from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.fit import converge, descend
+from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.report import before_after
 
 NAME = "kvlcc2_hsva_zigzag"
 UNSEEN = ("Z_15_05", "Z_20_05")
@@ -38,9 +38,23 @@ def print_unseen(found: Diagnosis, goals: Mapping[str, float] = GOALS) -> None:
     rows = []
     for family, goal in goals.items():
         what, factor = UNITS[family]
-        nominal, before, after = (unseen[family][m] * factor for m in show.MODELS)
-        rows.append([what, *(f"{x:.3f}" for x in (nominal, before, after)), f"{after / before:.3f}", f"<= {goal}"])
-    header = ["rms of free runs, 60 s", "as published", "recalibrated", "patched", "patched / recalibrated", "goal"]
+        nominal, before, after = (unseen[family][m] * factor for m in before_after.MODELS)
+        rows.append(
+            [
+                what,
+                *(f"{x:.3f}" for x in (nominal, before, after)),
+                f"{after / before:.3f}",
+                f"<= {goal}",
+            ]
+        )
+    header = [
+        "rms of free runs, 60 s",
+        "as published",
+        "recalibrated",
+        "patched",
+        "patched / recalibrated",
+        "goal",
+    ]
     table(f"fitted on eight runs, unseen {' and '.join(UNSEEN)}", header, rows)
 
 
@@ -50,11 +64,22 @@ def print_couplings(found: Diagnosis) -> None:
     named = {n.name: n.gain for n in ranking.named}
     on_top = {n: f.evidence - ranking.best.evidence for n, f in ranking.last.items()}
     rows = [
-        [name, f"{alone:.0f}", f"{named.get(name, on_top.get(name, 0.0)):.0f}", "missing" if name in named else "-"]
-        for name, alone in sorted(ranking.first.items(), key=lambda item: (item[0] not in named, -item[1]))
+        [
+            name,
+            f"{alone:.0f}",
+            f"{named.get(name, on_top.get(name, 0.0)):.0f}",
+            "missing" if name in named else "-",
+        ]
+        for name, alone in sorted(
+            ranking.first.items(), key=lambda item: (item[0] not in named, -item[1])
+        )
     ]
     rows.sort(key=lambda row: -named.get(row[0], -1.0))
-    table("couplings in order of gain", ["entry", "alone [nats]", "beside the others [nats]", "verdict"], rows)
+    table(
+        "couplings in order of gain",
+        ["entry", "alone [nats]", "beside the others [nats]", "verdict"],
+        rows,
+    )
     idle = sorted((n for n, gain in on_top.items() if gain <= 0.0), key=lambda n: on_top[n])
     print(f"gains nothing beside what was named: {', '.join(idle) or 'none of the entries tried'}")
 
@@ -65,27 +90,44 @@ def print_left_out(found: Diagnosis, tracks: list[Track]) -> None:
     for out in tracks:
         problem = found.problem.on([t for t in tracks if t is not out])
         before, after = (
-            converge(problem, descend(problem, f, 4, 0.1)) for f in (found.ranking.recalibrated, found.ranking.best)
+            converge(problem, descend(problem, f, 4, 0.1))
+            for f in (found.ranking.recalibrated, found.ranking.best)
         )
-        unseen = errors(free_runs(problem, dict(zip(MODELS, (before, after), strict=True)), [out], HORIZON))
-        ahead = [n + (unseen[f]["patched"] < unseen[f]["recalibrated"]) for n, f in zip(ahead, UNITS, strict=True)]
+        unseen = errors(
+            free_runs(problem, dict(zip(MODELS, (before, after), strict=True)), [out], HORIZON)
+        )
+        ahead = [
+            n + (unseen[f]["patched"] < unseen[f]["recalibrated"])
+            for n, f in zip(ahead, UNITS, strict=True)
+        ]
         rows.append([out.name, *cells(unseen)])
-    header = ["left out", *(c for what, _ in UNITS.values() for c in (f"recalibrated {what}", "patched", "ratio"))]
-    table("leave one run out: rms of its free runs, 60 s, all else refitted on the nine others", header, rows)
-    print(f"better than the recalibrated model in {ahead[0]} of {len(rows)} runs in heading, {ahead[1]} in position")
-    print("(the hull is course-unstable: in the 1 degree zig-zags the smallest error at the start grows all along)")
+    header = [
+        "left out",
+        *(c for what, _ in UNITS.values() for c in (f"recalibrated {what}", "patched", "ratio")),
+    ]
+    table(
+        "leave one run out: rms of its free runs, 60 s, all else refitted on the nine others",
+        header,
+        rows,
+    )
+    print(
+        f"better than the recalibrated model in {ahead[0]} of {len(rows)} runs in heading, {ahead[1]} in position"
+    )
+    print(
+        "(the hull is course-unstable: in the 1 degree zig-zags the smallest error at the start grows all along)"
+    )
 
 
 def main() -> None:
     """Diagnose, then leave one run out."""
     runs = runs_of(NAME)
     fitted = [p for n, p in runs.items() if n not in UNSEEN]
-    found = analysis.diagnose(fitted, [runs[n] for n in UNSEEN], horizon=HORIZON)
+    found = pipeline.diagnose(fitted, [runs[n] for n in UNSEEN], horizon=HORIZON)
     report(found, NAME)
     print_unseen(found)
     print_couplings(found)
-    rate = rules.rate(found.vessel)
-    opened = [analysis.open_recording(path, None, ())[0].thinned(rate) for path in runs.values()]
+    rate = priors.rate(found.vessel)
+    opened = [pipeline.open_recording(path, None, ())[0].thinned(rate) for path in runs.values()]
     print_left_out(found, [found.laid(r) for r in opened])
 
 

@@ -11,11 +11,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import Track
-from boatsim.diagnose.problem import Fit
-from boatsim.diagnose.report.show import fits_of
+from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.problem import Fit
+from boatsim.diagnosis.report.before_after import fits_of
 from boatsim.physics.base import Array
 
 NAME = "kvlcc2_marin_free"
@@ -34,35 +34,62 @@ def turn(found: Diagnosis, model: Fit, circle: Track) -> Array:
     first, y = circle.free_runs(values, on, model.levels, DURATION)[0]
     recorded = circle.measured[first : first + len(y)]
     off = np.column_stack(
-        [y[:, 3] - recorded[:, circle.signals.index("u_mps")], y[:, 5] - recorded[:, circle.signals.index("r_radps")]]
+        [
+            y[:, 3] - recorded[:, circle.signals.index("u_mps")],
+            y[:, 5] - recorded[:, circle.signals.index("r_radps")],
+        ]
     )
     return np.asarray(np.sqrt(np.mean(off**2, axis=0)) * [1.0, np.degrees(1.0)])
 
 
-def print_circle(found: Diagnosis, circle: Track, goals: Mapping[str, float], header: str = "goal") -> None:
+def print_circle(
+    found: Diagnosis, circle: Track, goals: Mapping[str, float], header: str = "goal"
+) -> None:
     """The turning circle kept unseen, against the goals for speed and yaw rate."""
-    nominal, before, after = (turn(found, f, circle) for f in fits_of(found.problem, found.ranking).values())
+    nominal, before, after = (
+        turn(found, f, circle) for f in fits_of(found.problem, found.ranking).values()
+    )
     rows = [
-        [what, *(f"{x[i]:.3f}" for x in (nominal, before, after)), f"{after[i] / before[i]:.3f}", f"<= {goal}"]
+        [
+            what,
+            *(f"{x[i]:.3f}" for x in (nominal, before, after)),
+            f"{after[i] / before[i]:.3f}",
+            f"<= {goal}",
+        ]
         for i, (what, goal) in enumerate(goals.items())
     ]
-    columns = ["rms error", "as published", "recalibrated", "patched", "patched / recalibrated", header]
-    table(f"fitted on {', '.join(FITTED)}, unseen {UNSEEN}, one free run of {DURATION:g} s", columns, rows)
+    columns = [
+        "rms error",
+        "as published",
+        "recalibrated",
+        "patched",
+        "patched / recalibrated",
+        header,
+    ]
+    table(
+        f"fitted on {', '.join(FITTED)}, unseen {UNSEEN}, one free run of {DURATION:g} s",
+        columns,
+        rows,
+    )
 
 
 def main() -> None:
     """Diagnose the zig-zags, judge on the circle."""
     runs = runs_of(NAME)
-    found = analysis.diagnose([runs[n] for n in FITTED], [runs[UNSEEN]], horizon=HORIZON)
+    found = pipeline.diagnose([runs[n] for n in FITTED], [runs[UNSEEN]], horizon=HORIZON)
     report(found, NAME)
-    recording, boat = analysis.open_recording(runs[UNSEEN], None, ())
-    circle = found.laid(recording.thinned(rules.rate(boat)))
+    recording, boat = pipeline.open_recording(runs[UNSEEN], None, ())
+    circle = found.laid(recording.thinned(priors.rate(boat)))
     print_circle(found, circle, GOALS, f"goal (and <= {SHARE})")
     speed = circle.measured[circle.times <= DURATION, circle.signals.index("u_mps")]
     kept = float(np.sqrt(np.mean((speed - speed[0]) ** 2)))
     print(f"(a strictly linear hull keeps its approach speed: {kept:.3f} m/s rms)")
     gains = sorted(found.ranking.named, key=lambda n: -n.gain)
-    table("couplings in order of gain", ["entry", "gain [nats]"], [[n.name, f"{n.gain:.0f}"] for n in gains])
+    table(
+        "couplings in order of gain",
+        ["entry", "gain [nats]"],
+        [[n.name, f"{n.gain:.0f}"] for n in gains],
+    )
 
 
 if __name__ == "__main__":

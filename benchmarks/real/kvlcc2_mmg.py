@@ -15,15 +15,15 @@ import numpy as np
 from benchmarks.real import kvlcc2_hsva_zigzag as hsva
 from benchmarks.real import kvlcc2_marin_free as marin
 from benchmarks.real.common import print_verdict, report, runs_of, table
-from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import Track
-from boatsim.diagnose.fit import converge, descend
-from boatsim.diagnose.free_runs import errors, free_runs
-from boatsim.diagnose.levels import fit_force, force_prior
-from boatsim.diagnose.log.outlying_fixes import without_outliers
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.report.show import MODELS, fits_of
+from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis.checks.position_outliers import without_outliers
+from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.fit import converge, descend
+from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.noise_levels import fit_force, force_prior
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.report.before_after import MODELS, fits_of
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
@@ -76,8 +76,13 @@ def swings(found: Diagnosis, run: Recording) -> dict[str, list[float]]:
     laid = found.laid(run)
     heading = int(laid.codes[laid.signals.index("psi_rad")])
     for name, fit in fits_of(found.problem, found.ranking).items():
-        values, on = found.problem.values(laid, fit.free, fit.theta), found.problem.program.switches(fit.suspects)
-        first, y = laid.free_runs(values, on, fit.levels, float(laid.times[rows - 1] - laid.times[0]))[0]
+        values, on = (
+            found.problem.values(laid, fit.free, fit.theta),
+            found.problem.program.switches(fit.suspects),
+        )
+        first, y = laid.free_runs(
+            values, on, fit.levels, float(laid.times[rows - 1] - laid.times[0])
+        )[0]
         out[name] = overshoots(y[:, heading], delta[first:], [i - first for i in at])
     return out
 
@@ -93,7 +98,11 @@ def print_overshoots(found: Diagnosis, runs: dict[str, Recording]) -> None:
             for i, count in enumerate(COUNT)
         ]
     header = ["zig-zag", "overshoot", "recorded", "as published", "recalibrated", "patched"]
-    table("heading past that of the rudder's reversal [deg], one free run from the first row", header, rows)
+    table(
+        "heading past that of the rudder's reversal [deg], one free run from the first row",
+        header,
+        rows,
+    )
 
 
 def cell(swung: Sequence[float], i: int) -> str:
@@ -115,7 +124,11 @@ def print_coefficients(found: Diagnosis) -> None:
     ):
         told = "yes" if v < (TOLD * f.sd) ** 2 else "hardly"
         rows.append([f"{f.effect} {f.name}", f"{x:.2f} +- {np.sqrt(v):.2f}", told])
-    table("recalibrated, as factors of the published model", ["coefficient", "factor", "told by the recordings"], rows)
+    table(
+        "recalibrated, as factors of the published model",
+        ["coefficient", "factor", "told by the recordings"],
+        rows,
+    )
 
 
 def print_left(found: Diagnosis) -> None:
@@ -125,7 +138,9 @@ def print_left(found: Diagnosis) -> None:
         print("\nnothing is left over that no entry explains")
         return
     structure = unknown.get("structure")
-    goes_with = f"; in {structure['axis']} it goes with {structure['goes_with']}" if structure else ""
+    goes_with = (
+        f"; in {structure['axis']} it goes with {structure['goes_with']}" if structure else ""
+    )
     print(f"\nleft over, whatever its cause: {unknown['gain_nats']:.0f} nats{goes_with}")
     for d in found.findings.answer["described"]:
         print(f"  described: {d}")
@@ -133,16 +148,25 @@ def print_left(found: Diagnosis) -> None:
 
 def opened(runs: dict[str, Path], vessel: str) -> dict[str, Recording]:
     """Recordings as the diagnosis takes them."""
-    read = {n: analysis.open_recording(path, vessel, ()) for n, path in runs.items()}
-    thin = {n: without_outliers(r.thinned(min(RATE, rules.rate(b))), b) for n, (r, b) in read.items()}
-    return {n: replace(r, name=n, notes=replace(r.notes, facts={**FACTS, **r.notes.facts})) for n, r in thin.items()}
+    read = {n: pipeline.open_recording(path, vessel, ()) for n, path in runs.items()}
+    thin = {
+        n: without_outliers(r.thinned(min(RATE, priors.rate(b))), b) for n, (r, b) in read.items()
+    }
+    return {
+        n: replace(r, name=n, notes=replace(r.notes, facts={**FACTS, **r.notes.facts}))
+        for n, r in thin.items()
+    }
 
 
-def diagnosed(runs: dict[str, Recording], unseen: Sequence[str], vessel: str, horizon: float) -> Diagnosis:
+def diagnosed(
+    runs: dict[str, Recording], unseen: Sequence[str], vessel: str, horizon: float
+) -> Diagnosis:
     """What the model leaves out of the recordings that are not kept unseen."""
-    boats = {r.path: analysis.vessel_for(r.path, vessel, ()) for r in runs.values() if r.path}
+    boats = {r.path: pipeline.vessel_for(r.path, vessel, ()) for r in runs.values() if r.path}
     fitted, kept = [r for n, r in runs.items() if n not in unseen], [runs[n] for n in unseen]
-    return analysis.diagnose_recordings(fitted, kept, boats, f"kept unseen: {', '.join(unseen)}", horizon=horizon)
+    return pipeline.diagnose_recordings(
+        fitted, kept, boats, f"kept unseen: {', '.join(unseen)}", horizon=horizon
+    )
 
 
 # ---- the two tanks
@@ -154,7 +178,9 @@ def likely(problem: Problem, found: Fit) -> float:
     """Log likelihood [nats] of the recordings by these coefficients, the water as rough as it then must be."""
     there = fit_force(problem, found)
     on = problem.program.switches(there.suspects)
-    return problem.likelihood(there.free, there.theta, on, there.levels) + force_prior(problem, there.levels)
+    return problem.likelihood(there.free, there.theta, on, there.levels) + force_prior(
+        problem, there.levels
+    )
 
 
 def print_room(found: Diagnosis, unseen: Sequence[Track], judged: Callable[[Fit], Errors]) -> None:
@@ -211,7 +237,9 @@ def of_marin(found: Diagnosis, runs: dict[str, Recording]) -> None:
     print_room(found, [circle], judged)
 
 
-TANKS: dict[str, tuple[str, tuple[str, ...], float, Callable[[Diagnosis, dict[str, Recording]], None]]] = {
+TANKS: dict[
+    str, tuple[str, tuple[str, ...], float, Callable[[Diagnosis, dict[str, Recording]], None]]
+] = {
     "hsva": (hsva.NAME, hsva.UNSEEN, hsva.HORIZON, of_hsva),
     "marin": (marin.NAME, (marin.UNSEEN,), marin.HORIZON, of_marin),
 }  # recordings, unseen runs, horizon [s] of free runs, what is printed of them

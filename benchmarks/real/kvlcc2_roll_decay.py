@@ -14,16 +14,16 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.real.common import report, table
-from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import Track
-from boatsim.diagnose.fit import converge
-from boatsim.diagnose.free_runs import errors, free_runs
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.report import show
-from boatsim.diagnose.search.evidence import price
-from boatsim.diagnose.search.rank import Ranking, rank
-from boatsim.diagnose.search.screen import screen
+from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.fit import converge
+from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.report import before_after
+from boatsim.diagnosis.search.evidence import price
+from boatsim.diagnosis.search.ranking import Ranking, rank
+from boatsim.diagnosis.search.screening import screen
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -42,8 +42,8 @@ Table = tuple[str, list[str], Rows]
 
 def opened(name: str) -> tuple[Recording, Vessel]:
     """A release as the diagnosis reads it."""
-    recording, vessel = analysis.open_recording(DATA / f"{name}.csv", None, ())
-    return replace(recording.thinned(rules.rate(vessel)), name=name), vessel
+    recording, vessel = pipeline.open_recording(DATA / f"{name}.csv", None, ())
+    return replace(recording.thinned(priors.rate(vessel)), name=name), vessel
 
 
 def cut(whole: Recording, edges: Sequence[float]) -> list[Recording]:
@@ -62,7 +62,9 @@ def by_windows(whole: Recording, vessel: Vessel) -> Diagnosis:
     """Windows of 20 s, every second one unseen; the rest at the end is left out."""
     parts = cut_windows(whole)
     note = f"every second window of {WINDOW:g} s was kept unseen"
-    return analysis.diagnose_recordings(parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON)
+    return pipeline.diagnose_recordings(
+        parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON
+    )
 
 
 def by_thirds(whole: Recording, vessel: Vessel, unseen: int = 1) -> Diagnosis:
@@ -70,7 +72,7 @@ def by_thirds(whole: Recording, vessel: Vessel, unseen: int = 1) -> Diagnosis:
     parts = thirds(whole)
     kept = parts.pop(unseen)
     note = f"{kept.name} was kept unseen"
-    return analysis.diagnose_recordings(parts, [kept], {whole.path: vessel}, note, horizon=HORIZON)
+    return pipeline.diagnose_recordings(parts, [kept], {whole.path: vessel}, note, horizon=HORIZON)
 
 
 def thirds(whole: Recording) -> list[Recording]:
@@ -125,15 +127,21 @@ def polar_runs(problem: Problem, fits: Mapping[str, Fit], laid: Track) -> dict[s
     omega, last = pulsation(laid), list(fits.values())[-1]
     whole = float(np.ptp(laid.times))
     on = problem.program.switches
-    smooth = laid.smoothed(problem.values(laid, last.free, last.theta), on(last.suspects), last.levels)[0]
+    smooth = laid.smoothed(
+        problem.values(laid, last.free, last.theta), on(last.suspects), last.levels
+    )[0]
     found = {"recorded": polar(smooth, omega)}
     for label, f in fits.items():
-        ((_, states),) = laid.free_runs(problem.values(laid, f.free, f.theta), on(f.suspects), f.levels, whole)
+        ((_, states),) = laid.free_runs(
+            problem.values(laid, f.free, f.theta), on(f.suspects), f.levels, whole
+        )
         found[label] = polar(states, omega)
     return found
 
 
-def polar_errors(problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Track]) -> dict[str, tuple[float, float]]:
+def polar_errors(
+    problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Track]
+) -> dict[str, tuple[float, float]]:
     """Rms error of envelope and of phase [rad] of each model over free runs as long as the tracks."""
     runs = [polar_runs(problem, fits, laid) for laid in tracks]
     found = {}
@@ -150,7 +158,9 @@ def laid_on(found: Diagnosis, parts: Sequence[Recording]) -> list[Track]:
     return [found.laid(p) for p in parts]
 
 
-def error_rows(found: Diagnosis, fits: Mapping[str, Fit], tracks: Sequence[Track], what: str) -> Rows:
+def error_rows(
+    found: Diagnosis, fits: Mapping[str, Fit], tracks: Sequence[Track], what: str
+) -> Rows:
     """Envelope and phase of what was unseen, and which of the two an effect mends."""
     off = polar_errors(found.problem, fits, tracks)
     first = off["linear"]
@@ -167,7 +177,9 @@ def decay_and_period(run: Array, t: Array, omega: float) -> tuple[float, float]:
     return float(-slope[0] / omega), float(2 * np.pi / slope[1])
 
 
-def window_rows(found: Diagnosis, fits: Mapping[str, Fit], tracks: Sequence[Track]) -> tuple[Rows, Rows]:
+def window_rows(
+    found: Diagnosis, fits: Mapping[str, Fit], tracks: Sequence[Track]
+) -> tuple[Rows, Rows]:
     """Damping and period of every window, recorded and as free runs have them."""
     dampings, periods = [], []
     for laid in tracks:
@@ -204,7 +216,11 @@ def coefficients(problem: Problem, fitted: Fit) -> dict[str, tuple[float, float]
     }
     for f in fitted.free:
         if not f.relative:
-            unit = next(type(e).params()[f.name].unit for e in problem.program.suspects if e.name == f.effect)
+            unit = next(
+                type(e).params()[f.name].unit
+                for e in problem.program.suspects
+                if e.name == f.effect
+            )
             found[f"{f.effect}, {f.name} [{unit}]"] = of(f.effect, f.name)
     return found
 
@@ -213,13 +229,21 @@ def both_speeds(at_rest: Diagnosis, at_speed: Diagnosis, releases: Sequence[Reco
     """The structure found at rest, fitted to the whole of either release: coefficients and how they differ."""
     found = []
     for diagnosis, whole in zip((at_rest, at_speed), releases, strict=True):
-        problem = Problem(laid_on(diagnosis, [whole]), diagnosis.problem.ambient, diagnosis.problem.uncertainty)
+        problem = Problem(
+            laid_on(diagnosis, [whole]), diagnosis.problem.ambient, diagnosis.problem.uncertainty
+        )
         base = converge(problem, diagnosis.ranking.recalibrated)
-        found.append(coefficients(problem, with_effects(problem, base, [n.name for n in at_rest.ranking.named])))
+        found.append(
+            coefficients(
+                problem, with_effects(problem, base, [n.name for n in at_rest.ranking.named])
+            )
+        )
     rows = []
     for name, (a, sa) in found[0].items():
         b, sb = found[1][name]
-        rows.append([name, pair(a, sa), pair(b, sb), f"{b / a:.2f}", f"{(b - a) / np.hypot(sa, sb):+.1f}"])
+        rows.append(
+            [name, pair(a, sa), pair(b, sb), f"{b / a:.2f}", f"{(b - a) / np.hypot(sa, sb):+.1f}"]
+        )
     return rows
 
 
@@ -232,10 +256,13 @@ def pair(value: float, sd: float) -> str:
 def carried_over(at_rest: Diagnosis, whole: Recording) -> Rows:
     """The boats fitted at zero speed on the release at speed, which they have not seen."""
     (laid,) = laid_on(at_rest, [whole])
-    problem, fits = at_rest.problem, show.fits_of(at_rest.problem, at_rest.ranking)
+    problem, fits = at_rest.problem, before_after.fits_of(at_rest.problem, at_rest.ranking)
     stretches = free_runs(problem, fits, [laid], float(np.ptp(laid.times)))
     rms = errors(stretches)["roll_rms_rad"]
-    return [[m, f"{rms[m] * DEG:.3f}", f"{rms[m] / rms['recalibrated']:.2f}"] for m in show.MODELS]
+    return [
+        [m, f"{rms[m] * DEG:.3f}", f"{rms[m] / rms['recalibrated']:.2f}"]
+        for m in before_after.MODELS
+    ]
 
 
 # Tables -----------------------------------------------------------------------------------------------------------
@@ -246,8 +273,12 @@ def last_third(found: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:
     (tail,) = laid_on(found, thirds(whole)[2:])
     alone = Problem([tail], found.problem.ambient, found.problem.uncertainty)
     ranking = rank(alone, found.problem.program.entries)
-    fits = show.fits_of(found.problem, found.ranking) | {"linear, fitted here": ranking.recalibrated}
-    fits |= {f"{n}, fitted here": with_effects(alone, ranking.recalibrated, [n]) for n in ranking.first}
+    fits = before_after.fits_of(found.problem, found.ranking) | {
+        "linear, fitted here": ranking.recalibrated
+    }
+    fits |= {
+        f"{n}, fitted here": with_effects(alone, ranking.recalibrated, [n]) for n in ranking.first
+    }
     rms = errors(free_runs(alone, fits, [tail], float(np.ptp(tail.times))))["roll_rms_rad"]
     gains = {f"{n}, fitted here": f"{g:+.1f}" for n, g in ranking.first.items()}
     return [[label, f"{x * DEG:.4f}", gains.get(label, "")] for label, x in rms.items()], ranking
@@ -259,7 +290,14 @@ def split_table(splits: Mapping[str, Diagnosis]) -> Table:
     for name, found in splits.items():
         rms = unseen_errors(found)
         goal = f"<= {GOALS[name]}" if name in GOALS else "none"
-        rows.append([name, *(f"{rms[m] * DEG:.4f}" for m in show.MODELS), f"{ratio(found):.3f}", goal])
+        rows.append(
+            [
+                name,
+                *(f"{rms[m] * DEG:.4f}" for m in before_after.MODELS),
+                f"{ratio(found):.3f}",
+                goal,
+            ]
+        )
     header = ["unseen", "as published", "recalibrated", "patched", "patched / recalibrated", "goal"]
     return "Rms roll error [deg] of free runs over what was kept unseen", header, rows
 
@@ -280,7 +318,14 @@ def tables(splits: Mapping[str, Diagnosis], releases: Sequence[Recording]) -> li
         split_table(splits),
         (
             "Envelope and phase apart: rms error of free runs over unseen data, one effect at a time",
-            ["unseen", "model", "envelope [deg]", "phase [deg]", "envelope / linear", "phase / linear"],
+            [
+                "unseen",
+                "model",
+                "envelope [deg]",
+                "phase [deg]",
+                "envelope / linear",
+                "phase / linear",
+            ],
             errors,
         ),
         (
@@ -324,7 +369,9 @@ def main() -> None:
     report(replace(windows, findings=replace(windows.findings, extra_tables=extra)), NAME)
     print("at 15.5 kn, by itself:")
     report(at_speed, f"{NAME}/at_15p5kn")
-    print(f"split: {windows.findings.held_out_note}; {splits['middle third'].findings.held_out_note}, the middle third")
+    print(
+        f"split: {windows.findings.held_out_note}; {splits['middle third'].findings.held_out_note}, the middle third"
+    )
     print("baseline: the linear oscillator with damping and restoring refitted to the same data")
     for one in found:
         table(*one)

@@ -23,12 +23,12 @@ from scipy.signal import resample_poly
 
 from benchmarks.real.common import OUT, report, runs_of, table
 from benchmarks.real.kvlcc2_roll_decay import with_effects
-from boatsim.diagnose import analysis
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.filter import Track, track
-from boatsim.diagnose.locate.structure import structure
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.search.rank import baseline
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.filter import Track, track
+from boatsim.diagnosis.locate.residual_structure import structure
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.ranking import baseline
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -41,14 +41,27 @@ FINER = 5  # instants a row at which the input is known
 START = 50  # rows in which the first state is found, their error not counted
 MULTISINE, ARROW = "test_multisine", "test_arrow"
 INSIDE = 32_000  # rows of the arrow whose amplitude the training data reach
-SWINGS, DAMPED = 70.0, 0.05  # [Hz], share of critical: about what the circuit is built for, by its description
+SWINGS, DAMPED = (
+    70.0,
+    0.05,
+)  # [Hz], share of critical: about what the circuit is built for, by its description
 MASS, ARM = 4.6, 0.1  # [kg], [m] radius of gyration: a boat of 1.2 m
-FITTED, UNSEEN = ((0, 2000), (20_000, 22_000), (40_000, 42_000)), ((60_000, 62_000),)  # rows of the training data
+FITTED, UNSEEN = (
+    ((0, 2000), (20_000, 22_000), (40_000, 42_000)),
+    ((60_000, 62_000),),
+)  # rows of the training data
 GOAL = 1.0  # [mV] over the arrow
 MV = 1e3
 BANDS = ((0.0, 20.0), (20.0, 55.0), (55.0, 90.0), (90.0, 200.0), (200.0, 306.0))  # [Hz]
-WAYS = {"band": "as the band-limited signal", "lines": "in straight lines", "held": "held until the next"}
-NAMED = ("righting_arm_stiffening", "steady_force")  # by which the ways of taking the input are compared
+WAYS = {
+    "band": "as the band-limited signal",
+    "lines": "in straight lines",
+    "held": "held until the next",
+}
+NAMED = (
+    "righting_arm_stiffening",
+    "steady_force",
+)  # by which the ways of taking the input are compared
 
 VESSEL = """\
 about = "Silverbox: an electronic oscillator read as a hull that only rolls, one V as one rad, {second} rows as one s"
@@ -114,9 +127,16 @@ def written(folder: Path = OUT / NAME / "vessel" / NAME) -> Vessel:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "hull.xml").write_text(HULL, encoding="utf-8")
     text = VESSEL.format(
-        second=SECOND, mass=MASS, inertia=inertia, damping=2.0 * DAMPED * inertia * pulsation, damped=DAMPED,
-        stiffness=stiffness, swings=SWINGS, abeam=0.5 * pi, lever=-stiffness,
-    )  # fmt: skip
+        second=SECOND,
+        mass=MASS,
+        inertia=inertia,
+        damping=2.0 * DAMPED * inertia * pulsation,
+        damped=DAMPED,
+        stiffness=stiffness,
+        swings=SWINGS,
+        abeam=0.5 * pi,
+        lever=-stiffness,
+    )
     file = folder / "vessel.toml"
     file.write_text(text, encoding="utf-8")
     return vessels.load(str(file))
@@ -133,7 +153,10 @@ def opened(path: Path, between: str = "band") -> Recording:
         # a course is held from each instant to the next, so it is taken in the middle between them
         middle = (np.arange(count * FINER) + 0.5) / FINER
         courses = np.interp(middle, np.arange(count), force) if between == "lines" else _band(force)
-    signals = {"phi_rad": columns["displacement_V"], "force_V": courses.reshape(count, FINER).mean(axis=1)}
+    signals = {
+        "phi_rad": columns["displacement_V"],
+        "force_V": courses.reshape(count, FINER).mean(axis=1),
+    }
     return Recording(path.stem, t, signals, path=path, orders=Orders(fine, {"force_V": courses}))
 
 
@@ -146,14 +169,17 @@ def _band(force: Array) -> Array:
 def part(whole: Recording, begin: int, end: int) -> Recording:
     """Some rows of a set, named by them."""
     half = 0.5 / SECOND
-    return replace(whole.between(begin / SECOND, end / SECOND - half), name=f"{whole.name} rows {begin} to {end}")
+    return replace(
+        whole.between(begin / SECOND, end / SECOND - half),
+        name=f"{whole.name} rows {begin} to {end}",
+    )
 
 
 def diagnosed(whole: Recording, boat: Vessel) -> Diagnosis:
     """What the linear oscillator lacks, by stretches of the training data."""
     fitted, unseen = ([part(whole, *rows) for rows in parts] for parts in (FITTED, UNSEEN))
     note = f"{', '.join(r.name for r in unseen)} were kept unseen"
-    return analysis.diagnose_recordings(fitted, unseen, {whole.path: boat}, note)
+    return pipeline.diagnose_recordings(fitted, unseen, {whole.path: boat}, note)
 
 
 # ---- the exam
@@ -188,7 +214,9 @@ def ladder(found: Diagnosis) -> dict[str, Fit]:
     """The linear oscillator as written and refitted, with one entry more at a time, with what is described besides."""
     ranking = found.ranking
     models = {"linear, as written": ranking.nominal, "linear, recalibrated": ranking.recalibrated}
-    named = [n.name for n in sorted(ranking.named, key=lambda n: ranking.best.suspects.index(n.name))]
+    named = [
+        n.name for n in sorted(ranking.named, key=lambda n: ranking.best.suspects.index(n.name))
+    ]
     for k in range(1, len(named) + 1):
         models[f"+ {named[k - 1]}"] = with_effects(found.problem, ranking.recalibrated, named[:k])
     return models | {"patched": ranking.best}
@@ -201,10 +229,20 @@ def score_rows(off: Mapping[str, Mapping[str, Array]]) -> list[list[str]]:
     """Rms errors of our models and of others; `off` is the error (N,) [V] by set and model."""
     rows = []
     for model in off[ARROW]:
-        cells = (rms(off[MULTISINE][model]), rms(off[ARROW][model]), rms(off[ARROW][model], end=INSIDE))
+        cells = (
+            rms(off[MULTISINE][model]),
+            rms(off[ARROW][model]),
+            rms(off[ARROW][model], end=INSIDE),
+        )
         rows.append([model, *(f"{x:.3f}" for x in cells), "here"])
     for p in PUBLISHED:
-        rows.append([p.model, *("" if np.isnan(x) else f"{x:g}" for x in (p.multisine, p.arrow, p.inside)), p.by])
+        rows.append(
+            [
+                p.model,
+                *("" if np.isnan(x) else f"{x:g}" for x in (p.multisine, p.arrow, p.inside)),
+                p.by,
+            ]
+        )
     return rows
 
 
@@ -231,7 +269,14 @@ def size_rows(off: Mapping[str, Array], test: Recording) -> list[list[str]]:
     for a, b in zip(edges[:-1], edges[1:], strict=True):
         size = rms(test["phi_rad"] - float(np.mean(test["phi_rad"])), a, b)
         left = [rms(e, a, b) for e in off.values()]
-        rows.append([f"rows {a} to {b}", f"{size:.1f}", *(f"{x:.3f}" for x in left), f"{100 * left[-1] / size:.2f}"])
+        rows.append(
+            [
+                f"rows {a} to {b}",
+                f"{size:.1f}",
+                *(f"{x:.3f}" for x in left),
+                f"{100 * left[-1] / size:.2f}",
+            ]
+        )
     return rows
 
 
@@ -268,7 +313,9 @@ def main() -> None:
     took = time.perf_counter() - begin
     report(found, NAME)
     rows = sum(b - a for a, b in FITTED)
-    print(f"fitted on {rows} rows ({rows * ROW:.1f} s of the circuit) in {took:.0f} s; {found.findings.held_out_note}")
+    print(
+        f"fitted on {rows} rows ({rows * ROW:.1f} s of the circuit) in {took:.0f} s; {found.findings.held_out_note}"
+    )
     models = ladder(found)
     tests = {name: opened(runs[name]) for name in (MULTISINE, ARROW)}
     off = {name: missed(found, test, models) for name, test in tests.items()}
@@ -276,17 +323,31 @@ def main() -> None:
     header = ["model", MULTISINE, ARROW, "arrow without its tip", "by"]
     table("Rms error [mV] of one free run over each whole test set", header, score_rows(off))
     arrow = rms(off[ARROW]["patched"])
-    print(f"  goal: {GOAL:g} mV over the arrow: {'met' if arrow < GOAL else 'missed'}, {arrow:.3f} mV")
+    print(
+        f"  goal: {GOAL:g} mV over the arrow: {'met' if arrow < GOAL else 'missed'}, {arrow:.3f} mV"
+    )
     nominal, linear = (rms(off[ARROW][m]) for m in ("linear, as written", "linear, recalibrated"))
     cells = ["arrow", *(f"{x:.3f}" for x in (nominal, linear, arrow, arrow / linear))]
-    table("Rms error [mV], one free run", ["over", "nominal", "recalibrated", "patched", "ratio"], [cells])
+    table(
+        "Rms error [mV], one free run",
+        ["over", "nominal", "recalibrated", "patched", "ratio"],
+        [cells],
+    )
     header = ["input between its rows", "linear", "+ " + ", ".join(NAMED), "evidence [nats]"]
     title = "Rms error [mV] over a stretch of the training data that was not fitted, by how the input is taken"
     table(title, header, input_rows(runs["train"], boat, found))
     left = {m: off[ARROW][m] for m in few}
     header = ["of the arrow", "recorded [mV]", *few, "patched [% of recorded]"]
-    table("What is left over, rms error [mV], by how far the circuit swings", header, size_rows(left, tests[ARROW]))
-    table("What is left over of the arrow, share of its square [%] by frequency", ["band", *few], band_rows(left))
+    table(
+        "What is left over, rms error [mV], by how far the circuit swings",
+        header,
+        size_rows(left, tests[ARROW]),
+    )
+    table(
+        "What is left over of the arrow, share of its square [%] by frequency",
+        ["band", *few],
+        band_rows(left),
+    )
     print(f"\n{said(found)}")
 
 

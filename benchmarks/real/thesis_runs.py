@@ -16,8 +16,8 @@ from boatsim.physics.base import Array, Release
 from boatsim.physics.content import load_class
 from boatsim.physics.program import Program
 from boatsim.simulate import scenario
+from boatsim.simulate.camera_log import Film, FilmMeasure
 from boatsim.simulate.cases import content
-from boatsim.simulate.film import Film, FilmMeasure
 from boatsim.simulate.scenario import Scenario
 
 TESTS = ("sway_1", "sway_2", "sway_3", "sway_4", "yaw_1", "yaw_2", "yaw_3", "yaw_4")
@@ -65,7 +65,9 @@ class Bench:
         """
         raw = content(f"joystick_boat/{name}")[0]
         own = [t for t in raw.get("effect", []) if t["use"] not in {e["use"] for e in extra}]
-        wind: dict[str, Any] = next((t for t in raw.get("effect", []) if t["use"] == "fan_wind"), {})
+        wind: dict[str, Any] = next(
+            (t for t in raw.get("effect", []) if t["use"] == "fan_wind"), {}
+        )
         told = [{**wind, **e} if e["use"] == "fan_wind" else dict(e) for e in extra]
         settings = {k: {**raw.get("set", {}).get(k, {}), **v} for k, v in (nominal or {}).items()}
         over = {"tank": None, "effect": [*own, *told], "set": {**raw.get("set", {}), **settings}}
@@ -73,7 +75,9 @@ class Bench:
         assert isinstance(self.scenario.measure, FilmMeasure)
         self.name, self.measure = name, self.scenario.measure
         self.program = Program(self.scenario.vessel)
-        self.published = {n: t.published for n, t in self.scenario.file.norms.items() if t.published is not None}
+        self.published = {
+            n: t.published for n, t in self.scenario.file.norms.items() if t.published is not None
+        }
         self._links = _links(self.program)
         kinds = {e["use"]: load_class("effect", e["use"]) for e in extra}
         releases = {name: kind() for name, kind in kinds.items() if issubclass(kind, Release)}
@@ -81,7 +85,9 @@ class Bench:
         self._own = Bench(name) if played else None
         self._played: dict[int, Array] = {}  # seed -> commands (N, C), one row a step
 
-    def norms(self, knobs: Sequence[Knob], values: Sequence[float], seeds: Sequence[int]) -> dict[str, float]:
+    def norms(
+        self, knobs: Sequence[Knob], values: Sequence[float], seeds: Sequence[int]
+    ) -> dict[str, float]:
         """Mean norms over seeds; empty where a run never got as far as they ask."""
         found = [self.measure.of_film(self._film(knobs, values, seed)) for seed in seeds]
         return {n: float(np.mean([f[n] for f in found])) for n in found[0]} if all(found) else {}
@@ -123,7 +129,10 @@ class Bench:
         frames = frames[::every]
         x, east, psi = (np.interp(frames, t, y[:, i]) for i in (0, 1, 2))
         seen = camera.seen(x + 1j * east, psi, noise)
-        points = {name: np.stack([z.real, z.imag], axis=-1) for name, z in zip(camera.marks, seen.T, strict=True)}
+        points = {
+            name: np.stack([z.real, z.imag], axis=-1)
+            for name, z in zip(camera.marks, seen.T, strict=True)
+        }
         return Film(frames, camera.pose(seen)[1], points, np.stack([x, east], axis=-1), psi)
 
     def commands(self, rng: np.random.Generator) -> Array:
@@ -131,11 +140,18 @@ class Bench:
         given: list[Array] = []
         self._run(self.program.values(), self.program.body, rng, given)
         found, file = np.concatenate(given), self.scenario.file
-        return np.concatenate([found, np.tile(found[-1], (round(file.duration / file.step) - len(found), 1))])
+        return np.concatenate(
+            [found, np.tile(found[-1], (round(file.duration / file.step) - len(found), 1))]
+        )
 
     def _play(self, p: Array, body: Array, commands: Array) -> tuple[Array, Array]:
         """Times (N,) and states (N, 6) in earth axes of a run with given commands."""
-        code, on, y, step = self.program.module, self.program.switches(), np.zeros(6), self.scenario.file.step
+        code, on, y, step = (
+            self.program.module,
+            self.program.switches(),
+            np.zeros(6),
+            self.scenario.file.step,
+        )
         memory, out = np.zeros(self.program.memory_size), np.zeros((len(commands) + 1, 6))
         start = self.program.command_array(self.scenario.controller.initial_commands())
         code.settle(start, memory, p, on, np.zeros(self.program.held_size))
@@ -151,8 +167,11 @@ class Bench:
         controller.reset()
         period = round(controller.period / file.step)
         memory, act, on, none = (
-            np.zeros(self.program.memory_size), np.zeros(self.program.held_size), self.program.switches(), np.zeros(3)
-        )  # fmt: skip
+            np.zeros(self.program.memory_size),
+            np.zeros(self.program.held_size),
+            self.program.switches(),
+            np.zeros(3),
+        )
         code.settle(self.program.command_array(controller.initial_commands()), memory, p, on, act)
         y, out, pull = np.zeros(6), np.zeros((period + 1, 6)), (0.0, 0.0)
         parts, t = [np.zeros((1, 6))], 0.0

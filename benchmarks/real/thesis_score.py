@@ -6,7 +6,10 @@ from math import log, sqrt
 import numpy as np
 
 CLIP = 3.0  # largest residual that counts
-SCALE = {"heading_at_end": 10.0, "moved": 0.1}  # [deg], [m] for these errors; all others are log ratios
+SCALE = {
+    "heading_at_end": 10.0,
+    "moved": 0.1,
+}  # [deg], [m] for these errors; all others are log ratios
 
 
 def J(tests: Iterable[tuple[Mapping[str, float], Mapping[str, float]]]) -> float:
@@ -15,7 +18,10 @@ def J(tests: Iterable[tuple[Mapping[str, float], Mapping[str, float]]]) -> float
     Each test is (norms, published), by name; what is not published does not count. A residual is the error over 10 deg
     or 0.1 m for heading and distance moved, a log ratio otherwise, clipped to +-3.
     """
-    means = [np.mean([_residual(n, values[n], p) ** 2 for n, p in published.items()]) for values, published in tests]
+    means = [
+        np.mean([_residual(n, values[n], p) ** 2 for n, p in published.items()])
+        for values, published in tests
+    ]
     return sqrt(float(np.mean(means)))
 
 

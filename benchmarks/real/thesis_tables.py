@@ -34,12 +34,14 @@ import numpy as np
 from benchmarks.real.common import table
 from benchmarks.real.thesis_runs import TESTS, WINDY, Bench, Knob
 from benchmarks.real.thesis_score import CLIP, SCALE, J
-from boatsim.diagnose.fit import Space, log_prior
-from boatsim.diagnose.search.settle import ALIKE
+from boatsim.diagnosis.fit import Space, log_prior
+from boatsim.diagnosis.search.pruning import ALIKE
 from boatsim.physics.base import Array
 
 ENOUGH = 4.0  # [nats] an effect must gain to be named
-SPREAD = 0.3  # of a residual: camera marks, rounding of the tables, and how far runs of one test differ
+SPREAD = (
+    0.3  # of a residual: camera marks, rounding of the tables, and how far runs of one test differ
+)
 INDEPENDENT = 2.0  # numbers that the norms of one test are worth
 ROOM, TIMES = 0.15, (13.0, 18.0)  # [m] ahead of the bow in the tank; [s] of a sway test
 STEP = 0.15  # of a finite difference, in prior sds: the loop's relays make the norms rough below it
@@ -63,14 +65,18 @@ ADDED: list[dict[str, Any]] = [
     {"use": "fan_wind", "speed": 0.0},
 ]
 OWN = (
-    Knob("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=SWAY),  # prior: 0.2 to 0.8 N (the thesis prints none)
+    Knob(
+        "pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=SWAY
+    ),  # prior: 0.2 to 0.8 N (the thesis prints none)
     Knob("pwm_thrust", "at_span", "N", 0.5, 0.3, 0.01, 3.0, tests=YAW),
 )
 CANDIDATES: dict[str, tuple[Knob, ...]] = {
     "weak_reverse": (Knob("weak_reverse", "astern_factor", "", 1.0, 0.3, 0.3, 1.3),),
     "thrust_imbalance": (Knob("thrust_imbalance", "fraction", "", 0.0, 0.15, -0.6, 0.6),),
     "thrust_curve": (Knob("pwm_thrust", "exponent", "", 1.0, 0.5, 0.5, 3.0),),
-    "cross_flow_drag": (Knob("cross_flow_drag", "section_drag_coefficient", "", 0.0, 1.2, 0.0, 5.0),),
+    "cross_flow_drag": (
+        Knob("cross_flow_drag", "section_drag_coefficient", "", 0.0, 1.2, 0.0, 5.0),
+    ),
     "surge_drag": (Knob("surge_drag", "quadratic", "N s^2/m^2", 0.0, 4.0, 0.0, 40.0),),
     "added_mass_coriolis": (Knob("added_mass", "coriolis", "", 0.0, 0.5, 0.0, 1.0),),
     "added_mass": (Knob("added_mass", "sway", "kg", 1.0, 0.5, 0.3, 3.0, "times"),),
@@ -112,7 +118,9 @@ class Fit:
 class Tables:
     """Published norms, and the runs that are to give them."""
 
-    def __init__(self, data: Data | None = None, tests: Sequence[str] = TESTS, seeds: Sequence[int] = SEEDS) -> None:
+    def __init__(
+        self, data: Data | None = None, tests: Sequence[str] = TESTS, seeds: Sequence[int] = SEEDS
+    ) -> None:
         """`data` in place of the published norms."""
         self.benches = {t: Bench(f"{t}_as_published", ADDED, NOMINAL, t in YAW) for t in tests}
         self.data = data or {t: published(b) for t, b in self.benches.items()}
@@ -130,7 +138,9 @@ class Tables:
         acting = [(k, float(x)) for k, x in zip(knobs, theta, strict=True) if test in k.tests]
         key = (test, *acting)
         if key not in self.kept:
-            self.kept[key] = self.benches[test].norms([k for k, _ in acting], [x for _, x in acting], self.seeds)
+            self.kept[key] = self.benches[test].norms(
+                [k for k, _ in acting], [x for _, x in acting], self.seeds
+            )
         return self.kept[key]
 
     def residuals(self, knobs: Sequence[Knob], theta: Sequence[float]) -> Array:
@@ -140,7 +150,9 @@ class Tables:
     def of_test(self, test: str, knobs: Sequence[Knob], theta: Sequence[float]) -> Array:
         """Weighted residuals of one test: its norms, then the bounds of the text."""
         found, wanted = self.norms(test, knobs, theta), self.data[test]
-        norms = [soft(residual(n, found, x)) * sqrt(INDEPENDENT / len(wanted)) for n, x in wanted.items()]
+        norms = [
+            soft(residual(n, found, x)) * sqrt(INDEPENDENT / len(wanted)) for n, x in wanted.items()
+        ]
         facts = [soft(x) for x in beyond(found)] if test in SWAY and self.facts else []
         return np.array([*norms, *facts]) / SPREAD
 
@@ -238,9 +250,16 @@ def with_candidate(tables: Tables, base: Fit, name: str, most: int = 3) -> Fit:
         return np.concatenate([thrust, base.theta[2:], moved])
 
     mean = np.array([k.mean for k in OWN])
-    thrusts = (base.theta[:2], np.array([base.theta[0], mean[1]]), np.array([mean[0], base.theta[1]]), mean)
+    thrusts = (
+        base.theta[:2],
+        np.array([base.theta[0], mean[1]]),
+        np.array([mean[0], base.theta[1]]),
+        mean,
+    )
     begun = [start(s, thrust) for s in (-1.0, -0.3, 0.3, 1.0) for thrust in thrusts]
-    return descend(tables, names, max(begun, key=lambda x: score(tables, knobs_of(names), x)[0]), most)
+    return descend(
+        tables, names, max(begun, key=lambda x: score(tables, knobs_of(names), x)[0]), most
+    )
 
 
 def without(tables: Tables, base: Fit, name: str) -> Fit:
@@ -259,11 +278,15 @@ class Ranking:
     best: Fit
     first: dict[str, float]  # gain of each candidate alone [nats]
     gains: dict[str, float]  # of each named on top of the others named
-    rivals: dict[str, dict[str, Fit]]  # named -> the best set with each other candidate in its place
+    rivals: dict[
+        str, dict[str, Fit]
+    ]  # named -> the best set with each other candidate in its place
     last: dict[str, Fit]  # each other candidate on top of the best set
 
 
-def rank(tables: Tables, candidates: Sequence[str] = tuple(CANDIDATES), most: int = MOST) -> Ranking:
+def rank(
+    tables: Tables, candidates: Sequence[str] = tuple(CANDIDATES), most: int = MOST
+) -> Ranking:
     """Forward selection by evidence, then each member weighed on top of the others and against its rivals."""
     theta = np.array([k.mean for k in OWN])
     nominal = Fit((), OWN, theta, np.zeros((2, 2)), np.zeros((0, 2)), score(tables, OWN, theta)[0])
@@ -324,20 +347,44 @@ def distance(tables: Tables, fitted: Fit, tests: Sequence[str]) -> float:
 def print_ranking(found: Ranking) -> None:
     """Candidates in order of gain."""
     rows = []
-    for name in sorted(found.first, key=lambda n: (n not in found.gains, -found.gains.get(n, 0.0), -found.first[n])):
+    for name in sorted(
+        found.first, key=lambda n: (n not in found.gains, -found.gains.get(n, 0.0), -found.first[n])
+    ):
         fitted = found.best if name in found.gains else found.last[name]
         gain = found.gains[name] if name in found.gains else fitted.evidence - found.best.evidence
         values = ", ".join(strength(fitted, k) for k in CANDIDATES[name])
         verdict = "missing" if name in found.gains else "-"
-        rows.append([name, KINDS.get(name, "physics"), f"{found.first[name]:.1f}", f"{gain:.1f}", values, verdict])
-    header = ["candidate", "kind", "alone [nats]", "beside the others [nats]", "value +- sd", "verdict"]
-    table("candidates: gain over the recalibrated nominal alone, and beside (or on top of) what is named", header, rows)
+        rows.append(
+            [
+                name,
+                KINDS.get(name, "physics"),
+                f"{found.first[name]:.1f}",
+                f"{gain:.1f}",
+                values,
+                verdict,
+            ]
+        )
+    header = [
+        "candidate",
+        "kind",
+        "alone [nats]",
+        "beside the others [nats]",
+        "value +- sd",
+        "verdict",
+    ]
+    table(
+        "candidates: gain over the recalibrated nominal alone, and beside (or on top of) what is named",
+        header,
+        rows,
+    )
 
 
 def strength(fitted: Fit, knob: Knob) -> str:
     """A fitted value with its spread; whether the tables say anything of it."""
     value, sd = fitted.value(knob)
-    return f"{knob.name} {value:.3g} +- {sd:.2g} {knob.unit}".rstrip() + (" (prior)" if sd > TOLD * knob.sd else "")
+    return f"{knob.name} {value:.3g} +- {sd:.2g} {knob.unit}".rstrip() + (
+        " (prior)" if sd > TOLD * knob.sd else ""
+    )
 
 
 def print_sources(tables: Tables, found: Ranking) -> None:
@@ -349,11 +396,20 @@ def print_sources(tables: Tables, found: Ranking) -> None:
         "sway, with the text": tables.only(SWAY),
         "yaw norms": tables.only(YAW),
     }
-    rows = [[name, *(f"{gain_in(part, found.best, name):.1f}" for part in parts.values())] for name in found.best.names]
-    table("gain of each effect by part of the data, all else refitted to that part [nats]", ["effect", *parts], rows)
+    rows = [
+        [name, *(f"{gain_in(part, found.best, name):.1f}" for part in parts.values())]
+        for name in found.best.names
+    ]
+    table(
+        "gain of each effect by part of the data, all else refitted to that part [nats]",
+        ["effect", *parts],
+        rows,
+    )
     shares = []
     for j, knob in enumerate(found.best.knobs):
-        each = {t: float((found.best.slopes[rows_, j] ** 2).sum()) for t, rows_ in tables.rows().items()}
+        each = {
+            t: float((found.best.slopes[rows_, j] ** 2).sum()) for t, rows_ in tables.rows().items()
+        }
         total = max(sum(each.values()), 1e-12)
         shares.append([knob.label, *(f"{100 * x / total:.0f}" for x in each.values())])
     table("information on each strength by test [%]", ["strength", *tables.benches], shares)
@@ -371,11 +427,21 @@ def print_left_out(tables: Tables, found: Ranking) -> None:
     for test in tables.benches:
         fits = (found.recalibrated, found.best)
         again = [left_out(tables, f, test) for f in fits]
-        (a, la), (b, lb) = ([distance(tables, x, [test]) for x in pair] for pair in zip(fits, again, strict=True))
+        (a, la), (b, lb) = (
+            [distance(tables, x, [test]) for x in pair] for pair in zip(fits, again, strict=True)
+        )
         sums += np.array([la, lb]) ** 2
         ahead += lb < la
         rows.append(
-            [test, f"{a:.2f}", f"{b:.2f}", f"{la:.2f}", f"{lb:.2f}", f"{lb / la:.2f}", f"{balance(again[1]):.3f}"]
+            [
+                test,
+                f"{a:.2f}",
+                f"{b:.2f}",
+                f"{la:.2f}",
+                f"{lb:.2f}",
+                f"{lb / la:.2f}",
+                f"{balance(again[1]):.3f}",
+            ]
         )
     rms = np.sqrt(sums / len(rows))
     whole = [distance(tables, f, list(tables.benches)) for f in (found.recalibrated, found.best)]
@@ -407,14 +473,29 @@ def print_norms(found: Ranking) -> None:
     for test in TESTS:
         bench = Bench(f"{test}_as_published", ADDED, NOMINAL)
         ours = Bench(test, ADDED, NOMINAL)
-        columns = [run(bench, f) for f in (found.nominal, found.recalibrated, found.best)] + [run(ours, found.best)]
+        columns = [run(bench, f) for f in (found.nominal, found.recalibrated, found.best)] + [
+            run(ours, found.best)
+        ]
         pairs.append((columns[2], published(bench)))
         names = [*bench.published, *(["surge_offset", "time_to_end"] if test in SWAY else [])]
         for name in names:
             wanted = f"{bench.published[name]:g}" if name in bench.published else SAID[name]
-            rows.append([f"{test} {name}", wanted, *(f"{c[name]:.3g}" if c else "-" for c in columns)])
-    header = ["test, norm", "published", "as published model", "recalibrated", "with effects", "corrected controller"]
-    table("norms of the thesis' program, mean of six seeds; last column: our controller on the same boat", header, rows)
+            rows.append(
+                [f"{test} {name}", wanted, *(f"{c[name]:.3g}" if c else "-" for c in columns)]
+            )
+    header = [
+        "test, norm",
+        "published",
+        "as published model",
+        "recalibrated",
+        "with effects",
+        "corrected controller",
+    ]
+    table(
+        "norms of the thesis' program, mean of six seeds; last column: our controller on the same boat",
+        header,
+        rows,
+    )
     print(f"J of the boat with effects in these closed-loop runs: {J(pairs):.2f}")
     print("- : the test does not end as it should (too short for the norms, or no full turn)")
 
@@ -425,10 +506,11 @@ SAID = {"surge_offset": "0 to 0.15", "time_to_end": "13 to 18"}  # what the text
 def run(bench: Bench, fitted: Fit) -> dict[str, float]:
     """Norms of a test with a boat's strengths; strengths of the thesis' controller are left to it."""
     told = [
-        (k, x) for k, x in zip(fitted.knobs, fitted.theta.tolist(), strict=True)
+        (k, x)
+        for k, x in zip(fitted.knobs, fitted.theta.tolist(), strict=True)
         if bench.name.removesuffix("_as_published") in k.tests
         and (k.effect != "controller" or bench.name.endswith("_as_published"))
-    ]  # fmt: skip
+    ]
     return bench.norms([k for k, _ in told], [x for _, x in told], FINAL)
 
 
@@ -440,7 +522,9 @@ def alike(found: Ranking, name: str) -> dict[str, tuple[float, Fit]]:
 
 def balance(fitted: Fit) -> float:
     """Thrust of the port motor, ahead at 0.70 of the PWM, over that of the starboard motor astern (Appendix H)."""
-    x = {k.effect + "." + k.name: v for k, v in zip(fitted.knobs, fitted.theta.tolist(), strict=True)}
+    x = {
+        k.effect + "." + k.name: v for k, v in zip(fitted.knobs, fitted.theta.tolist(), strict=True)
+    }
     f, curve = x.get("thrust_imbalance.fraction", 0.0), x.get("pwm_thrust.exponent", 1.0)
     return float(0.70**curve * (1.0 + f) / (1.0 - f) / x.get("weak_reverse.astern_factor", 1.0))
 
@@ -460,7 +544,9 @@ def print_untold(found: Ranking) -> None:
     print(
         f"  whether there is also any of: {', '.join(idle) or 'none of the candidates'} (each gains less than 4 nats)"
     )
-    mute = [k.label for n, f in found.last.items() for k in CANDIDATES[n] if f.value(k)[1] > TOLD * k.sd]
+    mute = [
+        k.label for n, f in found.last.items() for k in CANDIDATES[n] if f.value(k)[1] > TOLD * k.sd
+    ]
     print(f"  the strength of: {', '.join(mute) or 'none'} (the spread stays that of the prior)")
     sd = np.sqrt(np.diag(found.best.covariance))
     corr = found.best.covariance / np.outer(sd, sd)
@@ -476,7 +562,9 @@ def main() -> None:
     found = rank(tables)
     named = [" or ".join([n, *alike(found, n)]) for n in found.best.names]
     print(f"missing from the thesis' model, by its tables alone: {', '.join(named) or 'nothing'}")
-    print(f"baseline: the thesis' model with its thrusts refitted ({', '.join(own(found.recalibrated))})")
+    print(
+        f"baseline: the thesis' model with its thrusts refitted ({', '.join(own(found.recalibrated))})"
+    )
     print(f"with effects: {', '.join(own(found.best))}")
     print_ranking(found)
     print_sources(tables, found)

@@ -7,10 +7,10 @@ The middle third is kept unseen. Prints what was found, how strong at most is wh
 import numpy as np
 
 from benchmarks.real.common import report, runs_of, table
-from boatsim.diagnose import analysis
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.free_runs import errors
-from boatsim.diagnose.report import show
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.free_runs import errors
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.report import before_after
 
 NAME, VESSEL = "twin_usv_paths", "twin_usv"
 HORIZON = 10.0  # [s] of a free run
@@ -26,23 +26,46 @@ def print_unseen(found: Diagnosis) -> None:
         ("position_rms_m", "position [m]", 1.0),
         ("heading_rms_rad", "heading [deg]", 57.29578),
     ):
-        nominal, before, after = (off[family][m] * factor for m in show.MODELS)
-        rows.append([what, f"{nominal:.3f}", f"{before:.3f}", f"{after:.3f}", f"{after / before:.2f}"])
-    header = ["rms of free runs, 10 s", "as written", "recalibrated", "patched", "patched / recalibrated"]
+        nominal, before, after = (off[family][m] * factor for m in before_after.MODELS)
+        rows.append(
+            [what, f"{nominal:.3f}", f"{before:.3f}", f"{after:.3f}", f"{after / before:.2f}"]
+        )
+    header = [
+        "rms of free runs, 10 s",
+        "as written",
+        "recalibrated",
+        "patched",
+        "patched / recalibrated",
+    ]
     table("fitted on the first and last third, unseen the middle third", header, rows)
     if any(float(row[-1]) > HELPS for row in rows):
-        print("  What was added hardly helps on unseen data: take what is named below for a hint, not for a finding.")
+        print(
+            "  What was added hardly helps on unseen data: take what is named below for a hint, not for a finding."
+        )
 
 
 def print_found(found: Diagnosis) -> None:
     """Effects named, and upper limits of the others."""
     answer = found.findings.answer
     rows = [
-        [e["name"], e["kind"], f"{e['gain_nats']:.1f}", ", ".join(e["tied_with"]) or "-"] for e in answer["effects"]
+        [e["name"], e["kind"], f"{e['gain_nats']:.1f}", ", ".join(e["tied_with"]) or "-"]
+        for e in answer["effects"]
     ]
-    table("found", ["effect", "kind", "gain [nats]", "hardly to be told from"], rows or [["nothing", "", "", ""]])
-    limits = [[f"{n} {k}", f"{v:.3g}"] for n, each in answer["upper_limits"].items() for k, v in each.items()]
-    table("not found; at most (95 %)", ["effect", "strength"], limits or [["nothing can be excluded", ""]])
+    table(
+        "found",
+        ["effect", "kind", "gain [nats]", "hardly to be told from"],
+        rows or [["nothing", "", "", ""]],
+    )
+    limits = [
+        [f"{n} {k}", f"{v:.3g}"]
+        for n, each in answer["upper_limits"].items()
+        for k, v in each.items()
+    ]
+    table(
+        "not found; at most (95 %)",
+        ["effect", "strength"],
+        limits or [["nothing can be excluded", ""]],
+    )
 
 
 def print_untold(found: Diagnosis) -> None:
@@ -50,11 +73,18 @@ def print_untold(found: Diagnosis) -> None:
     best = found.ranking.recalibrated
     sd = np.sqrt(np.diag(best.covariance))
     rows = [
-        [f"{f.effect} {f.name}", f"{x:.2f} +- {s:.2f}", f"{f.sd:.2f}", "yes" if s < TOLD * f.sd else "hardly"]
+        [
+            f"{f.effect} {f.name}",
+            f"{x:.2f} +- {s:.2f}",
+            f"{f.sd:.2f}",
+            "yes" if s < TOLD * f.sd else "hardly",
+        ]
         for f, x, s in zip(best.free, best.theta, sd, strict=True)
     ]
     table(
-        "coefficients, as factors of the vessel file", ["coefficient", "factor", "prior sd", "told by the data"], rows
+        "coefficients, as factors of the vessel file",
+        ["coefficient", "factor", "prior sd", "told by the data"],
+        rows,
     )
     print(
         "\nThe data can not tell: mass, yaw inertia and thrust (only their ratios), what answers a command when the"
@@ -64,7 +94,7 @@ def print_untold(found: Diagnosis) -> None:
 
 def main() -> None:
     """Diagnose the one run there is."""
-    found = analysis.diagnose(list(runs_of(NAME).values()), vessel=VESSEL, horizon=HORIZON)
+    found = pipeline.diagnose(list(runs_of(NAME).values()), vessel=VESSEL, horizon=HORIZON)
     report(found, NAME)
     print_unseen(found)
     print_found(found)

@@ -24,11 +24,15 @@ def enter(rival: str, trial: Path, out: Path, plain: bool = False) -> None:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("rival", choices=sorted(RIVALS))
     parser.add_argument("trials", type=Path)
     parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--plain", action="store_true", help="BIC as in a textbook: every value independent")
+    parser.add_argument(
+        "--plain", action="store_true", help="BIC as in a textbook: every value independent"
+    )
     args = parser.parse_args()
     trials = sorted(t for t in args.trials.glob("T*") if t.is_dir())
     if not trials:

@@ -12,8 +12,8 @@ from math import sqrt
 import numpy as np
 from scipy.signal import savgol_coeffs
 
-from boatsim.diagnose.filter import Levels, Track, body_of
-from boatsim.diagnose.locate.hull_forces import actuators
+from boatsim.diagnosis.filter import Levels, Track, body_of
+from boatsim.diagnosis.locate.nominal_forces import actuators
 from boatsim.physics.base import Array
 
 ORDER, NARROWEST = 3, 5  # of the polynomials, and rows of the narrowest window
@@ -40,12 +40,18 @@ class Smoother:
         families, recorded = of_freedoms(track), positions(track)
         wide, narrow = dict[str, int](), dict[str, int]()
         for j, family in enumerate(families):
-            n = calm(track, ambient.force[j] / track.inertia[j], ambient.time_constant, noise[family])
+            n = calm(
+                track, ambient.force[j] / track.inertia[j], ambient.time_constant, noise[family]
+            )
             wide[family] = max(n, wide.get(family, n))
             n = widest(recorded[:, j], noise[family])
             narrow[family] = min(n, narrow.get(family, n))
         limit = {f: max(NARROWEST, wide[f] // 2 // 2 * 2 + 1) for f in wide}
-        return cls(track, tuple(wide[f] for f in families), tuple(min(narrow[f], limit[f]) for f in families))
+        return cls(
+            track,
+            tuple(wide[f] for f in families),
+            tuple(min(narrow[f], limit[f]) for f in families),
+        )
 
     @property
     def margin(self) -> int:
@@ -56,14 +62,21 @@ class Smoother:
         """States (N, 2 NQ) and joint accelerations (N, NQ) of positions (N, NQ); those at the ends are poor."""
         h = float(np.median(np.diff(self.track.times)))
         windows = (self.narrow, self.narrow, self.windows)
-        parts = [np.column_stack([derived(y, n, d, h) for y, n in zip(recorded.T, windows[d], strict=True)])
-                 for d in range(3)]  # fmt: skip
+        parts = [
+            np.column_stack(
+                [derived(y, n, d, h) for y, n in zip(recorded.T, windows[d], strict=True)]
+            )
+            for d in range(3)
+        ]
         return np.ascontiguousarray(np.hstack(parts[:2])), parts[2]
 
     def blurred(self, accelerations: Array) -> Array:
         """(N, NQ) as the second differences of a window see them."""
         return np.column_stack(
-            [np.convolve(a, kernel(n), "same") for a, n in zip(accelerations.T, self.windows, strict=True)]
+            [
+                np.convolve(a, kernel(n), "same")
+                for a, n in zip(accelerations.T, self.windows, strict=True)
+            ]
         )
 
     def pushed(self, ambient: Levels, times: float) -> Array:
@@ -74,7 +87,9 @@ class Smoother:
         power = (times * ambient.force / self.track.inertia) ** 2
         level = [j for j, free in enumerate(self.track.program.module.FREE) if free < 2]
         power[level] = np.mean(power[level]) if level else 0.0
-        return power * np.array([kept(n, step(self.track), ambient.time_constant) for n in self.windows])
+        return power * np.array(
+            [kept(n, step(self.track), ambient.time_constant) for n in self.windows]
+        )
 
     def noisy(self, noise: Mapping[str, float], rng: np.random.Generator) -> Array:
         """(N, NQ) noise as the instruments have it [m, rad]."""

@@ -25,9 +25,15 @@ class Judge:
     def alike(self, stretches: Sequence[Array]) -> Array:
         """(C,) rows that together tell as much as one, of errors (M, C) over stretches of time, nan where missing."""
         channels = stretches[0].shape[1]
-        return np.ones(channels) if self.plain else np.array([_alike(stretches, c) for c in range(channels)])
+        return (
+            np.ones(channels)
+            if self.plain
+            else np.array([_alike(stretches, c) for c in range(channels)])
+        )
 
-    def gain(self, before: Sequence[Array], after: Sequence[Array], more: int, entries: int = 1) -> float:
+    def gain(
+        self, before: Sequence[Array], after: Sequence[Array], more: int, entries: int = 1
+    ) -> float:
         """Half of what BIC falls by [nats], errors over stretches of time, `more` parameters of so many entries."""
         one, two, counts = squares(before), squares(after), rows(after)
         independent = counts / self.alike(after)

@@ -13,9 +13,9 @@ from benchmarks.rivals.evidence import Judge, sizes
 from benchmarks.rivals.linear import Linear, descended, solved
 from benchmarks.rivals.question import Question, fit_of, free_of
 from benchmarks.rivals.windows import Windows
-from boatsim.diagnose.problem import Fit
-from boatsim.diagnose.search.screen import handed_over, joined, starts
-from boatsim.diagnose.tried import called
+from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.problem import Fit
+from boatsim.diagnosis.search.screening import handed_over, joined, starts
 from boatsim.physics.base import Array
 
 MOST = 4  # effects
@@ -62,7 +62,9 @@ class LeastSquares:
 
     def nominal(self) -> State:
         """The vessel recalibrated, outliers taken out."""
-        begun = self.at((), self.question.start(), tuple(w.guess() for w in self.runs), np.ones(self.channels))
+        begun = self.at(
+            (), self.question.start(), tuple(w.guess() for w in self.runs), np.ones(self.channels)
+        )
         found = self.settled(begun)
         masks = [np.abs(e) > FAR * sizes(found.errors) for e in found.errors]
         for run, measured in zip(self.runs, (t.measured for t in self.problem.tracks), strict=True):
@@ -87,7 +89,10 @@ class LeastSquares:
         base = self.linear(best)
         looks = [self.look(best, base, n) for n in self.question.entries if called(n) not in there]
         rows = float(sum(np.isfinite(e).sum() for e in best.errors))
-        looks = sorted((x for x in looks if x is not None), key=lambda s: s.square + len(s.theta) * np.log(rows))
+        looks = sorted(
+            (x for x in looks if x is not None),
+            key=lambda s: s.square + len(s.theta) * np.log(rows),
+        )
         full = [self.fitted(look) for look in looks[:FULL]]
         first = max(full, key=lambda s: self.gain(best, s), default=best)
         return self.settled(first) if full and self.gain(best, first) > 0.0 else None
@@ -95,7 +100,9 @@ class LeastSquares:
     def pruned(self, best: State) -> State:
         """Without entries that BIC is better off without since others came in."""
         while len(best.suspects) > 1:
-            fewer = min((self.without(best, n) for n in best.suspects), key=lambda s: self.gain(s, best))
+            fewer = min(
+                (self.without(best, n) for n in best.suspects), key=lambda s: self.gain(s, best)
+            )
             if self.gain(fewer, best) > 0.0:
                 break
             best = self.settled(fewer)
@@ -113,16 +120,24 @@ class LeastSquares:
         """What a set gains over one with an entry less [nats]."""
         more = len(after.theta) - len(before.theta)
         prior = self.prior(before.suspects, before.theta) - self.prior(after.suspects, after.theta)
-        return self.judge.gain(before.errors, after.errors, more) + 0.5 * float(prior @ np.ones(len(prior)))
+        return self.judge.gain(before.errors, after.errors, more) + 0.5 * float(
+            prior @ np.ones(len(prior))
+        )
 
     # ---- one fit
 
     def prior(self, suspects: tuple[str, ...], theta: Array) -> Array:
         """(N,) squares of how far the vessel's own coefficients are from what is stated, in stated sds."""
-        own = [(f.mean, f.sd, x) for f, x in zip(free_of(self.question, suspects), theta, strict=True) if f.relative]
+        own = [
+            (f.mean, f.sd, x)
+            for f, x in zip(free_of(self.question, suspects), theta, strict=True)
+            if f.relative
+        ]
         return np.array([((x - mean) / sd) ** 2 for mean, sd, x in own])
 
-    def at(self, suspects: tuple[str, ...], theta: Array, begun: tuple[Array, ...], weights: Array) -> State:
+    def at(
+        self, suspects: tuple[str, ...], theta: Array, begun: tuple[Array, ...], weights: Array
+    ) -> State:
         """A hypothesis simulated."""
         free, on = free_of(self.question, suspects), self.problem.program.switches(suspects)
         errors = tuple(
@@ -132,13 +147,20 @@ class LeastSquares:
         )
         with np.errstate(over="ignore", invalid="ignore"):
             square = sum(float(np.nansum((e * weights) ** 2)) for e in errors)
-        gone = any(not np.isfinite(e[np.isfinite(m)]).all() for e, m in zip(errors, self.measured(), strict=True))
+        gone = any(
+            not np.isfinite(e[np.isfinite(m)]).all()
+            for e, m in zip(errors, self.measured(), strict=True)
+        )
         square += float(self.prior(suspects, theta).sum())
         return State(suspects, theta, begun, errors, weights, np.inf if gone else square)
 
     def measured(self) -> list[Array]:
         """What was recorded in each window."""
-        return [run.track.measured[a : b + 1] for run in self.runs for a, b in zip(run.begins, run.ends, strict=True)]
+        return [
+            run.track.measured[a : b + 1]
+            for run in self.runs
+            for a, b in zip(run.begins, run.ends, strict=True)
+        ]
 
     def weighed(self, state: State) -> State:
         """The same with each channel weighed by the rms of its errors, those alike counted as fewer."""
@@ -152,18 +174,24 @@ class LeastSquares:
     def stepped(self, state: State, linear: Linear) -> State | None:
         """After a step, shortened until it is one for the better; None if none is."""
         free = free_of(self.question, state.suspects)
-        move = solved(linear.columns, linear.rest, [f.low for f in free], [f.high for f in free], state.theta)
+        move = solved(
+            linear.columns, linear.rest, [f.low for f in free], [f.high for f in free], state.theta
+        )
         by_window = linear.by_window(move)
         for i in range(HALVINGS):
             share = 0.5**i
             begun = self.shifted(state.starts, by_window, share)
-            theta = np.clip(state.theta + share * move, [f.low for f in free], [f.high for f in free])
+            theta = np.clip(
+                state.theta + share * move, [f.low for f in free], [f.high for f in free]
+            )
             step = self.at(state.suspects, theta, begun, state.weights)
             if step.square < state.square:
                 return step
         return None
 
-    def shifted(self, begun: tuple[Array, ...], by_window: list[Array], share: float) -> tuple[Array, ...]:
+    def shifted(
+        self, begun: tuple[Array, ...], by_window: list[Array], share: float
+    ) -> tuple[Array, ...]:
         """Starts moved by a share of a step."""
         moves, out = iter(by_window), []
         for s in begun:
@@ -172,14 +200,19 @@ class LeastSquares:
 
     def linear(self, state: State) -> Linear:
         """A hypothesis linearised by all that it fits."""
-        free, on = free_of(self.question, state.suspects), self.problem.program.switches(state.suspects)
+        free, on = (
+            free_of(self.question, state.suspects),
+            self.problem.program.switches(state.suspects),
+        )
         slopes = list[Array]()
         errors = iter(state.errors)
         for run, s in zip(self.runs, state.starts, strict=True):
             own = [next(errors) for _ in s]
             slopes += run.by_starts(self.problem.values(run.track, free, state.theta), on, s, own)
         linear = Linear.of(state.errors, state.weights, slopes)
-        return linear.joined([self.column(state, linear, j) for j in range(len(free))], self.prior_rows(state))
+        return linear.joined(
+            [self.column(state, linear, j) for j in range(len(free))], self.prior_rows(state)
+        )
 
     def prior_rows(self, state: State) -> tuple[Array, Array]:
         """Rows (N, F) and errors (N,) that hold the vessel's own coefficients near what is stated."""
@@ -202,7 +235,9 @@ class LeastSquares:
         """(F, F) of a fit; what nothing is known of keeps its prior spread."""
         J = self.linear(state).columns
         sd = np.array([f.sd for f in free_of(self.question, state.suspects)])
-        return np.asarray(np.linalg.inv((J * sd).T @ (J * sd) + 1e-6 * np.eye(len(sd))) * np.outer(sd, sd))
+        return np.asarray(
+            np.linalg.inv((J * sd).T @ (J * sd) + 1e-6 * np.eye(len(sd))) * np.outer(sd, sd)
+        )
 
     # ---- a quick look at an entry
 
@@ -211,7 +246,9 @@ class LeastSquares:
         suspects, found = (*best.suspects, entry), list[State]()
         begun_at = fit_of(self.question, best.suspects, best.theta, np.zeros((0, 0)))
         for start in starts(self.problem, self.question.entries[entry]):
-            fit = handed_over(joined(self.problem, begun_at, entry, start), self.question.entries[entry])
+            fit = handed_over(
+                joined(self.problem, begun_at, entry, start), self.question.entries[entry]
+            )
             theta = np.clip(fit.theta, [f.low for f in fit.free], [f.high for f in fit.free])
             begun = self.at(suspects, theta, best.starts, best.weights)
             step = self.half_step(begun, base) if np.isfinite(begun.square) else None
@@ -229,8 +266,10 @@ class LeastSquares:
         free = free_of(self.question, state.suspects)
         new = [j for j, f in enumerate(free) if f.effect == state.suspects[-1] and not f.relative]
         here = base.about(state.errors)
-        columns = [base.raw[:, self.before(state, j)] if j not in new else self.column(state, here, j)
-                   for j in range(len(free))]  # fmt: skip
+        columns = [
+            base.raw[:, self.before(state, j)] if j not in new else self.column(state, here, j)
+            for j in range(len(free))
+        ]
         return self.stepped(state, here.joined(columns, self.prior_rows(state)))
 
     def before(self, state: State, j: int) -> int:

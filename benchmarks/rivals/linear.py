@@ -39,7 +39,9 @@ class Linear:
     triangles: tuple[Array, ...]  # (2 NQ, 2 NQ): derivatives by the start = basis @ triangle
     errors: Array  # (R,)
     raw: Array = field(default_factory=nothing)  # (R, F) by the parameters, starts held
-    rest: Array = field(default_factory=nothing)  # (R + N,) errors without what starts can do, then those of the prior
+    rest: Array = field(
+        default_factory=nothing
+    )  # (R + N,) errors without what starts can do, then those of the prior
     columns: Array = field(default_factory=nothing)  # (R + N, F) the same of derivatives
 
     @classmethod
@@ -48,7 +50,10 @@ class Linear:
         masks = tuple(np.isfinite(e).ravel() for e in errors)
         bases, triangles = [], []
         for slope, mask in zip(by_starts, masks, strict=True):
-            flat = np.nan_to_num((slope * weights[:, None]).reshape(-1, slope.shape[2])) * mask[:, None]
+            flat = (
+                np.nan_to_num((slope * weights[:, None]).reshape(-1, slope.shape[2]))
+                * mask[:, None]
+            )
             basis, triangle = np.linalg.qr(flat)
             bases.append(basis)
             triangles.append(triangle)
@@ -60,12 +65,17 @@ class Linear:
 
     def flat(self, errors: Sequence[Array]) -> Array:
         """Errors (M, C) of all windows, weighted, in one row; 0 where nothing was recorded."""
-        rows = [np.nan_to_num((e * self.weights).ravel()) * m for e, m in zip(errors, self.masks, strict=True)]
+        rows = [
+            np.nan_to_num((e * self.weights).ravel()) * m
+            for e, m in zip(errors, self.masks, strict=True)
+        ]
         return np.concatenate(rows)
 
     def projected(self, rows: Array) -> Array:
         """Rows (R, ...) without what the windows' starts could do about them."""
-        return np.concatenate([part - q @ (q.T @ part) for part, q in zip(self.cut(rows), self.bases, strict=True)])
+        return np.concatenate(
+            [part - q @ (q.T @ part) for part, q in zip(self.cut(rows), self.bases, strict=True)]
+        )
 
     def cut(self, rows: Array) -> list[Array]:
         """Window by window."""
@@ -97,7 +107,9 @@ def descended(state: S, step: Callable[[S], S | None], rounds: int) -> S:
     return state
 
 
-def solved(J: Array, errors: Array, low: Sequence[float], high: Sequence[float], theta: Array) -> Array:
+def solved(
+    J: Array, errors: Array, low: Sequence[float], high: Sequence[float], theta: Array
+) -> Array:
     """(F,) step of theta (F,) to the least squares of errors + J step, within bounds; what does nothing stays."""
     if not len(theta):
         return theta

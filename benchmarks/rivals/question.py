@@ -12,15 +12,15 @@ import numpy as np
 from benchmarks.entry import horizon_of, vessel_of
 from boatsim.cli import diagnosis as commands
 from boatsim.control.base import wrap
-from boatsim.diagnose import rules
-from boatsim.diagnose.analysis import open_recording
-from boatsim.diagnose.filter import noise_of, nominal_levels, track
-from boatsim.diagnose.log.held_fixes import without_repeats
-from boatsim.diagnose.log.outlying_fixes import without_outliers
-from boatsim.diagnose.problem import Fit, Free, Problem
-from boatsim.diagnose.report import patch
-from boatsim.diagnose.report.answer import key_of
-from boatsim.diagnose.tried import called, library_for
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.candidates import called, library_for
+from boatsim.diagnosis.checks.position_outliers import without_outliers
+from boatsim.diagnosis.checks.repeated_positions import without_repeats
+from boatsim.diagnosis.filter import noise_of, nominal_levels, track
+from boatsim.diagnosis.pipeline import open_recording
+from boatsim.diagnosis.problem import Fit, Free, Problem
+from boatsim.diagnosis.report import patched_vessel
+from boatsim.diagnosis.report.answer import key_of
 from boatsim.physics.base import Array, Effect
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
@@ -34,9 +34,13 @@ class Question:
 
     vessel: Vessel
     problem: Problem
-    entries: dict[str, Effect]  # of the library, those that are tried on this vessel and have a course to be fitted
+    entries: dict[
+        str, Effect
+    ]  # of the library, those that are tried on this vessel and have a course to be fitted
     noise: dict[str, float]  # by family, as found in the recordings [m, rad]
-    known: dict[tuple[str, ...], tuple[Free, ...]] = field(default_factory=dict)  # what hypotheses fit, once asked
+    known: dict[tuple[str, ...], tuple[Free, ...]] = field(
+        default_factory=dict
+    )  # what hypotheses fit, once asked
 
     def start(self) -> Array:
         """The vessel's own coefficients as written."""
@@ -47,17 +51,17 @@ def asked(trial: Path) -> Question:
     """The question of one trial: rows, noise and library as the diagnosis has them, random forces left out."""
     opened = [open_recording(trial / f"run_{i}.csv", vessel_of(trial), ()) for i in (1, 2)]
     vessel = opened[0][1]
-    runs = [without_outliers(without_repeats(r.thinned(rules.rate(b))), b) for r, b in opened]
+    runs = [without_outliers(without_repeats(r.thinned(priors.rate(b))), b) for r, b in opened]
     columns = sorted({c for r in runs for c in r.signals})
     library = library_for(vessel, (), runs[0].notes.facts, columns)
     program = Program(vessel, library.compiled)
     stated = noise_of(vessel, runs)
     tracks = [track(r, program, stated) for r in runs]
-    uncertainty = rules.uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
+    uncertainty = priors.uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
     problem = Problem(tracks, nominal_levels(vessel, runs), uncertainty)
     entries = {e.name: e for e in library.entries if e.name in library.tried and not type(e).random}
     families = {f for t in tracks for f in t.families}
-    noise = {f: rules.sensed_noise(vessel, runs, f) or stated[f] for f in families}
+    noise = {f: priors.sensed_noise(vessel, runs, f) or stated[f] for f in families}
     return Question(vessel, problem, entries, noise)
 
 
@@ -74,17 +78,25 @@ def fit_of(question: Question, suspects: tuple[str, ...], theta: Array, covarian
     return Fit(suspects, free_of(question, suspects), theta, covariance, problem.ambient, 0.0)
 
 
-def answer(question: Question, found: Fit, gains: dict[str, float], unknown: bool, trial: Path, out: Path) -> None:
+def answer(
+    question: Question, found: Fit, gains: dict[str, float], unknown: bool, trial: Path, out: Path
+) -> None:
     """Write diagnosis.json, patched.toml and replay.csv of one trial."""
     out.mkdir(parents=True, exist_ok=True)
-    patch.write(question.problem, question.vessel, found, out / "patched.toml")
+    patched_vessel.write(question.problem, question.vessel, found, out / "patched.toml")
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon_of(trial), out)
     said: dict[str, Any] = {
-        "effects": [{"name": called(n), "parameters": parameters(question, found, n), "gain_nats": round(gains[n], 2)}
-                    for n in found.suspects],
+        "effects": [
+            {
+                "name": called(n),
+                "parameters": parameters(question, found, n),
+                "gain_nats": round(gains[n], 2),
+            }
+            for n in found.suspects
+        ],
         "unknown": {"flag": unknown},
-    }  # fmt: skip
+    }
     (out / "diagnosis.json").write_text(json.dumps(said, indent=1) + "\n")
 
 

@@ -16,9 +16,9 @@ from benchmarks.rivals.accelerations import Smoother, held_by, positions, predic
 from benchmarks.rivals.evidence import Judge, sizes
 from benchmarks.rivals.linear import descended, solved
 from benchmarks.rivals.question import Question, fit_of, free_of
-from boatsim.diagnose.problem import Fit
-from boatsim.diagnose.search.screen import handed_over, joined, starts
-from boatsim.diagnose.tried import called
+from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.problem import Fit
+from boatsim.diagnosis.search.screening import handed_over, joined, starts
 from boatsim.physics.base import Array, Force, Measurement
 
 STEP = 1e-3  # prior sds by which a parameter is moved for derivatives
@@ -53,10 +53,16 @@ class SparseRegression:
 
     def __init__(self, question: Question, plain: bool) -> None:
         self.question, self.problem = question, question.problem
-        late = [n for n, e in question.entries.items() if isinstance(e, Measurement) and type(e).late is not None]
+        late = [
+            n
+            for n, e in question.entries.items()
+            if isinstance(e, Measurement) and type(e).late is not None
+        ]
         self.entries = {n: e for n, e in question.entries.items() if n not in late}
         self.judge = Judge(plain, len(self.entries))
-        self.smoothers = [Smoother.of(t, self.problem.ambient, question.noise) for t in self.problem.tracks]
+        self.smoothers = [
+            Smoother.of(t, self.problem.ambient, question.noise) for t in self.problem.tracks
+        ]
         self.recorded = [positions(t) for t in self.problem.tracks]
         self.weights = np.ones(self.problem.program.module.NQ)
         self.held = [held_by(t, (), t.values) for t in self.problem.tracks]
@@ -66,10 +72,16 @@ class SparseRegression:
         nominal = self.nominal()
         known = self.slopes(nominal)
         groups = {n: g for n in self.entries if (g := self.group(nominal, n, known)) is not None}
-        sets = [self.refitted(nominal, groups, names) for names in self.thresholded(nominal, groups, known)]
+        sets = [
+            self.refitted(nominal, groups, names)
+            for names in self.thresholded(nominal, groups, known)
+        ]
         best = max([nominal, *sets], key=lambda s: self.gain(nominal, s))
         best = self.pruned(nominal, best)
-        gains = {n: self.gain(nominal, best) - self.gain(nominal, self.without(best, n)) for n in best.suspects}
+        gains = {
+            n: self.gain(nominal, best) - self.gain(nominal, self.without(best, n))
+            for n in best.suspects
+        }
         fit = fit_of(self.question, best.suspects, best.theta, self.covariance(best))
         return fit, gains, self.beyond_the_water(best)
 
@@ -77,12 +89,20 @@ class SparseRegression:
 
     def at(self, suspects: tuple[str, ...], theta: Array) -> State:
         """A hypothesis evaluated along the recordings."""
-        free, on, errors = free_of(self.question, suspects), self.problem.program.switches(suspects), list[Array]()
+        free, on, errors = (
+            free_of(self.question, suspects),
+            self.problem.program.switches(suspects),
+            list[Array](),
+        )
         kinds = [self.entries[n] for n in suspects]
         for smoother, recorded, held in zip(self.smoothers, self.recorded, self.held, strict=True):
             track = smoother.track
             values = self.problem.values(track, free, theta)
-            true = shown_by(track, recorded, values, on) if any(isinstance(e, Measurement) for e in kinds) else recorded
+            true = (
+                shown_by(track, recorded, values, on)
+                if any(isinstance(e, Measurement) for e in kinds)
+                else recorded
+            )
             states, accelerations = smoother.motion(true)
             if held.any() and any(not isinstance(e, Measurement | Force) for e in kinds):
                 held = held_by(track, suspects, values)
@@ -90,7 +110,9 @@ class SparseRegression:
             errors.append(left[smoother.margin : len(left) - smoother.margin])
         with np.errstate(over="ignore", invalid="ignore"):
             square = sum(float(np.sum((e * self.weights) ** 2)) for e in errors)
-        square += sum(((x - f.mean) / f.sd) ** 2 for f, x in zip(free, theta, strict=True) if f.relative)
+        square += sum(
+            ((x - f.mean) / f.sd) ** 2 for f, x in zip(free, theta, strict=True) if f.relative
+        )
         return State(suspects, theta, tuple(errors), square if np.isfinite(square) else np.inf)
 
     def row(self, state: State) -> Array:
@@ -123,9 +145,15 @@ class SparseRegression:
         def stepped(s: State) -> State | None:
             if not np.isfinite(s.square):
                 return None
-            J = self.slopes(s) if known is None else np.hstack([known, self.slopes(s, s.suspects[-1])])
+            J = (
+                self.slopes(s)
+                if known is None
+                else np.hstack([known, self.slopes(s, s.suspects[-1])])
+            )
             move = solved(J, self.row(s), low, high, s.theta)
-            nearer = (np.clip(s.theta + share * move, low, high) for share in (1.0, 0.5, 0.25, 0.125))
+            nearer = (
+                np.clip(s.theta + share * move, low, high) for share in (1.0, 0.5, 0.25, 0.125)
+            )
             steps = (self.at(s.suspects, theta) for theta in nearer)
             return next((after for after in steps if after.square < s.square), None)
 
@@ -147,22 +175,29 @@ class SparseRegression:
 
     def gain(self, before: State, after: State) -> float:
         """What a set gains over another [nats]."""
-        more, entries = len(after.theta) - len(before.theta), len(after.suspects) - len(before.suspects)
+        more, entries = (
+            len(after.theta) - len(before.theta),
+            len(after.suspects) - len(before.suspects),
+        )
         prior = self.prior(before) - self.prior(after)
         return self.judge.gain(before.errors, after.errors, more, entries) + 0.5 * prior
 
     def prior(self, state: State) -> float:
         """How far the vessel's own coefficients are from what is stated, squares of sds."""
         free = free_of(self.question, state.suspects)
-        return sum(((x - f.mean) / f.sd) ** 2 for f, x in zip(free, state.theta, strict=True) if f.relative)
+        return sum(
+            ((x - f.mean) / f.sd) ** 2 for f, x in zip(free, state.theta, strict=True) if f.relative
+        )
 
     # ---- the sparse regression
 
     def group(self, nominal: State, entry: str, known: Array) -> Group | None:
         """An entry fitted alone, and its columns; None if it runs away or changes nothing."""
         base = fit_of(self.question, (), nominal.theta, np.zeros((0, 0)))
-        begun = [handed_over(joined(self.problem, base, entry, s), self.entries[entry])
-                 for s in starts(self.problem, self.entries[entry])]  # fmt: skip
+        begun = [
+            handed_over(joined(self.problem, base, entry, s), self.entries[entry])
+            for s in starts(self.problem, self.entries[entry])
+        ]
         free = free_of(self.question, (entry,))
         low, high = [f.low for f in free], [f.high for f in free]
         tried = [self.at((entry,), np.clip(f.theta, low, high)) for f in begun]
@@ -171,17 +206,26 @@ class SparseRegression:
             return None
         alone = self.fitted(min(first, key=lambda s: s.square), ROUNDS - 1, known)
         slopes = self.slopes(alone, entry)
-        shape = self.row(self.at((entry,), self.placed((entry,), [alone, nominal]))) - self.row(nominal)
+        shape = self.row(self.at((entry,), self.placed((entry,), [alone, nominal]))) - self.row(
+            nominal
+        )
         columns = np.column_stack([shape, slopes])
         return Group(columns, alone) if np.isfinite(columns).all() and shape.any() else None
 
     def placed(self, suspects: tuple[str, ...], states: Sequence[State]) -> Array:
         """(F,) parameters of a set, as later ones of some states have them where several do."""
-        known = {(f.effect, f.name, f.relative): x for s in states
-                 for f, x in zip(free_of(self.question, s.suspects), s.theta, strict=True)}  # fmt: skip
-        return np.array([known[f.effect, f.name, f.relative] for f in free_of(self.question, suspects)])
+        known = {
+            (f.effect, f.name, f.relative): x
+            for s in states
+            for f, x in zip(free_of(self.question, s.suspects), s.theta, strict=True)
+        }
+        return np.array(
+            [known[f.effect, f.name, f.relative] for f in free_of(self.question, suspects)]
+        )
 
-    def thresholded(self, nominal: State, groups: dict[str, Group], own: Array) -> list[tuple[str, ...]]:
+    def thresholded(
+        self, nominal: State, groups: dict[str, Group], own: Array
+    ) -> list[tuple[str, ...]]:
         """The sets that are left when the entry which is needed least is taken out again and again."""
         names = list(groups)
         blocks = [own, *(g.columns for g in groups.values())]
@@ -218,7 +262,9 @@ class SparseRegression:
     def pruned(self, nominal: State, best: State) -> State:
         """Without entries that BIC is better off without."""
         while best.suspects:
-            fewer = max((self.without(best, n) for n in best.suspects), key=lambda s: self.gain(nominal, s))
+            fewer = max(
+                (self.without(best, n) for n in best.suspects), key=lambda s: self.gain(nominal, s)
+            )
             if self.gain(nominal, fewer) < self.gain(nominal, best):
                 break
             best = fewer
@@ -226,7 +272,9 @@ class SparseRegression:
 
     def beyond_the_water(self, best: State) -> bool:
         """Whether what is left over is surely more than noise and twice the ambient force: a chi-square test."""
-        pushed = np.mean([s.pushed(self.problem.ambient, TOLERATED) for s in self.smoothers], axis=0)
+        pushed = np.mean(
+            [s.pushed(self.problem.ambient, TOLERATED) for s in self.smoothers], axis=0
+        )
         expected, alike = pushed + self.by_noise(best), self.judge.alike(best.errors)
         square = sum(float(np.sum(e**2 / expected / alike)) for e in best.errors)
         return bool(chi2.sf(square, sum(float(np.sum(len(e) / alike)) for e in best.errors)) < SURE)
@@ -236,7 +284,8 @@ class SparseRegression:
         rng, recorded, found = np.random.default_rng(SEED), self.recorded, list[Array]()
         for _ in range(DRAWS):
             self.recorded = [
-                y + s.noisy(self.question.noise, rng) for y, s in zip(recorded, self.smoothers, strict=True)
+                y + s.noisy(self.question.noise, rng)
+                for y, s in zip(recorded, self.smoothers, strict=True)
             ]
             noisy = self.at(best.suspects, best.theta).errors
             found.append(sizes([a - b for a, b in zip(noisy, best.errors, strict=True)]) ** 2)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnose.filter import Track, body_of, segments
+from boatsim.diagnosis.filter import Track, body_of, segments
 from boatsim.physics.base import Array
 
 FIRST = 1.0  # [s] from which a window's start is guessed
@@ -49,18 +49,31 @@ class Windows:
         track, program = self.track, self.track.program
         out = np.full((len(starts), len(track.times), starts.shape[1]), np.nan)
         program.module.free_runs(
-            track.times, track.given, track.orders, track.step, body_of(values), values, on, self.begins, self.ends,
-            np.ascontiguousarray(starts), out,
-        )  # fmt: skip
+            track.times,
+            track.given,
+            track.orders,
+            track.step,
+            body_of(values),
+            values,
+            on,
+            self.begins,
+            self.ends,
+            np.ascontiguousarray(starts),
+            out,
+        )
         cut = [slice(a, b + 1) for a, b in zip(self.begins, self.ends, strict=True)]
         return [track.measured[s] - out[w, s][:, track.codes] for w, s in enumerate(cut)]
 
-    def by_starts(self, values: Array, on: Array, starts: Array, errors: Sequence[Array]) -> list[Array]:
+    def by_starts(
+        self, values: Array, on: Array, starts: Array, errors: Sequence[Array]
+    ) -> list[Array]:
         """Derivatives (M, C, 2 NQ) of the errors of each window by its start."""
         slopes = [np.zeros((*e.shape, starts.shape[1])) for e in errors]
         for j in range(starts.shape[1]):
             beside = starts.copy()
             beside[:, j] += STEP
-            for slope, there, here in zip(slopes, self.errors(values, on, beside), errors, strict=True):
+            for slope, there, here in zip(
+                slopes, self.errors(values, on, beside), errors, strict=True
+            ):
                 slope[:, :, j] = (there - here) / STEP
         return slopes

@@ -66,7 +66,8 @@ def _vessel(name: str) -> list[str]:
         lines += ["  measured:", *_rows([(n, "", m.about) for n, m in boat.measured.items()])]
     lines += ["  effects:"]
     lines += [
-        f"    {e.name}{'' if e.name == type(e).idea() else f' ({type(e).idea()})'}: {_values(e)}" for e in boat.effects
+        f"    {e.name}{'' if e.name == type(e).idea() else f' ({type(e).idea()})'}: {_values(e)}"
+        for e in boat.effects
     ]
     if boat.loads:
         lines.append(f"  loads: {', '.join(boat.loads)}")
@@ -75,7 +76,12 @@ def _vessel(name: str) -> list[str]:
     own = content.vessel_address(boat.file).endswith(".toml")
     given = name if own else boat.name
     file = f"{name}/vessel.toml" if own and not name.endswith(".toml") else given
-    return [*lines, "to paste:", f'  vessel = "{file}"', f"  boatsim diagnose RUN.csv --vessel {given}"]
+    return [
+        *lines,
+        "to paste:",
+        f'  vessel = "{file}"',
+        f"  boatsim diagnose RUN.csv --vessel {given}",
+    ]
 
 
 def _channel(boat: Vessel, name: str, c: CommandChannel) -> tuple[str, str, str]:
@@ -106,12 +112,18 @@ def _scenario(name: str) -> list[str]:
         told = cases.meant(name)
         return [f"{Path(name).name}: scenarios", *(f"  {one}" for one in told)]
     said, place = cases.content(name)
-    lines = [f"{place.name}: scenario", f"  {said.get('about', '')}".rstrip(), f"  file: {place.path}"]
+    lines = [
+        f"{place.name}: scenario",
+        f"  {said.get('about', '')}".rstrip(),
+        f"  file: {place.path}",
+    ]
     for key in ("vessel", "load", "duration", "step", "seed"):
         if key in said:
             unit = " s" if key in ("duration", "step") else ""
             value = said[key]
-            lines.append(f"  {key}: {', '.join(map(str, value)) if isinstance(value, list) else value}{unit}")
+            lines.append(
+                f"  {key}: {', '.join(map(str, value)) if isinstance(value, list) else value}{unit}"
+            )
     for key in ("controller", "measure"):
         table = said.get(key)
         if isinstance(table, dict):

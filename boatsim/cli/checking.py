@@ -4,9 +4,9 @@ import sys
 from pathlib import Path
 
 from boatsim.cli.exits import Exit, complain, say, words
-from boatsim.diagnose.analysis import check
-from boatsim.diagnose.log.entry import in_words
-from boatsim.diagnose.log.finding import PROBABLY
+from boatsim.diagnosis.checks.entry import in_words
+from boatsim.diagnosis.checks.finding import PROBABLY
+from boatsim.diagnosis.pipeline import check
 from boatsim.errors import shown
 
 CLEAN = "nothing is wrong with this log that could be found"
@@ -19,7 +19,11 @@ def check_logs(runs: list[Path], vessel: str | None, load: list[str]) -> int:
         wrong = [e for e in entries if e["kind"] != "limit"]
         faults = any(e["kind"] == "fault" for e in entries)
         if wrong or not refused:
-            say([f"{shown(str(path))}: {PROBABLY if faults else 'a diagnosis allows for it' if wrong else CLEAN}"])
+            say(
+                [
+                    f"{shown(str(path))}: {PROBABLY if faults else 'a diagnosis allows for it' if wrong else CLEAN}"
+                ]
+            )
         for e in wrong:
             say(f"  {line}" for line in in_words(e))
         for e in entries:
@@ -30,4 +34,8 @@ def check_logs(runs: list[Path], vessel: str | None, load: list[str]) -> int:
     sys.stdout.flush()
     if refused:
         return Exit.BAD_INPUT
-    return Exit.MISSED if any(e["kind"] != "limit" for entries in found.values() for e in entries) else Exit.MET
+    return (
+        Exit.MISSED
+        if any(e["kind"] != "limit" for entries in found.values() for e in entries)
+        else Exit.MET
+    )

@@ -11,8 +11,8 @@ from typing import Annotated, Any, Literal, NoReturn, ParamSpec
 import typer
 from typer.core import TyperGroup
 
-from boatsim.cli.asking import asking
 from boatsim.cli.exits import FAULTS, Exit, any_terminal, complain, say, words
+from boatsim.cli.trust_prompt import asking
 from boatsim.errors import BadInput
 from boatsim.interruption import heed, struck
 from boatsim.quiet import leave_quietly
@@ -20,14 +20,20 @@ from boatsim.version import version as installed
 
 P = ParamSpec("P")
 PINNED_SEEDS = 5
-UsageError: Any = typer.BadParameter.__base__  # of all mistakes on the command line typer gives a name to this one only
+UsageError: Any = (
+    typer.BadParameter.__base__
+)  # of all mistakes on the command line typer gives a name to this one only
 
 
 class OneLine(TyperGroup):
     """The program as a whole: a mistake on its command line is one line too, and no arguments ask for help."""
 
     def main(
-        self, args: Sequence[str] | None = None, prog_name: str | None = None, *_: object, **__: object
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        *_: object,
+        **__: object,
     ) -> NoReturn:
         """Run the program and leave with its exit code."""
         given = list(sys.argv[1:] if args is None else args)
@@ -50,11 +56,17 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-Runs = Annotated[list[Path], typer.Argument(metavar="RUN", help="Recordings: .csv, .parquet or our own .rrd.")]
-OneRun = Annotated[Path, typer.Argument(metavar="RUN", help="A recording: .csv, .parquet or our own .rrd.")]
+Runs = Annotated[
+    list[Path], typer.Argument(metavar="RUN", help="Recordings: .csv, .parquet or our own .rrd.")
+]
+OneRun = Annotated[
+    Path, typer.Argument(metavar="RUN", help="A recording: .csv, .parquet or our own .rrd.")
+]
 VesselName = Annotated[
     str | None,
-    typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="Nominal vessel, instead of recording.toml's."),
+    typer.Option(
+        "--vessel", metavar="NAME|FOLDER|FILE", help="Nominal vessel, instead of recording.toml's."
+    ),
 ]
 
 
@@ -75,21 +87,31 @@ def _speed(given: str | float) -> float:
 
 
 Load = Annotated[
-    list[str] | None, typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide.")
+    list[str] | None,
+    typer.Option("--load", metavar="L,L...", help="Load conditions, such as heavy,wide."),
 ]
 
 Content = Annotated[
     list[Path] | None,
-    typer.Option("--content", metavar="DIR", help="A folder of your own content, trusted to run; may be repeated."),
+    typer.Option(
+        "--content",
+        metavar="DIR",
+        help="A folder of your own content, trusted to run; may be repeated.",
+    ),
 ]
 Jobs = Annotated[
-    int | None, typer.Option(min=1, metavar="N", help="At the same time [default: one for each processor].")
+    int | None,
+    typer.Option(min=1, metavar="N", help="At the same time [default: one for each processor]."),
 ]
 Ray = Annotated[
-    str | None, typer.Option("--ray", metavar="auto|ADDRESS", help="On this Ray cluster instead; needs boatsim[ray].")
+    str | None,
+    typer.Option(
+        "--ray", metavar="auto|ADDRESS", help="On this Ray cluster instead; needs boatsim[ray]."
+    ),
 ]
 Trusted = Annotated[
-    bool, typer.Option("--trust", help="Let the Python files run that lie beside the files named here.")
+    bool,
+    typer.Option("--trust", help="Let the Python files run that lie beside the files named here."),
 ]
 
 
@@ -114,7 +136,9 @@ def _code(command: Callable[[], int]) -> int:
         complain("interrupted")
         return Exit.INTERRUPTED
     except MemoryError:
-        complain("this needs more memory than there is; a shorter recording, or a longer step or `log`, needs less")
+        complain(
+            "this needs more memory than there is; a shorter recording, or a longer step or `log`, needs less"
+        )
         return Exit.BAD_INPUT
     except Exception as error:
         if struck():  # in the middle of something that could not take it, such as numba
@@ -122,14 +146,19 @@ def _code(command: Callable[[], int]) -> int:
             return Exit.INTERRUPTED
         if not type(error).__module__.startswith("numba."):
             raise
-        complain(f"the law of an effect can not be compiled: {_said(error)}; a law takes floats and allocates nothing")
+        complain(
+            f"the law of an effect can not be compiled: {_said(error)}; a law takes floats and allocates nothing"
+        )
         return Exit.BAD_INPUT
 
 
 def _said(error: Exception) -> str:
     """What numba says of a law: the first place that it names, and the first line that says something."""
     lines = [" ".join(line.split()) for line in str(error).splitlines()]
-    said = next((line.rstrip(":") for line in lines if line and not line.startswith("Failed in")), type(error).__name__)
+    said = next(
+        (line.rstrip(":") for line in lines if line and not line.startswith("Failed in")),
+        type(error).__name__,
+    )
     place = re.search(r'File "([^"]+)", line (\d+)', str(error))
     return f"{Path(place[1]).name}:{place[2]}: {said}" if place else said
 
@@ -143,7 +172,10 @@ def _version(asked: bool) -> None:
 @app.callback()
 def options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and leave.")
+        bool,
+        typer.Option(
+            "--version", callback=_version, is_eager=True, help="Print the version and leave."
+        ),
     ] = False,
 ) -> None:
     """Options of the program itself."""
@@ -152,20 +184,36 @@ def options(
 @app.command()
 @guarded
 def run(
-    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")],
+    scenarios: Annotated[
+        list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")
+    ],
     out: Annotated[
-        Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder [default: out/VESSEL/SCENARIO].")
+        Path | None,
+        typer.Option(metavar="DIR", parser=_folder, help="Folder [default: out/VESSEL/SCENARIO]."),
     ] = None,
-    jobs: Annotated[int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")] = 1,
-    seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")] = None,
-    live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer, in real time.")] = False,
-    serve: Annotated[bool, typer.Option("--serve", help="Show it in a browser: rerun's web viewer.")] = False,
+    jobs: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Scenarios run at the same time.")
+    ] = 1,
+    seed: Annotated[
+        int | None, typer.Option(min=0, metavar="N", help="Seed instead of the scenarios' own.")
+    ] = None,
+    live: Annotated[
+        bool, typer.Option("--live", help="Show the run in a rerun viewer, in real time.")
+    ] = False,
+    serve: Annotated[
+        bool, typer.Option("--serve", help="Show it in a browser: rerun's web viewer.")
+    ] = False,
     speed: Annotated[
-        float | None, typer.Option(metavar="X", parser=_speed, help="Times real time, with the two; 0 or max: no wait.")
+        float | None,
+        typer.Option(
+            metavar="X", parser=_speed, help="Times real time, with the two; 0 or max: no wait."
+        ),
     ] = None,
     controller: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME|FILE", help="Steer with this one; of several each runs, side by side."),
+        typer.Option(
+            metavar="NAME|FILE", help="Steer with this one; of several each runs, side by side."
+        ),
     ] = None,
     side_by_side: Annotated[
         bool, typer.Option("--side-by-side", help="One table and one compare.rrd of all runs.")
@@ -174,14 +222,18 @@ def run(
     trust: Trusted = False,
 ) -> int:
     """Run scenarios: recording.csv, norms.json, camera.csv, run.rrd, and a table of norms beside their bars."""
-    from boatsim.cli.batch import Watched, run_all
+    from boatsim.cli.run_many import Watched, run_all
 
     if speed is not None and not (live or serve):
-        raise BadInput(f"--speed = {speed:g}: only a run that is shown is held back; give --live or --serve too")
+        raise BadInput(
+            f"--speed = {speed:g}: only a run that is shown is held back; give --live or --serve too"
+        )
     watched = Watched(serve, 1.0 if speed is None else speed) if live or serve else None
     several = controller or []
     with asking(content, trust, [*scenarios, *several]):
-        return run_all(scenarios, out, jobs, seed, watched, several, side_by_side or len(several) > 1)
+        return run_all(
+            scenarios, out, jobs, seed, watched, several, side_by_side or len(several) > 1
+        )
 
 
 @app.command()
@@ -190,25 +242,43 @@ def drive(
     vessel: Annotated[str, typer.Argument(metavar="VESSEL", help="A name, a folder or a file.")],
     controller: Annotated[
         str | None,
-        typer.Option(metavar="NAME|FILE", help="Between sticks and thrusters [default: the scenario's, or none]."),
+        typer.Option(
+            metavar="NAME|FILE",
+            help="Between sticks and thrusters [default: the scenario's, or none].",
+        ),
     ] = None,
     scenario: Annotated[
-        str | None, typer.Option(metavar="NAME|FILE", help="Its water, wind, load and start [default: open water].")
+        str | None,
+        typer.Option(
+            metavar="NAME|FILE", help="Its water, wind, load and start [default: open water]."
+        ),
     ] = None,
     load: Load = None,
     seconds: Annotated[
-        float, typer.Option(min=0.1, max=86400.0, metavar="S", help="The run ends after so long [s].")
+        float,
+        typer.Option(min=0.1, max=86400.0, metavar="S", help="The run ends after so long [s]."),
     ] = 3600.0,
     out: Annotated[
-        Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder [default: out/VESSEL/drive-TIME].")
+        Path | None,
+        typer.Option(
+            metavar="DIR", parser=_folder, help="Folder [default: out/VESSEL/drive-TIME]."
+        ),
     ] = None,
     open_: Annotated[
         bool | None,
-        typer.Option("--open/--no-open", help="Open the page in a browser [default: with a screen]."),
+        typer.Option(
+            "--open/--no-open", help="Open the page in a browser [default: with a screen]."
+        ),
     ] = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, metavar="N", help="Of the page; 0: any that is free.")] = 0,
-    live: Annotated[bool, typer.Option("--live", help="Show the run in a rerun viewer too.")] = False,
-    serve: Annotated[bool, typer.Option("--serve", help="Show it in rerun's web viewer too.")] = False,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, metavar="N", help="Of the page; 0: any that is free.")
+    ] = 0,
+    live: Annotated[
+        bool, typer.Option("--live", help="Show the run in a rerun viewer too.")
+    ] = False,
+    serve: Annotated[
+        bool, typer.Option("--serve", help="Show it in rerun's web viewer too.")
+    ] = False,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
@@ -216,31 +286,59 @@ def drive(
     from boatsim.cli.driving import drive as driven
 
     with asking(content, trust, [vessel, controller, scenario]):
-        return driven(vessel, scenario, controller, _loads(load), seconds, out, open_, port, live or serve, serve)
+        return driven(
+            vessel,
+            scenario,
+            controller,
+            _loads(load),
+            seconds,
+            out,
+            open_,
+            port,
+            live or serve,
+            serve,
+        )
 
 
 @app.command()
 @guarded
 def sweep(
-    scenarios: Annotated[list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")],
+    scenarios: Annotated[
+        list[str], typer.Argument(metavar="SCENARIO", help="Names, folders, patterns, files.")
+    ],
     vary: Annotated[
         list[str] | None,
-        typer.Option(metavar="KEY=A:B:N|KEY=X,Y,...", help="A direction of the grid; may be repeated."),
+        typer.Option(
+            metavar="KEY=A:B:N|KEY=X,Y,...", help="A direction of the grid; may be repeated."
+        ),
     ] = None,
     draw: Annotated[
         list[str] | None,
-        typer.Option(metavar="KEY=LAW(...)", help="Drawn anew for each run: normal(mean,sd), ...; may be repeated."),
+        typer.Option(
+            metavar="KEY=LAW(...)",
+            help="Drawn anew for each run: normal(mean,sd), ...; may be repeated.",
+        ),
     ] = None,
-    runs: Annotated[int, typer.Option(min=1, metavar="N", help="Draws, the same at every point of the grid.")] = 1,
+    runs: Annotated[
+        int, typer.Option(min=1, metavar="N", help="Draws, the same at every point of the grid.")
+    ] = 1,
     latin: Annotated[bool, typer.Option("--latin", help="Draws as a Latin hypercube.")] = False,
     sobol: Annotated[
-        bool, typer.Option("--sobol", help="Saltelli's design and Sobol indices: N (D + 2) runs a point.")
+        bool,
+        typer.Option(
+            "--sobol", help="Saltelli's design and Sobol indices: N (D + 2) runs a point."
+        ),
     ] = False,
-    seed: Annotated[int, typer.Option(min=0, metavar="N", help="Of all that is drawn, noise too.")] = 0,
+    seed: Annotated[
+        int, typer.Option(min=0, metavar="N", help="Of all that is drawn, noise too.")
+    ] = 0,
     norm: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Print and draw this one, not all; may be repeated.")
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Print and draw this one, not all; may be repeated."),
     ] = None,
-    out: Annotated[Path, typer.Option(metavar="DIR", parser=_folder, help="Folder of the sweep.")] = Path("out/sweep"),
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder of the sweep.")
+    ] = Path("out/sweep"),
     jobs: Jobs = None,
     ray: Ray = None,
     content: Content = None,
@@ -252,19 +350,32 @@ def sweep(
     if latin and sobol:
         raise BadInput("--latin and --sobol are two designs; choose one")
     with asking(content, trust, scenarios):
-        kind: Literal["random", "latin", "sobol"] = "sobol" if sobol else "latin" if latin else "random"
-        return carry_out(scenarios, vary or [], draw or [], runs, kind, seed, out, jobs, ray, norm or [])
+        kind: Literal["random", "latin", "sobol"] = (
+            "sobol" if sobol else "latin" if latin else "random"
+        )
+        return carry_out(
+            scenarios, vary or [], draw or [], runs, kind, seed, out, jobs, ray, norm or []
+        )
 
 
 @app.command()
 @guarded
 def test(
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", parser=_folder, help="With scenarios in it.")],
-    pin: Annotated[bool, typer.Option("--pin", help="Write FOLDER/pins.toml: the norms as they are now.")] = False,
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", parser=_folder, help="With scenarios in it.")
+    ],
+    pin: Annotated[
+        bool, typer.Option("--pin", help="Write FOLDER/pins.toml: the norms as they are now.")
+    ] = False,
     seeds: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Seeds whose range is a pin's tolerance [default: 5].")
+        int | None,
+        typer.Option(
+            min=1, metavar="N", help="Seeds whose range is a pin's tolerance [default: 5]."
+        ),
     ] = None,
-    junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Write JUnit XML, for CI.")] = None,
+    junit: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write JUnit XML, for CI.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON instead of the table.")] = False,
     content: Content = None,
     trust: Trusted = False,
@@ -283,24 +394,36 @@ def test(
 def manoeuvre(
     name: Annotated[
         str,
-        typer.Argument(metavar="MANOEUVRE", help="turning_circle, zigzag, pull_out, spiral, crash_stop or roll_decay."),
+        typer.Argument(
+            metavar="MANOEUVRE",
+            help="turning_circle, zigzag, pull_out, spiral, crash_stop or roll_decay.",
+        ),
     ],
-    vessel: Annotated[str, typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="What does it.")],
+    vessel: Annotated[
+        str, typer.Option("--vessel", metavar="NAME|FOLDER|FILE", help="What does it.")
+    ],
     load: Load = None,
     angle: Annotated[
-        float | None, typer.Option(metavar="DEG", help="Helm angle, heel of a roll decay; negative to port.")
+        float | None,
+        typer.Option(metavar="DEG", help="Helm angle, heel of a roll decay; negative to port."),
     ] = None,
     heading: Annotated[
         float | None,
-        typer.Option(metavar="DEG", help="Zig-zag: heading that reverses the helm [default: angle]."),
+        typer.Option(
+            metavar="DEG", help="Zig-zag: heading that reverses the helm [default: angle]."
+        ),
     ] = None,
-    speed: Annotated[float | None, typer.Option(min=1e-3, metavar="M/S", help="Where the approach begins.")] = None,
-    out: Annotated[Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder for the files.")] = None,
+    speed: Annotated[
+        float | None, typer.Option(min=1e-3, metavar="M/S", help="Where the approach begins.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", parser=_folder, help="Folder for the files.")
+    ] = None,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
     """Run a standard manoeuvre of a vessel: its figures beside the limits of the IMO, and the files of a run."""
-    from boatsim.cli.batch import run_manoeuvre
+    from boatsim.cli.run_many import run_manoeuvre
     from boatsim.simulate.manoeuvre import scenario_of
 
     with asking(content, trust, [vessel]):
@@ -316,7 +439,8 @@ def list_(
         typer.Argument(help="Only these."),
     ] = None,
     like: Annotated[
-        str | None, typer.Argument(metavar="LIKE", help="Only names with this in them, or a pattern.")
+        str | None,
+        typer.Argument(metavar="LIKE", help="Only names with this in them, or a pattern."),
     ] = None,
     content: Content = None,
 ) -> None:
@@ -332,7 +456,10 @@ def list_(
 def show(
     name: Annotated[
         str,
-        typer.Argument(metavar="NAME", help="An effect, controller, vessel, measure, sensor or scenario; a folder."),
+        typer.Argument(
+            metavar="NAME",
+            help="An effect, controller, vessel, measure, sensor or scenario; a folder.",
+        ),
     ],
     content: Content = None,
     trust: Trusted = False,
@@ -363,12 +490,14 @@ def margins(
 def compare(
     run: OneRun,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for compare.csv and compare.rrd.")
+        Path,
+        typer.Option(metavar="DIR", parser=_folder, help="Folder for compare.csv and compare.rrd."),
     ] = Path("out/compare"),
     vessel: VesselName = None,
     load: Load = None,
     scenario: Annotated[
-        str | None, typer.Option(metavar="NAME|FILE", help="Simulate this, not the recorded commands.")
+        str | None,
+        typer.Option(metavar="NAME|FILE", help="Simulate this, not the recorded commands."),
     ] = None,
     content: Content = None,
     trust: Trusted = False,
@@ -384,12 +513,14 @@ def compare(
 @guarded
 def replay(
     run: OneRun,
-    out: Annotated[Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for replay.csv.")] = Path(
-        "out/replay"
-    ),
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for replay.csv.")
+    ] = Path("out/replay"),
     vessel: VesselName = None,
     load: Load = None,
-    horizon: Annotated[float, typer.Option(min=0.1, metavar="S", help="Length of each free run [s].")] = 6.0,
+    horizon: Annotated[
+        float, typer.Option(min=0.1, metavar="S", help="Length of each free run [s].")
+    ] = 6.0,
     content: Content = None,
     trust: Trusted = False,
 ) -> int:
@@ -405,24 +536,36 @@ def replay(
 def diagnose(
     runs: Runs,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", parser=_folder, help="Folder for report.html and the other files.")
+        Path,
+        typer.Option(
+            metavar="DIR", parser=_folder, help="Folder for report.html and the other files."
+        ),
     ] = Path("out/diagnosis"),
     hold_out: Annotated[
-        list[Path] | None, typer.Option(metavar="RUN", help="Judge the result on this one, unseen; may be repeated.")
+        list[Path] | None,
+        typer.Option(metavar="RUN", help="Judge the result on this one, unseen; may be repeated."),
     ] = None,
     vessel: VesselName = None,
     load: Load = None,
     library: Annotated[
-        list[str] | None, typer.Option(metavar="NAME|FILE", help="Try this effect too; may be repeated.")
+        list[str] | None,
+        typer.Option(metavar="NAME|FILE", help="Try this effect too; may be repeated."),
     ] = None,
     without: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Do not try this effect; may be repeated.")
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Do not try this effect; may be repeated."),
     ] = None,
     horizon: Annotated[
-        float | None, typer.Option(min=0.1, metavar="S", help="Length of each free run [s], if not the usual one.")
+        float | None,
+        typer.Option(
+            min=0.1, metavar="S", help="Length of each free run [s], if not the usual one."
+        ),
     ] = None,
     each: Annotated[
-        bool, typer.Option("--each", help="Each recording by itself, folders for those in them: diagnoses.parquet.")
+        bool,
+        typer.Option(
+            "--each", help="Each recording by itself, folders for those in them: diagnoses.parquet."
+        ),
     ] = False,
     jobs: Jobs = None,
     ray: Ray = None,
@@ -434,11 +577,13 @@ def diagnose(
 
     held, own, left_out = hold_out or [], library or [], without or []
     if not each and (jobs is not None or ray is not None):
-        raise BadInput("--jobs and --ray are for many recordings, each diagnosed by itself; give --each too")
+        raise BadInput(
+            "--jobs and --ray are for many recordings, each diagnosed by itself; give --each too"
+        )
     with asking(content, trust, [*runs, *held, vessel]):
         if each:
             from boatsim.cli.sweeping import diagnose_each
-            from boatsim.sweep.diagnoses import Asked
+            from boatsim.sweeps.diagnoses import Asked
 
             names = tuple(map(str, held)), vessel, tuple(_loads(load)), tuple(own), tuple(left_out)
             return diagnose_each(runs, Asked(*names, horizon), out, jobs, ray)
@@ -448,7 +593,11 @@ def diagnose(
 @app.command()
 @guarded
 def check(
-    runs: Runs, vessel: VesselName = None, load: Load = None, content: Content = None, trust: Trusted = False
+    runs: Runs,
+    vessel: VesselName = None,
+    load: Load = None,
+    content: Content = None,
+    trust: Trusted = False,
 ) -> int:
     """Say what is wrong with recordings before physics is suspected; leaves with 1 if anything is."""
     from boatsim.cli.checking import check_logs
@@ -462,10 +611,17 @@ def check(
 def import_(
     log: Annotated[
         Path,
-        typer.Argument(metavar="LOG", help="ArduPilot .BIN, ROS .mcap, .bag, .db3, PX4 .ulg, NMEA .nmea, .csv, ..."),
+        typer.Argument(
+            metavar="LOG",
+            help="ArduPilot .BIN, ROS .mcap, .bag, .db3, PX4 .ulg, NMEA .nmea, .csv, ...",
+        ),
     ],
-    out: Annotated[Path | None, typer.Option(metavar="RUN.csv", help="Recording to write; needs --map.")] = None,
-    map: Annotated[Path | None, typer.Option(metavar="MAP.toml", help="Which signal is which column.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="RUN.csv", help="Recording to write; needs --map.")
+    ] = None,
+    map: Annotated[
+        Path | None, typer.Option(metavar="MAP.toml", help="Which signal is which column.")
+    ] = None,
     propose: Annotated[
         Path | None, typer.Option(metavar="MAP.toml", help="Write the proposed map to this file.")
     ] = None,
@@ -484,7 +640,9 @@ def import_(
 @app.command()
 @guarded
 def new(
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", parser=_folder, help="Of the new boat, called so.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", parser=_folder, help="Of the new boat, called so.")
+    ],
     length: Annotated[float, typer.Option(metavar="M", help="Length of the waterline [m].")],
     beam: Annotated[float, typer.Option(metavar="M", help="Beam overall [m].")],
     mass: Annotated[float, typer.Option(metavar="KG", help="Mass with all on board [kg].")],
@@ -497,29 +655,48 @@ def new(
     ] = None,
     steered: Annotated[
         list[str] | None,
-        typer.Option(metavar="X,Y[,MAX_N[,ASTERN_N]]", help="A thruster that turns, an outboard; may be repeated."),
+        typer.Option(
+            metavar="X,Y[,MAX_N[,ASTERN_N]]",
+            help="A thruster that turns, an outboard; may be repeated.",
+        ),
     ] = None,
     rudder: Annotated[
-        str | None, typer.Option(metavar="X[,AREA]", help="A rudder, ahead of the mass centre [m], its area [m^2].")
+        str | None,
+        typer.Option(
+            metavar="X[,AREA]", help="A rudder, ahead of the mass centre [m], its area [m^2]."
+        ),
     ] = None,
-    draught: Annotated[float | None, typer.Option(metavar="M", help="[m] [default: what carries the mass].")] = None,
+    draught: Annotated[
+        float | None, typer.Option(metavar="M", help="[m] [default: what carries the mass].")
+    ] = None,
     hulls: Annotated[int, typer.Option(min=1, max=2, help="2 for a catamaran.")] = 1,
-    speed: Annotated[float | None, typer.Option(metavar="M/S", help="Reached at full thrust [m/s].")] = None,
+    speed: Annotated[
+        float | None, typer.Option(metavar="M/S", help="Reached at full thrust [m/s].")
+    ] = None,
     thrust: Annotated[
-        float | None, typer.Option(metavar="N", help="Full thrust of each thruster that states none [N].")
+        float | None,
+        typer.Option(metavar="N", help="Full thrust of each thruster that states none [N]."),
     ] = None,
     from_log: Annotated[
         list[Path] | None,
-        typer.Option("--from-log", metavar="RUN", help="Fit the coefficients to this recording; may be repeated."),
+        typer.Option(
+            "--from-log",
+            metavar="RUN",
+            help="Fit the coefficients to this recording; may be repeated.",
+        ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Write over a folder that is there.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over a folder that is there.")
+    ] = False,
 ) -> int:
     """Make a boat from its particulars: a vessel file with every number's rule, a drawing, a first scenario."""
     from boatsim.cli.newboat import new_boat
     from boatsim.newboat.particulars import particulars
 
     name, driven, turned = folder.resolve().name, thruster or [], steered or []
-    boat = particulars(name, length, beam, mass, driven, turned, rudder, draught, hulls, speed, thrust)
+    boat = particulars(
+        name, length, beam, mass, driven, turned, rudder, draught, hulls, speed, thrust
+    )
     return new_boat(folder, boat, from_log or [], force)
 
 

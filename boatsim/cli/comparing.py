@@ -13,7 +13,7 @@ from boatsim.errors import shown
 from boatsim.files import replacing
 
 if TYPE_CHECKING:
-    from boatsim.simulate.norms import NormEntry, RunEntry
+    from boatsim.simulate.evaluation import NormEntry, RunEntry
     from boatsim.view.rerun_log import Boat
 
 UNCUT = 10_000  # [columns] wider than any table
@@ -45,22 +45,36 @@ def compare(runs: Sequence[Done]) -> None:
 
 def _heads(runs: Sequence[Done]) -> list[tuple[str, ...]]:
     """What tells the runs apart: scenario, controller, or both."""
-    found = [(run.content["scenario"].rpartition("/")[2], Path(run.content["controller"]).stem) for run in runs]
+    found = [
+        (run.content["scenario"].rpartition("/")[2], Path(run.content["controller"]).stem)
+        for run in runs
+    ]
     if len({scenario for scenario, _ in found}) < len({run.content["scenario"] for run in runs}):
-        found = [(run.content["scenario"], controller) for run, (_, controller) in zip(runs, found, strict=True)]
+        found = [
+            (run.content["scenario"], controller)
+            for run, (_, controller) in zip(runs, found, strict=True)
+        ]
     several = [len(set(part)) > 1 for part in zip(*found, strict=True)]
     if not any(several):
         return list(found)
-    return [tuple(part for part, differs in zip(head, several, strict=True) if differs) for head in found]
+    return [
+        tuple(part for part, differs in zip(head, several, strict=True) if differs)
+        for head in found
+    ]
 
 
 def _rows(runs: Sequence[Done]) -> list[list[str]]:
     """Norm with its unit, what it is, and a cell for each run that has it, the best marked where lower is better."""
-    asked = dict.fromkeys((name, e["unit"]) for run in runs for name, e in run.content["norms"].items())
+    asked = dict.fromkeys(
+        (name, e["unit"]) for run in runs for name, e in run.content["norms"].items()
+    )
     scenarios = [run.content["scenario"] for run in runs]
     rows = []
     for name, unit in asked:
-        entries = [e if (e := run.content["norms"].get(name)) and e["unit"] == unit else None for run in runs]
+        entries = [
+            e if (e := run.content["norms"].get(name)) and e["unit"] == unit else None
+            for run in runs
+        ]
         best = _best(scenarios, entries)
         cells = [_cell(entry, number in best) for number, entry in enumerate(entries)]
         kind = next(e["kind"] for e in entries if e)
@@ -117,8 +131,11 @@ def _print(heads: Sequence[tuple[str, ...]], runs: Sequence[Done]) -> None:
     used = " ".join(cell for row in rows for cell in row[2:])
     marks = {BEST: "the best, where lower is better", MISSED: "outside its guard"}
     said = [f"{mark} {words}" for mark, words in marks.items() if mark in used]
-    every = {f"{'/'.join(head)}: {n}": e for head, run in zip(heads, runs, strict=True)
-             for n, e in run.content["norms"].items()}  # fmt: skip
+    every = {
+        f"{'/'.join(head)}: {n}": e
+        for head, run in zip(heads, runs, strict=True)
+        for n, e in run.content["norms"].items()
+    }
     for line in [*(["; ".join(said)] if said else []), *reasons(every)]:
         console.print(Text(shown(line)), soft_wrap=True)
 
@@ -128,7 +145,10 @@ def _title(runs: Sequence[Done]) -> str:
     parts = [{run.content[key] for run in runs} for key in ("scenario", "controller")]
     seeds = {run.content["seed"] for run in runs}
     same = [part.pop() for part in parts if len(part) == 1]
-    return ", ".join([*map(str, same), *(f"seed {s}" for s in seeds if len(seeds) == 1)]) or "side by side"
+    return (
+        ", ".join([*map(str, same), *(f"seed {s}" for s in seeds if len(seeds) == 1)])
+        or "side by side"
+    )
 
 
 def _write(path: Path, heads: Sequence[tuple[str, ...]], runs: Sequence[Done]) -> None:
@@ -139,7 +159,9 @@ def _write(path: Path, heads: Sequence[tuple[str, ...]], runs: Sequence[Done]) -
     markdown = ["| norm | is | " + " | ".join(names) + " |", "|:---|:---|" + "---:|" * len(names)]
     markdown += ["| " + " | ".join(cell.strip() for cell in row) + " |" for row in _rows(runs)]
     with replacing(path) as temporary:
-        log_side_by_side(temporary, dict(zip(names, _boats(runs), strict=True)), "\n".join(markdown) + "\n")
+        log_side_by_side(
+            temporary, dict(zip(names, _boats(runs), strict=True)), "\n".join(markdown) + "\n"
+        )
 
 
 def _apart(names: Sequence[str]) -> list[str]:
@@ -167,7 +189,11 @@ def _boats(runs: Sequence[Done]) -> "list[Boat]":
         scenario = steered(run.given, run.controller)
         boat, walls = scenario.vessel, scenario.file.tank
         tank = world.Tank(**walls.model_dump()) if walls else None
-        scene = scene_from(world.build(boat, tank), boat, tank) if tank else water.around(boat, {"all": logs})
+        scene = (
+            scene_from(world.build(boat, tank), boat, tank)
+            if tank
+            else water.around(boat, {"all": logs})
+        )
         goals = f"goal of {scenario.name}" if len(set(names)) > 1 else "goal"
         found.append(Boat(log, scene, goals if names.index(names[number]) == number else ""))
     return found

@@ -9,15 +9,15 @@ import numpy as np
 
 from boatsim.cli.exits import remark, say
 from boatsim.cli.progress import reporting
-from boatsim.diagnose.analysis import NEXT, Diagnosis, hint, open_recording
-from boatsim.diagnose.analysis import diagnose as analyse
-from boatsim.diagnose.free_runs import FreeRun, errors, free_runs
-from boatsim.diagnose.log.entry import in_words
-from boatsim.diagnose.replaying import as_written, columns, replayed
-from boatsim.diagnose.report import show, stays, taken
-from boatsim.diagnose.report.described import what_of
-from boatsim.diagnose.report.entries import Family
-from boatsim.diagnose.report.files import write
+from boatsim.diagnosis.checks.entry import in_words
+from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
+from boatsim.diagnosis.pipeline import NEXT, Diagnosis, hint, open_recording
+from boatsim.diagnosis.pipeline import diagnose as analyse
+from boatsim.diagnosis.replay import as_written, columns, replayed
+from boatsim.diagnosis.report import assumptions, before_after, mean_force_section
+from boatsim.diagnosis.report.described_terms import what_of
+from boatsim.diagnosis.report.output_files import write
+from boatsim.diagnosis.report.schema import Family
 from boatsim.errors import BadInput
 from boatsim.files import replacing
 from boatsim.physics.signals import STATE, Array
@@ -30,9 +30,15 @@ WRITING = 0.97  # of a diagnosis is done when its files are written, by experien
 
 
 def diagnose(
-    runs: list[Path], hold_out: list[Path], vessel: str | None, load: list[str], out: Path, library: list[str],
-    without: list[str], horizon: float | None = None,
-) -> int:  # fmt: skip
+    runs: list[Path],
+    hold_out: list[Path],
+    vessel: str | None,
+    load: list[str],
+    out: Path,
+    library: list[str],
+    without: list[str],
+    horizon: float | None = None,
+) -> int:
     """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
     with reporting() as told:
         try:
@@ -42,7 +48,10 @@ def diagnose(
         told("writing the report", WRITING)
         full = _unwritten(found, out)
     faults = [e for e in found.findings.answer.get("log", []) if e["kind"] == "fault"]
-    for line in (*(f"{e['run']}: {words.strip()}" for e in faults for words in in_words(e)), *found.remarks):
+    for line in (
+        *(f"{e['run']}: {words.strip()}" for e in faults for words in in_words(e)),
+        *found.remarks,
+    ):
         remark(line)
     if full:  # which does not cost the answer
         say(summary(found))
@@ -70,27 +79,35 @@ def summary(found: Diagnosis) -> list[str]:
         lines.append(
             f"  {effect['name']}: gains {effect['gain_nats']:.1f} nats, probability {effect['probability']:.2f}"
         )
-        lines += [f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()]
+        lines += [
+            f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()
+        ]
     for law in answer["described"]:
         lines += [
             f"  described: {what_of(law['axis'])} that goes with {term['of']}: gains {term['gain_nats']:.1f} nats\n"
             f"    {term['value']:.4g} +- {term['sd']:.2g} {term['unit']}".rstrip()
             for term in law["terms"]
         ]
-    lines += [f"  {line}" for line in taken.in_words(answer)]
+    lines += [f"  {line}" for line in assumptions.in_words(answer)]
     fit = answer["fit"]
-    lines.append(f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):")
+    lines.append(
+        f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):"
+    )
     families: dict[Family, tuple[str, float]] = {
-        "position_rms_m": ("m", 1.0), "heading_rms_rad": ("deg", 57.29578), "roll_rms_rad": ("deg", 57.29578),
-    }  # fmt: skip
+        "position_rms_m": ("m", 1.0),
+        "heading_rms_rad": ("deg", 57.29578),
+        "roll_rms_rad": ("deg", 57.29578),
+    }
     for key, (unit, scale) in families.items():
         if rms := fit.get(key):
-            cells = ", ".join(f"{m} {rms[m] * scale:.4g}" for m in show.MODELS)
+            cells = ", ".join(f"{m} {rms[m] * scale:.4g}" for m in before_after.MODELS)
             lines.append(f"  {key.split('_')[0]} rms [{unit}]: {cells}")
-    lines += stays.in_words(answer, found.findings.patched)
+    lines += mean_force_section.in_words(answer, found.findings.patched)
     if wanted := answer["next_experiment"]:
         names, nats = ", ".join(wanted["separates"]), wanted["expected_gain_nats"]
-        lines.append(f"to record next: {wanted['manoeuvre']} (tells apart {names}; expected gain {nats:.3g} nats)")
+        lines.append(
+            f"to record next: {wanted['manoeuvre']} (tells apart {names}; expected gain {nats:.3g} nats)"
+        )
     return lines
 
 
@@ -114,7 +131,14 @@ def _write_replay(stretches: Sequence[FreeRun], path: Path) -> None:
     found = columns(stretches)
     digits = ["%.10g", *["%.9g"] * (len(found) - 1)]
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        np.savetxt(file, np.column_stack(list(found.values())), digits, ",", header=",".join(found), comments="")
+        np.savetxt(
+            file,
+            np.column_stack(list(found.values())),
+            digits,
+            ",",
+            header=",".join(found),
+            comments="",
+        )
 
 
 def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None, out: Path) -> int:
@@ -134,14 +158,20 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
             problem, fitted = as_written(recording, boat, told)
             told("the free run", 0.8)
             whole = float(recording.t[-1] - recording.t[0])
-            simulated = free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[0].channels["simulated"]
+            simulated = free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[
+                0
+            ].channels["simulated"]
     for line in recording.remarks:
         remark(line)
     signals: dict[str, Array] = {}
     lines = [f"{'signal':10s} {'rms error':>12s} {'largest':>12s}   of a range of"]
     for name, value in simulated.items():
         off = value - recording.signals[name]
-        signals |= {f"recorded_{name}": recording.signals[name], f"simulated_{name}": value, f"error_{name}": off}
+        signals |= {
+            f"recorded_{name}": recording.signals[name],
+            f"simulated_{name}": value,
+            f"error_{name}": off,
+        }
         reach = float(np.nanmax(recording.signals[name]) - np.nanmin(recording.signals[name]))
         lines.append(f"{name:10s} {_rms(off):12.5g} {np.nanmax(np.abs(off)):12.5g}   {reach:.5g}")
     with filling(out) as new:
@@ -162,13 +192,19 @@ def _as_it_was(recording: Recording, boat: Vessel) -> Vessel:
         remark(f"compared with the vessel alone; its scenario {name} can not be used: {error}")
         return boat
     if (found.file, found.freedoms) != (boat.file, boat.freedoms):
-        remark(f"compared with the vessel alone; its scenario {name} is of another one, {found.name}")
+        remark(
+            f"compared with the vessel alone; its scenario {name} is of another one, {found.name}"
+        )
         return boat
     added = [e for e in found.effects if boat.effect(e.name) is None]
     if added:
         near = min(name, os.path.relpath(name), key=len) if Path(name).is_file() else name
-        remark(f"{near} adds {', '.join(e.name for e in added)}; --vessel {boat.name} compares with the vessel alone")
-    seeded = tuple(e.seeded(seed) for e in found.effects) if isinstance(seed, int) else found.effects
+        remark(
+            f"{near} adds {', '.join(e.name for e in added)}; --vessel {boat.name} compares with the vessel alone"
+        )
+    seeded = (
+        tuple(e.seeded(seed) for e in found.effects) if isinstance(seed, int) else found.effects
+    )
     return replace(found, effects=seeded)
 
 
@@ -182,15 +218,22 @@ def _of_scenario(recording: Recording, name: str) -> dict[str, Array]:
 
     log = run(scenarios.load(name)).recording
     if recording.t[0] > log.t[-1]:
-        raise BadInput(f"{name} ends at {log.t[-1]:g} s, before {recording.name} begins ({recording.t[0]:g} s)")
+        raise BadInput(
+            f"{name} ends at {log.t[-1]:g} s, before {recording.name} begins ({recording.t[0]:g} s)"
+        )
     shared = [s.column for s in STATE if s.column in recording.signals and s.column in log.signals]
     return {n: np.interp(recording.t, log.t, log.signals[n], right=np.nan) for n in shared}
 
 
-def _compare_rrd(boat: Vessel, recording: Recording, simulated: Mapping[str, Array], path: Path) -> None:
+def _compare_rrd(
+    boat: Vessel, recording: Recording, simulated: Mapping[str, Array], path: Path
+) -> None:
     from boatsim.view import rerun_log, water
 
     measured = Recording("recording", recording.t, {n: recording.signals[n] for n in simulated})
-    boats = {"recording": [measured], "simulated": [Recording("simulated", recording.t, dict(simulated))]}
+    boats = {
+        "recording": [measured],
+        "simulated": [Recording("simulated", recording.t, dict(simulated))],
+    }
     with replacing(path) as temporary:
         rerun_log.log_overlay(temporary, boats, None, [], water.around(boat, boats))

@@ -6,21 +6,29 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from boatsim.cli import show
-from boatsim.cli.batch import warn_of_limits, watching
 from boatsim.cli.exits import Exit, complain, remark
-from boatsim.drive.hands import Hands
+from boatsim.cli.run_many import warn_of_limits, watching
+from boatsim.drive.driver_input import Hands
 from boatsim.drive.server import Server
 from boatsim.drive.session import Session, folder_name
 from boatsim.drive.task import FILE, Task
-from boatsim.simulate.norms import RunEntry
+from boatsim.simulate.evaluation import RunEntry
 from boatsim.view.outputs import run_into
 from boatsim.view.viewer import display
 
 
 def drive(
-    vessel: str, scenario: str | None, controller: str | None, load: list[str], seconds: float, out: Path | None,
-    browser: bool | None, port: int, watched: bool, served: bool,
-) -> int:  # fmt: skip
+    vessel: str,
+    scenario: str | None,
+    controller: str | None,
+    load: list[str],
+    seconds: float,
+    out: Path | None,
+    browser: bool | None,
+    port: int,
+    watched: bool,
+    served: bool,
+) -> int:
     """Drive until somebody ends it, print the norms and how well it kept time, return the exit code."""
     task = Task(vessel, scenario, controller, load, seconds)
     folder = out or folder_name(task.vessel.name, time.time())
@@ -46,11 +54,15 @@ def _told(content: RunEntry, folder: Path, session: Session) -> int:
     )
     if latencies:
         middle, last = (1e3 * latencies[i] for i in (len(latencies) // 2, -1))
-        print(f"from stick to log {middle:.0f} ms (median of {len(latencies)}), at most {last:.0f} ms")
+        print(
+            f"from stick to log {middle:.0f} ms (median of {len(latencies)}), at most {last:.0f} ms"
+        )
     if session.again:
         print(f"again, without hands: boatsim run {folder / FILE}")
     else:
-        complain(f"{folder / FILE}: so many goals fit no file of ours; it says all but them, and can not go again")
+        complain(
+            f"{folder / FILE}: so many goals fit no file of ours; it says all but them, and can not go again"
+        )
     if not content["complete"]:
         complain("interrupted; what was logged is kept")
         return Exit.INTERRUPTED

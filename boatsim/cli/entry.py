@@ -27,7 +27,9 @@ class Entry:
     words: str
     doc: tuple[str, ...]  # lines of its docstring, where that says more than the words
     said: tuple[tuple[str, str], ...]  # what, and the text of it: source, norms, what rules it out
-    numbers: tuple[tuple[str, ...], ...]  # parameter, default, allowed, of effects fitted, what; the head first
+    numbers: tuple[
+        tuple[str, ...], ...
+    ]  # parameter, default, allowed, of effects fitted, what; the head first
     paste: tuple[str, ...]  # the table as it stands in a file
 
 
@@ -39,9 +41,13 @@ def entry(kind: str, name: str) -> Entry:
     doc = getdoc(made) or ""
     told = doc.splitlines() if doc.partition("\n")[0].rstrip(".") != made.words else []
     return Entry(
-        called, made.words, tuple(told), tuple(_said(made)), tuple(_numbers(made, params)),
+        called,
+        made.words,
+        tuple(told),
+        tuple(_said(made)),
+        tuple(_numbers(made, params)),
         tuple(_paste(kind, called, made, params)),
-    )  # fmt: skip
+    )
 
 
 def _said(made: type[Any]) -> Iterator[tuple[str, str]]:
@@ -71,7 +77,11 @@ def _said_of_effect(made: type[Effect]) -> Iterator[tuple[str, str]]:
     if made.needs:
         yield "needs", f"{' and '.join(made.needs)} free"
     if made.ruled_out_by:
-        facts = (f"{fact} = {_toml(value)}" for fact, values in made.ruled_out_by.items() for value in values)
+        facts = (
+            f"{fact} = {_toml(value)}"
+            for fact, values in made.ruled_out_by.items()
+            for value in values
+        )
         yield "ruled out by", " or ".join(facts)
     if made.facts:
         yield "needs the facts", ", ".join(made.facts)
@@ -86,7 +96,9 @@ def _toml(value: object) -> str:
 def _numbers(made: type[Any], params: dict[str, Param]) -> Iterator[tuple[str, ...]]:
     """A row for each parameter, and the head before the first."""
     nominal = {f.name: f.default for f in fields(made)} if params else {}
-    shown = {n: p for n, p in params.items() if p.low != -1e9 or p.unit or p.fit}  # else it stands for a word
+    shown = {
+        n: p for n, p in params.items() if p.low != -1e9 or p.unit or p.fit
+    }  # else it stands for a word
     fits = issubclass(made, Effect)
     if shown:
         yield "parameter", "default", "allowed", *(["fitted"] if fits else []), "what"
@@ -111,7 +123,9 @@ def _paste(kind: str, name: str, made: type[Any], params: dict[str, Param]) -> I
     yield PASTED[kind]
     yield f'use = "{name}"'
     if issubclass(made, Effect) and made.roles:
-        bound = ", ".join(f'{role} = "CHANNEL"' for role, said in made.roles.items() if said.fixed is None)
+        bound = ", ".join(
+            f'{role} = "CHANNEL"' for role, said in made.roles.items() if said.fixed is None
+        )
         yield f"on = {{ {bound} }}"
     nominal = {f.name: f.default for f in fields(made)} if params else {}
     fitted = [n for n, p in params.items() if p.fit or p.calibrates] or list(params)

@@ -20,7 +20,10 @@ class Exit(IntEnum):
     INTERRUPTED = CODE
 
 
-FAULTS = (BoatsimError, OSError)  # what a user can put right; anything else is a defect and keeps its traceback
+FAULTS = (
+    BoatsimError,
+    OSError,
+)  # what a user can put right; anything else is a defect and keeps its traceback
 
 
 def words(error: BaseException) -> str:

@@ -13,12 +13,17 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.convert import convert, notes_of, position_fix
 from boatsim.recordings.importing.log import Log, open_log
 from boatsim.recordings.importing.mapping import read_map
-from boatsim.recordings.importing.propose import Drive, listing, proposal
+from boatsim.recordings.importing.mapping_proposal import Drive, listing, proposal
 from boatsim.recordings.table import read, write_csv
 
 
 def import_log(
-    log: Path, out: Path | None, map: Path | None, propose: Path | None, vessel: str | None, load: Sequence[str]
+    log: Path,
+    out: Path | None,
+    map: Path | None,
+    propose: Path | None,
+    vessel: str | None,
+    load: Sequence[str],
 ) -> int:
     """List and propose, or convert. Raises BadInput."""
     if map is None:
@@ -40,10 +45,18 @@ def _opened(path: Path) -> Log:
         return open_log(path)
 
 
-def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]) -> int:
+def _show(
+    log: Log, propose: Path | None, out: Path | None, vessel: str | None, load: Sequence[str]
+) -> int:
     boat = vessels.load(vessel, load) if vessel else None
-    drives = [Drive(n, low, high, _turns(boat, n)) for n, (low, high) in boat.limits().items()] if boat else []
-    text = proposal(log, vessel, drives, boat.freedoms if boat else (), boat.columns if boat else None)
+    drives = (
+        [Drive(n, low, high, _turns(boat, n)) for n, (low, high) in boat.limits().items()]
+        if boat
+        else []
+    )
+    text = proposal(
+        log, vessel, drives, boat.freedoms if boat else (), boat.columns if boat else None
+    )
     _say(log.remarks)
     say(listing(log))
     if propose:
@@ -65,7 +78,9 @@ def _show(log: Log, propose: Path | None, out: Path | None, vessel: str | None, 
 
 def _turns(boat: Vessel, channel: str) -> int:
     """Which way what is positive turns a boat: 1 to starboard, -1 to port, 0 where its file does not say."""
-    said = {"starboard": 1.0, "port": -1.0, "": boat.manoeuvring.steer.get(channel, 0.0)}[boat.commands[channel].turns]
+    said = {"starboard": 1.0, "port": -1.0, "": boat.manoeuvring.steer.get(channel, 0.0)}[
+        boat.commands[channel].turns
+    ]
     return (said > 0.0) - (said < 0.0)
 
 
@@ -97,7 +112,11 @@ def _note(out: Path, boat: Vessel, fix: str | None) -> None:
     """Say of which vessel it is, in a recording.toml beside it; one that is there is left alone."""
     file, text = out.parent / "recording.toml", notes_of(out, vessel_address(boat.file), fix)
     if file.exists():
-        _say([f"{file} is there and left as it is; for this recording it should say: {' / '.join(text.splitlines())}"])
+        _say(
+            [
+                f"{file} is there and left as it is; for this recording it should say: {' / '.join(text.splitlines())}"
+            ]
+        )
         return
     with replacing(file) as temporary:
         temporary.write_text(text, encoding="utf-8")

@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 SELDOM = 10.0  # [s] between two lines of many tasks
-Reached = Callable[[int, float], None]  # told of runs: which of them, and the simulated time it has reached [s]
+Reached = Callable[
+    [int, float], None
+]  # told of runs: which of them, and the simulated time it has reached [s]
 
 
 @contextmanager
@@ -75,12 +77,21 @@ def _bar() -> Iterator[Report]:
     rest = Column(ratio=1, no_wrap=True, overflow="ellipsis")
     what = TextColumn("{task.description}", markup=False, table_column=rest)
     bars = Progress(
-        BarColumn(20), TimeElapsedColumn(), left, what, console=Console(stderr=True), transient=True, expand=True
+        BarColumn(20),
+        TimeElapsedColumn(),
+        left,
+        what,
+        console=Console(stderr=True),
+        transient=True,
+        expand=True,
     )
     row = bars.add_task("", total=1.0, left="")
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
-        said, taken = shown(f"{stage}: {detail}" if detail else stage), bars.tasks[row].elapsed or 0.0
+        said, taken = (
+            shown(f"{stage}: {detail}" if detail else stage),
+            bars.tasks[row].elapsed or 0.0,
+        )
         done = max(share, bars.tasks[row].completed)
         bars.update(row, description=said, completed=done, left=time_left(taken, done))
 
@@ -132,14 +143,36 @@ def running(tasks: Sequence[tuple[str, float]], several: bool = True) -> Iterato
         yield _begun(tasks) if len(tasks) > 1 or not several else lambda number, t: None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     clock = TextColumn("{task.completed:.0f} of {task.total:.0f} s simulated")
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), clock, TimeElapsedColumn())
-    bars = Progress(*columns, TimeRemainingColumn(), TextColumn("left"), console=Console(stderr=True), transient=True)
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        clock,
+        TimeElapsedColumn(),
+    )
+    bars = Progress(
+        *columns,
+        TimeRemainingColumn(),
+        TextColumn("left"),
+        console=Console(stderr=True),
+        transient=True,
+    )
     many = len(tasks) > 1
-    every = bars.add_task(f"all {len(tasks)} runs", total=sum(duration for _, duration in tasks), visible=many)
-    rows = [bars.add_task(name, total=duration, visible=not many, start=False) for name, duration in tasks]
+    every = bars.add_task(
+        f"all {len(tasks)} runs", total=sum(duration for _, duration in tasks), visible=many
+    )
+    rows = [
+        bars.add_task(name, total=duration, visible=not many, start=False)
+        for name, duration in tasks
+    ]
 
     def report(number: int, t: float) -> None:
         if t > 0.0 and not bars.tasks[rows[number]].started:
@@ -157,7 +190,11 @@ def _begun(tasks: Sequence[tuple[str, float]]) -> Reached:
     def report(number: int, t: float) -> None:
         if number not in there and t > 0.0:
             there.add(number)
-            say(f"{len(there)} of {len(tasks)}: {tasks[number][0]}" if len(tasks) > 1 else f"running {tasks[0][0]}")
+            say(
+                f"{len(there)} of {len(tasks)}: {tasks[number][0]}"
+                if len(tasks) > 1
+                else f"running {tasks[0][0]}"
+            )
 
     return report
 

@@ -11,7 +11,7 @@ from boatsim.physics import content
 from boatsim.simulate import cases
 
 if TYPE_CHECKING:
-    from boatsim.simulate.norms import NormEntry, RunEntry
+    from boatsim.simulate.evaluation import NormEntry, RunEntry
 
 UNCUT = 10_000  # [columns] wider than any table
 
@@ -52,9 +52,13 @@ def _columns(norms: Iterable["NormEntry"]) -> dict[str, Literal["left", "right"]
 
 def _cells(norm: "NormEntry") -> dict[str, str]:
     """What stands under each heading."""
-    from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED
+    from boatsim.simulate.evaluation import MISSED, REPRODUCED, UNSTATED
 
-    short = {REPRODUCED: "same", MISSED: "[bold]differs[/]", UNSTATED: "unstated"}  # in a table 80 columns wide
+    short = {
+        REPRODUCED: "same",
+        MISSED: "[bold]differs[/]",
+        UNSTATED: "unstated",
+    }  # in a table 80 columns wide
     return {
         "value": value(norm),
         "published": "" if norm["published"] is None else f"{norm['published']:.4g}",
@@ -95,7 +99,13 @@ def _guard(guard: Sequence[float | None] | None) -> str:
     low, high = guard or (None, None)
     if low is not None and high is not None:
         return f"{low:.4g} to {high:.4g}"
-    return f"at least {low:.4g}" if low is not None else f"at most {high:.4g}" if high is not None else ""
+    return (
+        f"at least {low:.4g}"
+        if low is not None
+        else f"at most {high:.4g}"
+        if high is not None
+        else ""
+    )
 
 
 def _met(ok: bool | None) -> str:
@@ -107,7 +117,11 @@ def listing(only: str | None, like: str | None = None) -> list[str]:
 
     Raises BadInput where none is.
     """
-    kinds = [only] if only else ["vessels", "controllers", "effects", "sensors", "measures", "scenarios"]
+    kinds = (
+        [only]
+        if only
+        else ["vessels", "controllers", "effects", "sensors", "measures", "scenarios"]
+    )
     lines: list[str] = []
     for kind in kinds:
         names = [n for n in content.known(kind.removesuffix("s")) if like is None or alike(n, like)]

@@ -6,31 +6,43 @@ from pathlib import Path
 from boatsim.cli.exits import Exit, complain, say
 from boatsim.cli.progress import counting
 from boatsim.cli.show import printed
-from boatsim.sweep import diagnoses
-from boatsim.sweep.axes import axis
-from boatsim.sweep.carry_out import backend, swept
-from boatsim.sweep.designs import Kind
-from boatsim.sweep.draws import draw
-from boatsim.sweep.journal import Entry
-from boatsim.sweep.plan import plan
-from boatsim.sweep.results import Results
-from boatsim.sweep.rows import once, tables
+from boatsim.sweeps import diagnoses
+from boatsim.sweeps.axes import axis
+from boatsim.sweeps.designs import Kind
+from boatsim.sweeps.execute import backend, swept
+from boatsim.sweeps.journal import Entry
+from boatsim.sweeps.plan import plan
+from boatsim.sweeps.results import Results
+from boatsim.sweeps.sampled_keys import draw
+from boatsim.sweeps.text_tables import once, tables
 
 MOST = 60  # lines of a table on a terminal
 REASONS = 5  # reasons of failed runs that are told
 
 
 def sweep(
-    scenarios: Sequence[str], vary: Sequence[str], drawn: Sequence[str], runs: int, kind: Kind, seed: int, out: Path,
-    jobs: int | None, ray: str | None, norms: Sequence[str] = (),
-) -> int:  # fmt: skip
+    scenarios: Sequence[str],
+    vary: Sequence[str],
+    drawn: Sequence[str],
+    runs: int,
+    kind: Kind,
+    seed: int,
+    out: Path,
+    jobs: int | None,
+    ray: str | None,
+    norms: Sequence[str] = (),
+) -> int:
     """Carry out a sweep, or go on with it, and print what its runs say together."""
-    made = plan(scenarios, [axis(text) for text in vary], [draw(text) for text in drawn], runs, seed, kind)
+    made = plan(
+        scenarios, [axis(text) for text in vary], [draw(text) for text in drawn], runs, seed, kind
+    )
     with counting() as report:
         found, whole = swept(made, out, jobs, ray, norms, report)
     _tell(found, out)
     if not whole:
-        complain(f"interrupted after {len(found.numbers)} of {made.count} runs; the same command goes on")
+        complain(
+            f"interrupted after {len(found.numbers)} of {made.count} runs; the same command goes on"
+        )
         return Exit.INTERRUPTED
     return Exit.MET
 
@@ -46,7 +58,9 @@ def _tell(found: Results, out: Path) -> None:
     say([f"written to {out}: sweep.parquet, report.html"])
 
 
-def diagnose_each(given: Sequence[Path], asked: diagnoses.Asked, out: Path, jobs: int | None, ray: str | None) -> int:
+def diagnose_each(
+    given: Sequence[Path], asked: diagnoses.Asked, out: Path, jobs: int | None, ray: str | None
+) -> int:
     """Diagnose recordings one by one, or go on with it, and print what was found in each."""
     paths = diagnoses.recordings(given)
     with counting() as report:
@@ -63,7 +77,9 @@ def diagnose_each(given: Sequence[Path], asked: diagnoses.Asked, out: Path, jobs
     say([", ".join(f"{verdict} {verdicts.count(verdict)}" for verdict in dict.fromkeys(verdicts))])
     say([f"written to {out}: {diagnoses.NAME}, and a folder for each recording"])
     if not done.whole:
-        complain(f"interrupted after {len(rows)} of {len(paths)} recordings; the same command goes on")
+        complain(
+            f"interrupted after {len(rows)} of {len(paths)} recordings; the same command goes on"
+        )
         return Exit.INTERRUPTED
     return Exit.MET
 
@@ -72,7 +88,13 @@ def _causes(entry: Entry) -> str:
     """What was named, with the values found."""
     said = []
     for cause in entry["causes"]:
-        own = {k.removeprefix(f"{cause}."): v for k, v in entry["values"].items() if k.startswith(f"{cause}.")}
-        numbers = [f"{k} {v[0]:.4g} ± {own[f'{k} sd'][0]:.2g}" for k, v in own.items() if f"{k} sd" in own]
+        own = {
+            k.removeprefix(f"{cause}."): v
+            for k, v in entry["values"].items()
+            if k.startswith(f"{cause}.")
+        }
+        numbers = [
+            f"{k} {v[0]:.4g} ± {own[f'{k} sd'][0]:.2g}" for k, v in own.items() if f"{k} sd" in own
+        ]
         said.append(f"{cause}: {', '.join(numbers)}")
     return "; ".join(said)

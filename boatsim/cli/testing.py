@@ -4,6 +4,7 @@ import json
 import xml.etree.ElementTree as xml
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from time import monotonic
 
@@ -11,10 +12,10 @@ from boatsim.cli import progress, show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
 from boatsim.errors import BadInput, shown
 from boatsim.files import replacing
-from boatsim.simulate import pins
+from boatsim.simulate import baselines
+from boatsim.simulate.baselines import Pin, PinsFile
 from boatsim.simulate.cases import files_of, meant
-from boatsim.simulate.norms import Norm, all_norms
-from boatsim.simulate.pins import Pin, PinsFile
+from boatsim.simulate.evaluation import Norm, all_norms
 from boatsim.simulate.run import run
 from boatsim.simulate.scenario import Scenario, load
 
@@ -41,7 +42,10 @@ class Case:
             return []
         bars = {n: show.value(x.to_json()) for n, x in self.norms.items() if x.ok is False}
         missed = [f"{name} is {value}, outside its guard" for name, value in bars.items()]
-        return [*missed, *(["is not pinned"] if self.pins is None else pins.drifts(self.pins, self.norms))]
+        return [
+            *missed,
+            *(["is not pinned"] if self.pins is None else baselines.drifts(self.pins, self.norms)),
+        ]
 
     @property
     def code(self) -> Exit:
@@ -53,7 +57,7 @@ def regress(folder: Path, pin: bool, seeds: int, junit: Path | None, as_json: bo
     """Run all scenarios of a folder, compare or pin their norms, print a summary. Raises BadInput."""
     if not folder.is_dir():
         raise BadInput(f"{folder}: is no folder; give one with scenarios (*.toml) in it")
-    kept = pins.read(folder)
+    kept = baselines.read(folder)
     cases = _run_all(folder, kept, seeds if pin else 1)
     if pin:
         cases = _pin(folder, kept, cases, seeds)
@@ -81,22 +85,30 @@ def _run_all(folder: Path, kept: PinsFile | None, seeds: int) -> list[Case]:
             ready += [(one.removeprefix(f"{path.parent}/"), load(one)) for one in meant(str(path))]
         except FAULTS as error:
             found.append(Case(path.name, error=words(error)))
-    with progress.running([(name, seeds * scenario.file.duration) for name, scenario in ready]) as report:
+    with progress.running(
+        [(name, seeds * scenario.file.duration) for name, scenario in ready]
+    ) as report:
         for number, (name, scenario) in enumerate(ready):
             own = kept.scenario.get(name) if kept else None
-            found.append(_run(name, scenario, own, seeds, lambda t, number=number: report(number, t)))  # type: ignore[misc]
+            found.append(_run(name, scenario, own, seeds, partial(report, number)))
     return sorted(found, key=lambda case: case.name)
 
 
 def _run(
-    name: str, scenario: Scenario, own: Mapping[str, Pin] | None, seeds: int, report: Callable[[float], None]
+    name: str,
+    scenario: Scenario,
+    own: Mapping[str, Pin] | None,
+    seeds: int,
+    report: Callable[[float], None],
 ) -> Case:
     """One scenario with its own seed and those after it."""
     begun, runs = monotonic(), []
     try:
         for k in range(seeds):
             before = k * scenario.file.duration
-            done = run(scenario, scenario.file.seed + k, progress=lambda t, before=before: report(before + t))  # type: ignore[misc]
+            done = run(
+                scenario, scenario.file.seed + k, progress=partial(_report_later, report, before)
+            )
             if not done.complete:
                 raise KeyboardInterrupt
             runs.append(all_norms(done))
@@ -108,7 +120,11 @@ def _run(
 def _unread(cases: Sequence[Case], kept: PinsFile | None) -> set[str]:
     """Scenarios with pins whose file can not be read: they are not gone."""
     bad = [case.name for case in cases if case.error]
-    return {name for name in (kept.scenario if kept else ()) if any(name.startswith(f"{b}:") for b in bad)}
+    return {
+        name
+        for name in (kept.scenario if kept else ())
+        if any(name.startswith(f"{b}:") for b in bad)
+    }
 
 
 def _pin(folder: Path, kept: PinsFile | None, cases: Sequence[Case], seeds: int) -> list[Case]:
@@ -116,9 +132,11 @@ def _pin(folder: Path, kept: PinsFile | None, cases: Sequence[Case], seeds: int)
     was = kept.scenario if kept else {}
     stay = {case.name for case in cases if case.error} | _unread(cases, kept)
     new = {name: dict(norms) for name, norms in was.items() if name in stay}
-    new |= {case.name: pins.pinned(case.runs) for case in cases if not case.error}
-    with replacing(folder / pins.FILE) as temporary:
-        temporary.write_text(pins.text_of(PinsFile(seeds=seeds, scenario=new)), encoding="utf-8")
+    new |= {case.name: baselines.pinned(case.runs) for case in cases if not case.error}
+    with replacing(folder / baselines.FILE) as temporary:
+        temporary.write_text(
+            baselines.text_of(PinsFile(seeds=seeds, scenario=new)), encoding="utf-8"
+        )
     return [Case(c.name, c.runs, new.get(c.name), c.error, c.seconds) for c in cases]
 
 
@@ -129,11 +147,22 @@ def _print(folder: Path, cases: Sequence[Case]) -> None:
     from rich.text import Text
 
     table = Table(title=Text(shown(str(folder))), pad_edge=False)
-    for heading, justify in (("scenario", "left"), ("norms", "right"), ("faults", "right"), ("", "left")):
+    for heading, justify in (
+        ("scenario", "left"),
+        ("norms", "right"),
+        ("faults", "right"),
+        ("", "left"),
+    ):
         table.add_column(heading, justify="right" if justify == "right" else "left", no_wrap=True)
-    states = {Exit.MET: "as pinned", Exit.MISSED: "[bold red]DIFFERS[/]", Exit.BAD_INPUT: "[bold red]CAN NOT RUN[/]"}
+    states = {
+        Exit.MET: "as pinned",
+        Exit.MISSED: "[bold red]DIFFERS[/]",
+        Exit.BAD_INPUT: "[bold red]CAN NOT RUN[/]",
+    }
     for case in cases:
-        table.add_row(Text(shown(case.name)), f"{len(case.norms)}", f"{len(case.faults)}", states[case.code])
+        table.add_row(
+            Text(shown(case.name)), f"{len(case.norms)}", f"{len(case.faults)}", states[case.code]
+        )
     console = Console()
     console.print(table)
     for case in cases:
@@ -152,7 +181,10 @@ def _as_json(folder: Path, cases: Sequence[Case]) -> dict[str, object]:
                 "exit": case.code,
                 "error": case.error or None,
                 "faults": case.faults,
-                "norms": {name: _entry(norm, (case.pins or {}).get(name)) for name, norm in case.norms.items()},
+                "norms": {
+                    name: _entry(norm, (case.pins or {}).get(name))
+                    for name, norm in case.norms.items()
+                },
             }
             for case in cases
         ],
@@ -171,17 +203,31 @@ def _write_junit(folder: Path, cases: Sequence[Case], path: Path) -> None:
         "failures": sum(case.code == Exit.MISSED for case in cases),
         "errors": sum(case.code == Exit.BAD_INPUT for case in cases),
     }
-    total = {**{key: str(count) for key, count in counts.items()}, "time": f"{sum(c.seconds for c in cases):.3f}"}
+    total = {
+        **{key: str(count) for key, count in counts.items()},
+        "time": f"{sum(c.seconds for c in cases):.3f}",
+    }
     top = xml.Element("testsuites", {"name": "boatsim", **total})
     suite = xml.SubElement(top, "testsuite", {"name": shown(folder.resolve().name), **total})
     for case in cases:
-        about = {"classname": shown(folder.resolve().name), "name": shown(case.name), "time": f"{case.seconds:.3f}"}
+        about = {
+            "classname": shown(folder.resolve().name),
+            "name": shown(case.name),
+            "time": f"{case.seconds:.3f}",
+        }
         entry = xml.SubElement(suite, "testcase", about)
         if case.error:
-            xml.SubElement(entry, "error", message=shown(case.error), type="BadInput").text = shown(case.error)
+            xml.SubElement(entry, "error", message=shown(case.error), type="BadInput").text = shown(
+                case.error
+            )
         elif case.faults:
             lines = [shown(line) for line in case.faults]
             xml.SubElement(entry, "failure", message=lines[0], type="Norm").text = "\n".join(lines)
     xml.indent(top)
     with replacing(path) as temporary:
         xml.ElementTree(top).write(temporary, encoding="utf-8", xml_declaration=True)
+
+
+def _report_later(report: Callable[[float], None], offset: float, t: float) -> None:
+    """Report the simulated time `t` [s] of one of several runs, with that of earlier runs added."""
+    report(offset + t)

@@ -16,7 +16,9 @@ from boatsim.physics.base import Array
 
 Complex = NDArray[np.complex128]
 Loop = Callable[[Complex], Complex]  # L(s) at s = j omega, omega in rad/s; pure delays allowed
-Law = Callable[[Complex], tuple[Complex, Complex]]  # of z: what the controller answers to position and to rate
+Law = Callable[
+    [Complex], tuple[Complex, Complex]
+]  # of z: what the controller answers to position and to rate
 HIGHEST = 1e3  # [rad/s] beyond which a continuous loop has no crossover
 
 
@@ -54,7 +56,9 @@ class Gradient:
 
     def rate(self, regressor: float, error: float) -> float:
         """Time derivative of the estimate [1/s]."""
-        return self.gain * project_interval(self.value, -regressor * error, self.low, self.high, self.tolerance)
+        return self.gain * project_interval(
+            self.value, -regressor * error, self.low, self.high, self.tolerance
+        )
 
     def step(self, regressor: float, error: float, dt: float) -> float:
         """Follow the rate over dt [s]; cut at the bounds, which a step too long for the gain would jump over."""
@@ -136,7 +140,9 @@ def held(numerator: Sequence[float], denominator: Sequence[float], period: float
     a = np.vstack([-np.asarray(denominator[1:], dtype=float) / lead, np.eye(n - 1, n)])
     c = np.concatenate([np.zeros(n - len(numerator)), np.asarray(numerator, dtype=float) / lead])
     whole = matrix_exp(np.block([[a, np.eye(n, 1)], [np.zeros((1, n + 1))]]) * period)
-    poles = np.poly(whole[:n, :n])  # determinant of zI - A; that of zI - A + b c is numerator + denominator
+    poles = np.poly(
+        whole[:n, :n]
+    )  # determinant of zI - A; that of zI - A + b c is numerator + denominator
     zeros = np.poly(whole[:n, :n] - np.outer(whole[:n, n], c)) - poles
     return DiscreteFilter(zeros[1:].tolist(), poles.tolist())
 
@@ -171,7 +177,10 @@ def unfiltered(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
 
     Am (n, n) [1/s], b (n,), bandwidth [rad/s]; the outputs are the n states.
     """
-    a, column = np.atleast_2d(np.asarray(am, dtype=float)), np.asarray(b, dtype=float).reshape(-1, 1)
+    a, column = (
+        np.atleast_2d(np.asarray(am, dtype=float)),
+        np.asarray(b, dtype=float).reshape(-1, 1),
+    )
     n = len(a)
     whole = np.block([[a, -column], [np.zeros((1, n)), np.array([[-bandwidth]])]])
     return LinearSystem(whole, np.vstack([column, [[bandwidth]]]), np.eye(n, n + 1))
@@ -215,7 +224,9 @@ def _absolute_integral(a: Array, b: Array, c: Array) -> float:
         for i in np.nonzero(h[:-1] * h[1:] < 0.0)[0]:
             at = _zero(halves, x[i], c)
             total += (
-                abs(primitive @ (at - x[i])) + abs(primitive @ (x[i + 1] - at)) - abs(primitive @ (x[i + 1] - x[i]))
+                abs(primitive @ (at - x[i]))
+                + abs(primitive @ (x[i + 1] - at))
+                - abs(primitive @ (x[i + 1] - x[i]))
             )
         start = x[-1]
     return total
@@ -223,9 +234,13 @@ def _absolute_integral(a: Array, b: Array, c: Array) -> float:
 
 def _grid(a: Array) -> list[tuple[float, int]]:
     """Steps [s] and their numbers: twenty per radian of the fastest mode that has not yet died out (to 1e-13)."""
-    modes = sorted(((30.0 / -pole.real, abs(pole)) for pole in np.linalg.eigvals(a)), key=lambda mode: mode[0])
+    modes = sorted(
+        ((30.0 / -pole.real, abs(pole)) for pole in np.linalg.eigvals(a)), key=lambda mode: mode[0]
+    )
     if modes[0][0] <= 0.0 or modes[-1][0] == inf:
-        raise BadInput(f"the L1 norm exists for a stable system only; poles found: {np.linalg.eigvals(a)} 1/s")
+        raise BadInput(
+            f"the L1 norm exists for a stable system only; poles found: {np.linalg.eigvals(a)} 1/s"
+        )
     parts, begin = [], 0.0
     for i, (end, _) in enumerate(modes):
         steps = max(2, ceil((end - begin) * 20.0 * max(speed for _, speed in modes[i:])))
@@ -261,7 +276,9 @@ class LoopMargins:
     stable: bool
 
 
-def loop_margins(loop: Loop, low: float = 1e-4, high: float = HIGHEST, points: int = 20000) -> LoopMargins:
+def loop_margins(
+    loop: Loop, low: float = 1e-4, high: float = HIGHEST, points: int = 20000
+) -> LoopMargins:
     """Crossover, phase margin and extra-delay margin of a loop L(s) under negative feedback.
 
     The loop must have no pole in the right half plane, and its behaviour outside low..high [rad/s] must be plain:
@@ -270,13 +287,17 @@ def loop_margins(loop: Loop, low: float = 1e-4, high: float = HIGHEST, points: i
     omega = np.geomspace(low, high, points)
     response = loop(np.asarray(1j * omega))
     above = np.abs(response) > 1.0
-    found = [_crossover(loop, omega[i], omega[i + 1]) for i in np.nonzero(above[:-1] != above[1:])[0]]
+    found = [
+        _crossover(loop, omega[i], omega[i + 1]) for i in np.nonzero(above[:-1] != above[1:])[0]
+    ]
     stable = _stable(omega, response)
     if not found:
         return LoopMargins(0.0, inf, inf, stable)
     lag = {w: float(np.angle(-loop(np.array([1j * w]))[0])) for w in found}
     worst = min(found, key=lambda w: (lag[w] % (2.0 * pi)) / w)
-    return LoopMargins(worst, lag[worst], (lag[worst] % (2.0 * pi)) / worst if stable else 0.0, stable)
+    return LoopMargins(
+        worst, lag[worst], (lag[worst] % (2.0 * pi)) / worst if stable else 0.0, stable
+    )
 
 
 def _crossover(loop: Loop, low: float, high: float) -> float:
@@ -284,13 +305,19 @@ def _crossover(loop: Loop, low: float, high: float) -> float:
     rising = abs(loop(np.array([1j * high]))[0]) > 1.0
     for _ in range(50):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if (abs(loop(np.array([1j * middle]))[0]) > 1.0) == rising else (middle, high)
+        low, high = (
+            (low, middle)
+            if (abs(loop(np.array([1j * middle]))[0]) > 1.0) == rising
+            else (middle, high)
+        )
     return 0.5 * (low + high)
 
 
 def _stable(omega: Array, response: Complex) -> bool:
     """Nyquist's criterion without unstable open-loop poles: 1 + L turns by a quarter for each integrator, no more."""
-    integrators = round(-float(np.diff(np.log(np.abs(response[:2])))[0] / np.diff(np.log(omega[:2]))[0]))
+    integrators = round(
+        -float(np.diff(np.log(np.abs(response[:2])))[0] / np.diff(np.log(omega[:2]))[0])
+    )
     turned = np.unwrap(np.angle(1.0 + response))
     return bool(abs(turned[-1] - turned[0] - 0.5 * pi * integrators) < 0.5 * pi)
 
@@ -309,7 +336,11 @@ class LoopChannel:
     pole: float = 0.0  # [1/s] of the predictor
     bandwidth: float = 0.0  # [rad/s] of C
     heading_gain: float = 0.0  # [1/s] position error to rate wanted
-    input_gain: tuple[float, float, float] = (1.0, 1.0, 1.0)  # true over assumed: lowest, nominal, highest
+    input_gain: tuple[float, float, float] = (
+        1.0,
+        1.0,
+        1.0,
+    )  # true over assumed: lowest, nominal, highest
     hold_s: float = 0.0
     servo_lag_s: float = 0.0
     pid: tuple[float, float, float] | None = None  # (kp [1/s^2], ki [1/s^3], kd [1/s])
@@ -324,7 +355,11 @@ class LoopChannel:
         """L(s), broken at the plant input, for one true-over-assumed input gain."""
 
         def response(s: Complex) -> Complex:
-            held = -np.expm1(-2.0 * self.hold_s * s) / (2.0 * self.hold_s * s) if self.hold_s > 0.0 else 1.0
+            held = (
+                -np.expm1(-2.0 * self.hold_s * s) / (2.0 * self.hold_s * s)
+                if self.hold_s > 0.0
+                else 1.0
+            )
             actuator = gain * held / (1.0 + self.servo_lag_s * s)
             return np.asarray(self._law(s) * actuator / (s * (s + self.damping)))
 
@@ -336,7 +371,9 @@ class LoopChannel:
             kp, ki, kd = self.pid
             return np.asarray(kp + ki / s + kd * s)
         unfiltered_again = (s + self.bandwidth) / s  # 1/(1 - C)
-        return np.asarray(self.pole * self.heading_gain * unfiltered_again + self.bandwidth * (s + self.pole))
+        return np.asarray(
+            self.pole * self.heading_gain * unfiltered_again + self.bandwidth * (s + self.pole)
+        )
 
     def norm(self, gain: float) -> float | None:
         """L1 norm [s] of (1 - C)/(s + pole), C = gain bandwidth/(s + gain bandwidth); None for a PID."""
@@ -369,7 +406,9 @@ class SampledChannel:
     def loop(self, gain: float) -> Loop:
         """L(s), z = e^{sT}, broken at the plant input, for one true-over-assumed input gain."""
         decay = exp(-self.damping * self.period)
-        rate_gain = (1.0 - decay) / self.damping  # F and g of the plant over one period, zero-order hold
+        rate_gain = (
+            1.0 - decay
+        ) / self.damping  # F and g of the plant over one period, zero-order hold
         place_gain = (self.period - rate_gain) / self.damping
 
         def response(s: Complex) -> Complex:

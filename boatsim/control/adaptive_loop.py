@@ -13,7 +13,9 @@ from boatsim.control.adaptive import lyapunov
 from boatsim.control.compiled import Records, lean, merged
 from boatsim.physics.base import Array
 
-TOLERANCE = 0.1  # of the projection: it begins to brake at 1 / sqrt(1 + tolerance) of the way to a bound
+TOLERANCE = (
+    0.1  # of the projection: it begins to brake at 1 / sqrt(1 + tolerance) of the way to a bound
+)
 
 
 @lean
@@ -28,9 +30,23 @@ def projected(value: float, rate: float, low: float, high: float) -> float:
 
 @lean
 def adapt(
-    predicted: Array, estimates: Array, low: Array, high: Array, gain: float, am: Array, pb: Array, drift: Array,
-    by: Array, before: Array, after: Array, applied: float, period: float, steps: int, regressors: Array, slope: Array,
-) -> None:  # fmt: skip
+    predicted: Array,
+    estimates: Array,
+    low: Array,
+    high: Array,
+    gain: float,
+    am: Array,
+    pb: Array,
+    drift: Array,
+    by: Array,
+    before: Array,
+    after: Array,
+    applied: float,
+    period: float,
+    steps: int,
+    regressors: Array,
+    slope: Array,
+) -> None:
     """Predictor and estimates over one period in which the measured state went from `before` to `after`, in place.
 
     The input acts on the last state. Estimates belong to the regressors (x1 ... xn, 1, input); `by` says whose
@@ -62,9 +78,16 @@ def adapt(
 
 @lean
 def filtered(
-    value: float, known: float, gain: float, bandwidth: float, low: float, high: float, rate: float, period: float,
+    value: float,
+    known: float,
+    gain: float,
+    bandwidth: float,
+    low: float,
+    high: float,
+    rate: float,
+    period: float,
     steps: int,
-) -> tuple[float, float]:  # fmt: skip
+) -> tuple[float, float]:
     """Low-pass input' = -bandwidth (gain input + known), kept in its limits: mean over the period, value at its end."""
     total, dt = 0.0, period / steps
     for _ in range(steps):
@@ -80,10 +103,16 @@ def loop_memory(n: int) -> np.dtype[np.void]:
     states, all_ = (n,), (n + 2,)
     return np.dtype(
         [
-            ("estimates", "f8", all_), ("predicted", "f8", states), ("before", "f8", states), ("after", "f8", states),
-            ("drift", "f8", states), ("regressors", "f8", all_), ("slope", "f8", states), ("value", "f8"),
+            ("estimates", "f8", all_),
+            ("predicted", "f8", states),
+            ("before", "f8", states),
+            ("after", "f8", states),
+            ("drift", "f8", states),
+            ("regressors", "f8", all_),
+            ("slope", "f8", states),
+            ("value", "f8"),
         ]
-    )  # fmt: skip
+    )
 
 
 def loop_design(n: int) -> np.dtype[np.void]:
@@ -91,17 +120,31 @@ def loop_design(n: int) -> np.dtype[np.void]:
     states, all_ = (n,), (n + 2,)
     return np.dtype(
         [
-            ("am", "f8", (n, n)), ("pb", "f8", states), ("low", "f8", all_), ("high", "f8", all_),
-            ("first", "f8", all_), ("by", "i8", all_), ("gain", "f8"), ("bandwidth", "f8"), ("period", "f8"),
+            ("am", "f8", (n, n)),
+            ("pb", "f8", states),
+            ("low", "f8", all_),
+            ("high", "f8", all_),
+            ("first", "f8", all_),
+            ("by", "i8", all_),
+            ("gain", "f8"),
+            ("bandwidth", "f8"),
+            ("period", "f8"),
             ("steps", "i8"),
         ]
-    )  # fmt: skip
+    )
 
 
 def designed(
-    am: ArrayLike, low: ArrayLike, high: ArrayLike, first: ArrayLike, *, gain: float, bandwidth: float, period: float,
+    am: ArrayLike,
+    low: ArrayLike,
+    high: ArrayLike,
+    first: ArrayLike,
+    *,
+    gain: float,
+    bandwidth: float,
+    period: float,
     step: float,
-) -> Records:  # fmt: skip
+) -> Records:
     """A `loop_design` (1,) for a loop of such poles, bounds and first estimates, each driven by its own regressor.
 
     `am` (n, n) [1/s] is the predictor's, `low`, `high`, `first` (n + 2,) belong to x1 ... xn, the disturbance and the
@@ -129,9 +172,23 @@ def begin_loop(a: Any, d: Any, value: float) -> None:
 def observe_loop(a: Any, d: Any, applied: float) -> None:
     """Adapt over the period that ends with the state in `a.after`, through which the input was `applied`."""
     adapt(
-        a.predicted, a.estimates, d.low, d.high, d.gain, d.am, d.pb, a.drift, d.by, a.before, a.after, applied,
-        d.period, d.steps, a.regressors, a.slope,
-    )  # fmt: skip
+        a.predicted,
+        a.estimates,
+        d.low,
+        d.high,
+        d.gain,
+        d.am,
+        d.pb,
+        a.drift,
+        d.by,
+        a.before,
+        a.after,
+        applied,
+        d.period,
+        d.steps,
+        a.regressors,
+        a.slope,
+    )
     for i in range(len(d.pb)):
         a.before[i] = a.after[i]
 
@@ -150,5 +207,7 @@ def act_loop(a: Any, d: Any, wanted: float, low: float, high: float, rate: float
     known = a.estimates[n] - wanted
     for i in range(n):
         known += a.estimates[i] * a.before[i]
-    mean, a.value = filtered(a.value, known, a.estimates[n + 1], d.bandwidth, low, high, rate, d.period, d.steps)
+    mean, a.value = filtered(
+        a.value, known, a.estimates[n + 1], d.bandwidth, low, high, rate, d.period, d.steps
+    )
     return mean

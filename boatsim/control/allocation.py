@@ -44,11 +44,15 @@ class Stick(NamedTuple):
 STICK = ("surge_mps", "sway_mps", "yaw_radps")
 
 
-HEADING = record("own", "wanted")  # [rad] integrated gyro, integrated stick, both from the start heading
+HEADING = record(
+    "own", "wanted"
+)  # [rad] integrated gyro, integrated stick, both from the start heading
 
 
 @merged
-def keep_heading(h: Any, rate: float, compass: float, stick: float, dt: float, trust: float) -> None:
+def keep_heading(
+    h: Any, rate: float, compass: float, stick: float, dt: float, trust: float
+) -> None:
     """One period of dt [s] of a `HEADING`; `trust` [1/s] is the rate at which the compass takes the gyro's drift out.
 
     Whole turns count.
@@ -143,12 +147,16 @@ def pwm(q: Any, thrust: float) -> float:
     ahead = abs(thrust) if thrust > 0.0 else abs(thrust) / q.reverse_ratio
     if ahead == 0.0:
         return 0.0
-    value = q.dead_pwm + (PWM_RATED - q.dead_pwm) * (ahead / q.rated_thrust) ** (1.0 / q.thrust_power)
+    value = q.dead_pwm + (PWM_RATED - q.dead_pwm) * (ahead / q.rated_thrust) ** (
+        1.0 / q.thrust_power
+    )
     return np.rint(copysign(min(value, PWM_MAX), thrust))
 
 
 @lean
-def allocate(q: Any, surge: float, difference: float, moment: float, room: float) -> tuple[float, float, float]:
+def allocate(
+    q: Any, surge: float, difference: float, moment: float, room: float
+) -> tuple[float, float, float]:
     """Thrusts and angle of a `Drive` for a surge force [N], a sway thrust difference [N] and a moment [N m].
 
     Yaw comes first, then sway, then surge. `room` [N] widens the bound on the surge thrust beyond its share of D. The
@@ -172,7 +180,9 @@ def steered(q: Any, difference: float, moment: float) -> tuple[float, float]:
     needed = moment / lever(q, 0.0 if helps else ANGLE_MAX)
     spread = copysign(max(abs(difference), abs(needed)), difference)
     sine = moment / (spread * hypot(q.half_spacing, q.arm))
-    return within(atan2(q.half_spacing, q.arm) - asin(within(sine, -1.0, 1.0)), 0.0, ANGLE_MAX), spread
+    return within(
+        atan2(q.half_spacing, q.arm) - asin(within(sine, -1.0, 1.0)), 0.0, ANGLE_MAX
+    ), spread
 
 
 @lean
@@ -193,7 +203,9 @@ def set_outboards(
     """Allocate and send; nominal force and moment of what was sent, which is what a predictor should be told."""
     port, starboard, angle = allocate(q, surge, difference, moment, room)
     send_outboards(q, port, starboard, angle, sent)
-    return push(q, thrust_at(q, sent.pwm_port), thrust_at(q, sent.pwm_starboard), sent.steer_port_rad)
+    return push(
+        q, thrust_at(q, sent.pwm_port), thrust_at(q, sent.pwm_starboard), sent.steer_port_rad
+    )
 
 
 @lean
@@ -218,16 +230,36 @@ def push(q: Any, port: float, starboard: float, angle: float) -> tuple[float, fl
 class Outboards(Checked):
     """What a controller believes of its two outboards, and the allocation built on it."""
 
-    half_spacing: float = param(0.235, low=0.05, high=0.4, unit="m", words="assumed motor to centreline")
-    arm: float = param(0.62, low=0.45, high=2.0, unit="m", words="assumed motors to centre of lateral resistance")
-    rated_thrust: float = param(0.5, low=0.05, high=5.0, unit="N", words="assumed thrust of a motor at PWM 150")
-    reverse_ratio: float = param(0.67, low=0.2, high=1.0, unit="", words="assumed thrust astern over thrust ahead")
-    dead_pwm: float = param(0.0, low=0.0, high=120.0, unit="", words="assumed PWM below which a motor gives nothing")
-    thrust_power: float = param(1.0, low=0.5, high=3.0, unit="", words="assumed exponent of thrust over PWM")
-    largest_difference: float = param(0.9, low=0.05, high=5.0, unit="N", words="largest port minus starboard thrust")
-    rated_sway: float = param(0.07, low=0.01, high=1.0, unit="m/s", words="sway command that gets the sway thrust")
-    sway_thrust: float = param(0.6, low=0.05, high=5.0, unit="N", words="thrust difference for that sway command")
-    sway_dead_zone: float = param(0.007, low=0.0, high=1.0, unit="m/s", words="smaller sway commands count as none")
+    half_spacing: float = param(
+        0.235, low=0.05, high=0.4, unit="m", words="assumed motor to centreline"
+    )
+    arm: float = param(
+        0.62, low=0.45, high=2.0, unit="m", words="assumed motors to centre of lateral resistance"
+    )
+    rated_thrust: float = param(
+        0.5, low=0.05, high=5.0, unit="N", words="assumed thrust of a motor at PWM 150"
+    )
+    reverse_ratio: float = param(
+        0.67, low=0.2, high=1.0, unit="", words="assumed thrust astern over thrust ahead"
+    )
+    dead_pwm: float = param(
+        0.0, low=0.0, high=120.0, unit="", words="assumed PWM below which a motor gives nothing"
+    )
+    thrust_power: float = param(
+        1.0, low=0.5, high=3.0, unit="", words="assumed exponent of thrust over PWM"
+    )
+    largest_difference: float = param(
+        0.9, low=0.05, high=5.0, unit="N", words="largest port minus starboard thrust"
+    )
+    rated_sway: float = param(
+        0.07, low=0.01, high=1.0, unit="m/s", words="sway command that gets the sway thrust"
+    )
+    sway_thrust: float = param(
+        0.6, low=0.05, high=5.0, unit="N", words="thrust difference for that sway command"
+    )
+    sway_dead_zone: float = param(
+        0.007, low=0.0, high=1.0, unit="m/s", words="smaller sway commands count as none"
+    )
     compass_trust: float = param(
         0.0, low=0.0, high=5.0, unit="1/s", words="rate at which the compass corrects the gyro"
     )
@@ -276,4 +308,6 @@ class Outboards(Checked):
     def applied(self, setting: Setting) -> Push:
         """Nominal force and moment of a rounded and capped setting: what a predictor should be told."""
         angle = radians(setting.degrees)
-        return self.push(Drive(self.thrust(setting.pwm_port), self.thrust(setting.pwm_starboard), angle))
+        return self.push(
+            Drive(self.thrust(setting.pwm_port), self.thrust(setting.pwm_starboard), angle)
+        )

@@ -16,18 +16,34 @@ class Approach(Checked):
     1.2 m; the sway stick is a thrust, so its loop damps itself.
     """
 
-    beside: float = param(0.8, low=-100.0, high=100.0, unit="m", words="point to starboard of the place that is first")
-    within: float = param(0.5, low=0.0, high=100.0, unit="m", words="from that point, where the approach begins")
+    beside: float = param(
+        0.8, low=-100.0, high=100.0, unit="m", words="point to starboard of the place that is first"
+    )
+    within: float = param(
+        0.5, low=0.0, high=100.0, unit="m", words="from that point, where the approach begins"
+    )
     cruise: float = param(0.2, low=0.01, high=5.0, unit="m/s", words="speed on the way to it")
-    surge_gain: float = param(0.2, low=0.0, high=5.0, unit="1/s", words="surge speed per distance ahead")
-    creep: float = param(0.06, low=0.0, high=5.0, unit="m/s", words="fastest surge speed of the approach")
-    sway_gain: float = param(0.08, low=0.0, high=5.0, unit="1/s", words="sway stick per distance to starboard")
+    surge_gain: float = param(
+        0.2, low=0.0, high=5.0, unit="1/s", words="surge speed per distance ahead"
+    )
+    creep: float = param(
+        0.06, low=0.0, high=5.0, unit="m/s", words="fastest surge speed of the approach"
+    )
+    sway_gain: float = param(
+        0.08, low=0.0, high=5.0, unit="1/s", words="sway stick per distance to starboard"
+    )
     sway_damping: float = param(0.9, low=0.0, high=50.0, unit="", words="sway stick per sway speed")
-    sway_integral: float = param(0.004, low=0.0, high=1.0, unit="1/s^2", words="sway stick per integrated distance")
+    sway_integral: float = param(
+        0.004, low=0.0, high=1.0, unit="1/s^2", words="sway stick per integrated distance"
+    )
     sway_most: float = param(0.1, low=0.0, high=5.0, unit="m/s", words="largest sway stick")
     turn_gain: float = param(0.4, low=0.0, high=5.0, unit="1/s", words="yaw rate per heading error")
-    turn_most: float = param(0.14, low=0.0, high=5.0, unit="rad/s", words="largest yaw rate asked for")
-    straight: float = param(0.2, low=0.01, high=3.2, unit="rad", words="heading error below which it leaves that point")
+    turn_most: float = param(
+        0.14, low=0.0, high=5.0, unit="rad/s", words="largest yaw rate asked for"
+    )
+    straight: float = param(
+        0.2, low=0.01, high=3.2, unit="rad", words="heading error below which it leaves that point"
+    )
     _straight: bool = field(default=False, init=False)
     _there: bool = field(default=False, init=False)
     _lasting: float = field(default=0.0, init=False)  # [m/s] of the sway stick
@@ -41,7 +57,9 @@ class Approach(Checked):
             self._straight = self._straight or abs(wrap(psi)) < self.straight
             return self._onto(*_turned(-x, -y if self._straight else east, psi), wrap(-psi), v, dt)
         off = wrap(atan2(east, north) - psi)
-        ahead = clip(1.0 - 2.0 * abs(off), 0.0, 1.0) * min(self.cruise, self.surge_gain * hypot(north, east))
+        ahead = clip(1.0 - 2.0 * abs(off), 0.0, 1.0) * min(
+            self.cruise, self.surge_gain * hypot(north, east)
+        )
         return Stick(ahead, 0.0, self._turn(off))
 
     def _onto(self, ahead: float, starboard: float, off: float, v: float, dt: float) -> Stick:

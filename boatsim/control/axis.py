@@ -15,9 +15,16 @@ AXIS = record("predicted", "sigma", "filtered", "model")
 
 @merged
 def missing(
-    a: Any, measured: float, applied: float, acted: bool, reference: float, pole: float, inertia: float,
-    bandwidth: float, period: float,
-) -> float:  # fmt: skip
+    a: Any,
+    measured: float,
+    applied: float,
+    acted: bool,
+    reference: float,
+    pole: float,
+    inertia: float,
+    bandwidth: float,
+    period: float,
+) -> float:
     """Force or moment that the axis feels beside the one `applied` over the last period, low-passed.
 
     At the first step nothing has `acted`. `a.model` is the motion asked for: x' = -pole (x - reference). A lasting

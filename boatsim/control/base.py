@@ -26,7 +26,9 @@ class Sense:
     y: float  # [m]
     phi: float = nan  # [rad] roll
     p: float = nan  # [rad/s] roll rate
-    more: Mapping[str, float] = field(default_factory=dict)  # what further sensors of the boat read, by name
+    more: Mapping[str, float] = field(
+        default_factory=dict
+    )  # what further sensors of the boat read, by name
 
 
 class Estimate(NamedTuple):
@@ -43,10 +45,14 @@ class Controller(Checked):
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
     commands: ClassVar[tuple[str, ...]] = ()  # command channels it sets; empty: any
-    goals: ClassVar[tuple[str, ...]] = ()  # keys a [[goal]] may have; empty: the vessel's command channels
+    goals: ClassVar[
+        tuple[str, ...]
+    ] = ()  # keys a [[goal]] may have; empty: the vessel's command channels
     passes_on: ClassVar[bool] = False  # its goals are the commands, whatever is sensed
 
-    period: float = param(0.08, low=0.001, high=10.0, unit="s", words="time between two control steps")
+    period: float = param(
+        0.08, low=0.001, high=10.0, unit="s", words="time between two control steps"
+    )
 
     def reset(self) -> None:
         """Forget everything; called before each run."""
@@ -85,7 +91,9 @@ class Steered(Controller):
     angle in force is logged as `reference_helm_rad`.
     """
 
-    angle: float = param(0.35, low=-1.6, high=1.6, unit="rad", words="helm angle, positive to starboard")
+    angle: float = param(
+        0.35, low=-1.6, high=1.6, unit="rad", words="helm angle, positive to starboard"
+    )
     execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the manoeuvre begins")
     ahead: dict[str, float] = field(default_factory=dict)
     steer: dict[str, float] = field(default_factory=dict)
@@ -112,7 +120,9 @@ class Steered(Controller):
 
     def commanded(self, helm: float) -> dict[str, float]:
         """Commands with which the ship goes ahead at a helm angle."""
-        turned = {name: self.ahead.get(name, 0.0) + per_rad * helm for name, per_rad in self.steer.items()}
+        turned = {
+            name: self.ahead.get(name, 0.0) + per_rad * helm for name, per_rad in self.steer.items()
+        }
         return {**self.ahead, **turned}
 
     def estimates(self) -> dict[str, Estimate]:

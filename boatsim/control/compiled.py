@@ -18,12 +18,23 @@ from boatsim.physics.base import Array
 from boatsim.physics.kernel.compiling import lean, merged, unlocked
 
 __all__ = [
-    "FELT", "SENSE", "CompiledController", "Records", "as_table", "columns", "lean", "merged", "record", "unlocked",
+    "FELT",
+    "SENSE",
+    "CompiledController",
+    "Records",
+    "as_table",
+    "columns",
+    "lean",
+    "merged",
+    "record",
+    "unlocked",
     "with_parts",
-]  # fmt: skip
+]
 
 # A controller built on another has its settings and more: to numba that is a subtype, with fields where they were.
-warnings.filterwarnings("ignore", ".*has been considered a subtype of.*", NumbaExperimentalFeatureWarning)
+warnings.filterwarnings(
+    "ignore", ".*has been considered a subtype of.*", NumbaExperimentalFeatureWarning
+)
 FELT = tuple(f.name for f in fields(Sense) if f.name != "more")
 Records = NDArray[np.void]
 ONE = np.zeros(1, dtype=np.int64)  # the only boat of a single run
@@ -68,7 +79,9 @@ class CompiledController(Controller):
     def reset(self) -> None:
         """At rest, nothing learnt."""
         self._settings, self._memory = self.settings(), np.zeros(1, type(self).remembers)
-        self._sense, self._goal, self._sent = (np.zeros(1, t) for t in (SENSE, *self.asked_and_sent()))
+        self._sense, self._goal, self._sent = (
+            np.zeros(1, t) for t in (SENSE, *self.asked_and_sent())
+        )
 
     def settings(self, count: int = 1) -> Records:
         """Parameters of so many controllers like this one, in records."""
@@ -111,7 +124,11 @@ class CompiledController(Controller):
 
 def as_table(records: Records) -> Array:
     """The numbers of records, a row each; a view."""
-    return records.view(np.float64).reshape(len(records), -1) if records.dtype.names else np.zeros((len(records), 0))
+    return (
+        records.view(np.float64).reshape(len(records), -1)
+        if records.dtype.names
+        else np.zeros((len(records), 0))
+    )
 
 
 def columns(names: Sequence[str], among: Sequence[str]) -> NDArray[np.int64]:

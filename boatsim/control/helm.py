@@ -28,9 +28,15 @@ class Helm(Controller):
     commands: ClassVar[tuple[str, ...]] = ("rudder_rad",)
     goals: ClassVar[tuple[str, ...]] = ("psi_rad",)
 
-    period: float = param(0.5, low=0.01, high=10.0, unit="s", words="time between two control steps")
-    rudder_limit: float = param(radians(40.0), low=0.01, high=0.5 * pi, unit="rad", words="largest rudder angle")
-    rudder_rate: float = param(radians(5.0), low=1e-3, high=10.0, unit="rad/s", words="fastest turning of the rudder")
+    period: float = param(
+        0.5, low=0.01, high=10.0, unit="s", words="time between two control steps"
+    )
+    rudder_limit: float = param(
+        radians(40.0), low=0.01, high=0.5 * pi, unit="rad", words="largest rudder angle"
+    )
+    rudder_rate: float = param(
+        radians(5.0), low=1e-3, high=10.0, unit="rad/s", words="fastest turning of the rudder"
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -56,7 +62,9 @@ class Helm(Controller):
         """
         if isnan(phi):
             if self.needs_roll():
-                raise BadInput(f"{type(self).__name__}: roll_reduction needs [[sensor]] use = 'inclinometer'")
+                raise BadInput(
+                    f"{type(self).__name__}: roll_reduction needs [[sensor]] use = 'inclinometer'"
+                )
             phi = 0.0
         if not self.psi:
             self.psi, self.phi = [wrap(psi)] * 3, [phi] * 3

@@ -18,9 +18,15 @@ class Forgetting(Checked):
     """Constants of exponential forgetting and resetting; Martin does not print his, these are our choice."""
 
     alpha: float = param(0.5, low=0.0, high=1.0, unit="", words="share of the gain that is used")
-    forgetting: float = param(0.99, low=0.5, high=1.0, unit="", words="lambda: what a sample weighs one period later")
-    beta: float = param(1e-5, low=0.0, high=10.0, unit="", words="keeps the covariance from vanishing")
-    delta: float = param(0.05, low=0.0, high=10.0, unit="", words="keeps the covariance from growing")
+    forgetting: float = param(
+        0.99, low=0.5, high=1.0, unit="", words="lambda: what a sample weighs one period later"
+    )
+    beta: float = param(
+        1e-5, low=0.0, high=10.0, unit="", words="keeps the covariance from vanishing"
+    )
+    delta: float = param(
+        0.05, low=0.0, high=10.0, unit="", words="keeps the covariance from growing"
+    )
     covariance: float = param(0.01, low=1e-6, high=1e4, unit="", words="P(0)")
     inverse_alone: bool = False  # Martin 1993 prints 1/lambda where P/lambda is meant
     later_gain: bool = False  # Martin 1993 prints P(t+1) in the gain where P(t) is meant
@@ -63,7 +69,10 @@ class Ship:
 
     def __init__(self, law: Forgetting, yaw: Sequence[float], roll: Sequence[float]) -> None:
         """Knows a nominal ship only: (a2y, b1y, b2y) and (a1r, a2r, b1r, b2r); of the roll's noise, nothing."""
-        self._yaw, self._roll = Estimator(np.array(yaw), law), Estimator(np.array([*roll, 0.0, 0.0]), law)
+        self._yaw, self._roll = (
+            Estimator(np.array(yaw), law),
+            Estimator(np.array([*roll, 0.0, 0.0]), law),
+        )
         self._left = [0.0, 0.0]  # [deg] errors of roll that were left, one period ago and two
 
     @property
@@ -85,7 +94,11 @@ class Ship:
 
     def named(self) -> dict[str, float]:
         """The estimates by name, for a log."""
-        return dict(zip(("a2y", "b1y", "b2y", "a1r", "a2r", "b1r", "b2r"), self.yaw + self.roll, strict=True))
+        return dict(
+            zip(
+                ("a2y", "b1y", "b2y", "a1r", "a2r", "b1r", "b2r"), self.yaw + self.roll, strict=True
+            )
+        )
 
     def matrices(self) -> tuple[Array, Array]:
         """A (4, 4), B (4,) of the state psi, psi one ago, phi, phi one ago under the rudder angle."""
@@ -95,7 +108,14 @@ class Ship:
 def state_space(yaw: Sequence[float], roll: Sequence[float]) -> tuple[Array, Array]:
     """A (4, 4), B (4,) of (a2y, b1y, b2y) and (a1r, a2r, b1r, b2r)."""
     (a2y, b1y, b2y), (a1r, a2r, b1r, b2r) = yaw, roll
-    a = np.array([[1.0 + a2y, -a2y, b2y, 0.0], [1.0, 0.0, 0.0, 0.0], [b2r, -b2r, -a1r, -a2r], [0.0, 0.0, 1.0, 0.0]])
+    a = np.array(
+        [
+            [1.0 + a2y, -a2y, b2y, 0.0],
+            [1.0, 0.0, 0.0, 0.0],
+            [b2r, -b2r, -a1r, -a2r],
+            [0.0, 0.0, 1.0, 0.0],
+        ]
+    )
     return a, np.array([b1y, 0.0, b1r, 0.0])
 
 

@@ -22,7 +22,9 @@ from boatsim.control.compiled import CompiledController, merged, record, unlocke
 from boatsim.physics.base import param
 
 SERVO_LAG = 0.06  # [s] of steering servos; no law uses it, only the margins that are printed
-REMEMBERS = record("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)  # X [N], N [N m] applied last
+REMEMBERS = record(
+    "acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING
+)  # X [N], N [N m] applied last
 
 
 @merged
@@ -68,22 +70,43 @@ class AdaptiveJoystick(Outboards, CompiledController):
     and, low-passed, subtracted. Goals: `surge_mps`, `sway_mps`, `yaw_radps`.
     """
 
-    commands: ClassVar[tuple[str, ...]] = ("pwm_port", "pwm_starboard", "steer_port_rad", "steer_starboard_rad")
+    commands: ClassVar[tuple[str, ...]] = (
+        "pwm_port",
+        "pwm_starboard",
+        "steer_port_rad",
+        "steer_starboard_rad",
+    )
     goals: ClassVar[tuple[str, ...]] = STICK
     unsaid: ClassVar = dict.fromkeys(STICK, 0.0)
     law: ClassVar = law
     remembers: ClassVar = REMEMBERS
 
     pole: float = param(1.4, low=0.1, high=10.0, unit="1/s", words="pole of the motion asked for")
-    inertia: float = param(2.0, low=0.1, high=50.0, unit="kg m^2", words="assumed yaw inertia, added mass included")
+    inertia: float = param(
+        2.0, low=0.1, high=50.0, unit="kg m^2", words="assumed yaw inertia, added mass included"
+    )
     mass: float = param(5.0, low=0.5, high=500.0, unit="kg", words="assumed surge mass")
-    yaw_bandwidth: float = param(2.0, low=0.1, high=20.0, unit="rad/s", words="low-pass of the yaw estimate")
-    surge_bandwidth: float = param(2.0, low=0.05, high=20.0, unit="rad/s", words="low-pass of the surge estimate")
-    heading_gain: float = param(0.2, low=0.0, high=5.0, unit="1/s", words="yaw rate asked for per heading error")
-    hold_rate: float = param(0.1, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate without a yaw command")
-    turn_rate: float = param(0.25, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate in a rated turn")
-    rated_yaw: float = param(0.1396, low=0.01, high=2.0, unit="rad/s", words="the rated turn, 8 deg/s")
-    blind_surge: float = param(1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor")
+    yaw_bandwidth: float = param(
+        2.0, low=0.1, high=20.0, unit="rad/s", words="low-pass of the yaw estimate"
+    )
+    surge_bandwidth: float = param(
+        2.0, low=0.05, high=20.0, unit="rad/s", words="low-pass of the surge estimate"
+    )
+    heading_gain: float = param(
+        0.2, low=0.0, high=5.0, unit="1/s", words="yaw rate asked for per heading error"
+    )
+    hold_rate: float = param(
+        0.1, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate without a yaw command"
+    )
+    turn_rate: float = param(
+        0.25, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate in a rated turn"
+    )
+    rated_yaw: float = param(
+        0.1396, low=0.01, high=2.0, unit="rad/s", words="the rated turn, 8 deg/s"
+    )
+    blind_surge: float = param(
+        1.0, low=0.0, high=100.0, unit="N s/m", words="surge force per m/s with no speed sensor"
+    )
 
     def estimates(self) -> dict[str, Estimate]:
         """What each channel takes for missing force and moment, and the motion asked for."""
@@ -102,7 +125,11 @@ class AdaptiveJoystick(Outboards, CompiledController):
     def loop_channels(self) -> tuple[LoopChannel, ...]:
         """The feedback loops, for margins: at true thrust over inertia from half to 1.8 times what is assumed."""
         delayed = partial(
-            LoopChannel, pole=self.pole, hold_s=0.5 * self.period, servo_lag_s=SERVO_LAG, input_gain=(0.5, 1.0, 1.8)
+            LoopChannel,
+            pole=self.pole,
+            hold_s=0.5 * self.period,
+            servo_lag_s=SERVO_LAG,
+            input_gain=(0.5, 1.0, 1.8),
         )
         return (
             delayed("yaw", bandwidth=self.yaw_bandwidth, heading_gain=self.heading_gain),

@@ -7,7 +7,15 @@ from boatsim.control.adaptive import LoopChannel, SampledChannel, l1_condition, 
 from boatsim.errors import BadInput
 from boatsim.physics.content import load_class, names, snake_case
 
-HEADINGS = ("channel", "input gain", "L1 norm s", "slope 1/s", "crossover rad/s", "phase deg", "extra delay s")
+HEADINGS = (
+    "channel",
+    "input gain",
+    "L1 norm s",
+    "slope 1/s",
+    "crossover rad/s",
+    "phase deg",
+    "extra delay s",
+)
 
 
 @dataclass(frozen=True)
@@ -16,7 +24,9 @@ class Row:
 
     channel: str
     input_gain: float
-    norm: float | None  # [s] L1 norm of what the low-pass leaves; None for a controller that is not L1
+    norm: (
+        float | None
+    )  # [s] L1 norm of what the low-pass leaves; None for a controller that is not L1
     slope: float | None  # [1/s] largest slope of the uncertainty that the norm covers
     needed: float | None  # [1/s] slope there is: the predictor's pole less the boat's own damping
     crossover: float  # [rad/s]
@@ -30,8 +40,14 @@ def table(controller: object) -> list[Row]:
     describe = getattr(controller, "loop_channels", None)
     if describe is None:
         asked = snake_case(type(controller).__name__)
-        able = [name for name in names("controller") if hasattr(load_class("controller", name), "loop_channels")]
-        raise BadInput(f"controller {asked!r} describes no loop_channels (these do: {', '.join(able) or 'none'})")
+        able = [
+            name
+            for name in names("controller")
+            if hasattr(load_class("controller", name), "loop_channels")
+        ]
+        raise BadInput(
+            f"controller {asked!r} describes no loop_channels (these do: {', '.join(able) or 'none'})"
+        )
     return [_row(channel, gain) for channel in describe() for gain in channel.input_gain]
 
 
@@ -67,7 +83,10 @@ def _cells(row: Row) -> list[str]:
         f"{row.phase_deg:.0f}" if row.stable else "unstable",
         f"{row.delay_s:.2f}",
     ]
-    return [f"{row.channel:10}", *(f"{v:>{len(h)}}" for v, h in zip(values, HEADINGS[1:], strict=True))]
+    return [
+        f"{row.channel:10}",
+        *(f"{v:>{len(h)}}" for v, h in zip(values, HEADINGS[1:], strict=True)),
+    ]
 
 
 def _l1_channels(rows: list[Row]) -> list[str]:
@@ -76,7 +95,9 @@ def _l1_channels(rows: list[Row]) -> list[str]:
 
 def _condition(name: str, rows: list[Row]) -> str:
     """The L1-norm condition of one channel at its worst input gain, in words."""
-    norm, needed = max((row.norm, row.needed) for row in rows if row.channel == name and row.norm and row.needed)
+    norm, needed = max(
+        (row.norm, row.needed) for row in rows if row.channel == name and row.norm and row.needed
+    )
     value = l1_condition(norm, needed)
     verdict = "met" if value < 1.0 else "not met (it is sufficient, not necessary)"
     return (

@@ -59,7 +59,9 @@ class Train:
 
     pulse: int  # [periods]
     rest: int  # [periods] before, between and behind
-    rates: list[float] = field(default_factory=list)  # [rad/s] one a period, the first before the train
+    rates: list[float] = field(
+        default_factory=list
+    )  # [rad/s] one a period, the first before the train
     felt: list[float] = field(default_factory=list)  # [m/s^2] ahead, at the same times
 
     def __post_init__(self) -> None:
@@ -84,7 +86,9 @@ class Train:
             )
         reverse = clip(float(-turns[1] / turns[0]), 1.0 / WILDEST, WILDEST)
         variance = float(spread[0] * reverse**2 + spread[1]) / float(turns[0]) ** 2
-        return Found(float(turns[0]), reverse, variance, float(pushes[0]), drift.surge * float(square[-1]))
+        return Found(
+            float(turns[0]), reverse, variance, float(pushes[0]), drift.surge * float(square[-1])
+        )
 
 
 def _lagged(senses: list[int], sense: int, period: float, lag: float) -> Array:
@@ -139,7 +143,10 @@ class MotorCheck:
     @property
     def unevenness(self) -> float:
         """(a - b)/(a + b) of the yaw accelerations with the port (a) and the starboard (b) motor inward."""
-        a, b = (abs(float(np.mean([f.turn for f in self._found[side::2]]))) for side in (PORT, STARBOARD))
+        a, b = (
+            abs(float(np.mean([f.turn for f in self._found[side::2]])))
+            for side in (PORT, STARBOARD)
+        )
         return (a - b) / (a + b)
 
     def step(self, rate: float, felt: float) -> Pulse:
@@ -163,7 +170,9 @@ class MotorCheck:
                     train.feel(*self._reading)
                     yield Pulse(sense, side)
                 train.feel(*self._reading)
-                self._found.append(train.found(self.period, self.lag, self.drift, 1 if side == STARBOARD else -1))
+                self._found.append(
+                    train.found(self.period, self.lag, self.drift, 1 if side == STARBOARD else -1)
+                )
             self._learn(train.senses)
             for sense in self._amends():
                 yield Pulse(sense, NEITHER)

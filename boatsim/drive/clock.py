@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 
-from boatsim.simulate.pace import Pace
+from boatsim.simulate.real_time_pace import Pace
 
 LATE = 0.5  # share of a period by which its control may begin behind its time
 

@@ -16,13 +16,16 @@ from math import isfinite
 from re import DOTALL, search
 from typing import Any
 
-from boatsim.drive.hands import Hands, Sticks
+from boatsim.drive.driver_input import Hands, Sticks
 from boatsim.errors import BoatsimError
 
 HERE = "127.0.0.1"
 LARGEST = 1024  # bytes of a message from the page
 FAREWELL = 2.0  # [s] for the page to hear how it ended
-TAKEN, STRANGE = 4001, 4002  # codes of a socket that is closed: somebody drives already; not a message of our page
+TAKEN, STRANGE = (
+    4001,
+    4002,
+)  # codes of a socket that is closed: somebody drives already; not a message of our page
 NEEDED = 'driving needs the package websockets: pip install "boatsim[drive]"'
 
 
@@ -60,7 +63,13 @@ class Server:
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         if error is not None:
-            self.farewell({"wrong": str(error) if isinstance(error, BoatsimError) else "the terminal says why"})
+            self.farewell(
+                {
+                    "wrong": str(error)
+                    if isinstance(error, BoatsimError)
+                    else "the terminal says why"
+                }
+            )
         self._loop.call_soon_threadsafe(self._over.set)
         self._thread.join(FAREWELL + 1.0)
 
@@ -103,9 +112,17 @@ class Server:
     async def _serve(self) -> None:
         self._over, self._news = asyncio.Event(), asyncio.Event()
         async with self._sockets.serve(
-            self._drive, HERE, self._wanted, process_request=self._asked, max_size=LARGEST, compression=None,
-            server_header=None, ping_interval=1.0, ping_timeout=2.0, close_timeout=1.0,
-        ) as server:  # fmt: skip
+            self._drive,
+            HERE,
+            self._wanted,
+            process_request=self._asked,
+            max_size=LARGEST,
+            compression=None,
+            server_header=None,
+            ping_interval=1.0,
+            ping_timeout=2.0,
+            close_timeout=1.0,
+        ) as server:
             self._up.set_result(next(iter(server.sockets)).getsockname()[1])
             await self._over.wait()
             if self._driver is not None and self._last:
@@ -116,10 +133,14 @@ class Server:
         """Answer of a request: the page, nothing here, or None where the socket is let in."""
         own = f"{HERE}:{self._up.result()}"
         place, _, rest = request.path.removeprefix("/").partition("/")
-        if request.headers.get_all("Host") != [own]:  # another name for this machine: a page of somebody's, rebound
+        if request.headers.get_all("Host") != [
+            own
+        ]:  # another name for this machine: a page of somebody's, rebound
             return connection.respond(421, f"this is http://{own}\n")
         if not hmac.compare_digest(place.encode(), self._token.encode()):
-            return connection.respond(403, "the address lacks its token; it is printed where boatsim drive runs\n")
+            return connection.respond(
+                403, "the address lacks its token; it is printed where boatsim drive runs\n"
+            )
         if rest == "socket":
             mine = request.headers.get_all("Origin") == [f"http://{own}"]
             return None if mine else connection.respond(403, "not from the page of this server\n")

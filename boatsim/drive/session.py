@@ -5,15 +5,15 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from boatsim.drive.aside import aside
+from boatsim.drive.background_tasks import aside
 from boatsim.drive.clock import Clock
-from boatsim.drive.frames import Painter
 from boatsim.drive.server import Server
 from boatsim.drive.task import FILE, Task
+from boatsim.drive.telemetry import Painter
 from boatsim.recordings.table import Recording
-from boatsim.simulate.following import Tally
 from boatsim.simulate.run import LIVE, OFTEN, Listener, Runner
 from boatsim.simulate.scenario import OFF
+from boatsim.simulate.tracking_errors import Tally
 
 FRAME = 0.04  # [s] between two pictures
 WAIT = 0.05  # [s] between two looks whether somebody is there
@@ -24,7 +24,9 @@ NOBODY: Mapping[str, float] = {OFF: 1.0}
 class Session:
     """Steers a run by what the page says, and shows it there."""
 
-    def __init__(self, task: Task, server: Server, told: Callable[[str], None], watched: bool = False) -> None:
+    def __init__(
+        self, task: Task, server: Server, told: Callable[[str], None], watched: bool = False
+    ) -> None:
         """`told` gets a line when the sticks are let go or taken; `watched`: a viewer wants rows more often."""
         self.task, self.server, self.hands = task, server, server.hands
         self.clock = Clock(task.scenario.controller.period)
@@ -42,7 +44,12 @@ class Session:
 
     def take(self, runner: Runner, stop: Callable[[], bool]) -> None:
         """Take the run over, once somebody has taken the sticks."""
-        runner.goal_at, runner.enough, runner.pace, runner.often = self.goal_at, self.enough, self.clock, FRAME
+        runner.goal_at, runner.enough, runner.pace, runner.often = (
+            self.goal_at,
+            self.enough,
+            self.clock,
+            FRAME,
+        )
         self._painter = Painter(runner, self.task.dials, self.task.scenario)
         self.server.greet(self._painter.hello())
         while self.hands.away and not self.server.ended and not stop():
@@ -69,7 +76,11 @@ class Session:
             def seen(rows: Recording) -> None:
                 self._tally.add(rows)
                 self._heading, self._end = float(rows["psi_rad"][-1]), float(rows.t[-1])
-                self.server.show(self._painter.frame(rows, self._tally.norms(), self.clock, self.hands, self.latency))
+                self.server.show(
+                    self._painter.frame(
+                        rows, self._tally.norms(), self.clock, self.hands, self.latency
+                    )
+                )
                 files(rows)
 
             yield seen

@@ -1,7 +1,7 @@
 """What the registered environments take and show: python -m boatsim.learn."""
 
 from boatsim.learn import registration
-from boatsim.learn.game import TASKS, play
+from boatsim.learn.environment_options import TASKS, play
 
 
 def main() -> None:

@@ -95,27 +95,45 @@ def _sense(vessel: Vessel, actuator: str) -> float:
     """Whether a positive angle turns the bow to starboard (1) or to port (-1)."""
     if turns := vessel.commands[actuator].turns:
         return 1.0 if turns == "starboard" else -1.0
-    places = [float(getattr(e, "x", 1.0)) for e in vessel.effects if actuator in vessel.stated(e).values()]
+    places = [
+        float(getattr(e, "x", 1.0)) for e in vessel.effects if actuator in vessel.stated(e).values()
+    ]
     return -1.0 if places and places[0] < 0.0 else 1.0
 
 
 def _pairs(found: Sequence[Lever]) -> Iterator[tuple[Lever, Lever]]:
     """Port and starboard drives of the same role, where there is one of each."""
     for role in dict.fromkeys(lever.role for lever in found):
-        sides = {side: [one for one in found if one.role == role and one.side == side] for side in SIDES}
+        sides = {
+            side: [one for one in found if one.role == role and one.side == side] for side in SIDES
+        }
         if all(len(there) == 1 for there in sides.values()):
             yield sides[-1][0], sides[1][0]
 
 
-def _of_pair(port: Lever, starboard: Lever, use: Use, steered: bool) -> Iterator[tuple[str, str, dict[str, float]]]:
+def _of_pair(
+    port: Lever, starboard: Lever, use: Use, steered: bool
+) -> Iterator[tuple[str, str, dict[str, float]]]:
     if port.turning and use == "manoeuvring":
-        yield "inward", "both drives push towards the middle line", {port.channel: 1.0, starboard.channel: -1.0}
+        yield (
+            "inward",
+            "both drives push towards the middle line",
+            {port.channel: 1.0, starboard.channel: -1.0},
+        )
     elif port.turning:
-        yield "helm", f"both drives turn {STARBOARD}", dict.fromkeys(_channels(port, starboard), port.sense)
+        yield (
+            "helm",
+            f"both drives turn {STARBOARD}",
+            dict.fromkeys(_channels(port, starboard), port.sense),
+        )
     else:
         yield port.role, "both drives ahead", dict.fromkeys(_channels(port, starboard), 1.0)
         if use == "manoeuvring" or not steered:
-            yield "turn", "port ahead, starboard astern", {port.channel: 1.0, starboard.channel: -1.0}
+            yield (
+                "turn",
+                "port ahead, starboard astern",
+                {port.channel: 1.0, starboard.channel: -1.0},
+            )
 
 
 def _channels(port: Lever, starboard: Lever) -> tuple[str, str]:
@@ -129,7 +147,11 @@ def _said(lever: Lever) -> str:
 def _made(vessel: Vessel, rows: Sequence[tuple[str, str, dict[str, float]]]) -> Controls:
     channels = list(vessel.commands)
     pattern = np.array([[share.get(c, 0.0) for c in channels] for _, _, share in rows])
-    low, neutral, high = np.array([(c.low, c.neutral, c.high) for c in vessel.commands.values()], dtype=float).T
+    low, neutral, high = np.array(
+        [(c.low, c.neutral, c.high) for c in vessel.commands.values()], dtype=float
+    ).T
     names, words, _ = zip(*rows, strict=True)
-    ahead = np.array([float(name not in TURNS and not words.endswith(STARBOARD)) for name, words, _ in rows])
+    ahead = np.array(
+        [float(name not in TURNS and not words.endswith(STARBOARD)) for name, words, _ in rows]
+    )
     return Controls(names, words, pattern, neutral, high - neutral, neutral - low, ahead)

@@ -9,7 +9,7 @@ import numpy as np
 from boatsim.errors import BadInput
 from boatsim.physics.signals import AXES, Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.twin import Twin
+from boatsim.simulate.compiled_engine import Twin
 
 GRAVITY = 9.81  # [m/s^2]
 ROW = 0.1  # Froude times sqrt(L/g) between two looks
@@ -39,7 +39,9 @@ class Hulls(NamedTuple):
         """The rectangles of vessels."""
         lengths = np.array([v.length for v in vessels])
         to_transom = np.array([v.geometry.get("cg_from_transom", 0.5 * v.length) for v in vessels])
-        return cls(0.5 * lengths, 0.5 * np.array([v.beam for v in vessels]), 0.5 * lengths - to_transom)
+        return cls(
+            0.5 * lengths, 0.5 * np.array([v.beam for v in vessels]), 0.5 * lengths - to_transom
+        )
 
     def at(self, index: Array) -> "Hulls":
         """Those of these numbers."""
@@ -61,9 +63,9 @@ def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
         raise BadInput(f"{vessel.name} is not free in surge, sway and yaw, as a task must have it")
     row = ROW * sqrt(vessel.length / GRAVITY)
     place = columns(vessel)
-    rows = Twin(vessel, row / 10.0).rollout([0.0] * (2 * len(vessel.freedoms)), np.tile(full_ahead, (LONGEST, 1)), row)[
-        :, place
-    ]
+    rows = Twin(vessel, row / 10.0).rollout(
+        [0.0] * (2 * len(vessel.freedoms)), np.tile(full_ahead, (LONGEST, 1)), row
+    )[:, place]
     gone = np.flatnonzero(np.hypot(rows[:, 0], rows[:, 1]) >= vessel.length)
     if not len(gone):
         raise BadInput(f"{vessel.name} does not get a length ahead under full thrust")

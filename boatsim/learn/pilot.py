@@ -8,7 +8,7 @@ import numpy as np
 
 from boatsim.control.base import Sense
 from boatsim.errors import BadInput
-from boatsim.learn.chance import Seeds
+from boatsim.learn.episode_random import Seeds
 from boatsim.learn.play import Play
 from boatsim.physics.signals import Array
 
@@ -35,7 +35,9 @@ def piloted(play: Play, seeds: Seeds, made: Callable[[], Pilot]) -> dict[str, Ar
         done = play.step_commands(commands)
         new = open_yet[done.over]
         for name, values in done.norms.items():
-            found.setdefault(name, np.zeros(play.n, dtype=values.dtype))[done.over[new]] = values[new]
+            found.setdefault(name, np.zeros(play.n, dtype=values.dtype))[done.over[new]] = values[
+                new
+            ]
         open_yet[done.over] = False
     return found
 

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
-from boatsim.learn import chance
+from boatsim.learn import episode_random
 from boatsim.learn.actions import Controls, controls
+from boatsim.learn.backends import Boats, World
 from boatsim.learn.hull import Hulls, Motion, columns, scale_of
 from boatsim.learn.tasks.base import Signal, Task
 from boatsim.learn.variation import Variation
-from boatsim.learn.world import Boats, World
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
@@ -25,7 +25,9 @@ from boatsim.simulate.world import Tank
 Flags = NDArray[np.bool_]
 Seen = NDArray[np.float32]
 EVERYONE = slice(None)
-Made = Callable[[Sequence[Vessel], int, float, Tank], World]  # of vessels, number of boats, integration step [s]
+Made = Callable[
+    [Sequence[Vessel], int, float, Tank], World
+]  # of vessels, number of boats, integration step [s]
 
 
 def open_water(threads: int | None = None) -> Made:
@@ -47,9 +49,16 @@ class Play:
     """n boats at one task, each in an episode of its own."""
 
     def __init__(
-        self, task: Task, variation: Variation, n: int, period: float, step: float, duration: float,
-        world: Made, tank: Tank | None = None,
-    ) -> None:  # fmt: skip
+        self,
+        task: Task,
+        variation: Variation,
+        n: int,
+        period: float,
+        step: float,
+        duration: float,
+        world: Made,
+        tank: Tank | None = None,
+    ) -> None:
         """A control step of `period` s is a whole number of integration steps of `step` s. Raises BadInput.
 
         `tank` takes the place of the task's own basin.
@@ -60,7 +69,9 @@ class Play:
         self.period, self.duration = period, duration
         self.substeps = round(period / step) if 0.0 < step < inf else 0
         if self.substeps < 1 or abs(self.substeps * step - period) > 1e-9 * period:
-            raise BadInput(f"step = {step:g} s; allowed are whole parts of the period, {period:g} s")
+            raise BadInput(
+                f"step = {step:g} s; allowed are whole parts of the period, {period:g} s"
+            )
         if not period <= duration < inf:
             raise BadInput(f"duration = {duration:g} s; allowed is at least a period, {period:g} s")
         self.vessel = variation.boats[0]
@@ -80,17 +91,20 @@ class Play:
         self._actions = np.zeros((n, len(self.controls.names)))
         signals = task.signals(self.scale)
         self.signals: tuple[Signal, ...] = (*signals, *self._commanded())
-        self._of_task, self._per_bound = len(signals), np.array([[1.0 / s.bound] for s in self.signals])
+        self._of_task, self._per_bound = (
+            len(signals),
+            np.array([[1.0 / s.bound] for s in self.signals]),
+        )
         self._seen: tuple[Array, ...] = ()
 
     def _commanded(self) -> list[Signal]:
         pairs = zip(self.controls.names, self.controls.words, strict=True)
         return [Signal(f"last_{name}", 1.0, f"action before: {words}") for name, words in pairs]
 
-    def begin(self, seeds: chance.Seeds, boats: Boats) -> None:
+    def begin(self, seeds: episode_random.Seeds, boats: Boats) -> None:
         """Begin episodes of boats (k,) by their seeds (k,)."""
         task, size = self.task, self.variation.shares
-        lots = chance.shares(seeds, size + type(task).shares)
+        lots = episode_random.shares(seeds, size + type(task).shares)
         which = self.variation.begin(self.world, lots[:, :size], boats)
         starts, goals = task.begin(lots[:, size:], self.scale)
         states = np.zeros((len(boats), 2 * len(self.vessel.freedoms)))

@@ -19,7 +19,9 @@ def ids() -> list[str]:
 
 def says(name: str) -> dict[str, Any]:
     """Arguments of an id."""
-    said: dict[str, Mapping[str, Any]] = {k: v for k, v in read_toml(IDS).items() if isinstance(v, Mapping)}
+    said: dict[str, Mapping[str, Any]] = {
+        k: v for k, v in read_toml(IDS).items() if isinstance(v, Mapping)
+    }
     return {VARY: dict(said[VARY]), **said[name]}
 
 

@@ -18,8 +18,13 @@ class BoatVecEnv(VecEnv):
         """`boats` has `autoreset_mode="SameStep"`."""
         self.boats = boats
         super().__init__(boats.num_envs, boats.single_observation_space, boats.single_action_space)
-        self._actions: NDArray[np.float32] = np.zeros(boats.action_space.shape or (), dtype=np.float32)
-        self._returns, self._lengths = np.zeros(boats.num_envs), np.zeros(boats.num_envs, dtype=np.int64)
+        self._actions: NDArray[np.float32] = np.zeros(
+            boats.action_space.shape or (), dtype=np.float32
+        )
+        self._returns, self._lengths = (
+            np.zeros(boats.num_envs),
+            np.zeros(boats.num_envs, dtype=np.int64),
+        )
         self._nothing: list[dict[str, Any]] = [{} for _ in range(boats.num_envs)]
 
     def reset(self) -> NDArray[np.float32]:
@@ -33,7 +38,9 @@ class BoatVecEnv(VecEnv):
         """Keep the actions for `step_wait`."""
         self._actions = actions
 
-    def step_wait(self) -> tuple[NDArray[np.float32], Array, NDArray[np.bool_], list[dict[str, Any]]]:
+    def step_wait(
+        self,
+    ) -> tuple[NDArray[np.float32], Array, NDArray[np.bool_], list[dict[str, Any]]]:
         """One control step of all boats."""
         seen, reward, ended, late, told = self.boats.step(self._actions)
         self._returns += reward
@@ -62,7 +69,9 @@ class BoatVecEnv(VecEnv):
         """Of the boats together."""
         setattr(self.boats, attr_name, value)
 
-    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
+    def env_method(
+        self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
+    ) -> list[Any]:
         """Of the boats together."""
         return [getattr(self.boats, method_name)(*method_args, **method_kwargs)]
 

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
-from boatsim.learn import chance
-from boatsim.learn.game import Told, play
-from boatsim.learn.picture import Picture
+from boatsim.learn import episode_random
+from boatsim.learn.environment_options import Told, play
+from boatsim.learn.mujoco_boat import in_tank
 from boatsim.learn.play import Seen, open_water
+from boatsim.learn.rendering import Picture
 from boatsim.learn.spaces import boxes
-from boatsim.learn.walled import in_tank
 
 ME = np.zeros(1, dtype=np.int64)
 WALL_STEP = 0.02  # [s] a wall wants finer steps than water
@@ -45,7 +45,9 @@ class BoatEnv(gymnasium.Env[Seen, NDArray[np.float32]]):
             raise BadInput(f"render_mode = {render_mode!r}; allowed is rgb_array or none")
         if simulator == "mujoco":
             told.setdefault("step", WALL_STEP)
-        self.play = play(task, 1, in_tank if simulator == "mujoco" else open_water(threads=1), **told)
+        self.play = play(
+            task, 1, in_tank if simulator == "mujoco" else open_water(threads=1), **told
+        )
         self.signals, self.controls = self.play.signals, self.play.controls
         self.render_mode, self.normalised = render_mode, normalised
         self.observation_space, self.action_space = boxes(self.play, normalised)
@@ -54,13 +56,15 @@ class BoatEnv(gymnasium.Env[Seen, NDArray[np.float32]]):
         self._drawn = False
         self._picture: Picture | None = None
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Seen, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Seen, dict[str, Any]]:
         """Begin an episode; the same seed begins the same episodes, one after the other."""
         super().reset(seed=seed)
         if seed is not None or not self._drawn:
             self._seed[0] = seed if seed is not None else self.np_random.integers(2**63)
             self._number[0], self._drawn = 0, True
-        self.play.begin(chance.episode(self._seed, self._number), ME)
+        self.play.begin(episode_random.episode(self._seed, self._number), ME)
         self._number += np.uint64(1)
         return self.play.observations(self.normalised)[0], {}
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.errors import BadInput, unknown_name
-from boatsim.learn.draws import Draw, draw
-from boatsim.learn.world import Boats, World
+from boatsim.learn.backends import Boats, World
+from boatsim.learn.distributions import Draw, draw
 from boatsim.physics import vessel as vessels
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.param import Param
@@ -23,7 +23,9 @@ LOAD = "load"
 class Variation:
     """The boats of all loads, and what is drawn of their numbers when an episode begins."""
 
-    def __init__(self, boats: Sequence[Vessel], draws: Sequence[Draw], spread: Spread | None) -> None:
+    def __init__(
+        self, boats: Sequence[Vessel], draws: Sequence[Draw], spread: Spread | None
+    ) -> None:
         self.boats, self.draws, self.spread = list(boats), list(draws), spread
         self._about = {d.key: _about(self.boats[0], d.key) for d in self.draws}
 
@@ -63,16 +65,24 @@ def variation(
     loads = said.pop(LOAD, None)
     wide = said.pop("spread", 1.0)
     if isinstance(loads, str) or (loads is not None and not isinstance(loads, Sequence)):
-        raise BadInput(f'vary load = {loads!r}; allowed is a list such as ["light, narrow", "heavy, wide"]')
+        raise BadInput(
+            f'vary load = {loads!r}; allowed is a list such as ["light, narrow", "heavy, wide"]'
+        )
     if not isinstance(wide, int | float) or wide < 0.0:
-        raise BadInput(f"vary spread = {wide!r}; allowed is a factor of the diagnosis' spread, 0 for none")
+        raise BadInput(
+            f"vary spread = {wide!r}; allowed is a factor of the diagnosis' spread, 0 for none"
+        )
     extra = [*effects, *({"use": name} for name in _lacking(vessel, load, effects, said))]
-    boats = [vessels.load(vessel, _parted(one), settings, extra) for one in loads or [", ".join(load)]]
+    boats = [
+        vessels.load(vessel, _parted(one), settings, extra) for one in loads or [", ".join(load)]
+    ]
     held = {key: float(x) for key, x in said.items() if isinstance(x, int | float)}
     boats = [_having(boat, held) for boat in boats]
     draws = [draw(key, str(law)) for key, law in said.items() if key not in held]
     spread = boats[0].spread
-    return Variation(boats, draws, spread.times(wide) if spread is not None and wide > 0.0 else None)
+    return Variation(
+        boats, draws, spread.times(wide) if spread is not None and wide > 0.0 else None
+    )
 
 
 def _parted(loads: str) -> list[str]:
@@ -80,7 +90,10 @@ def _parted(loads: str) -> list[str]:
 
 
 def _lacking(
-    vessel: str, load: Sequence[str], effects: Sequence[Mapping[str, object]], said: Mapping[str, object]
+    vessel: str,
+    load: Sequence[str],
+    effects: Sequence[Mapping[str, object]],
+    said: Mapping[str, object],
 ) -> list[str]:
     """Effects that are to vary and that the vessel does not have."""
     own = vessels.load(vessel, list(load), extra=list(effects))
@@ -94,7 +107,9 @@ def _having(boat: Vessel, held: Mapping[str, float]) -> Vessel:
         if key in BODY:
             about = BODY[key][1]
             if not about.low <= x <= about.high:
-                raise BadInput(f"vary {key} = {x:g}; allowed {about.low:g} to {about.high:g} {about.unit}")
+                raise BadInput(
+                    f"vary {key} = {x:g}; allowed {about.low:g} to {about.high:g} {about.unit}"
+                )
             boat = replace(boat, body=boat.body.model_copy(update={key.partition(".")[2]: x}))
             continue
         owner, name = _owner(boat, key)
@@ -108,7 +123,9 @@ def _owner(boat: Vessel, key: str) -> tuple[Effect, str]:
     idea, _, name = key.partition(".")
     effect = boat.effect(idea)
     if effect is None:
-        raise BadInput(unknown_name(f"vary: {boat.name}: effect", idea, [e.name for e in boat.effects]))
+        raise BadInput(
+            unknown_name(f"vary: {boat.name}: effect", idea, [e.name for e in boat.effects])
+        )
     if name not in type(effect).params():
         raise BadInput(unknown_name(f"vary: {idea}: number", name, type(effect).params()))
     return effect, name

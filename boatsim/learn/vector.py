@@ -8,11 +8,11 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
-from boatsim.learn import chance
-from boatsim.learn.game import Told, play
+from boatsim.learn import episode_random
+from boatsim.learn.backends import Boats
+from boatsim.learn.environment_options import Told, play
 from boatsim.learn.play import Flags, Seen, Step, open_water
 from boatsim.learn.spaces import boxes
-from boatsim.learn.world import Boats
 from boatsim.physics.signals import Array
 
 
@@ -67,12 +67,16 @@ class BoatVectorEnv(VectorEnv[Seen, NDArray[np.float32], Array]):
             told = [i for i, one in enumerate(seed) if one is not None]
             self._seed(np.array(told), np.array([seed[i] for i in told], dtype=np.uint64))
         elif not self._drawn:
-            self._seed(everyone, self.np_random.integers(2**63, size=self.num_envs).astype(np.uint64))
+            self._seed(
+                everyone, self.np_random.integers(2**63, size=self.num_envs).astype(np.uint64)
+            )
         self._begin(boats)
         self._over[boats] = False
         return self.play.observations(self.normalised), {}
 
-    def step(self, actions: NDArray[np.float32]) -> tuple[Seen, Array, Flags, Flags, dict[str, Any]]:  # type: ignore[override]
+    def step(  # type: ignore[override]
+        self, actions: NDArray[np.float32]
+    ) -> tuple[Seen, Array, Flags, Flags, dict[str, Any]]:
         """One control step of all boats."""
         waiting = np.flatnonzero(self._over)
         done = self.play.step(np.asarray(actions, dtype=float))
@@ -84,7 +88,12 @@ class BoatVectorEnv(VectorEnv[Seen, NDArray[np.float32], Array]):
             info = self._told(done)
         self._over = done.ended | done.late
         if self.mode is AutoresetMode.SAME_STEP and len(done.over):
-            info = {"final_obs": seen, "_final_obs": self._over.copy(), "final_info": info, "_final_info": self._over}
+            info = {
+                "final_obs": seen,
+                "_final_obs": self._over.copy(),
+                "final_info": info,
+                "_final_info": self._over,
+            }
             self._begin(done.over)
             seen = seen.copy()
             seen[done.over] = self.play.observations(self.normalised, done.over)
@@ -97,7 +106,9 @@ class BoatVectorEnv(VectorEnv[Seen, NDArray[np.float32], Array]):
         for row in (done.reward, done.ended, done.late):
             row[waiting] = 0
         kept = ~np.isin(done.over, waiting)
-        return done._replace(over=done.over[kept], norms={n: x[kept] for n, x in done.norms.items()})
+        return done._replace(
+            over=done.over[kept], norms={n: x[kept] for n, x in done.norms.items()}
+        )
 
     def _told(self, done: Step) -> dict[str, Any]:
         """Norms of what is over, each with its mask."""
@@ -108,9 +119,9 @@ class BoatVectorEnv(VectorEnv[Seen, NDArray[np.float32], Array]):
             info[f"_{name}"] = done.ended | done.late
         return info
 
-    def _seed(self, boats: Boats, seeds: chance.Seeds) -> None:
+    def _seed(self, boats: Boats, seeds: episode_random.Seeds) -> None:
         self._seeds[boats], self._numbers[boats], self._drawn = seeds, 0, True
 
     def _begin(self, boats: Boats) -> None:
-        self.play.begin(chance.episode(self._seeds[boats], self._numbers[boats]), boats)
+        self.play.begin(episode_random.episode(self._seeds[boats], self._numbers[boats]), boats)
         self._numbers[boats] += np.uint64(1)

@@ -15,17 +15,17 @@ import numpy as np
 import tomlkit
 from threadpoolctl import threadpool_limits
 
-from boatsim.diagnose import rules
-from boatsim.diagnose.analysis import open_recording
-from boatsim.diagnose.filter import nominal_levels, track
-from boatsim.diagnose.fit import converge
-from boatsim.diagnose.free_runs import errors, free_runs
-from boatsim.diagnose.log.first_orders import begun
-from boatsim.diagnose.log.left_out import lasting, thinned
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.report import patch
-from boatsim.diagnose.search.rank import baseline
-from boatsim.diagnose.tried import composed
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.candidates import composed
+from boatsim.diagnosis.checks.data_cleaning import lasting, thinned
+from boatsim.diagnosis.checks.initial_actuator_state import begun
+from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.fit import converge
+from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.pipeline import open_recording
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.report import patched_vessel
+from boatsim.diagnosis.search.ranking import baseline
 from boatsim.errors import BadInput
 from boatsim.physics.vessel import Vessel
 from boatsim.progress import Report, part, silent
@@ -33,13 +33,22 @@ from boatsim.recordings.table import Recording
 
 # its own, tried beside the coefficients
 OF_BOAT = (
-    "added_mass_error", "lateral_centre_shift", "quadratic_damping", "thrust_lag", "weak_reverse", "thrust_deadband",
-)  # fmt: skip
+    "added_mass_error",
+    "lateral_centre_shift",
+    "quadratic_damping",
+    "thrust_lag",
+    "weak_reverse",
+    "thrust_deadband",
+)
 OF_DAY = ("current",)  # what the water did while the log was taken
 GAIN = 3.0  # [nats] that makes one worth its parameters
 FITTED_PART = 2 / 3  # of each log
-LEAST = 0.05  # relative sd that is left to a fitted coefficient: another day is never quite the same
-LONG = re.compile(r"(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?$|(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?(?= #)", re.MULTILINE)
+LEAST = (
+    0.05  # relative sd that is left to a fitted coefficient: another day is never quite the same
+)
+LONG = re.compile(
+    r"(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?$|(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?(?= #)", re.MULTILINE
+)
 
 
 @dataclass(frozen=True)
@@ -50,7 +59,9 @@ class Fitted:
     problem: Problem
     best: Fit
     judge: Problem  # the same question to what was not fitted
-    before: Mapping[str, float]  # family of signals -> rms of free runs on the unseen parts, as the file had it
+    before: Mapping[
+        str, float
+    ]  # family of signals -> rms of free runs on the unseen parts, as the file had it
     after: Mapping[str, float]
 
     @property
@@ -59,7 +70,9 @@ class Fitted:
         return all(self.after[family] <= before for family, before in self.before.items())
 
 
-def fitted(vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = (), report: Report = silent) -> Fitted:
+def fitted(
+    vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = (), report: Report = silent
+) -> Fitted:
     """The vessel of a file with its coefficients fitted to logs.
 
     Judged on the last third of each, or on the logs `unseen`, and then the others are fitted whole and what belongs to
@@ -107,12 +120,14 @@ def _parted(whole: Recording) -> tuple[Recording, Recording]:
     return whole.between(float(whole.t[0]), at), whole.between(at + 0.5 * step, float(whole.t[-1]))
 
 
-def _problems(boat: Vessel, first: Sequence[Recording], last: Sequence[Recording]) -> tuple[Problem, Problem]:
+def _problems(
+    boat: Vessel, first: Sequence[Recording], last: Sequence[Recording]
+) -> tuple[Problem, Problem]:
     """The question to the parts that are fitted, and the same to those that judge."""
     program, _ = composed(boat)
     levels = nominal_levels(boat, first)
     laid = [begun(track(r, program), levels) for r in first]
-    problem = Problem(laid, levels, rules.uncertainty(boat))
+    problem = Problem(laid, levels, priors.uncertainty(boat))
     return problem, problem.on([track(r, program) for r in last])
 
 
@@ -157,15 +172,21 @@ def _without(best: Fit, names: Sequence[str]) -> Fit:
 
 def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], dict[str, float]]:
     """Free runs on what was not fitted, before and after."""
-    found = errors(free_runs(judge, {"before": nominal, "after": best}, judge.tracks, judge.horizon))
+    found = errors(
+        free_runs(judge, {"before": nominal, "after": best}, judge.tracks, judge.horizon)
+    )
     if not found:
-        raise BadInput(f"the part kept to judge by is shorter than a free run of {judge.horizon:g} s")
+        raise BadInput(
+            f"the part kept to judge by is shorter than a free run of {judge.horizon:g} s"
+        )
     return {k: v["before"] for k, v in found.items()}, {k: v["after"] for k, v in found.items()}
 
 
 def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
     """The vessel file with the fitted numbers and how well they are known."""
-    document = tomlkit.parse(LONG.sub(_shortened, patch.patched(problem, boat, own, boat.file)))
+    document = tomlkit.parse(
+        LONG.sub(_shortened, patched_vessel.patched(problem, boat, own, boat.file))
+    )
     for key in ("based_on", "found"):  # it is a vessel of its own
         del document[key]
     by_rule = boat.diagnosis.coefficient_uncertainty
@@ -174,13 +195,22 @@ def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
         for effect in (e for e in boat.effects if f.relative and e.name in boat.known_as(f.effect)):
             table = document["effect"][boat.effects.index(effect)]
             # against the rule's number where less is left: what is next to nothing is not unsure
-            spread, kind = float(np.sqrt(variance)) / max(float(x), 1.0), type(effect).params()[f.name].calibrates
+            spread, kind = (
+                float(np.sqrt(variance)) / max(float(x), 1.0),
+                type(effect).params()[f.name].calibrates,
+            )
             sd[kind] = max(sd[kind], float(f"{spread:.2g}"))
-            table[f.name].comment(f"{_before(table, f.name)}, x {x:.3g} +- {100 * spread:.2g} % by {logs}")
+            table[f.name].comment(
+                f"{_before(table, f.name)}, x {x:.3g} +- {100 * spread:.2g} % by {logs}"
+            )
     told = document["diagnosis"]
     told["coefficient_uncertainty"] = tomlkit.inline_table()
-    told["coefficient_uncertainty"].update({str(k): min(sd[str(k)], float(most)) for k, most in by_rule.items()})
-    told["coefficient_uncertainty"].comment(f"relative sd: the largest of those fitted, at least {LEAST:g}")
+    told["coefficient_uncertainty"].update(
+        {str(k): min(sd[str(k)], float(most)) for k, most in by_rule.items()}
+    )
+    told["coefficient_uncertainty"].comment(
+        f"relative sd: the largest of those fitted, at least {LEAST:g}"
+    )
     told["reasons"]["coefficient_uncertainty"] = f"fitted to {logs}"
     return str(tomlkit.dumps(document)).replace("# found by the diagnosis", f"# fitted to {logs}")
 
@@ -208,7 +238,9 @@ def _told(best: Fit) -> list[str]:
             for f, x, v in zip(best.free, best.theta, np.diag(best.covariance), strict=True)
             if f.effect == name
         ]
-        where = "the water of that day, not written" if name in OF_DAY else "written into the vessel"
+        where = (
+            "the water of that day, not written" if name in OF_DAY else "written into the vessel"
+        )
         lines.append(f"  {name}: {', '.join(cells)} ({where})")
     return [f"fitted {sum(f.relative for f in best.free)} coefficients", *lines]
 
@@ -219,5 +251,7 @@ def _judged(found: Fitted, on: str) -> list[str]:
     for key in found.before:
         scale, unit = (1.0, "m") if key.endswith("_m") else (57.29578, "deg")
         before, after = found.before[key] * scale, found.after[key] * scale
-        lines.append(f"  {key.partition('_')[0]} rms [{unit}]: from particulars {before:.4g}, fitted {after:.4g}")
+        lines.append(
+            f"  {key.partition('_')[0]} rms [{unit}]: from particulars {before:.4g}, fitted {after:.4g}"
+        )
     return lines

@@ -43,7 +43,9 @@ class Particulars:
 
     def named(self) -> list[tuple[str, Mount]]:
         """Thrusters with names by their side, numbered where a side has several; one alone is `motor`."""
-        sides = ["starboard" if m.y > 0 else "port" if m.y < 0 else "middle" for m in self.thrusters]
+        sides = [
+            "starboard" if m.y > 0 else "port" if m.y < 0 else "middle" for m in self.thrusters
+        ]
         if len(sides) == 1:
             return [("motor", self.thrusters[0])]
         seen = {side: 0 for side in sides}
@@ -84,7 +86,9 @@ def particulars(
     mounts = [_mount("--thruster", text, thrust, length, False) for text in thrusters]
     mounts += [_mount("--steered", text, thrust, length, True) for text in steered]
     if not mounts:
-        raise BadInput("no --thruster X,Y and no --steered X,Y; a boat needs something that drives it")
+        raise BadInput(
+            "no --thruster X,Y and no --steered X,Y; a boat needs something that drives it"
+        )
     blade = None if rudder is None else _blade(rudder, length)
     made = hull(length, beam, mass, hulls, draught)
     return Particulars(name, made, draught is not None, speed, tuple(mounts), blade)
@@ -98,7 +102,9 @@ def _numbers(option: str, text: str, least: int, most: int) -> list[float]:
         values = []
     if not least <= len(values) <= most or not all(math.isfinite(x) for x in values):
         form = "X,Y[,MAX_N[,ASTERN_N]]" if most == 4 else "X[,AREA]"
-        raise BadInput(f"{option} {text}; allowed is {form}, numbers in m and N, as {option} -1.2,0.6")
+        raise BadInput(
+            f"{option} {text}; allowed is {form}, numbers in m and N, as {option} -1.2,0.6"
+        )
     return values
 
 
@@ -106,8 +112,12 @@ def _mount(option: str, text: str, thrust: float | None, length: float, turns: b
     """A thruster from X,Y[,MAX_N[,ASTERN_N]]."""
     x, y, *most = _numbers(option, text, 2, 4)
     if max(abs(x), abs(y)) > length:
-        raise BadInput(f"{option} {text}; allowed are places within the length, {length:g} m, of the mass centre")
-    if any(abs(value) < 1e-6 or abs(value) > 1e8 for value in most[:1]) or any(abs(v) > 1e8 for v in most):
+        raise BadInput(
+            f"{option} {text}; allowed are places within the length, {length:g} m, of the mass centre"
+        )
+    if any(abs(value) < 1e-6 or abs(value) > 1e8 for value in most[:1]) or any(
+        abs(v) > 1e8 for v in most
+    ):
         raise BadInput(f"{option} {text}; allowed is a largest thrust of more than 0 N")
     ahead = abs(most[0]) if most else thrust
     return Mount(x, y, ahead, abs(most[1]) if len(most) > 1 else None, turns)

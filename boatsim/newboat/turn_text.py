@@ -4,7 +4,14 @@ import math
 from collections.abc import Iterator
 
 from boatsim.newboat.particulars import Particulars
-from boatsim.newboat.vessel_text import TURNS, approach, full_thrust, number, steering, thrust_channel
+from boatsim.newboat.vessel_text import (
+    TURNS,
+    approach,
+    full_thrust,
+    number,
+    steering,
+    thrust_channel,
+)
 
 STAGE = 8.0  # [s] of each part on a boat of 3 m, by Froude's law on others
 BOAT = 3.0  # [m]
@@ -45,4 +52,11 @@ def _stages(boat: Particulars) -> list[dict[str, float]]:
         return found
 
     slow, fast = 0.6 * part, 1.6 * part
-    return [at(part, 0.0), at(part, HELM), at(part, -HELM), at(fast, 0.0), at(slow, -TURNS), at(-part, 0.0)]
+    return [
+        at(part, 0.0),
+        at(part, HELM),
+        at(part, -HELM),
+        at(fast, 0.0),
+        at(slow, -TURNS),
+        at(-part, 0.0),
+    ]

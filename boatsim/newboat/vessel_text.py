@@ -5,7 +5,14 @@ import math
 from collections.abc import Iterator
 
 from boatsim.newboat.particulars import Blade, Mount, Particulars
-from boatsim.physics.estimate import added_mass, displacement, inertia, resistance, sideways, thrust
+from boatsim.physics.estimate import (
+    added_mass,
+    displacement,
+    inertia,
+    resistance,
+    sway_yaw_damping,
+    thrust,
+)
 from boatsim.physics.estimate import rudder as rudders
 from boatsim.physics.estimate.base import DENSITY, Estimate
 
@@ -22,7 +29,15 @@ WATER = 0.4  # of added mass: strips beside regressions beside measurements
 def vessel_text(boat: Particulars) -> str:
     """The whole file."""
     return "\n".join(
-        [*_head(boat), *_body(boat), *_channels(boat), *_effects(boat), *_manoeuvring(boat), *_diagnosis(boat), ""]
+        [
+            *_head(boat),
+            *_body(boat),
+            *_channels(boat),
+            *_effects(boat),
+            *_manoeuvring(boat),
+            *_diagnosis(boat),
+            "",
+        ]
     )
 
 
@@ -72,7 +87,11 @@ def _head(boat: Particulars) -> Iterator[str]:
     yield 'freedoms = ["surge", "sway", "yaw"]'
     yield line("length", hull.length, "m", OWNER)
     yield line("beam", hull.beam, "m", OWNER)
-    rule = OWNER if boat.draught_stated else displacement.draught(hull.length, hull.beam, hull.mass, hull.hulls).rule
+    rule = (
+        OWNER
+        if boat.draught_stated
+        else displacement.draught(hull.length, hull.beam, hull.mass, hull.hulls).rule
+    )
     yield line("draught", hull.draught, "m", rule)
 
 
@@ -82,7 +101,9 @@ def _body(boat: Particulars) -> Iterator[str]:
     yield _of("roll_inertia", inertia.roll(hull), "kg m^2")
     yield _of("yaw_inertia", inertia.yaw(hull), "kg m^2")
     yield from ("", "[geometry]")
-    yield line("cg_from_transom", 0.5 * hull.length, "m", "for the drawing: mass centre at mid-length")
+    yield line(
+        "cg_from_transom", 0.5 * hull.length, "m", "for the drawing: mass centre at mid-length"
+    )
     yield line("cg_above_keel", hull.draught, "m", "for the drawing: mass centre in the waterline")
 
 
@@ -107,7 +128,7 @@ def _channels(boat: Particulars) -> Iterator[str]:
 
 def _effects(boat: Particulars) -> Iterator[str]:
     hull, speed = boat.hull, service(boat)
-    sway, yaw = sideways.at_rest(hull)
+    sway, yaw = sway_yaw_damping.at_rest(hull)
     yield from ("", "[[effect]]", 'use = "added_mass"')
     yield _of("surge", added_mass.surge(hull), "kg")
     yield _of("sway", added_mass.sway(hull), "kg")
@@ -119,16 +140,21 @@ def _effects(boat: Particulars) -> Iterator[str]:
     yield _of("yaw", yaw, "N m s")
     yield from ("", "[[effect]]", 'use = "surge_drag"', _of("quadratic", quadratic, "N s^2/m^2"))
     yield from ("", "[[effect]]", 'use = "cross_flow_drag"')
-    yield _of("section_drag_coefficient", sideways.section_drag(), "")
+    yield _of("section_drag_coefficient", sway_yaw_damping.section_drag(), "")
     yield line("density", DENSITY, "kg/m^3", "fresh water")
-    lift = sideways.lift(hull)
+    lift = sway_yaw_damping.lift(hull)
     yield from ("", "[[effect]]", 'use = "forward_speed_damping"')
     yield _of("sway", lift.sway, "N s^2/m^2")
     yield _of("at", lift.at, "m")
     yield _of("yaw", lift.yaw, "N s^2")
     for name, mount in boat.named():
         yield from _thruster(name, mount)
-    yield from ("", "[[effect]]", 'use = "thrust_loss_with_speed"', _of("loss", thrust.loss(hull, boat.speed), "s/m"))
+    yield from (
+        "",
+        "[[effect]]",
+        'use = "thrust_loss_with_speed"',
+        _of("loss", thrust.loss(hull, boat.speed), "s/m"),
+    )
     if boat.rudder is not None:
         yield from _rudder(boat, speed)
 
@@ -158,11 +184,18 @@ def _rudder(boat: Particulars, speed: float) -> Iterator[str]:
     assert blade is not None
     area = Estimate(blade.area, OWNER) if blade.area is not None else by_rule
     slope = rudders.slope(area.value, speed)
-    sign = 1.0 if blade.x < 0 else -1.0  # a positive angle pushes a blade astern to port, which swings the bow to
+    sign = (
+        1.0 if blade.x < 0 else -1.0
+    )  # a positive angle pushes a blade astern to port, which swings the bow to
     yield from ("", "[[effect]]", 'use = "rudder"', f"# area {number(area.value)} m^2: {area.rule}")
     yield 'on = { angle = "rudder_rad" }'
     yield line("sway", -sign * slope.value, "N/rad", slope.rule)
-    yield line("yaw", -sign * slope.value * blade.x, "N m/rad", f"at {number(blade.x)} m from the mass centre")
+    yield line(
+        "yaw",
+        -sign * slope.value * blade.x,
+        "N m/rad",
+        f"at {number(blade.x)} m from the mass centre",
+    )
     yield from ("", "[[effect]]", 'use = "speed_scaled_steering"', 'on = { angle = "rudder_rad" }')
     yield line("speed", speed, "m/s", "to which the coefficients above belong")
     yield line("rudder_sway", 1.0, "", "the blade's force goes with the square of the speed")
@@ -214,7 +247,11 @@ def steering(boat: Particulars) -> dict[str, float]:
         return turning
     full, _ = full_thrust(boat)
     pairs, part = zip(boat.named(), full, strict=True), approach(boat)
-    return {thrust_channel(n): -math.copysign(part * most / TURNS, m.y) for (n, m), most in pairs if m.y != 0.0}
+    return {
+        thrust_channel(n): -math.copysign(part * most / TURNS, m.y)
+        for (n, m), most in pairs
+        if m.y != 0.0
+    }
 
 
 def _diagnosis(boat: Particulars) -> Iterator[str]:

@@ -40,12 +40,46 @@ from boatsim.physics.signals import (
 )
 
 __all__ = [
-    "AXES", "UNSET", "Array", "Boat", "Change", "Channel", "Checked", "Course", "Effect", "Flow", "Force", "Inertia",
-    "Mass", "Measurement", "Motion", "Param", "Reaction", "Recall", "Release", "Role", "Shown", "Swell", "Unsteady",
-    "Wander", "Wandering", "Wrench",
-    "course", "factor", "followed", "lagged", "mass", "mean_of", "motion", "number", "param", "preset", "shift",
-    "snake_case", "wrench",
-]  # fmt: skip
+    "AXES",
+    "UNSET",
+    "Array",
+    "Boat",
+    "Change",
+    "Channel",
+    "Checked",
+    "Course",
+    "Effect",
+    "Flow",
+    "Force",
+    "Inertia",
+    "Mass",
+    "Measurement",
+    "Motion",
+    "Param",
+    "Reaction",
+    "Recall",
+    "Release",
+    "Role",
+    "Shown",
+    "Swell",
+    "Unsteady",
+    "Wander",
+    "Wandering",
+    "Wrench",
+    "course",
+    "factor",
+    "followed",
+    "lagged",
+    "mass",
+    "mean_of",
+    "motion",
+    "number",
+    "param",
+    "preset",
+    "shift",
+    "snake_case",
+    "wrench",
+]
 
 
 def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Motion:
@@ -54,7 +88,11 @@ def motion(current: tuple[float, float] = (0.0, 0.0), **given: float) -> Motion:
     The current is that past level axes; for a hull that pitches give `ur`, `vr`, `wr` themselves.
     """
     c, s = cos(given.get("psi", 0.0)), sin(given.get("psi", 0.0))
-    full = dict.fromkeys(Motion._fields, 0.0) | {"cos_psi": c, "sin_psi": s, "wr": given.get("w", 0.0)}
+    full = dict.fromkeys(Motion._fields, 0.0) | {
+        "cos_psi": c,
+        "sin_psi": s,
+        "wr": given.get("w", 0.0),
+    }
     full["ur"] = given.get("u", 0.0) - (c * current[0] + s * current[1])
     full["vr"] = given.get("v", 0.0) - (c * current[1] - s * current[0])
     return Motion(**(full | given))

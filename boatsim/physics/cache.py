@@ -26,8 +26,8 @@ from types import ModuleType
 import numba
 
 from boatsim.errors import BadInput
+from boatsim.physics.dependency_hash import PACKAGE, content, reach
 from boatsim.physics.kinds.effect import Effect
-from boatsim.physics.reach import PACKAGE, content, reach
 
 KERNEL = PACKAGE / "physics" / "kernel"
 WRITTEN = ("laws.py", "motion.py")  # generated in place of the kernel's files of these names
@@ -53,7 +53,11 @@ KEPT = 90 * 86400.0  # [s] after its last use that a composed program stays in t
 
 def module(written: dict[str, str], classes: Iterable[type[Effect]]) -> ModuleType:
     """The program whose generated files are `written`, compiled before if the same one was composed before."""
-    files = {p.name: p.read_text(encoding="utf-8") for p in sorted(KERNEL.glob("*.py")) if p.name not in LEFT_OUT}
+    files = {
+        p.name: p.read_text(encoding="utf-8")
+        for p in sorted(KERNEL.glob("*.py"))
+        if p.name not in LEFT_OUT
+    }
     files |= written | {"__init__.py": EXPORTS}
     return package(files, stamp_of(files, classes))
 
@@ -73,11 +77,16 @@ def package(files: dict[str, str], stamp: str) -> ModuleType:
 
 def stamp_of(files: dict[str, str], classes: Iterable[type[Effect]]) -> str:
     """Name of a composition: its text, all that its laws can reach, and what compiles it."""
-    kinds, digest = sorted(classes, key=lambda kind: (kind.__module__, kind.__qualname__)), hashlib.sha256()
+    kinds, digest = (
+        sorted(classes, key=lambda kind: (kind.__module__, kind.__qualname__)),
+        hashlib.sha256(),
+    )
     for name, text in sorted(files.items()):
         digest.update(f"{name}\n{text}".encode())
     for kind in kinds:
-        digest.update(f"{kind.__module__}\n".encode())  # tells a user's own file from what it was before an edit
+        digest.update(
+            f"{kind.__module__}\n".encode()
+        )  # tells a user's own file from what it was before an edit
     sources = {getsourcefile(kind) for kind in kinds} | {str(KERNEL / name) for name in SHARED}
     for path in sorted({file for source in sources if source for file in reach(Path(source))}):
         digest.update(content(path))
@@ -90,7 +99,10 @@ def cache_folder() -> Path:
 
     Code that lies in it is run, so it must be the user's own, and nobody else may write to it.
     """
-    wanted = os.environ.get("BOATSIM_CACHE") or Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache") / "boatsim"
+    wanted = (
+        os.environ.get("BOATSIM_CACHE")
+        or Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache") / "boatsim"
+    )
     try:
         folder = Path(wanted).expanduser()
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -98,8 +110,14 @@ def cache_folder() -> Path:
     except (OSError, RuntimeError):  # not to be written; no home to be found
         return _fleeting()
     if found.st_uid != os.geteuid() or found.st_mode & stat.S_IWOTH:
-        whose = "everybody may write to it" if found.st_uid == os.geteuid() else "it belongs to somebody else"
-        raise BadInput(f"{folder}: no folder for compiled programs: {whose}; set BOATSIM_CACHE to one of your own")
+        whose = (
+            "everybody may write to it"
+            if found.st_uid == os.geteuid()
+            else "it belongs to somebody else"
+        )
+        raise BadInput(
+            f"{folder}: no folder for compiled programs: {whose}; set BOATSIM_CACHE to one of your own"
+        )
     if found.st_mode & 0o077:
         with suppress(OSError):
             folder.chmod(0o700)
@@ -110,9 +128,13 @@ def cache_folder() -> Path:
 def _fleeting() -> Path:
     """A folder of this process and those it starts, gone at its end."""
     try:
-        folder = Path(tempfile.mkdtemp(prefix="boatsim-"))  # 0700, under a name that nobody can know before
+        folder = Path(
+            tempfile.mkdtemp(prefix="boatsim-")
+        )  # 0700, under a name that nobody can know before
     except OSError as error:
-        raise BadInput(f"no folder for compiled programs ({error.strerror}); set BOATSIM_CACHE to one") from None
+        raise BadInput(
+            f"no folder for compiled programs ({error.strerror}); set BOATSIM_CACHE to one"
+        ) from None
     os.environ["BOATSIM_CACHE"] = str(folder)
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
@@ -142,7 +164,9 @@ def _imported(path: Path, name: str) -> ModuleType:
     """The package at a folder, once."""
     if name in sys.modules:
         return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path / "__init__.py", submodule_search_locations=[str(path)])
+    spec = importlib.util.spec_from_file_location(
+        name, path / "__init__.py", submodule_search_locations=[str(path)]
+    )
     assert spec is not None and spec.loader is not None
     found = importlib.util.module_from_spec(spec)
     sys.modules[name] = found

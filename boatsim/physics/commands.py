@@ -56,5 +56,7 @@ def taken(vessel: Vessel, sent: Array) -> Array:
 def beyond(vessel: Vessel, sent: Array) -> list[str]:
     """Channels of which more is sent (C,) than their range holds."""
     passed = np.abs(sent - taken(vessel, sent)).tolist()
-    pairs = zip(vessel.commands.items(), passed, strict=False)  # what is measured comes behind and has no range
+    pairs = zip(
+        vessel.commands.items(), passed, strict=False
+    )  # what is measured comes behind and has no range
     return [n for (n, c), off in pairs if off > SLACK * (c.high - c.low)]

@@ -24,9 +24,13 @@ def kinds() -> list[type[Kind]]:
     for name in names("kind"):
         module = module_of("kind", name)
         found += [
-            k for k in vars(module).values()
-            if isinstance(k, type) and issubclass(k, Kind) and k is not Kind and k.__module__ == module.__name__
-        ]  # fmt: skip
+            k
+            for k in vars(module).values()
+            if isinstance(k, type)
+            and issubclass(k, Kind)
+            and k is not Kind
+            and k.__module__ == module.__name__
+        ]
     return found
 
 
@@ -38,11 +42,20 @@ class Composition:
         self.vessel, self.offsets = vessel, tuple(offsets)
         self.effects = tuple(effects)
         self.signals, self.commands = (*vessel.actuators, *vessel.readings), vessel.inputs
-        self.sums: Mapping[str, Sequence[str]] = vessel.sums if any(type(e).sees_held for e in self.effects) else {}
-        looking = [i for i, e in enumerate(self.effects) if isinstance(e, Recall) and self._may_look_back(i, e)]
+        self.sums: Mapping[str, Sequence[str]] = (
+            vessel.sums if any(type(e).sees_held for e in self.effects) else {}
+        )
+        looking = [
+            i
+            for i, e in enumerate(self.effects)
+            if isinstance(e, Recall) and self._may_look_back(i, e)
+        ]
         shown = (*vessel.held, *self.sums)
         self._own = {i: len(shown) + k for k, i in enumerate(looking)}
-        self.held: Sequence[str] = (*shown, *(f"recalled by {self.effects[i].name}" for i in looking))
+        self.held: Sequence[str] = (
+            *shown,
+            *(f"recalled by {self.effects[i].name}" for i in looking),
+        )
 
     # What kinds may ask -----------------------------------------------------------------------------------------------
 
@@ -53,7 +66,10 @@ class Composition:
         held = ("act", "at", f"np.int64({self.own(number)})") if type(effect).sees_held else ()
         if type(effect).rides:
             carriers = [self.effects.index(e) for e in self.vessel.ridden(effect)]
-            return [Site(number, own, (self._carried(i, type(effect).rides), self._values(i), *held)) for i in carriers]
+            return [
+                Site(number, own, (self._carried(i, type(effect).rides), self._values(i), *held))
+                for i in carriers
+            ]
         return [Site(number, own, ((self._signals(number),) if type(effect).roles else ()) + held)]
 
     def targets(self, number: int) -> Sequence[str]:
@@ -120,7 +136,9 @@ class Composition:
                 channel = bound.get(role, about.fixed)
                 for part, of in (("cos", cos), ("sin", sin)):
                     held = isinstance(channel, str)
-                    texts.append(self._signal(f"{part}_{channel}" if held else of(float(channel or 0.0))))
+                    texts.append(
+                        self._signal(f"{part}_{channel}" if held else of(float(channel or 0.0)))
+                    )
         return f"S{i}({', '.join(texts)})"
 
     def _carried(self, i: int, idea: str) -> str:
@@ -149,10 +167,16 @@ class Composition:
             body, busy = self._body(part, everything)
             functions.append(
                 "\n".join(
-                    [f"@{part.compiled}", f"def {part.name}({part.arguments}):", *(f"    {line}" for line in body),
-                     f"    return {part.result}".rstrip(), "", ""]
+                    [
+                        f"@{part.compiled}",
+                        f"def {part.name}({part.arguments}):",
+                        *(f"    {line}" for line in body),
+                        f"    return {part.result}".rstrip(),
+                        "",
+                        "",
+                    ]
                 )
-            )  # fmt: skip
+            )
             constants.append(f"HAS_{part.name.upper()} = {busy}")
             used |= {word for line in body for word in _calls(line)}
         return "\n".join([*self._head(used), *constants, "", "", *functions])
@@ -166,7 +190,7 @@ class Composition:
         yield ""
         yield "from boatsim.physics.compose import classes_of"
         yield "from boatsim.physics.kernel.compiling import inlined, merged, shared"
-        yield "from boatsim.physics.kernel.turned import hold_turned"
+        yield "from boatsim.physics.kernel.rotation import hold_turned"
         yield "from boatsim.physics.signals import Course, Swell, Wander, Wrench"
         yield ""
         yield f"E = classes_of({[address(type(e)) for e in self.effects]!r})"
@@ -175,7 +199,9 @@ class Composition:
                 yield f"V{i} = E[{i}].values_type()  # {_remark(effect.name)}"
             if f"S{i}" in used:
                 yield f"S{i} = E[{i}].signals_type()"
-            for law in dict.fromkeys(law for kind in type(effect).__mro__ for law in getattr(kind, "laws", ())):
+            for law in dict.fromkeys(
+                law for kind in type(effect).__mro__ for law in getattr(kind, "laws", ())
+            ):
                 if f"{law}{i}" in used:
                     _check_compiled(type(effect), law)
                     yield f"{law}{i} = shared(E[{i}].{law})"
@@ -194,7 +220,9 @@ class Composition:
                     for line in kind.lines(part, station, i, self)
                 ]
                 busy = busy or bool(lines)
-                if lines and i >= len(self.vessel.effects):  # behind the switch of an effect that is optional
+                if lines and i >= len(
+                    self.vessel.effects
+                ):  # behind the switch of an effect that is optional
                     lines = [f"if on[{i}] != 0.0:", *(f"    {line}" for line in lines)]
                 body += lines
             body += station.end

@@ -22,14 +22,21 @@ from boatsim.physics import trust
 PACKAGES = {  # kinds that are modules of ours, one a file
     "kind": "physics.kinds",
     "effect": "physics.effects",
-    "measure": "measures",
+    "measure": "metrics",
     "sensor": "simulate.sensors",
     "reader": "recordings.readers",
     "log": "recordings.logs",
 }
-ENTRY = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE)  # of the shelf of effects
+ENTRY = re.compile(
+    r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE
+)  # of the shelf of effects
 KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
-OWN = {**KINDS, "effect": "effects", "measure": "measures", "sensor": "sensors"}  # folders of a user's own content
+OWN = {
+    **KINDS,
+    "effect": "effects",
+    "measure": "measures",
+    "sensor": "sensors",
+}  # folders of a user's own content
 
 
 @cache
@@ -66,7 +73,11 @@ def _shelf() -> dict[str, str]:
     Read from the text, so that looking for one imports no other.
     """
     files = sorted(_package("effect").glob("[!_]*.py"))
-    return {snake_case(name): file.stem for file in files for name in ENTRY.findall(file.read_text(encoding="utf-8"))}
+    return {
+        snake_case(name): file.stem
+        for file in files
+        for name in ENTRY.findall(file.read_text(encoding="utf-8"))
+    }
 
 
 def own_names(kind: str) -> list[str]:
@@ -77,7 +88,9 @@ def own_names(kind: str) -> list[str]:
         if kind == "scenario":
             found |= _scenarios(folder).keys()
         elif kind == "vessel":
-            found |= {p.parent.name for place in (inside, folder) for p in place.glob("*/vessel.toml")}
+            found |= {
+                p.parent.name for place in (inside, folder) for p in place.glob("*/vessel.toml")
+            }
         else:
             found |= {p.stem for p in inside.glob("[!_]*.py")}
     return sorted(found - set(names(kind)))
@@ -105,7 +118,12 @@ def find(kind: str, name: str, beside: Path | None = None) -> Path:
     from the working directory. Raises BadInput.
     """
     name = whole(kind, name) if beside is None else name
-    found = _by_path(kind, name, beside) or _shipped(kind, name) or _in_content(kind, name) or _here(kind, name, beside)
+    found = (
+        _by_path(kind, name, beside)
+        or _shipped(kind, name)
+        or _in_content(kind, name)
+        or _here(kind, name, beside)
+    )
     if found is not None:
         return found
     if name.endswith((".py", ".toml")):
@@ -118,7 +136,12 @@ def _by_path(kind: str, name: str, beside: Path | None) -> Path | None:
     suffix, own = ".py" if kind == "controller" else ".toml", (beside or Path()) / name
     if own.suffix == suffix and own.is_file():
         return own.resolve()
-    if beside and kind == "controller" and name not in names(kind) and (beside / f"{name}{suffix}").is_file():
+    if (
+        beside
+        and kind == "controller"
+        and name not in names(kind)
+        and (beside / f"{name}{suffix}").is_file()
+    ):
         return (beside / f"{name}{suffix}").resolve()
     if kind == "vessel" and "/" in name and (own / "vessel.toml").is_file():
         return (own / "vessel.toml").resolve()
@@ -144,8 +167,17 @@ def _shipped(kind: str, name: str) -> Path | None:
 def _in_content(kind: str, name: str) -> Path | None:
     """What the folders of the user's own content have of that name."""
     if kind == "scenario":
-        return next((found[name] for folder in trust.content() if name in (found := _scenarios(folder))), None)
-    file = f"{name}/vessel.toml" if kind == "vessel" else name if name.endswith(".py") else f"{name}.py"
+        return next(
+            (found[name] for folder in trust.content() if name in (found := _scenarios(folder))),
+            None,
+        )
+    file = (
+        f"{name}/vessel.toml"
+        if kind == "vessel"
+        else name
+        if name.endswith(".py")
+        else f"{name}.py"
+    )
     places = (place / file for folder in trust.content() for place in (folder / OWN[kind], folder))
     return next((p.resolve() for p in places if p.is_file()), None)
 
@@ -192,7 +224,9 @@ def module_at(path: Path, name: str) -> ModuleType:
             ),
             "",
         )
-        raise BadInput(f"{path}:{row} {type(error).__name__}: {error}".replace("\n", " ")) from error
+        raise BadInput(
+            f"{path}:{row} {type(error).__name__}: {error}".replace("\n", " ")
+        ) from error
     return module
 
 
@@ -221,10 +255,16 @@ def load_class(kind: str, name: str, beside: Path | None = None, named: bool = F
     if kind in PACKAGES and name in names(kind):
         module = module_of(kind, name)
     else:
-        path = find("controller", name, beside) if kind == "controller" else _own_file(kind, name, beside)
+        path = (
+            find("controller", name, beside)
+            if kind == "controller"
+            else _own_file(kind, name, beside)
+        )
         shipped = path.parent == root() / KINDS["controller"]
         name = path.stem
-        module = module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path, named)
+        module = (
+            module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path, named)
+        )
     found = getattr(module, camel_case(name), None)
     if not isinstance(found, type):
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
@@ -253,7 +293,9 @@ def address(effect: type) -> str:
 
 def vessel_address(file: Path) -> str:
     """The name of a shipped vessel, else the path of its file."""
-    return file.parent.name if file.parent.parent == root() / KINDS["vessel"] else str(file.resolve())
+    return (
+        file.parent.name if file.parent.parent == root() / KINDS["vessel"] else str(file.resolve())
+    )
 
 
 def _own_module(path: Path, named: bool) -> ModuleType:

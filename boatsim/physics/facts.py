@@ -6,7 +6,10 @@ Some are read by laws (where the walls are), others rule entries of the library 
 from collections.abc import Mapping
 from math import isfinite
 
-WALLS, FORWARD = "walls_m", "forward_speed_mps"  # walls x_low, x_high, y_low, y_high [m]; mean speed ahead [m/s]
+WALLS, FORWARD = (
+    "walls_m",
+    "forward_speed_mps",
+)  # walls x_low, x_high, y_low, y_high [m]; mean speed ahead [m/s]
 WORDS = {
     WALLS: "where the walls are",
     FORWARD: "the mean speed ahead",
@@ -20,8 +23,16 @@ WORDS = {
     "position_wander_time_s": "over which time it does",
 }
 FLAGS = ("indoors", "still_water", "no_waves", "moored", "steering_measured")  # true or false
-WANDER = ("position_wander_sd_m", "position_wander_time_s")  # rms [m] and correlation time [s] of an error of fixes
-FIXES = ("camera", "gnss", "tracking", "inertial")  # what a position is fixed with: marks in a picture, satellites, ...
+WANDER = (
+    "position_wander_sd_m",
+    "position_wander_time_s",
+)  # rms [m] and correlation time [s] of an error of fixes
+FIXES = (
+    "camera",
+    "gnss",
+    "tracking",
+    "inertial",
+)  # what a position is fixed with: marks in a picture, satellites, ...
 
 
 def in_words(fact: str) -> str:
@@ -31,7 +42,14 @@ def in_words(fact: str) -> str:
 
 def ruled_out(by: Mapping[str, tuple[object, ...]], facts: Mapping[str, object]) -> str:
     """The fact that rules an entry out, as it is stated; "" where none does."""
-    return next((f"{f} = {_toml(facts[f])}" for f, values in by.items() if f in facts and facts[f] in values), "")
+    return next(
+        (
+            f"{f} = {_toml(facts[f])}"
+            for f, values in by.items()
+            if f in facts and facts[f] in values
+        ),
+        "",
+    )
 
 
 def _toml(value: object) -> str:
@@ -48,7 +66,9 @@ def wrong(facts: Mapping[str, object]) -> tuple[str, str] | None:
         return fact, "true or false"
     if fact := next((f for f in WANDER if f in facts and not _positive(facts[f])), None):
         return fact, "a number above 0"
-    if fact := next((f for f in WANDER if (WANDER[0] in facts) != (WANDER[1] in facts) and f in facts), None):
+    if fact := next(
+        (f for f in WANDER if (WANDER[0] in facts) != (WANDER[1] in facts) and f in facts), None
+    ):
         return fact, f"both of {' and '.join(WANDER)}, or neither"
     if facts.get("position_fix", FIXES[0]) not in FIXES:
         return "position_fix", f"one of {', '.join(FIXES)}"

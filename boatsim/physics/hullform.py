@@ -27,7 +27,9 @@ class DeepV:
     draught: float = 0.06  # [m] same
     deadrise: float = math.radians(25.0)  # [rad] same, section II
     parallel: float = 0.55  # [-] part of the length with straight keel and constant deadrise
-    freeboard: float = 0.075  # [m] amidships, by eye; the remaining numbers shape what the particulars leave open
+    freeboard: float = (
+        0.075  # [m] amidships, by eye; the remaining numbers shape what the particulars leave open
+    )
     stem_height: float = 0.125  # [m] tip of the bow above the waterline
     chine_beam: float = 0.25  # [m]
     rocker: float = 0.037  # [m] rise of the keel from amidships to the transom
@@ -41,7 +43,11 @@ class DeepV:
     def keel(self, s: Array) -> Array:
         """Height of the keel and stem [m]."""
         aft = np.clip(1 - s / self.parallel, 0, 1)
-        return self.rocker * aft**2 - self.draught + (self.draught + self.stem_height) * self.ahead(s) ** self.fullness
+        return (
+            self.rocker * aft**2
+            - self.draught
+            + (self.draught + self.stem_height) * self.ahead(s) ** self.fullness
+        )
 
     def chine(self, s: Array) -> tuple[Array, Array]:
         """Half-breadth and height of the chine [m]."""
@@ -54,7 +60,9 @@ class DeepV:
         """Half-breadth and height of the deck edge [m]."""
         aft, fore = np.clip((0.4 - s) / 0.4, 0, 1), np.clip((s - 0.4) / 0.6, 0, 1)
         half = self.beam / 2 * (1 - 0.05 * aft**2) * (1 - fore**2.8)
-        return half, self.freeboard + (self.stem_height - self.freeboard) * np.clip((s - 0.3) / 0.7, 0, 1) ** 1.6
+        return half, self.freeboard + (self.stem_height - self.freeboard) * np.clip(
+            (s - 0.3) / 0.7, 0, 1
+        ) ** 1.6
 
     def stations(self, count: int = 49) -> Array:
         """Values of s, denser towards the bow."""
@@ -115,7 +123,9 @@ def curve(x: Array, y: Array | float, z: Array | float) -> Array:
     return np.stack(np.broadcast_arrays(x, y, z), axis=-1).astype(float)
 
 
-def ring(centre: Sequence[float], half: tuple[float, float], power: float = 2.0, axis: str = "z") -> Array:
+def ring(
+    centre: Sequence[float], half: tuple[float, float], power: float = 2.0, axis: str = "z"
+) -> Array:
     """(n, 3) rounded rectangle (power 2: ellipse, higher: squarer) about `centre`, in the plane across `axis`."""
     angle = np.linspace(0, 2 * math.pi, AROUND, endpoint=False)
     c, s = np.cos(angle), np.sin(angle)
@@ -170,7 +180,9 @@ def fittings() -> Mesh:
     mesh.body([ring((0.52 - 0.1 * up, 0, 0.012 + up), (half, 0.05), 6) for up, half in console])
     for y in (-0.045, 0.045):
         mesh.body([ring((0.33, y, 0.012 + up), (0.035, 0.032), 5) for up in (0.0, 0.04)])
-        mesh.body([ring((0.30 - 0.15 * up, y, 0.052 + up), (0.008, 0.032), 5) for up in (0.0, 0.05)])
+        mesh.body(
+            [ring((0.30 - 0.15 * up, y, 0.052 + up), (0.008, 0.032), 5) for up in (0.0, 0.05)]
+        )
     mesh.body([ring((0.12, 0, 0.012 + up), (0.03, 0.085), 6) for up in (0.0, 0.04)])
     return mesh
 
@@ -179,7 +191,9 @@ def outboard_cowl() -> Mesh:
     """Motor cover; origin on the steering axis at the waterline, the motor astern of it."""
     mesh = Mesh()
     levels = ((0.062, 0.75), (0.068, 0.93), (0.085, 1.0), (0.11, 0.98), (0.128, 0.88), (0.137, 0.6))
-    mesh.body([ring((-0.028 - 0.05 * (z - 0.06), 0, z), (0.036 * k, 0.025 * k), 3.2) for z, k in levels])
+    mesh.body(
+        [ring((-0.028 - 0.05 * (z - 0.06), 0, z), (0.036 * k, 0.025 * k), 3.2) for z, k in levels]
+    )
     return mesh
 
 
@@ -189,7 +203,14 @@ def outboard_leg() -> Mesh:
     strut = ((-0.055, 0.017), (0.0, 0.018), (0.064, 0.026))
     mesh.body([ring((-0.026, 0, z), (half, 0.35 * half), 2.4) for z, half in strut])
     mesh.body([ring((-0.036, 0, z), (0.032, 0.018), 2.6) for z in (-0.031, -0.028)])
-    case = ((-0.062, 0.008), (-0.052, 0.0095), (-0.03, 0.0105), (-0.012, 0.009), (-0.002, 0.005), (0.002, 0.001))
+    case = (
+        (-0.062, 0.008),
+        (-0.052, 0.0095),
+        (-0.03, 0.0105),
+        (-0.012, 0.009),
+        (-0.002, 0.005),
+        (0.002, 0.001),
+    )
     mesh.body([ring((x, 0, -0.055), (r, r), axis="x") for x, r in case])
     skeg = ((-0.082, 0.006), (-0.06, 0.016))
     mesh.body([ring((-0.034 + 0.3 * (z + 0.055), 0, z), (half, 0.0018)) for z, half in skeg])
@@ -204,10 +225,18 @@ def outboard_leg() -> Mesh:
 def blade(turn: float) -> Array:
     """(rows, 3, 3) one propeller blade, turned about the shaft; pitch angle falls towards the tip."""
     rows = []
-    for radius, chord, pitch in ((0.006, 0.007, 1.0), (0.014, 0.011, 0.75), (0.021, 0.010, 0.6), (0.0245, 0.004, 0.55)):
+    for radius, chord, pitch in (
+        (0.006, 0.007, 1.0),
+        (0.014, 0.011, 0.75),
+        (0.021, 0.010, 0.6),
+        (0.0245, 0.004, 0.55),
+    ):
         for t in (-1, 0, 1):
             across, along = t * chord * math.cos(pitch), t * chord * math.sin(pitch)
-            y, z = radius * math.cos(turn + across / radius), radius * math.sin(turn + across / radius)
+            y, z = (
+                radius * math.cos(turn + across / radius),
+                radius * math.sin(turn + across / radius),
+            )
             rows.append((-0.069 + along, y, -0.055 + z))
     return np.array(rows).reshape(4, 3, 3)
 
@@ -216,7 +245,9 @@ def collision(hull: DeepV) -> Mesh:
     """Convex prism of few vertices around the deck edge: what touches the walls."""
     s = np.array([0.0, 0.4, 0.6, 0.75, 0.87, 0.95, 1.0])
     half, _ = hull.sheer(s)
-    plan = np.vstack([curve(s * hull.length, -half, 0.0), curve(s * hull.length, half, 0.0)[-2::-1]])
+    plan = np.vstack(
+        [curve(s * hull.length, -half, 0.0), curve(s * hull.length, half, 0.0)[-2::-1]]
+    )
     mesh = Mesh()
     mesh.body([plan + (0, 0, -hull.draught), plan + (0, 0, hull.freeboard)])
     return mesh
@@ -233,7 +264,10 @@ def meshes(hull: DeepV | None = None) -> dict[str, str]:
         "outboard_leg": outboard_leg(),
         "collision": collision(hull),
     }
-    return {f"{name}.obj": mesh.obj(f"{name}, drawn by boatsim.physics.hullform") for name, mesh in parts.items()}
+    return {
+        f"{name}.obj": mesh.obj(f"{name}, drawn by boatsim.physics.hullform")
+        for name, mesh in parts.items()
+    }
 
 
 def main(arguments: Iterable[str]) -> None:

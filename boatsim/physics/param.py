@@ -8,7 +8,9 @@ from typing import NamedTuple, Self, TypeVar
 from boatsim.errors import BadInput, unknown_name
 
 N = TypeVar("N", bound=float)  # int or float
-UNSET = math.nan  # a parameter that nobody stated: filled in on a vessel by `follows` or `Effect.rules`, else 0
+UNSET = (
+    math.nan
+)  # a parameter that nobody stated: filled in on a vessel by `follows` or `Effect.rules`, else 0
 
 
 class Param(NamedTuple):
@@ -19,14 +21,23 @@ class Param(NamedTuple):
     unit: str
     words: str
     fit: bool = False
-    spread: float = 0.0  # prior sd when fitted, in the unit, for a 1.2 m boat of 4.6 kg; scaled by Froude's law
+    spread: float = (
+        0.0  # prior sd when fitted, in the unit, for a 1.2 m boat of 4.6 kg; scaled by Froude's law
+    )
     axis: str = ""  # freedom it belongs to ("roll", ...); fitted only on vessels that have it
     absent: float = 0.0  # value at which the effect is not there
-    calibrates: str = ""  # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
+    calibrates: str = (
+        ""  # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
+    )
     follows: str = ""  # left unset: the vessel's "linear_damping.surge" or "vessel.body.mass"; "?" ends an optional one
-    releases: tuple[str, ...] = ()  # "linear_damping.surge", "body.mass": numbers of the vessel that may be off,
+    releases: tuple[
+        str, ...
+    ] = ()  # "linear_damping.surge", "body.mass": numbers of the vessel that may be off,
     how: str = "sets"  # or "scales" or "shifts": what a released number undergoes
-    within: tuple[float, float] = (-math.inf, math.inf)  # beyond which no fit believes it, stated as the spread is
+    within: tuple[float, float] = (
+        -math.inf,
+        math.inf,
+    )  # beyond which no fit believes it, stated as the spread is
 
 
 def param(
@@ -52,18 +63,46 @@ def param(
     """
     if fit and not spread > 0.0:
         raise ValueError(f"a parameter with fit=True needs a spread, its prior sd ({words})")
-    about = Param(low, high, unit, words, fit, spread, axis, absent, calibrates, follows, releases, how, within)
+    about = Param(
+        low,
+        high,
+        unit,
+        words,
+        fit,
+        spread,
+        axis,
+        absent,
+        calibrates,
+        follows,
+        releases,
+        how,
+        within,
+    )
     return field(default=nominal, metadata={"param": about})
 
 
 def factor(
-    *releases: str, words: str, spread: float = 0.4, axis: str = "", low: float = 0.1, high: float = 5.0
+    *releases: str,
+    words: str,
+    spread: float = 0.4,
+    axis: str = "",
+    low: float = 0.1,
+    high: float = 5.0,
 ) -> float:
     """Field of a `Release`: numbers of the vessel that may be off by one factor."""
     return param(
-        1.0, low=low, high=high, unit="", words=words, fit=True, spread=spread, axis=axis, absent=1.0,
-        releases=releases, how="scales",
-    )  # fmt: skip
+        1.0,
+        low=low,
+        high=high,
+        unit="",
+        words=words,
+        fit=True,
+        spread=spread,
+        axis=axis,
+        absent=1.0,
+        releases=releases,
+        how="scales",
+    )
 
 
 def shift(
@@ -78,19 +117,43 @@ def shift(
 ) -> float:
     """Field of a `Release`: numbers of the vessel that may be off by one addend."""
     return param(
-        0.0, low=low, high=high, unit=unit, words=words, fit=True, spread=spread, axis=axis, releases=releases,
-        how="shifts", within=within,
-    )  # fmt: skip
+        0.0,
+        low=low,
+        high=high,
+        unit=unit,
+        words=words,
+        fit=True,
+        spread=spread,
+        axis=axis,
+        releases=releases,
+        how="shifts",
+        within=within,
+    )
 
 
 def number(
-    *releases: str, words: str, unit: str, spread: float, low: float, high: float, absent: float, axis: str = ""
+    *releases: str,
+    words: str,
+    unit: str,
+    spread: float,
+    low: float,
+    high: float,
+    absent: float,
+    axis: str = "",
 ) -> float:
     """Field of a `Release`: a number of the vessel that is not what is stated, but this; `absent` is the stated one."""
     return param(
-        absent, low=low, high=high, unit=unit, words=words, fit=True, spread=spread, axis=axis, absent=absent,
+        absent,
+        low=low,
+        high=high,
+        unit=unit,
+        words=words,
+        fit=True,
+        spread=spread,
+        axis=axis,
+        absent=absent,
         releases=releases,
-    )  # fmt: skip
+    )
 
 
 def code(words: str) -> float:
@@ -121,8 +184,14 @@ class Checked:
             value = getattr(self, name)
             if value is UNSET:
                 continue
-            if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-                raise BadInput(f"{type(self).__name__}.{name} = {value!r}; allowed is a number ({about.words})")
+            if (
+                isinstance(value, bool)
+                or not isinstance(value, int | float)
+                or not math.isfinite(value)
+            ):
+                raise BadInput(
+                    f"{type(self).__name__}.{name} = {value!r}; allowed is a number ({about.words})"
+                )
             if not about.low <= value <= about.high:
                 raise BadInput(
                     f"{type(self).__name__}.{name} = {value:g} {about.unit}; allowed {about.low:g} to "

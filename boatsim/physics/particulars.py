@@ -35,7 +35,9 @@ def spheroid(length: float, draught: float) -> Spheroid:
     Raises BadInput for a hull no longer than twice its draught.
     """
     if length <= 2.0 * draught:
-        raise BadInput(f"spheroid: length = {length:g} m; allowed is more than twice the draught, {2.0 * draught:g} m")
+        raise BadInput(
+            f"spheroid: length = {length:g} m; allowed is more than twice the draught, {2.0 * draught:g} m"
+        )
     round_part = (2.0 * draught / length) ** 2
     square = 1.0 - round_part  # of the eccentricity
     e = sqrt(square)
@@ -49,7 +51,9 @@ def spheroid(length: float, draught: float) -> Spheroid:
     )
 
 
-def derivatives(length: float, beam: float, draught: float, trim: float, block: float) -> Derivatives:
+def derivatives(
+    length: float, beam: float, draught: float, trim: float, block: float
+) -> Derivatives:
     """Linear derivatives of a trimmed hull.
 
     S. Inoue, M. Hirano, K. Kijima, Int. Shipbuilding Progress 28 (1981), as C. R. Martin, UBC 1993 has them. `trim` is
@@ -80,7 +84,9 @@ def hull_share(block: float) -> float:
     return 0.627 * block - 0.153
 
 
-def roll_ratio_by_speed(length: float, beam: float, block: float, metacentric_height: float, speed: float) -> float:
+def roll_ratio_by_speed(
+    length: float, beam: float, block: float, metacentric_height: float, speed: float
+) -> float:
     """What headway adds to the roll damping per critical, of a round bilge (Martin 1993, Appendix IV)."""
     f = speed / sqrt(GRAVITY * length) / block
     return 0.00085 * length / beam * sqrt(length / metacentric_height) * f * (1.0 + f + 2.0 * f * f)

@@ -38,7 +38,9 @@ def preset(
     those that make the entry what it is. The rest stays open to a file, with `otherwise` as its other nominal values.
     """
     types: dict[str, type] = {}
-    module = sys._getframe(1).f_globals["__name__"]  # the file that a program is composed from, maybe a user's own
+    module = sys._getframe(1).f_globals[
+        "__name__"
+    ]  # the file that a program is composed from, maybe a user's own
     namespace: dict[str, object] = {**about, "__doc__": about["words"], "__module__": module}
     namespace["__annotations__"] = types
     for key, known in law.params().items():
@@ -54,5 +56,7 @@ def preset(
             known = known._replace(fit=False)
         namespace[key] = field(default=nominal, metadata={"param": known})
         types[key] = float
-    made: type[E] = dataclass(frozen=True)(new_class(name, (law,), exec_body=lambda body: body.update(namespace)))
+    made: type[E] = dataclass(frozen=True)(
+        new_class(name, (law,), exec_body=lambda body: body.update(namespace))
+    )
     return made

@@ -33,7 +33,9 @@ class Program:
     offsets: tuple[int, ...] = field(init=False)  # where each effect's parameters start
 
     def __post_init__(self) -> None:
-        laws = (e for e in self.suspects if not isinstance(e, Release))  # a release has nothing to compile
+        laws = (
+            e for e in self.suspects if not isinstance(e, Release)
+        )  # a release has nothing to compile
         object.__setattr__(self, "effects", (*self.vessel.effects, *laws))
         sizes = [len(type(e).params()) for e in self.effects]
         object.__setattr__(self, "offsets", tuple(int(n) for n in np.cumsum([0, *sizes])[:-1]))
@@ -50,7 +52,9 @@ class Program:
     def switches(self, active: Sequence[str] = ()) -> Array:
         """`on` with the named suspects acting."""
         own = len(self.vessel.effects)
-        return np.array([i < own or e.name in active for i, e in enumerate(self.effects)], dtype=np.float64)
+        return np.array(
+            [i < own or e.name in active for i, e in enumerate(self.effects)], dtype=np.float64
+        )
 
     def index(self, effect: str, parameter: str) -> int:
         """Position of one parameter in the flat array."""
@@ -61,7 +65,9 @@ class Program:
     def body(self) -> Array:
         """(6,) mass [kg], mass centre x, z [m], inertia about it in roll, pitch and yaw [kg m^2]."""
         b = self.vessel.body
-        return np.array([b.mass, b.centre[0], b.centre[1], b.roll_inertia, b.pitched(), b.yaw_inertia])
+        return np.array(
+            [b.mass, b.centre[0], b.centre[1], b.roll_inertia, b.pitched(), b.yaw_inertia]
+        )
 
     @cached_property
     def composition(self) -> Composition:
@@ -102,14 +108,18 @@ class Program:
     def _of_many(self, name: str) -> FunctionType:
         """A function of the motion of one state, in Python and over all states at once."""
         motion = self.module.motion
-        return FunctionType(getattr(motion, name).py_func.__code__, {**vars(motion), "cos": np.cos, "sin": np.sin})
+        return FunctionType(
+            getattr(motion, name).py_func.__code__, {**vars(motion), "cos": np.cos, "sin": np.sin}
+        )
 
     @cached_property
     def module(self) -> ModuleType:
         """The compiled program, from the cache if the same one was composed before."""
         text = {
             "laws.py": self.composition.source_text(),
-            "motion.py": written(self.vessel.freedoms, centred=self.vessel.body.centre == (0.0, 0.0)),
+            "motion.py": written(
+                self.vessel.freedoms, centred=self.vessel.body.centre == (0.0, 0.0)
+            ),
         }
         return cache.module(text, {type(e) for e in self.effects})
 

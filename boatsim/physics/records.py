@@ -31,7 +31,9 @@ def known_to_numba(constructor: Callable[..., object], record: type) -> None:
     infer_global(constructor)(Constructor)
 
     @lower_builtin(constructor, types.VarArg(types.Any))
-    def build(context: BaseContext, builder: ir.IRBuilder, call: Signature, args: Sequence[ir.Value]) -> ir.Value:
+    def build(
+        context: BaseContext, builder: ir.IRBuilder, call: Signature, args: Sequence[ir.Value]
+    ) -> ir.Value:
         items = [
             context.get_constant(types.float64, float(kind.value))
             if isinstance(kind, types.Omitted)

@@ -16,7 +16,9 @@ from boatsim.physics.records import known_to_numba
 Array = NDArray[np.float64]
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-COMPONENTS = dict(zip(AXES, ("X_N", "Y_N", "Z_N", "K_Nm", "M_Nm", "N_Nm"), strict=True))  # force columns, by freedom
+COMPONENTS = dict(
+    zip(AXES, ("X_N", "Y_N", "Z_N", "K_Nm", "M_Nm", "N_Nm"), strict=True)
+)  # force columns, by freedom
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,9 @@ class Wrench(NamedTuple):
     N: float = 0.0  # [N m] yaw
 
 
-def wrench(X: float = 0.0, Y: float = 0.0, Z: float = 0.0, K: float = 0.0, M: float = 0.0, N: float = 0.0) -> Wrench:
+def wrench(
+    X: float = 0.0, Y: float = 0.0, Z: float = 0.0, K: float = 0.0, M: float = 0.0, N: float = 0.0
+) -> Wrench:
     """`Wrench` by the names of its components, the others zero."""
     return Wrench(X, Y, Z, K, M, N)
 
@@ -143,18 +147,39 @@ class Mass(NamedTuple):
 
 
 MASS_ENTRIES = tuple(
-    (AXES.index(name.partition("_")[0]), AXES.index(name.partition("_")[2] or name)) for name in Mass._fields
+    (AXES.index(name.partition("_")[0]), AXES.index(name.partition("_")[2] or name))
+    for name in Mass._fields
 )
 
 
 def mass(
-    surge: float = 0.0, sway: float = 0.0, heave: float = 0.0, roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0,
-    surge_heave: float = 0.0, surge_pitch: float = 0.0, heave_pitch: float = 0.0, sway_roll: float = 0.0,
-    sway_yaw: float = 0.0, roll_yaw: float = 0.0,
-) -> Mass:  # fmt: skip
+    surge: float = 0.0,
+    sway: float = 0.0,
+    heave: float = 0.0,
+    roll: float = 0.0,
+    pitch: float = 0.0,
+    yaw: float = 0.0,
+    surge_heave: float = 0.0,
+    surge_pitch: float = 0.0,
+    heave_pitch: float = 0.0,
+    sway_roll: float = 0.0,
+    sway_yaw: float = 0.0,
+    roll_yaw: float = 0.0,
+) -> Mass:
     """`Mass` by the names of its entries, the others zero."""
     return Mass(
-        surge, sway, heave, roll, pitch, yaw, surge_heave, surge_pitch, heave_pitch, sway_roll, sway_yaw, roll_yaw
+        surge,
+        sway,
+        heave,
+        roll,
+        pitch,
+        yaw,
+        surge_heave,
+        surge_pitch,
+        heave_pitch,
+        sway_roll,
+        sway_yaw,
+        roll_yaw,
     )
 
 
@@ -172,9 +197,15 @@ class Swell(NamedTuple):
 
 
 def swell(
-    X: float = 0.0, Y: float = 0.0, Z: float = 0.0, K: float = 0.0, M: float = 0.0, N: float = 0.0,
-    frequency: float = 0.0, damping: float = 1.0,
-) -> Swell:  # fmt: skip
+    X: float = 0.0,
+    Y: float = 0.0,
+    Z: float = 0.0,
+    K: float = 0.0,
+    M: float = 0.0,
+    N: float = 0.0,
+    frequency: float = 0.0,
+    damping: float = 1.0,
+) -> Swell:
     """`Swell` by name; a frequency of zero means that there is none."""
     return Swell(X, Y, Z, K, M, N, frequency, damping)
 

@@ -57,7 +57,11 @@ class Spread:
         if not table.of:
             return None
         values, vectors = np.linalg.eigh(np.array(table.correlation, dtype=float))
-        return cls(tuple(table.of), np.array([f.sd for f in table.of]), vectors * np.sqrt(np.maximum(values, 0.0)))
+        return cls(
+            tuple(table.of),
+            np.array([f.sd for f in table.of]),
+            vectors * np.sqrt(np.maximum(values, 0.0)),
+        )
 
     def times(self, factor: float) -> "Spread":
         """As wide as that factor says."""

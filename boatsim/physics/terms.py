@@ -15,27 +15,61 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.kernel.compiling import apart
 from boatsim.physics.signals import Course, Wrench, followed, lagged, wrench
 
-SPEEDS = ("surge_speed", "sway_speed", "heave_speed", "roll_rate", "pitch_rate", "yaw_rate")  # through the water
+SPEEDS = (
+    "surge_speed",
+    "sway_speed",
+    "heave_speed",
+    "roll_rate",
+    "pitch_rate",
+    "yaw_rate",
+)  # through the water
 SIZES, SENSES = tuple(f"abs_{s}" for s in SPEEDS), tuple(f"sign_{s}" for s in SPEEDS)
 BEARINGS = ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading")
 PLACES = ("north", "east", "depth", "roll_angle", "pitch_angle")
 RIPPLES = ("ripple_north", "ripple_east")  # a pattern that lies still, along north or east
-BEYOND = tuple(f"beyond_{s}" for s in SPEEDS)  # what a speed is above a threshold either way, with its sign
-FACTORS = ("", *SPEEDS, *SIZES, *SENSES, *BEARINGS, *PLACES, *RIPPLES, *BEYOND)  # a factor's number is its place here;
-HISTORIES = ("recent", "changed")  # in front of an actuator signal: what it was of late, and by how much it is beyond
+BEYOND = tuple(
+    f"beyond_{s}" for s in SPEEDS
+)  # what a speed is above a threshold either way, with its sign
+FACTORS = (
+    "",
+    *SPEEDS,
+    *SIZES,
+    *SENSES,
+    *BEARINGS,
+    *PLACES,
+    *RIPPLES,
+    *BEYOND,
+)  # a factor's number is its place here;
+HISTORIES = (
+    "recent",
+    "changed",
+)  # in front of an actuator signal: what it was of late, and by how much it is beyond
 RECALLED = 90  # number of what a term recalls, of its size one more
 FIRST_HELD = 100  # that of a vessel's k-th actuator signal this and 2 k, of its size one more
 MOST = 3  # factors of a term
 COURSES = ("always", "within", "rising", "fading", "swinging")
-DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw", "north", "east")  # the last two on level axes
+DIRECTIONS = (
+    "surge",
+    "sway",
+    "heave",
+    "roll",
+    "pitch",
+    "yaw",
+    "north",
+    "east",
+)  # the last two on level axes
 SPEED_UNITS = dict(zip(SPEEDS, 3 * ("m/s",) + 3 * ("rad/s",), strict=True))
-UNITS = SPEED_UNITS | {f"{mark}_{s}": unit for s, unit in SPEED_UNITS.items() for mark in ("abs", "beyond")}
+UNITS = SPEED_UNITS | {
+    f"{mark}_{s}": unit for s, unit in SPEED_UNITS.items() for mark in ("abs", "beyond")
+}
 UNITS |= dict(zip(PLACES, 3 * ("m",) + 2 * ("rad",), strict=True))
 
 SINGLE, SIZE, SENSE, BEARING, PLACE, RIPPLE, ABOVE = (
     FACTORS.index(names[0]) for names in (SPEEDS, SIZES, SENSES, BEARINGS, PLACES, RIPPLES, BEYOND)
 )
-Detail = tuple[float, float, float, float]  # wavelength and crest [m] of a ripple, little and beyond [SI] of a speed
+Detail = tuple[
+    float, float, float, float
+]  # wavelength and crest [m] of a ripple, little and beyond [SI] of a speed
 WITHIN, RISING, FADING, SWINGING = (float(COURSES.index(c)) for c in COURSES[1:])
 
 
@@ -90,7 +124,15 @@ def term(m: Any, q: Any, act: Any, at: Any, own: Any) -> Any:
 
 @apart
 def recalled(
-    act: Any, held: Any, own: Any, kept: Any, at: Any, dt: float, looks_at: float, beyond: float, memory: float
+    act: Any,
+    held: Any,
+    own: Any,
+    kept: Any,
+    at: Any,
+    dt: float,
+    looks_at: float,
+    beyond: float,
+    memory: float,
 ) -> None:
     """What a term recalls over a step, to act: a signal or its size as it was of late, by a lag, or by how much beyond.
 
@@ -129,9 +171,13 @@ def along(m: Any, direction: float, force: float) -> Wrench:
     if k == 7:
         return wrench(X=force * m.sin_psi, Y=force * m.cos_psi)
     return wrench(
-        X=force * (k == 0), Y=force * (k == 1), Z=force * (k == 2), K=force * (k == 3), M=force * (k == 4),
+        X=force * (k == 0),
+        Y=force * (k == 1),
+        Z=force * (k == 2),
+        K=force * (k == 3),
+        M=force * (k == 4),
         N=force * (k == 5),
-    )  # fmt: skip
+    )
 
 
 def names_for(held: Sequence[str]) -> tuple[str, ...]:
@@ -152,7 +198,9 @@ def looks(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, flo
     """Numbers of the signal that a term looks back at, and how; 0, 0 where it does not. Raises BadInput for several."""
     found = sorted({looking(name, held) for name in of} - {("", "")})
     if len(found) > 1:
-        raise BadInput(f"{what}: of = {list(of)}; allowed is to look back at one signal, in one way")
+        raise BadInput(
+            f"{what}: of = {list(of)}; allowed is to look back at one signal, in one way"
+        )
     for how, signal in found:
         return codes(what, (signal,), held)[0], float(HISTORIES.index(how))
     return 0.0, 0.0
@@ -167,7 +215,9 @@ def codes(what: str, of: Sequence[str], held: Sequence[str]) -> tuple[float, ...
         size = name.removeprefix("abs_")
         if name in held or size in held:
             of_size = name not in held
-            found.append(float(FIRST_HELD + 2 * list(held).index(size if of_size else name) + of_size))
+            found.append(
+                float(FIRST_HELD + 2 * list(held).index(size if of_size else name) + of_size)
+            )
         elif name and name in FACTORS:
             found.append(float(FACTORS.index(name)))
         elif name in names_for(held):

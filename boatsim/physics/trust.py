@@ -18,7 +18,9 @@ class Trust:
 
     content: tuple[Path, ...] = ()
     allowed: tuple[Path, ...] = ()
-    ask: Callable[[Path], bool] | None = None  # whether the Python files of a folder may run; None: nobody is there
+    ask: Callable[[Path], bool] | None = (
+        None  # whether the Python files of a folder may run; None: nobody is there
+    )
     answers: dict[Path, bool] = field(default_factory=dict)  # each folder is asked for once
 
     def holds(self, path: Path) -> bool:
@@ -41,7 +43,9 @@ def content() -> tuple[Path, ...]:
 
 @contextmanager
 def trusting(
-    *content: Path | str, allowed: Sequence[Path | str] = (), ask: Callable[[Path], bool] | None = None
+    *content: Path | str,
+    allowed: Sequence[Path | str] = (),
+    ask: Callable[[Path], bool] | None = None,
 ) -> Iterator[None]:
     """Trust these folders, all below them too, on top of what is trusted already.
 
@@ -50,7 +54,9 @@ def trusting(
     """
     before = _now.get(Trust())
     mine, others = (tuple(_folder(f) for f in given) for given in (content, allowed))
-    inner = Trust((*before.content, *mine), (*before.allowed, *others), ask or before.ask, before.answers)
+    inner = Trust(
+        (*before.content, *mine), (*before.allowed, *others), ask or before.ask, before.answers
+    )
     token = _now.set(inner)
     try:
         yield

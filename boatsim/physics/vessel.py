@@ -23,7 +23,9 @@ from boatsim.physics.signals import COMPONENTS, POSE, RATES
 from boatsim.physics.spread import Spread, SpreadTable
 
 SMALLEST, LARGEST = 1e-4, 1e4  # [m] of a hull
-Freedom = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]  # AXES, as a type checker reads it
+Freedom = Literal[
+    "surge", "sway", "heave", "roll", "pitch", "yaw"
+]  # AXES, as a type checker reads it
 
 
 class Body(Table):
@@ -32,12 +34,18 @@ class Body(Table):
     mass: float = Field(gt=0)  # [kg]
     roll_inertia: float = Field(gt=0)  # [kg m^2]
     yaw_inertia: float = Field(gt=0)  # [kg m^2]
-    pitch_inertia: float | None = Field(default=None, gt=0)  # [kg m^2]; needed where the hull pitches
+    pitch_inertia: float | None = Field(
+        default=None, gt=0
+    )  # [kg m^2]; needed where the hull pitches
     centre: tuple[float, float] = (0.0, 0.0)  # [m] ahead of the origin and below it
 
     def pitched(self) -> float:
         """Inertia in pitch; of a hull that does not pitch it is that in yaw, so that rolling turns nothing else."""
-        return max(self.roll_inertia, self.yaw_inertia) if self.pitch_inertia is None else self.pitch_inertia
+        return (
+            max(self.roll_inertia, self.yaw_inertia)
+            if self.pitch_inertia is None
+            else self.pitch_inertia
+        )
 
 
 class CommandChannel(Table):
@@ -45,8 +53,12 @@ class CommandChannel(Table):
 
     low: float
     high: float
-    neutral: float = 0.0  # in force where nothing is sent; a channel that can not be 0 must say its own
-    turns: Literal["", "starboard", "port"] = ""  # what a positive rudder does; recordings that differ are turned
+    neutral: float = (
+        0.0  # in force where nothing is sent; a channel that can not be 0 must say its own
+    )
+    turns: Literal["", "starboard", "port"] = (
+        ""  # what a positive rudder does; recordings that differ are turned
+    )
     about: str = ""
 
 
@@ -58,27 +70,46 @@ class MeasuredChannel(Table):
 
 
 NAME = re.compile(r"[\w.+-]{1,60}")  # of a channel: it is a column of every log
-FORCES = tuple(f"{what}_{component}" for what in ("force", "wind") for component in COMPONENTS.values())
+FORCES = tuple(
+    f"{what}_{component}" for what in ("force", "wind") for component in COMPONENTS.values()
+)
 OURS = ("t_s", "contacts", *POSE, *RATES, *FORCES)
-PREFIXES = ("sent_", "actual_", "sensed_", "camera_", "estimate_", "reference_", "goal_")  # of other columns
-OVERRIDES = ("ambient", "horizon", "rate", "noise")  # of the rules of a diagnosis, which need a reason
+PREFIXES = (
+    "sent_",
+    "actual_",
+    "sensed_",
+    "camera_",
+    "estimate_",
+    "reference_",
+    "goal_",
+)  # of other columns
+OVERRIDES = (
+    "ambient",
+    "horizon",
+    "rate",
+    "noise",
+)  # of the rules of a diagnosis, which need a reason
 
 
 class DiagnosisTable(Table):
     """What a diagnosis may assume of this vessel before it has seen data."""
 
     leave_out: dict[str, str] = {}  # entry of the library that is not tried -> the reason, in words
-    also: list[dict[str, object]] = []  # tables as in [[effect]], tried beside the library: on what else it may act
+    also: list[
+        dict[str, object]
+    ] = []  # tables as in [[effect]], tried beside the library: on what else it may act
     coefficient_uncertainty: dict[
         Literal["damping", "thrust", "added_mass", "restoring", "wind"], PositiveFloat
     ] = {}  # relative sd
-    # In place of a rule of `boatsim.diagnose.rules`, each with its reason in `reasons`
+    # In place of a rule of `boatsim.diagnosis.priors`, each with its reason in `reasons`
     ambient: dict[Freedom, PositiveFloat] = {}  # tolerated unmodelled force per axis, rms [N, N m]
     horizon: float | None = Field(default=None, gt=0)  # [s] length of a free run
     rate: float | None = Field(default=None, gt=0)  # [Hz] of rows that are used
     noise: dict[str, PositiveFloat] = {}  # sd of instruments by family
     reasons: dict[str, str] = {}
-    facts: dict[str, float | str | bool | list[float]] = {}  # what holds where a recording states nothing else: walls_m
+    facts: dict[
+        str, float | str | bool | list[float]
+    ] = {}  # what holds where a recording states nothing else: walls_m
 
     @field_validator("facts")
     @classmethod
@@ -121,10 +152,14 @@ class VesselFile(Table):
     scales: dict[str, float] = {}  # vessels that are the same hull at another scale
     body: Body
     geometry: dict[str, float] = {}
-    marks: dict[str, tuple[float, float]] = {}  # [m] ahead and to starboard of the CG: what a camera above follows
+    marks: dict[
+        str, tuple[float, float]
+    ] = {}  # [m] ahead and to starboard of the CG: what a camera above follows
     channels: dict[str, CommandChannel] = {}
     measured: dict[str, MeasuredChannel] = {}
-    columns: dict[str, str] = {}  # our name -> the column of this vessel's recordings, "-" in front flips the sign
+    columns: dict[
+        str, str
+    ] = {}  # our name -> the column of this vessel's recordings, "-" in front flips the sign
     effect: list[dict[str, object]] = []
     loads: dict[str, dict[str, object]] = {}
     diagnosis: DiagnosisTable = DiagnosisTable()
@@ -153,13 +188,23 @@ class Vessel:
     loads: tuple[str, ...]  # names of all loads there are
     diagnosis: DiagnosisTable
     scale: float | None = None  # full scale length / this length
-    scales: Mapping[str, float] = field(default_factory=dict)  # vessels that are the same hull at another scale
-    columns: Mapping[str, str] = field(default_factory=dict)  # our name -> column of its recordings, "-" flips the sign
+    scales: Mapping[str, float] = field(
+        default_factory=dict
+    )  # vessels that are the same hull at another scale
+    columns: Mapping[str, str] = field(
+        default_factory=dict
+    )  # our name -> column of its recordings, "-" flips the sign
     manoeuvring: ManoeuvringTable = ManoeuvringTable()
-    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # [m] ahead and to starboard of the CG
+    marks: Mapping[str, tuple[float, float]] = field(
+        default_factory=dict
+    )  # [m] ahead and to starboard of the CG
     found: tuple[str, ...] = ()  # names of those effects that a diagnosis found
-    measured: Mapping[str, MeasuredChannel] = field(default_factory=dict)  # of the surroundings: taken, not commanded
-    spread: Spread | None = field(default=None, compare=False)  # how far off what was fitted may be, where one was
+    measured: Mapping[str, MeasuredChannel] = field(
+        default_factory=dict
+    )  # of the surroundings: taken, not commanded
+    spread: Spread | None = field(
+        default=None, compare=False
+    )  # how far off what was fitted may be, where one was
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -200,14 +245,24 @@ class Vessel:
     def held(self) -> tuple[str, ...]:
         """What laws see of its actuators: themselves, then cosine and sine of angles; then of its readings the same."""
         pairs = ((self.actuators, self.angles), (self.readings, self.bearings))
-        parts = ((*all_of, *(f"{part}_{a}" for a in angles for part in ("cos", "sin"))) for all_of, angles in pairs)
+        parts = (
+            (*all_of, *(f"{part}_{a}" for a in angles for part in ("cos", "sin")))
+            for all_of, angles in pairs
+        )
         return tuple(n for names in parts for n in names)
 
     @cached_property
     def sums(self) -> Mapping[str, tuple[str, ...]]:
         """Actuators that several share a role, by the role: together they are the `thrust`, whatever each is called."""
-        alike = {role: tuple(n for n in self.actuators if self.roles[n] == role) for role in self.roles.values()}
-        return {role: names for role, names in alike.items() if len(names) > 1 and role not in self.inputs}
+        alike = {
+            role: tuple(n for n in self.actuators if self.roles[n] == role)
+            for role in self.roles.values()
+        }
+        return {
+            role: names
+            for role, names in alike.items()
+            if len(names) > 1 and role not in self.inputs
+        }
 
     @property
     def seen(self) -> tuple[str, ...]:
@@ -217,7 +272,12 @@ class Vessel:
     def unit(self, channel: str) -> str:
         """Unit of an actuator, a reading or a sum: that of the role in which an effect takes it."""
         channel = self.sums.get(channel, (channel,))[0]
-        units = (type(e).roles[r].unit for e in self.effects for r, c in self.stated(e).items() if c == channel)
+        units = (
+            type(e).roles[r].unit
+            for e in self.effects
+            for r, c in self.stated(e).items()
+            if c == channel
+        )
         return next(units, "")
 
     def effect(self, name: str) -> Effect | None:
@@ -245,7 +305,11 @@ class Vessel:
         A role that may be left out stays unbound: a fixed thruster does not turn with the only rudder.
         """
         found = dict(self.stated(effect))
-        needed = [role for role, about in type(effect).roles.items() if about.fixed is None and not self.stated(effect)]
+        needed = [
+            role
+            for role, about in type(effect).roles.items()
+            if about.fixed is None and not self.stated(effect)
+        ]
         for role in needed:
             there = [n for n in self.actuators if self.roles[n] == role]
             if len(there) == 1:
@@ -287,7 +351,9 @@ class Vessel:
 
     def limits(self) -> dict[str, tuple[float, float]]:
         """Allowed range of each input, as `recording.read` takes it; what is measured may be anything."""
-        return {n: (c.low, c.high) for n, c in self.commands.items()} | dict.fromkeys(self.measured, (-inf, inf))
+        return {n: (c.low, c.high) for n, c in self.commands.items()} | dict.fromkeys(
+            self.measured, (-inf, inf)
+        )
 
     def measuring(self, values: Mapping[str, float]) -> Self:
         """The vessel in surroundings that are measured so, and stay so where nothing else is recorded.
@@ -297,7 +363,10 @@ class Vessel:
         for name in values:
             if name not in self.measured:
                 raise BadInput(unknown_name(f"{self.name}: measured", name, self.measured))
-        told = {n: m.model_copy(update={"neutral": values.get(n, m.neutral)}) for n, m in self.measured.items()}
+        told = {
+            n: m.model_copy(update={"neutral": values.get(n, m.neutral)})
+            for n, m in self.measured.items()
+        }
         return replace(self, measured=told)
 
 
@@ -327,7 +396,9 @@ def load(
     file = checked(VesselFile, raw, label)
     _check_channels(file.channels, label)
     if twice := [n for n in file.measured if n in file.channels]:
-        raise BadInput(f"{label}: measured.{twice[0]} is among the [channels] too; it is either sent or measured")
+        raise BadInput(
+            f"{label}: measured.{twice[0]} is among the [channels] too; it is either sent or measured"
+        )
     own = [_called(table) for table in file.effect]
     for table in extra:
         if _called(table) in own:
@@ -337,17 +408,40 @@ def load(
             )
     folder = _base(file.based_on, path, label)
     vessel = Vessel(
-        called, folder, path, file.about, file.source, file.hull, tuple(file.freedoms), file.length, file.beam,
-        file.draught, file.body, file.geometry, file.channels, (), tuple(loads), tuple(known), file.diagnosis,
-        file.scale, file.scales, file.columns, file.manoeuvring, file.marks, tuple(file.found),
-        file.measured, Spread.read(file.spread),
-    )  # fmt: skip
+        called,
+        folder,
+        path,
+        file.about,
+        file.source,
+        file.hull,
+        tuple(file.freedoms),
+        file.length,
+        file.beam,
+        file.draught,
+        file.body,
+        file.geometry,
+        file.channels,
+        (),
+        tuple(loads),
+        tuple(known),
+        file.diagnosis,
+        file.scale,
+        file.scales,
+        file.columns,
+        file.manoeuvring,
+        file.marks,
+        tuple(file.found),
+        file.measured,
+        Spread.read(file.spread),
+    )
     whole = with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
     check_bindings(whole, label)
     if "pitch" in whole.freedoms and whole.body.pitch_inertia is None:
         raise BadInput(f"{label}: body.pitch_inertia is missing; {called} pitches")
     if whole.body.centre[1] and "roll" in whole.freedoms and not tilts(frozenset(whole.freedoms)):
-        raise BadInput(f"{label}: body.centre = {whole.body.centre}; allowed is a height of 0 where pitch is held")
+        raise BadInput(
+            f"{label}: body.centre = {whole.body.centre}; allowed is a height of 0 where pitch is held"
+        )
     return whole
 
 
@@ -356,11 +450,15 @@ def _check_channels(channels: Mapping[str, CommandChannel], label: str) -> None:
     for name, c in channels.items():
         if not NAME.fullmatch(name) or name in OURS or name.startswith(PREFIXES):
             why = (
-                "columns of a run are called so" if NAME.fullmatch(name) else "allowed are letters, digits and _ . + -"
+                "columns of a run are called so"
+                if NAME.fullmatch(name)
+                else "allowed are letters, digits and _ . + -"
             )
             raise BadInput(f"{label}: channels: {name!r} can not be the name of one: {why}")
         if not c.low < c.high:
-            raise BadInput(f"{label}: channels.{name}: low = {c.low:g}, high = {c.high:g}; low must be below high")
+            raise BadInput(
+                f"{label}: channels.{name}: low = {c.low:g}, high = {c.high:g}; low must be below high"
+            )
         if not c.low <= c.neutral <= c.high:
             given = "neutral" in c.model_fields_set
             what = f"neutral = {c.neutral:g}" if given else "neutral is missing and can not be 0"
@@ -378,11 +476,15 @@ def check_bindings(vessel: Vessel, label: str) -> None:
     for effect in vessel.effects:
         what = f"{label}: effect {effect.name}"
         if names.count(effect.name) > 1:
-            raise BadInput(f"{what} is there {names.count(effect.name)} times; give each a name of its own")
+            raise BadInput(
+                f"{what} is there {names.count(effect.name)} times; give each a name of its own"
+            )
         _check_roles(vessel, effect, what)
         kind = type(effect)
         if kind.sees_held and not effect.still_as_on(vessel):
-            raise BadInput(f"{what} stands before an effect by which a channel acts; put it behind all of these")
+            raise BadInput(
+                f"{what} stands before an effect by which a channel acts; put it behind all of these"
+            )
         if isinstance(effect, Channel):
             for name in (*effect.on, *effect.fed_by):
                 if name not in vessel.commands:
@@ -411,7 +513,9 @@ def _check_roles(vessel: Vessel, effect: Effect, what: str) -> None:
     for role, about in roles.items():
         if role not in vessel.bound(effect) and about.fixed is None:
             there = ", ".join(vessel.inputs)
-            raise BadInput(f"{what}: on.{role} is missing: the channel of {about.words}; there are: {there}")
+            raise BadInput(
+                f"{what}: on.{role} is missing: the channel of {about.words}; there are: {there}"
+            )
 
 
 def _base(name: str, path: Path, label: str) -> Path:
@@ -435,8 +539,13 @@ def added(vessel: Vessel, effect: Effect) -> Vessel:
     """The vessel with one more effect; a release changes the numbers it names, now."""
     try:
         effect = effect.completed(vessel)
-    except (ArithmeticError, ValueError) as error:  # a rule divides by what is 0, or takes a root of what is below it
-        raise BadInput(f"{vessel.name}: {effect.name}: no number follows from what is stated ({error})") from None
+    except (
+        ArithmeticError,
+        ValueError,
+    ) as error:  # a rule divides by what is 0, or takes a root of what is below it
+        raise BadInput(
+            f"{vessel.name}: {effect.name}: no number follows from what is stated ({error})"
+        ) from None
     if not isinstance(effect, Release):
         return replace(vessel, effects=(*vessel.effects, effect))
     for change in effect.changes(vessel):
@@ -476,7 +585,9 @@ def effect_from(table: Mapping[str, object], file: str, folder: Path) -> Effect:
         raise BadInput(f"{file}: {error}") from None
 
 
-def with_loads(name: str, loads: Sequence[str], more: Sequence[str], beside: Path | None = None) -> list[str]:
+def with_loads(
+    name: str, loads: Sequence[str], more: Sequence[str], beside: Path | None = None
+) -> list[str]:
     """Load conditions with `more` on top of them: those that exclude one of these give way. Raises BadInput."""
     path = find("vessel", name, beside)
     label = f"{path.parent.name}/{path.name}"
@@ -484,21 +595,33 @@ def with_loads(name: str, loads: Sequence[str], more: Sequence[str], beside: Pat
     for one in more:
         if one not in known:
             raise BadInput(unknown_name(f"{label}: load", one, known))
-    kept = [one for one in loads if one in known and not any(_clash(known[one], known[new]) for new in more)]
+    kept = [
+        one
+        for one in loads
+        if one in known and not any(_clash(known[one], known[new]) for new in more)
+    ]
     return list(dict.fromkeys((*kept, *more)))
 
 
-def _check_apart(loads: Sequence[str], known: Mapping[str, Mapping[str, object]], label: str) -> None:
+def _check_apart(
+    loads: Sequence[str], known: Mapping[str, Mapping[str, object]], label: str
+) -> None:
     """Two loads that change the same value contradict each other: which one counts must not depend on their order."""
     for first, second in combinations(dict.fromkeys(loads), 2):
         for key, (one, other) in _clash(known[first], known[second]).items():
-            raise BadInput(f"{label}: loads {first} ({key} = {one}) and {second} ({key} = {other}) exclude each other")
+            raise BadInput(
+                f"{label}: loads {first} ({key} = {one}) and {second} ({key} = {other}) exclude each other"
+            )
 
 
-def _clash(one: Mapping[str, object], other: Mapping[str, object]) -> dict[str, tuple[object, object]]:
+def _clash(
+    one: Mapping[str, object], other: Mapping[str, object]
+) -> dict[str, tuple[object, object]]:
     """What two loads set to different values."""
     mine, theirs = _flat(one), _flat(other)
-    return {key: (mine[key], theirs[key]) for key in mine if key in theirs and mine[key] != theirs[key]}
+    return {
+        key: (mine[key], theirs[key]) for key in mine if key in theirs and mine[key] != theirs[key]
+    }
 
 
 def _flat(table: Mapping[str, object]) -> dict[str, object]:
@@ -508,7 +631,9 @@ def _flat(table: Mapping[str, object]) -> dict[str, object]:
     return flat | {f"{k}.{name}": v for k, values in inner.items() for name, v in values.items()}
 
 
-def overlaid(raw: Mapping[str, object], load_table: Mapping[str, object], label: str) -> dict[str, object]:
+def overlaid(
+    raw: Mapping[str, object], load_table: Mapping[str, object], label: str
+) -> dict[str, object]:
     """A vessel file with a load's tables laid over it: top-level numbers, body, geometry, and effects by name."""
     out = dict(raw)
     effects = [dict(t) for t in tables(raw.get("effect"))]
@@ -524,7 +649,15 @@ def overlaid(raw: Mapping[str, object], load_table: Mapping[str, object], label:
         elif key in ("length", "beam", "draught"):
             out[key] = value
         else:
-            own_tables = ("body", "geometry", "manoeuvring", "diagnosis", "length", "beam", "draught")
+            own_tables = (
+                "body",
+                "geometry",
+                "manoeuvring",
+                "diagnosis",
+                "length",
+                "beam",
+                "draught",
+            )
             names = [*(_called(t) for t in effects), *own_tables]
             raise BadInput(unknown_name(f"{label}: table to change", key, names))
     out["effect"] = effects

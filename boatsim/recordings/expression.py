@@ -66,7 +66,9 @@ def parse(text: str, known: Collection[str] = ()) -> Expression:
         rest = rest[: found.start()]
     name = rest.strip()
     if not name or "*" in name:
-        raise BadInput(f"{text[:80]!r} is no expression; allowed is [-] name [* unit or number] [+ number]")
+        raise BadInput(
+            f"{text[:80]!r} is no expression; allowed is [-] name [* unit or number] [+ number]"
+        )
     if not (math.isfinite(factor) and math.isfinite(offset)):
         raise BadInput(f"{text[:80]!r} has a number too large to use")
     return Expression(name, factor, offset)

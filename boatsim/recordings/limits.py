@@ -7,22 +7,29 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from boatsim.recordings.raw import refuse
+from boatsim.recordings.raw_table import refuse
 
 MOST_COLUMNS = 2000
 MOST_CELLS = 100_000_000  # 0.8 GB as floats
 LARGEST_FILE = 4 << 30  # bytes
 LONGEST_HEADER = 1 << 20  # bytes of the first line of a text
 GROWS = 12  # memory that a text takes while it is read, by its size: a cell of 8 characters is an object of 57 bytes
-BYTES_PER_CELL = 24  # of memory that a binary table takes: as it is read, as floats, and what is asked of them
-GROUPS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")  # of a container, v2 and v1
+BYTES_PER_CELL = (
+    24  # of memory that a binary table takes: as it is read, as floats, and what is asked of them
+)
+GROUPS = (
+    "/sys/fs/cgroup/memory.max",
+    "/sys/fs/cgroup/memory/memory.limit_in_bytes",
+)  # of a container, v2 and v1
 
 
 def check_file(path: Path) -> None:
     """Raises BadInput for a file that can not be read in the memory there is."""
     size = path.stat().st_size
     if size > LARGEST_FILE:
-        raise refuse(path, f"has {size / 1e9:.1f} GB; a recording has at most {LARGEST_FILE / 1e9:.1f} GB")
+        raise refuse(
+            path, f"has {size / 1e9:.1f} GB; a recording has at most {LARGEST_FILE / 1e9:.1f} GB"
+        )
     check_memory(path, GROWS * size)
 
 
@@ -39,7 +46,10 @@ def check_memory(path: Path, needed: float) -> None:
     """Raises BadInput where reading would take more memory [bytes] than is free."""
     free = free_memory()
     if needed > free:
-        raise refuse(path, f"needs about {needed / 1e9:.1f} GB of memory to be read; {free / 1e9:.1f} GB are free")
+        raise refuse(
+            path,
+            f"needs about {needed / 1e9:.1f} GB of memory to be read; {free / 1e9:.1f} GB are free",
+        )
 
 
 def free_memory() -> float:
@@ -47,7 +57,9 @@ def free_memory() -> float:
     found = [float("inf")]
     with suppress(OSError, ValueError, StopIteration):
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
-        found.append(1024.0 * int(_second(line for line in lines if line.startswith("MemAvailable:"))))
+        found.append(
+            1024.0 * int(_second(line for line in lines if line.startswith("MemAvailable:")))
+        )
     for file in GROUPS:
         with suppress(OSError, ValueError):  # "max" where there is no limit
             found.append(float(int(Path(file).read_text(encoding="ascii"))))

@@ -15,17 +15,41 @@ from boatsim.physics.facts import wrong
 from boatsim.physics.signals import AXES
 
 T = TypeVar("T")
-NOISE = ("position_sd_m", "heading_sd_rad", "yaw_rate_sd_radps", "roll_sd_rad", "roll_rate_sd_radps")
+NOISE = (
+    "position_sd_m",
+    "heading_sd_rad",
+    "yaw_rate_sd_radps",
+    "roll_sd_rad",
+    "roll_rate_sd_radps",
+)
 AMBIENT = ("axes", "force_rms", "time_constant_s")
 TABLES = ("columns", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
 KEYS = ("vessel", "load", "scale", "use", *TABLES, "runs")
 HUGE = 1e300  # larger integers do not fit a float
 # endings that say the unit of a column or key, longest first so that `_mps2` is not taken for `_s`
 UNITS = {
-    "Nspm": "N s/m", "radps2": "rad/s^2", "radps": "rad/s", "mps2": "m/s^2", "mps": "m/s", "deg": "deg", "rad": "rad",
-    "rpm": "1/min", "rps": "1/s", "kgm2": "kg m^2", "kg": "kg", "Nm": "N m", "Hz": "Hz", "us": "us", "m2": "m^2",
-    "N": "N", "V": "V", "A": "A", "W": "W", "m": "m", "s": "s",
-}  # fmt: skip
+    "Nspm": "N s/m",
+    "radps2": "rad/s^2",
+    "radps": "rad/s",
+    "mps2": "m/s^2",
+    "mps": "m/s",
+    "deg": "deg",
+    "rad": "rad",
+    "rpm": "1/min",
+    "rps": "1/s",
+    "kgm2": "kg m^2",
+    "kg": "kg",
+    "Nm": "N m",
+    "Hz": "Hz",
+    "us": "us",
+    "m2": "m^2",
+    "N": "N",
+    "V": "V",
+    "A": "A",
+    "W": "W",
+    "m": "m",
+    "s": "s",
+}
 
 
 def unit_of(name: str) -> str:
@@ -57,8 +81,12 @@ class Notes:
     scale: float | None = None  # full scale length / model length
     noise: dict[str, float] = field(default_factory=dict)  # names in NOISE, one standard deviation
     ambient: Ambient = field(default_factory=Ambient)
-    coefficient_uncertainty: dict[str, float] = field(default_factory=dict)  # relative, one standard deviation
-    facts: Mapping[str, Value] = field(default_factory=dict)  # forward_speed_mps, walls_m, fan position, free text
+    coefficient_uncertainty: dict[str, float] = field(
+        default_factory=dict
+    )  # relative, one standard deviation
+    facts: Mapping[str, Value] = field(
+        default_factory=dict
+    )  # forward_speed_mps, walls_m, fan position, free text
 
 
 @dataclass(frozen=True)
@@ -100,7 +128,9 @@ def _belonging(folder: Path) -> Iterator[Path]:
 def _parse(file: Path, stem: str) -> NotesFile:
     table = read_toml(file)
     runs = _Reader(file, table).table("runs")
-    merged = _merge({k: v for k, v in table.items() if k != "runs"}, _Reader(file, runs, "runs.").table(stem))
+    merged = _merge(
+        {k: v for k, v in table.items() if k != "runs"}, _Reader(file, runs, "runs.").table(stem)
+    )
     return _Reader(file, merged).notes()
 
 
@@ -165,7 +195,11 @@ class _Reader:
 
     def number(self, key: str, *, low: float = -math.inf) -> float:
         value = self.content[key]
-        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= HUGE:
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, int | float)
+            or not low <= value <= HUGE
+        ):
             raise self.bad(key, "a number" if low < 0 else f"a number of at least {low:g}")
         return float(value)
 
@@ -200,8 +234,18 @@ class _Reader:
     def sizes(self, key: str) -> list[float] | dict[str, float]:
         """Numbers by axis, or in turn."""
         value = self.content[key]
-        given = list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else [value]
-        found = [x for x in given if isinstance(x, int | float) and not isinstance(x, bool) and 0 <= x <= HUGE]
+        given = (
+            list(value.values())
+            if isinstance(value, dict)
+            else value
+            if isinstance(value, list)
+            else [value]
+        )
+        found = [
+            x
+            for x in given
+            if isinstance(x, int | float) and not isinstance(x, bool) and 0 <= x <= HUGE
+        ]
         if len(found) < len(given):
             raise self.bad(key, "a number of at least 0 for each axis")
         if isinstance(value, dict):
@@ -224,19 +268,31 @@ class _Reader:
             load=_tried(wrong, lambda: self.texts("load"), ()),
             settings=_tried(wrong, self.settings, {}),
             use=_tried(wrong, self.use, None),
-            scale=_tried(wrong, lambda: self.number("scale", low=1e-9) if "scale" in self.content else None, None),
+            scale=_tried(
+                wrong,
+                lambda: self.number("scale", low=1e-9) if "scale" in self.content else None,
+                None,
+            ),
             noise=_tried(wrong, lambda: self.inner("noise").numbers(low=0.0), {}),
             ambient=_tried(wrong, self.ambient, Ambient()),
-            coefficient_uncertainty=_tried(wrong, lambda: self.inner("coefficient_uncertainty").numbers(low=0.0), {}),
+            coefficient_uncertainty=_tried(
+                wrong, lambda: self.inner("coefficient_uncertainty").numbers(low=0.0), {}
+            ),
             facts=_tried(wrong, lambda: self.all_facts(facts), {}),
         )
         notes = replace(notes, noise={k: v for k, v in notes.noise.items() if k in NOISE})
         columns: dict[str, str] = _tried(wrong, self.columns, dict[str, str]())
         if wrong:
-            raise BadInput("; ".join([wrong[0], *(w.removeprefix(f"{self.file}: ") for w in wrong[1:])]))
-        strange = [self.strange(key, KEYS) for key in self.content if key not in known and key not in facts]
+            raise BadInput(
+                "; ".join([wrong[0], *(w.removeprefix(f"{self.file}: ") for w in wrong[1:])])
+            )
+        strange = [
+            self.strange(key, KEYS) for key in self.content if key not in known and key not in facts
+        ]
         for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):
-            strange += [self.strange(f"{table}.{k}", allowed) for k in self.table(table) if k not in allowed]
+            strange += [
+                self.strange(f"{table}.{k}", allowed) for k in self.table(table) if k not in allowed
+            ]
         remarks = (f"{self.file}: not used: {', '.join(strange)}",) if strange else ()
         return NotesFile(notes, columns, remarks, self.file.parent)
 

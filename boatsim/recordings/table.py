@@ -16,7 +16,7 @@ from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.expression import Expression, parse
 from boatsim.recordings.notes import Notes, notes_for, unit_of
-from boatsim.recordings.raw import Raw, refuse
+from boatsim.recordings.raw_table import Raw, refuse
 
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
 
@@ -24,12 +24,16 @@ FEWEST_ROWS = 20
 # columns of our own runs beside pose, rates and commands; a sensor the boat has not got is nan
 OWN = re.compile(r"(sent|stick|actual|sensed|camera|estimate|reference|goal|force|wind)_|contacts$")
 # what command channels of boats are called; others are known by the vessel
-COMMAND = re.compile(r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))")
+COMMAND = re.compile(
+    r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))"
+)
 HUGE = 1e12  # no time, place, speed or command here is anywhere near
 GAP = 60.0  # [s] between two rows; over a longer one no boat here can be followed
 NEAR = 0.8  # likeness from which a name that is not there is a misspelt one
 SLOW = 0.1  # share of empty rows from which a pose or rate is one that is measured less often than rows are written
-ROUNDING = 1e-3  # share of a channel's range by which a command rounded for the file may pass its limit
+ROUNDING = (
+    1e-3  # share of a channel's range by which a command rounded for the file may pass its limit
+)
 
 
 class NoSignal(BadInput):
@@ -79,7 +83,9 @@ class Recording:
         """The rows with from_s <= t <= to_s; times stay as they are."""
         inside = (self.t >= from_s - 1e-9) & (self.t <= to_s + 1e-9)
         if not inside.any():
-            message = f"no rows from {from_s:g} to {to_s:g} s; it has {self.t[0]:g} to {self.t[-1]:g} s"
+            message = (
+                f"no rows from {from_s:g} to {to_s:g} s; it has {self.t[0]:g} to {self.t[-1]:g} s"
+            )
             raise refuse(self.path or Path(self.name), message, column="t_s")
         signals = {k: v[inside] for k, v in self.signals.items()}
         orders = self.orders.between(from_s, to_s) if self.orders else None
@@ -97,11 +103,15 @@ class Recording:
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         if n == 1:
             return self
-        commands = {k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)}  # whatever the vessel calls them
+        commands = {
+            k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)
+        }  # whatever the vessel calls them
         ends = np.append(np.arange(0, len(self.t), n), len(self.t))
         signals = {k: v[::n] for k, v in self.signals.items()}
         signals |= {k: np.add.reduceat(v, ends[:-1]) / np.diff(ends) for k, v in commands.items()}
-        return replace(self, t=self.t[::n], signals=signals, orders=self.orders or Orders(self.t, commands))
+        return replace(
+            self, t=self.t[::n], signals=signals, orders=self.orders or Orders(self.t, commands)
+        )
 
     def _thinned_each(self, rate: float, measured: Mapping[str, Array]) -> "Recording":
         """The rows in which some signal has a sample that it keeps."""
@@ -109,7 +119,9 @@ class Recording:
         for name, values in measured.items():
             there = np.flatnonzero(np.isfinite(values))
             steps = np.diff(self.t[there])
-            kept[name] = there[:: max(1, round(1.0 / (rate * float(np.median(steps))))) if len(steps) else 1]
+            kept[name] = there[
+                :: max(1, round(1.0 / (rate * float(np.median(steps))))) if len(steps) else 1
+            ]
         rows = np.unique(np.concatenate(list(kept.values())))
         if len(rows) < 2:
             return self
@@ -123,7 +135,9 @@ class Recording:
                 lasts = np.append(np.diff(self.t), np.median(np.diff(self.t)))
                 signals[name] = np.add.reduceat(values * lasts, rows) / np.add.reduceat(lasts, rows)
         commands = {k: v for k, v in self.signals.items() if k not in measured}
-        return replace(self, t=self.t[rows], signals=signals, orders=self.orders or Orders(self.t, commands))
+        return replace(
+            self, t=self.t[rows], signals=signals, orders=self.orders or Orders(self.t, commands)
+        )
 
     def used(self) -> "Recording":
         """The part its notes name in `use`, or all of it."""
@@ -144,21 +158,32 @@ def read(
     path, channels = Path(path), channels or {}
     found = notes_for(path)
     raw, _, absent = _renamed(_raw(path), columns or {}, found.columns)
-    needed = [n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or is_command(n)]
+    needed = [
+        n for n in raw.columns if n == "t_s" or n in (*POSE, *RATES, *channels) or is_command(n)
+    ]
     _check_columns(raw, needed)
     _check_cells(raw, needed)
     wrong = [*_wrong(lambda: _check_time(raw)), *_wrong(lambda: _check_units(raw))]
     if wrong := [*wrong, *_wrong(lambda: _check_limits(raw, channels))]:
         raise BadInput("; ".join([wrong[0], *(w.removeprefix(f"{path}: ") for w in wrong[1:])]))
     signals, ignored = _signals(raw, needed)
-    remarks = (*found.remarks, *absent, *((f"{path}: columns not used: {', '.join(ignored)}",) if ignored else ()))
+    remarks = (
+        *found.remarks,
+        *absent,
+        *((f"{path}: columns not used: {', '.join(ignored)}",) if ignored else ()),
+    )
     recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, remarks)
     if len(part := recording.used()) < FEWEST_ROWS:
-        raise refuse(path, f"has {len(part)} rows in its part to use {found.notes.use}; at least {FEWEST_ROWS} needed")
+        raise refuse(
+            path,
+            f"has {len(part)} rows in its part to use {found.notes.use}; at least {FEWEST_ROWS} needed",
+        )
     return recording
 
 
-def as_written(path: Path, columns: Mapping[str, str] | None = None) -> tuple[Recording, Mapping[str, Expression]]:
+def as_written(
+    path: Path, columns: Mapping[str, str] | None = None
+) -> tuple[Recording, Mapping[str, Expression]]:
     """What a file holds under our names, unchecked: times may stand still, angles be in degrees, cells be empty.
 
     With it what each column is made of, where the vessel or the notes say so. Raises BadInput where it is no table, or
@@ -177,7 +202,9 @@ def write_csv(recording: Recording, path: Path | str) -> None:
     """Write all signals, t_s first, to 12 digits: the same recording gives the same bytes. Raises OSError."""
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         file.write(csv_header(recording))
-        for start in range(0, len(recording), 10_000):  # an hour of rows is not formatted in one piece of memory
+        for start in range(
+            0, len(recording), 10_000
+        ):  # an hour of rows is not formatted in one piece of memory
             file.write(csv_rows(recording, start, start + 10_000))
 
 
@@ -214,7 +241,10 @@ def _raw(path: Path) -> Raw:
         format = suffix if suffix in names("reader") else "csv"
         found = module_of("reader", format).read(path)
         if not isinstance(found, Raw):
-            raise refuse(path, f"read of the reader {format}.py gives {type(found).__name__}; a Raw is wanted")
+            raise refuse(
+                path,
+                f"read of the reader {format}.py gives {type(found).__name__}; a Raw is wanted",
+            )
         limits.check_shape(path, len(found.columns))
         return found
     except OSError as error:
@@ -235,7 +265,9 @@ def _renamed(
         try:
             found = parse(words, raw.columns)
         except BadInput as error:
-            raise BadInput(f"{raw.path} by its recording.toml: columns.{ours} = {words!r}: {error}") from None
+            raise BadInput(
+                f"{raw.path} by its recording.toml: columns.{ours} = {words!r}: {error}"
+            ) from None
         if found.signal in raw.columns:
             made[ours] = found
         elif ours in stated and ours not in raw.columns:
@@ -252,7 +284,11 @@ def _renamed(
         kept[ours] = e.of(raw.columns[e.signal])
         if e.signal in raw.text:
             text[ours] = raw.text[e.signal]
-    said = (f"{raw.path}: recording.toml names columns that it has not: {', '.join(absent)}",) if absent else ()
+    said = (
+        (f"{raw.path}: recording.toml names columns that it has not: {', '.join(absent)}",)
+        if absent
+        else ()
+    )
     return replace(raw, columns=kept, text=text), made, said
 
 
@@ -265,7 +301,9 @@ def _check_columns(raw: Raw, needed: list[str]) -> None:
     if "t_s" not in raw.columns:
         raise refuse(raw.path, f"is missing (there are: {', '.join(raw.columns)[:200]})", 1, "t_s")
     if not any(name in (*POSE, *RATES) for name in needed):
-        raise refuse(raw.path, f"no pose or rate; at least one is needed of {', '.join((*POSE, *RATES))}", 1)
+        raise refuse(
+            raw.path, f"no pose or rate; at least one is needed of {', '.join((*POSE, *RATES))}", 1
+        )
     if not len(raw.rows):
         raise refuse(raw.path, f"has a header and no rows; at least {FEWEST_ROWS} are needed")
 
@@ -282,27 +320,39 @@ def _check_cells(raw: Raw, needed: list[str]) -> None:
     if first:
         index, name = min(first, key=lambda found: found[0])
         found = raw.columns[name][index]
-        what = "the cell is empty or not a number (NaN)" if np.isnan(found) else f"{found:g} can not be right"
+        what = (
+            "the cell is empty or not a number (NaN)"
+            if np.isnan(found)
+            else f"{found:g} can not be right"
+        )
         raise refuse(raw.path, f"{what}; every row needs a number here", raw.rows[index], name)
     if len(raw.rows) < FEWEST_ROWS:
-        raise refuse(raw.path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed", raw.rows[-1])
+        raise refuse(
+            raw.path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed", raw.rows[-1]
+        )
 
 
-def fair_gaps(columns: Mapping[str, Array]) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
+def fair_gaps(
+    columns: Mapping[str, Array],
+) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
     """Of each pose and rate the rows (N,) in which it may be empty: it is just not measured then.
 
     One that is empty in many rows is measured less often than they are written. Another may be empty in rows that are
     there for such a one. Elsewhere an empty cell is a fault of the file.
     """
     empty = {n: np.isnan(v) for n, v in columns.items() if n in (*POSE, *RATES)}
-    slow = {n: e for n, e in empty.items() if e.mean() >= SLOW and len(e) - int(e.sum()) >= FEWEST_ROWS}
+    slow = {
+        n: e for n, e in empty.items() if e.mean() >= SLOW and len(e) - int(e.sum()) >= FEWEST_ROWS
+    }
     if not slow:
         return {}
     theirs = np.any([~e for e in slow.values()], axis=0)
     return {n: e if n in slow else e & theirs for n, e in empty.items()}
 
 
-def _check_overlap(raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]) -> None:
+def _check_overlap(
+    raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]
+) -> None:
     """Two logs merged by time leave poses in some rows and commands in others."""
     motion = [where for name, where in empty.items() if name in (*POSE, *RATES)]
     commands = [where for name, where in empty.items() if name not in ("t_s", *POSE, *RATES)]
@@ -334,9 +384,7 @@ def _check_time(raw: Raw) -> None:
         raise refuse(raw.path, message, raw.rows[index], "t_s")
     if (apart := np.diff(t) > GAP).any():
         index = int(np.argmax(apart)) + 1
-        message = (
-            f"{t[index] - t[index - 1]:g} s after the row before, at most {GAP:g} s are allowed; is it in seconds?"
-        )
+        message = f"{t[index] - t[index - 1]:g} s after the row before, at most {GAP:g} s are allowed; is it in seconds?"
         raise refuse(raw.path, message, raw.rows[index], "t_s")
 
 
@@ -361,7 +409,11 @@ def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None
 def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str]]:
     """The signals, headings unwrapped, and the names of columns a diagnosis has no use for."""
     ignored = [n for n in raw.columns if n not in needed and not OWN.match(n)]
-    names = [n for n in raw.columns if n != "t_s" and n not in raw.text and (n not in ignored or unit_of(n))]
+    names = [
+        n
+        for n in raw.columns
+        if n != "t_s" and n not in raw.text and (n not in ignored or unit_of(n))
+    ]
     signals = {name: raw.columns[name] for name in names}
     for name in names:
         if name == "psi_rad" or name.endswith("_psi_rad"):

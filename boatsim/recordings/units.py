@@ -9,10 +9,14 @@ from numpy.typing import NDArray
 from boatsim.physics.base import Array
 
 DEGREES = 180.0 / math.pi
-NEAR = 1.5  # factor by which a ratio may miss what it is taken for: sensors lag, drift and are scaled
+NEAR = (
+    1.5  # factor by which a ratio may miss what it is taken for: sensors lag, drift and are scaled
+)
 FASTEST = 4.0  # [rad/s] sustained turning no vessel here reaches; 4 deg/s is a gentle turn of a small boat
 NOISIEST = 0.15  # [rad] 8.6 degrees: compasses and cameras are ten times better; 0.15 degrees is a good one
-STEEPEST = 1.0  # [rad] hulls here stay below 57 degrees of roll; any roll worth recording passes 1 degree
+STEEPEST = (
+    1.0  # [rad] hulls here stay below 57 degrees of roll; any roll worth recording passes 1 degree
+)
 FEWEST = 4  # rows that time runs through
 ALIKE = 0.8  # correlation from which two series are taken to show the same motion
 
@@ -22,7 +26,9 @@ def in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
 
     Rows at which time stands still or runs back say nothing.
     """
-    forward = np.flatnonzero(np.append(True, columns["t_s"][1:] > np.maximum.accumulate(columns["t_s"])[:-1]))
+    forward = np.flatnonzero(
+        np.append(True, columns["t_s"][1:] > np.maximum.accumulate(columns["t_s"])[:-1])
+    )
     if len(forward) < FEWEST:
         return {}
     found = _in_degrees({name: values[forward] for name, values in columns.items()})
@@ -44,7 +50,9 @@ def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
     return {name: index for name, index in suspects.items() if index is not None}
 
 
-def _measured(columns: Mapping[str, Array], name: str) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
+def _measured(
+    columns: Mapping[str, Array], name: str
+) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
     """The rows in which a column is measured: their numbers, times, its values, and those of what is full there."""
     rows = np.flatnonzero(np.isfinite(columns[name]))
     there = {n: v[rows] for n, v in columns.items()}
@@ -67,11 +75,17 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
         return largest
     if "r_radps" in signals:
         turned = _turned(t, signals["r_radps"])
-        if _near(_ratio(turned, psi), DEGREES):  # as written: fast turning in degrees can not be told from wraps
+        if _near(
+            _ratio(turned, psi), DEGREES
+        ):  # as written: fast turning in degrees can not be told from wraps
             return largest
         if _near(_ratio(turned, np.unwrap(psi)), 1.0):
             return None
-    if "x_m" in signals and "y_m" in signals and _follows_course(t, psi, signals["x_m"], signals["y_m"]):
+    if (
+        "x_m" in signals
+        and "y_m" in signals
+        and _follows_course(t, psi, signals["x_m"], signals["y_m"])
+    ):
         return largest
     return largest if _scatter(steps) > NOISIEST or _fastest(t, psi) > FASTEST else None
 
@@ -122,7 +136,9 @@ def _follows_course(t: Array, psi: Array, x: Array, y: Array) -> bool:
     rows = _rows_in(t, 1.0)
     dx, dy = x[rows:] - x[:-rows], y[rows:] - y[:-rows]
     course, bow = np.arctan2(dy, dx), psi[rows // 2 : rows // 2 + len(dx)]
-    degrees, radians = (float(np.median(np.abs(_wrapped(course - a)))) for a in (bow / DEGREES, bow))
+    degrees, radians = (
+        float(np.median(np.abs(_wrapped(course - a)))) for a in (bow / DEGREES, bow)
+    )
     return degrees < 0.3 and radians > 0.6 and float(np.ptp(bow)) > 0.5 * DEGREES
 
 

@@ -24,9 +24,12 @@ Boats: TypeAlias = NDArray[np.int64]  # numbers of boats
 BODY = {  # numbers of the rigid body, and where they stand in `Program.body`
     f"body.{name}": (place, Param(1e-9, 1e18, unit, f"{name.replace('_', ' ')} of the rigid body"))
     for place, name, unit in (
-        (0, "mass", "kg"), (3, "roll_inertia", "kg m^2"), (4, "pitch_inertia", "kg m^2"), (5, "yaw_inertia", "kg m^2"),
+        (0, "mass", "kg"),
+        (3, "roll_inertia", "kg m^2"),
+        (4, "pitch_inertia", "kg m^2"),
+        (5, "yaw_inertia", "kg m^2"),
     )
-}  # fmt: skip
+}
 TURN = 256  # boats that a thread steps in one go: what they need then stays in its core's cache
 
 
@@ -52,7 +55,9 @@ class Batch:
         self.vessels = [vessels] if isinstance(vessels, Vessel) else list(vessels)
         self.n = len(self.vessels) if n is None else n
         if not self.vessels or self.n < 1:
-            raise BadInput(f"a batch of {self.n} boats of {len(self.vessels)} vessels; allowed is at least one of each")
+            raise BadInput(
+                f"a batch of {self.n} boats of {len(self.vessels)} vessels; allowed is at least one of each"
+            )
         if not step > 0.0:
             raise BadInput(f"step = {step:g} s; allowed is more than 0")
         self.step, self.threads = step, threads or len(os.sched_getaffinity(0))
@@ -81,7 +86,17 @@ class Batch:
     @property
     def bytes_per_boat(self) -> int:
         """Memory that a boat takes, whatever their number."""
-        held = (self.t, self._y, self._commands, self._memory, self._act, self._p, self._body, self._k, self._seeds)
+        held = (
+            self.t,
+            self._y,
+            self._commands,
+            self._memory,
+            self._act,
+            self._p,
+            self._body,
+            self._k,
+            self._seeds,
+        )
         return sum(a.nbytes for a in held) // self.n
 
     @property
@@ -116,16 +131,21 @@ class Batch:
         Default: at rest at the origin, commands neutral. Raises BadInput.
         """
         chosen = self._chosen(boats)
-        self._y[chosen] = 0.0 if states is None else self.program.joint_rates(self._rows(states, chosen))
+        self._y[chosen] = (
+            0.0 if states is None else self.program.joint_rates(self._rows(states, chosen))
+        )
         self._commands[chosen] = self._taken(commands if commands is not None else {}, chosen)
         self.t[chosen] = 0.0
         self.shared(
             lambda some: self.code.settle_boats(
                 some, self._commands, self._memory, self._p, self._on, self._act
-            ), chosen,
-        )  # fmt: skip
+            ),
+            chosen,
+        )
 
-    def advance(self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1) -> None:
+    def advance(
+        self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1
+    ) -> None:
         """Steps of all boats with the commands held: (n, C), (C,) or by name; None: those in force.
 
         Commands act within their channels' ranges; (..., C) without what is measured keeps that as it is.
@@ -145,7 +165,9 @@ class Batch:
         given = self._each(parameter, np.asarray(values, dtype=float), chosen)
         if not ((given >= about.low) & (given <= about.high)).all():
             wrong = given[~((given >= about.low) & (given <= about.high))][0]
-            raise BadInput(f"{parameter} = {wrong:g}; allowed {about.low:g} to {about.high:g} {about.unit}".rstrip())
+            raise BadInput(
+                f"{parameter} = {wrong:g}; allowed {about.low:g} to {about.high:g} {about.unit}".rstrip()
+            )
         rows[chosen, place] = given
         self._weigh(chosen)
 
@@ -161,7 +183,9 @@ class Batch:
         """
         chosen = self._chosen(boats)
         numbers = self._each("vessel", np.asarray(vessel, dtype=int), chosen)
-        if strange := [number for number in np.unique(numbers) if not 0 <= number < len(self.vessels)]:
+        if strange := [
+            number for number in np.unique(numbers) if not 0 <= number < len(self.vessels)
+        ]:
             raise BadInput(f"vessel {strange[0]}; allowed 0 to {len(self.vessels) - 1}")
         for number in np.unique(numbers):
             program, some = self.programs[number], chosen[numbers == number]
@@ -179,9 +203,19 @@ class Batch:
 
     def _stepped(self, boats: Boats, steps: int) -> None:
         self.code.advance_boats(
-            boats, self.t, self._y, self._commands, self._memory, self._act, self.step, steps, self._p, self._on,
-            self._k, self._none,
-        )  # fmt: skip
+            boats,
+            self.t,
+            self._y,
+            self._commands,
+            self._memory,
+            self._act,
+            self.step,
+            steps,
+            self._p,
+            self._on,
+            self._k,
+            self._none,
+        )
 
     def _weigh(self, boats: Boats) -> None:
         self.code.weigh_boats(boats, self._body, self._p, self._on, self._k)
@@ -210,9 +244,13 @@ class Batch:
         if boats is None:
             return np.arange(self.n)
         given = np.asarray(boats)
-        chosen = np.flatnonzero(given) if given.dtype == bool else np.atleast_1d(given).astype(np.int64)
+        chosen = (
+            np.flatnonzero(given) if given.dtype == bool else np.atleast_1d(given).astype(np.int64)
+        )
         if len(chosen) and not (0 <= chosen.min() and chosen.max() < self.n):
-            raise BadInput(f"boat {chosen.max() if chosen.min() >= 0 else chosen.min()}; allowed 0 to {self.n - 1}")
+            raise BadInput(
+                f"boat {chosen.max() if chosen.min() >= 0 else chosen.min()}; allowed 0 to {self.n - 1}"
+            )
         return chosen
 
     @staticmethod
@@ -227,8 +265,13 @@ class Batch:
     def _rows(self, states: ArrayLike, boats: Boats) -> Array:
         """A state a boat. Raises BadInput."""
         given = np.asarray(states, dtype=float)
-        if given.shape not in ((self._y.shape[1],), (len(boats), self._y.shape[1])) or not np.isfinite(given).all():
-            raise BadInput(f"states of shape {given.shape}; allowed are {self._y.shape[1]} finite numbers a boat")
+        if (
+            given.shape not in ((self._y.shape[1],), (len(boats), self._y.shape[1]))
+            or not np.isfinite(given).all()
+        ):
+            raise BadInput(
+                f"states of shape {given.shape}; allowed are {self._y.shape[1]} finite numbers a boat"
+            )
         return np.broadcast_to(given, (len(boats), self._y.shape[1]))
 
     def _taken(self, commands: ArrayLike | Mapping[str, float], boats: Boats) -> Array:
@@ -239,7 +282,9 @@ class Batch:
         given, width = np.asarray(commands, dtype=float), len(boat.commands)
         fits = given.shape[:-1] in ((), (1,), boats.shape)
         if not (given.ndim and fits and given.shape[-1] in (width, len(boat.inputs))):
-            raise BadInput(f"commands of shape {given.shape}; allowed are {width} a boat: {', '.join(boat.commands)}")
+            raise BadInput(
+                f"commands of shape {given.shape}; allowed are {width} a boat: {', '.join(boat.commands)}"
+            )
         rows = self._commands[boats]
         rows[:, : given.shape[-1]] = given
         return taken(boat, rows)

@@ -33,16 +33,24 @@ class Camera(Checked):
     """
 
     rate: float = param(6.0, low=0.1, high=240.0, unit="Hz", words="frames evaluated per second")
-    mark_sd: float = param(0.002, low=0.0, high=0.1, unit="m", words="marking noise per coordinate and mark")
-    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # [m] ahead and to starboard of the CG
+    mark_sd: float = param(
+        0.002, low=0.0, high=0.1, unit="m", words="marking noise per coordinate and mark"
+    )
+    marks: Mapping[str, tuple[float, float]] = field(
+        default_factory=dict
+    )  # [m] ahead and to starboard of the CG
 
     def __post_init__(self) -> None:
         super().__post_init__()
         for name, place in self.marks.items():
             if not _is_place(place):
-                raise BadInput(f"Camera.marks.{name} = {place!r}; allowed are two numbers, m ahead and to starboard")
+                raise BadInput(
+                    f"Camera.marks.{name} = {place!r}; allowed are two numbers, m ahead and to starboard"
+                )
         if len({tuple(place) for place in self.marks.values()}) < 2:
-            raise BadInput(f"Camera.marks = {dict(self.marks)}; a heading needs two marks in different places")
+            raise BadInput(
+                f"Camera.marks = {dict(self.marks)}; a heading needs two marks in different places"
+            )
 
     @cached_property
     def places(self) -> Array:
@@ -59,7 +67,11 @@ class Camera(Checked):
     def seen(self, place: Array, psi: Array, noise: Array) -> Array:
         """(..., M) marks of a boat at `place` (...) on heading `psi` (...); `noise` (..., 2 M) is standard normal."""
         shaken = self.mark_sd * (noise[..., 0::2] + 1j * noise[..., 1::2])
-        return np.asarray(np.asarray(place)[..., None] + np.exp(1j * np.asarray(psi))[..., None] * self.places + shaken)
+        return np.asarray(
+            np.asarray(place)[..., None]
+            + np.exp(1j * np.asarray(psi))[..., None] * self.places
+            + shaken
+        )
 
     def pose(self, seen: Array) -> tuple[Array, Array]:
         """Place (...) [m] of the CG and heading (...) [rad] of marks seen (..., M)."""
@@ -75,7 +87,9 @@ class Camera(Checked):
         """One frame of a boat at a true pose; `noise` holds two standard normal numbers a mark."""
         marks = self.seen(np.asarray(complex(pose[0], pose[1])), np.asarray(pose[2]), noise)
         place, psi = self.pose(marks)
-        return Frame(t, place.real.item(), place.imag.item(), psi.item(), tuple(marks.view(float).tolist()))
+        return Frame(
+            t, place.real.item(), place.imag.item(), psi.item(), tuple(marks.view(float).tolist())
+        )
 
     def due(self, number: int, t: float) -> bool:
         """Whether frame `number` has been taken by the time t [s]."""
@@ -89,7 +103,9 @@ class Camera(Checked):
         while self.due(number, t1):
             w = 1.0 if t1 == t0 else min(max((number / self.rate - t0) / (t1 - t0), 0.0), 1.0)
             x, y, psi = (a + w * (b - a) for a, b in zip(before, after, strict=True))
-            yield self.shoot(number / self.rate, (x, y, psi), rng.standard_normal(2 * len(self.marks)))
+            yield self.shoot(
+                number / self.rate, (x, y, psi), rng.standard_normal(2 * len(self.marks))
+            )
             number += 1
 
 
@@ -100,7 +116,9 @@ def camera_over(vessel: Vessel, settings: Mapping[str, object]) -> Camera:
     """
     given = settings.get("marks", {})
     if not isinstance(given, Mapping):
-        raise BadInput(f"Camera.marks = {given!r}; allowed is a table: name = [m ahead, m to starboard]")
+        raise BadInput(
+            f"Camera.marks = {given!r}; allowed is a table: name = [m ahead, m to starboard]"
+        )
     ends = {"bow": (0.5 * vessel.length, 0.0), "stern": (-0.5 * vessel.length, 0.0)}
     return Camera.from_settings({**settings, "marks": {**vessel.marks, **given} or ends})
 

@@ -21,7 +21,12 @@ from boatsim.physics import trust
 from boatsim.physics.content import find, known, root, whole
 
 NAME = re.compile(r"[\w.+-]+")
-OTHERS = ("vessel.toml", "patched.toml", "recording.toml", "pins.toml")  # files of a folder that are no scenarios
+OTHERS = (
+    "vessel.toml",
+    "patched.toml",
+    "recording.toml",
+    "pins.toml",
+)  # files of a folder that are no scenarios
 
 
 @dataclass(frozen=True)
@@ -62,7 +67,9 @@ def meant(given: str) -> list[str]:
     """The scenarios that a word on the command line stands for: a name, a folder, a pattern, or a file's cases."""
     shipped = known("scenario")
     if not given:
-        raise BadInput(f"the name of a scenario is empty; {unknown_name('scenario', given, shipped)}")
+        raise BadInput(
+            f"the name of a scenario is empty; {unknown_name('scenario', given, shipped)}"
+        )
     if given in shipped:
         return [given]
     inside = [n for n in shipped if n.startswith(f"{given.rstrip('/')}/")]
@@ -99,9 +106,13 @@ def cases(path: Path) -> list[str]:
     for number, case in enumerate(there, 1):
         name = case.get("name")
         if not isinstance(name, str) or not NAME.fullmatch(name):
-            raise BadInput(f"{path.name}: [[case]] {number}: name = {name!r}; allowed are letters, digits and _ . + -")
+            raise BadInput(
+                f"{path.name}: [[case]] {number}: name = {name!r}; allowed are letters, digits and _ . + -"
+            )
         if name in found:
-            raise BadInput(f"{path.name}: case {name!r} stands there twice; each needs a name of its own")
+            raise BadInput(
+                f"{path.name}: case {name!r} stands there twice; each needs a name of its own"
+            )
         found.append(name)
     return found
 
@@ -120,7 +131,9 @@ def located(given: str, beside: Path | None = None) -> Place:
         return Place(path)
     own = given.rpartition("/")[2]
     if given.endswith(".toml") or own not in there:
-        raise BadInput(f"{path.name} holds several cases; say which: {', '.join(f'{path.name}:{c}' for c in there)}")
+        raise BadInput(
+            f"{path.name} holds several cases; say which: {', '.join(f'{path.name}:{c}' for c in there)}"
+        )
     return Place(path, own)
 
 
@@ -140,8 +153,12 @@ def _told(place: Place, above: Sequence[Place]) -> dict[str, Value]:
     if place in above:
         way = " -> ".join(p.case or p.path.name for p in [*above[above.index(place) :], place])
         raise BadInput(f"{above[0].label}: base leads back to where it came from: {way}")
-    file = {key: _at_home(value, place.path.parent, key) for key, value in read_toml(place.path).items()}
-    own: dict[str, Value] = next((case for case in tables(file.pop("case", [])) if case["name"] == place.case), {})
+    file = {
+        key: _at_home(value, place.path.parent, key) for key, value in read_toml(place.path).items()
+    }
+    own: dict[str, Value] = next(
+        (case for case in tables(file.pop("case", [])) if case["name"] == place.case), {}
+    )
     layers = [own] if "base" in own else [file, own]
     given = layers[0].get("base")
     said: dict[str, Value] = {} if given is None else _told(_base(given, place), [*above, place])

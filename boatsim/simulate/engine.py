@@ -16,7 +16,7 @@ from boatsim.errors import BadPhysics
 from boatsim.physics.kernel.equations import COORDINATES, SIGN
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate import native, world
+from boatsim.simulate import native_callback, world
 from boatsim.simulate.stepper import State, Stepper
 from boatsim.simulate.world import Tank
 
@@ -57,8 +57,12 @@ class Engine(Stepper):
             self.data = mujoco.MjData(self.model)
         joints = [self.model.joint(i).name for i in range(self.model.njnt)]
         coordinates = [COORDINATES[i] for i in self.code.FREE]
-        self._place = np.array([joints.index(n) for n in coordinates])  # of each coordinate among MuJoCo's joints
-        self._sign = np.array([float(SIGN[n]) for n in coordinates])  # SNAME = sign * z-up, coordinate and rate alike
+        self._place = np.array(
+            [joints.index(n) for n in coordinates]
+        )  # of each coordinate among MuJoCo's joints
+        self._sign = np.array(
+            [float(SIGN[n]) for n in coordinates]
+        )  # SNAME = sign * z-up, coordinate and rate alike
         self._held = self.data.userdata[-self.program.held_size - 2 :]
         self.callback = self._choose(callback, size)
         self.reset()
@@ -114,7 +118,9 @@ class Engine(Stepper):
         return float(ahead), float(aside)
 
     def _write_userdata(self) -> None:
-        self.data.userdata[:] = np.concatenate([self._values, self._k, self._act, [self.data.time, 1.0 / self.step]])
+        self.data.userdata[:] = np.concatenate(
+            [self._values, self._k, self._act, [self.data.time, 1.0 / self.step]]
+        )
 
     def _choose(self, wanted: str, size: int) -> object:
         """The native callback if it gives the numbers of the Python one, which is in any case there."""
@@ -122,8 +128,8 @@ class Engine(Stepper):
         if wanted == "python":
             return plain
         try:
-            native.make_symbols_known()
-            fast = self.code.make_native(native.layout(), size)
+            native_callback.make_symbols_known()
+            fast = self.code.make_native(native_callback.layout(), size)
         except (BadPhysics, OSError, IndexError):
             return plain
         return fast.ctypes if self._agree(fast.ctypes, plain) else plain
@@ -146,7 +152,9 @@ def python_callback(code: ModuleType, size: int) -> Callable[[mujoco.MjModel, mu
 
     def passive(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         if model.nuserdata == size:
-            code.passive_in_place(data.time, data.qpos, data.qvel, data.userdata, data.qfrc_passive, data.M)
+            code.passive_in_place(
+                data.time, data.qpos, data.qvel, data.userdata, data.qfrc_passive, data.M
+            )
             mujoco.mj_factorM(model, data)
 
     return passive

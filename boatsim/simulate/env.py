@@ -34,7 +34,10 @@ def _choose_renderer() -> None:
         try:
             import_module("dm_control.mujoco")
             return
-        except (ImportError, AttributeError):  # PyOpenGL raises the latter where the library is not there
+        except (
+            ImportError,
+            AttributeError,
+        ):  # PyOpenGL raises the latter where the library is not there
             os.environ.pop("PYOPENGL_PLATFORM", None)
 
 
@@ -43,7 +46,11 @@ from dm_control.mujoco import Physics, wrapper  # noqa: E402
 from dm_control.rl import control  # noqa: E402
 from dm_env import specs  # noqa: E402
 
-OUTBOARDS = {-1: "outboard_port", 0: "outboard", 1: "outboard_starboard"}  # side of a steering channel -> body drawn
+OUTBOARDS = {
+    -1: "outboard_port",
+    0: "outboard",
+    1: "outboard_starboard",
+}  # side of a steering channel -> body drawn
 
 
 class BoatPhysics(Physics):
@@ -67,7 +74,9 @@ class BoatPhysics(Physics):
         with self.check_invalid_state():
             self.engine.advance(nstep)
             self._turn_outboards()
-            if self.legacy_step:  # positions and contacts of the state just reached, for cameras and observations
+            if (
+                self.legacy_step
+            ):  # positions and contacts of the state just reached, for cameras and observations
                 with installed(self.engine.callback):
                     mujoco.mj_step1(self.engine.model, self.engine.data)
 
@@ -81,7 +90,9 @@ class BoatPhysics(Physics):
     def reset(self, keyframe_id: int | None = None) -> None:
         """Put the boat at the origin, at rest. A boat has no keyframes: raises ValueError for one."""
         if keyframe_id is not None:
-            raise ValueError(f"keyframe {keyframe_id}: a boat has none; set `engine.reset(state)` in reset_context()")
+            raise ValueError(
+                f"keyframe {keyframe_id}: a boat has none; set `engine.reset(state)` in reset_context()"
+            )
         self.engine.reset()
         self.forward()
 
@@ -89,7 +100,9 @@ class BoatPhysics(Physics):
         """Send commands (C,), in the vessel's order; they act within their ranges. Raises BadInput for others."""
         values, names = np.asarray(control, dtype=float), self.engine.vessel.commands
         if values.shape != (len(names),) or not np.isfinite(values).all():
-            raise BadInput(f"action {values.tolist()}; allowed are {len(names)} finite numbers: {', '.join(names)}")
+            raise BadInput(
+                f"action {values.tolist()}; allowed are {len(names)} finite numbers: {', '.join(names)}"
+            )
         self.engine.command(dict(zip(names, values.tolist(), strict=True)))
 
     def control(self) -> Array:
@@ -154,7 +167,9 @@ class BoatTask(control.Task):
         x, y, psi = self._random.uniform(-self.scatter, self.scatter, 3) * (length, length, 1.0)
         scattered = {"x": start.x + x, "y": start.y + y, "psi": start.psi + psi}
         state = State(**{**start.motion(), **scattered})
-        physics.engine.reset(state, {**self.scenario.controller.initial_commands(), **start.commands})
+        physics.engine.reset(
+            state, {**self.scenario.controller.initial_commands(), **start.commands}
+        )
 
     def before_step(self, action: ArrayLike, physics: BoatPhysics) -> None:
         """Send the action to the actuators, which follow with their lags and limits."""
@@ -163,13 +178,17 @@ class BoatTask(control.Task):
     def action_spec(self, physics: BoatPhysics) -> specs.BoundedArray:
         """(C,) command channels between their limits; the name lists them, separated by tabs."""
         taken = self.scenario.vessel.commands
-        low, high = np.array([(c.low, c.high) for c in taken.values()], dtype=float).reshape(-1, 2).T
+        low, high = (
+            np.array([(c.low, c.high) for c in taken.values()], dtype=float).reshape(-1, 2).T
+        )
         return specs.BoundedArray(low.shape, float, low, high, name="\t".join(taken))
 
     def get_observation(self, physics: BoatPhysics) -> OrderedDict[str, np.float64]:
         """True pose in start axes and velocities in body axes, actual actuators, goal; units are in the names."""
         state, actual, goal = physics.engine.state, physics.engine.actuators, self._goal(physics)
-        values = {s.column: getattr(state, s.symbol) for s in signals_of(self.scenario.vessel.freedoms)}
+        values = {
+            s.column: getattr(state, s.symbol) for s in signals_of(self.scenario.vessel.freedoms)
+        }
         values |= {f"actual_{name}": value for name, value in actual.items()}
         values |= {f"goal_{name}": value for name, value in zip(STICK, goal, strict=True)}
         return OrderedDict((name, np.float64(value)) for name, value in values.items())
@@ -200,9 +219,13 @@ def load(
     one = scenarios.load(scenario) if isinstance(scenario, str) else scenario
     file, period = one.file, one.controller.period
     if not {"surge", "sway", "yaw"} <= set(one.vessel.freedoms):
-        raise BadInput(f"{one.name}: {one.vessel.name} is not free in surge, sway and yaw, as an environment must be")
+        raise BadInput(
+            f"{one.name}: {one.vessel.name} is not free in surge, sway and yaw, as an environment must be"
+        )
     if abs(period / file.step - round(period / file.step)) > 1e-6 or period < file.step:
-        raise BadInput(f"{one.name}: period {period:g} s is not a whole number of steps of {file.step:g} s")
+        raise BadInput(
+            f"{one.name}: period {period:g} s is not a whole number of steps of {file.step:g} s"
+        )
     tank = Tank(**file.tank.model_dump()) if file.tank else None
     return control.Environment(
         BoatPhysics(Engine(one.vessel, tank, file.step)),

@@ -18,8 +18,8 @@ from boatsim.physics.commands import sent_row
 from boatsim.physics.signals import Array, signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate.batch import Batch
+from boatsim.simulate.fleet_control import Aboard, ByFunction, ByLaw, PassedOn, Vectorised
 from boatsim.simulate.scenario import Scenario
-from boatsim.simulate.steering import Aboard, ByFunction, ByLaw, PassedOn, Vectorised
 
 AHEAD = 64  # periods for which noise is drawn at a time
 
@@ -63,16 +63,24 @@ class Fleet:
         file = scenario.file
         boats = scenario.vessel if vessels is None else vessels
         count = n if n is not None else 1 if isinstance(boats, Vessel) else len(boats)
-        self.seeds = np.arange(file.seed, file.seed + count) if seeds is None else np.asarray(seeds, dtype=int)
+        self.seeds = (
+            np.arange(file.seed, file.seed + count)
+            if seeds is None
+            else np.asarray(seeds, dtype=int)
+        )
         if len(self.seeds) != count:
             raise BadInput(f"{len(self.seeds)} seeds for {count} boats; allowed is one for each")
         if scenario.lets_go:
-            raise BadInput(f"{scenario.name}: a goal says off; boats of a fleet are steered all the time")
+            raise BadInput(
+                f"{scenario.name}: a goal says off; boats of a fleet are steered all the time"
+            )
         self.scenario = scenario
         self.batch = Batch(boats, count, file.step, threads=threads, seeds=self.seeds.tolist())
         given = scenario.controller if controller is None else controller
         self._each = list(given) if isinstance(given, Sequence) else [given]
-        self._period = next((c.period for c in self._each if isinstance(c, Controller)), scenario.controller.period)
+        self._period = next(
+            (c.period for c in self._each if isinstance(c, Controller)), scenario.controller.period
+        )
         self._steps = round(self._period / file.step)
         if abs(self._steps * file.step - self._period) > 1e-9:
             raise BadInput(
@@ -85,13 +93,18 @@ class Fleet:
 
     def reset(self, starts: ArrayLike | None = None) -> None:
         """Back to the scenario's start, or to states (2 NQ,) or (n, 2 NQ), all noise from its beginning."""
-        start, symbols = self.scenario.file.start, [s.symbol for s in signals_of(self.batch.vessels[0].freedoms)]
+        start, symbols = (
+            self.scenario.file.start,
+            [s.symbol for s in signals_of(self.batch.vessels[0].freedoms)],
+        )
         moving = start.motion()
         first = self._each[0].initial_commands() if isinstance(self._each[0], Controller) else {}
         commands = sent_row(self.batch.vessels[0], {**first, **start.commands})
         self.batch.reset([moving[s] for s in symbols] if starts is None else starts, commands)
         self._aboard.saturated[:] = 0.0
-        self._aboard.random = [np.random.default_rng(np.random.SeedSequence(int(s)).spawn(1)[0]) for s in self.seeds]
+        self._aboard.random = [
+            np.random.default_rng(np.random.SeedSequence(int(s)).spawn(1)[0]) for s in self.seeds
+        ]
         self._periods = 0
         self._controlled.reset()
 
@@ -111,7 +124,11 @@ class Fleet:
         for i, periods in enumerate(at):
             if i:
                 self._sail(periods - at[i - 1])
-            t[i], states[i], commands[i] = self._periods * self._period, self.batch.states, self.batch._commands
+            t[i], states[i], commands[i] = (
+                self._periods * self._period,
+                self.batch.states,
+                self.batch._commands,
+            )
         named = tuple(s.column for s in signals_of(boat.freedoms))
         return Voyages(t, named, states, boat.inputs, commands)
 

@@ -29,7 +29,11 @@ def limits(manoeuvre: str, angle: float, length: float, speed: float) -> dict[st
         return {"advance": ADVANCE, "tactical_diameter": TACTICAL_DIAMETER}
     if manoeuvre == "zigzag" and abs(angle) == 10.0:
         first, second = first_overshoot_10(length, speed), second_overshoot_10(length, speed)
-        return {"track_to_reversal": TRACK_TO_10, "first_overshoot": first, "second_overshoot": second}
+        return {
+            "track_to_reversal": TRACK_TO_10,
+            "first_overshoot": first,
+            "second_overshoot": second,
+        }
     if manoeuvre == "zigzag" and abs(angle) == 20.0:
         return {"first_overshoot": OVERSHOOT_20}
     return {"track_reach": TRACK_REACH} if manoeuvre == "crash_stop" else {}

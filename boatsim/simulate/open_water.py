@@ -20,7 +20,11 @@ class OpenWater(Stepper):
         """`step` is the integration step in s."""
         super().__init__(vessel, step)
         self.batch = Batch(vessel, 1, step, threads=1)
-        self._commands, self._memory, self._act = self.batch._commands[0], self.batch._memory[0], self.batch._act[0]
+        self._commands, self._memory, self._act = (
+            self.batch._commands[0],
+            self.batch._memory[0],
+            self.batch._act[0],
+        )
         self._y, self._k, self._none = self.batch._y[0], self.batch._k[0], np.zeros(self.code.NQ)
         self._felt = np.zeros((1, len(FELT)))
         self.reset()
@@ -47,7 +51,9 @@ class OpenWater(Stepper):
         return np.asarray(self._y)
 
     def _step(self, dt: float) -> None:
-        self.code.step_in_place(self.t, self._y, dt, self._act, self._values, self._on, self._k, self._none)
+        self.code.step_in_place(
+            self.t, self._y, dt, self._act, self._values, self._on, self._k, self._none
+        )
         self.batch.t[0] += dt
 
     def acceleration(self) -> tuple[float, float]:

@@ -22,10 +22,10 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import NoSignal, Notes, Recording
 from boatsim.simulate.camera import Frame
 from boatsim.simulate.engine import Engine, State
-from boatsim.simulate.leap import Leap
-from boatsim.simulate.log import FiledLog, Log
+from boatsim.simulate.multi_period_step import Leap
 from boatsim.simulate.open_water import OpenWater
-from boatsim.simulate.pace import Pace
+from boatsim.simulate.real_time_pace import Pace
+from boatsim.simulate.run_log import FiledLog, Log
 from boatsim.simulate.scenario import OFF, Scenario
 from boatsim.simulate.sensing import sensed
 from boatsim.simulate.world import Tank
@@ -51,7 +51,9 @@ class Run:
     camera: Recording
     complete: bool
     steps: int = 0  # of physics
-    saturated: Mapping[str, int] = field(default_factory=dict)  # channel -> steps in which more was sent than it takes
+    saturated: Mapping[str, int] = field(
+        default_factory=dict
+    )  # channel -> steps in which more was sent than it takes
 
 
 class Runner:
@@ -60,7 +62,9 @@ class Runner:
     The log lies in memory, or where `folder` says in a file there, and then a run may be of any length.
     """
 
-    def __init__(self, scenario: Scenario, seed: int | None = None, listen: Listener | None = None) -> None:
+    def __init__(
+        self, scenario: Scenario, seed: int | None = None, listen: Listener | None = None
+    ) -> None:
         """Build the engine; raises BadInput or BadPhysics."""
         file = scenario.file
         self.scenario, self.listen = scenario, listen
@@ -68,10 +72,16 @@ class Runner:
         self.folder: Path | None = None
         self.pace: Pace | None = None  # somebody watches: then the listeners get rows more often
         self.often = LIVE  # [s] how often, then
-        self.goal_at: Callable[[float], Mapping[str, float]] = scenario.goal_at  # or what somebody's hands ask for
-        self.enough: Callable[[], bool] = bool  # whether they have had enough: the run is over, and whole
+        self.goal_at: Callable[[float], Mapping[str, float]] = (
+            scenario.goal_at
+        )  # or what somebody's hands ask for
+        self.enough: Callable[[], bool] = (
+            bool  # whether they have had enough: the run is over, and whole
+        )
         self.seed = file.seed if seed is None else seed
-        vessel = replace(scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects))
+        vessel = replace(
+            scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects)
+        )
         self.engine = stepper(scenario, vessel)
         self._marks = [f"camera_{mark}_{axis}_m" for mark in scenario.camera.marks for axis in "xy"]
         seeds = np.random.SeedSequence(self.seed).spawn(2 + len(scenario.aboard))
@@ -79,11 +89,17 @@ class Runner:
         self._signals = signals_of(vessel.freedoms)
         self._axes = [axis in vessel.freedoms for axis in AXES]
         self._motion_of = attrgetter(*(signal.symbol for signal in self._signals))
-        self._read = {name: column for sensor in scenario.aboard for name, column in type(sensor).columns.items()}
+        self._read = {
+            name: column
+            for sensor in scenario.aboard
+            for name, column in type(sensor).columns.items()
+        }
         self._sent_channels = list(type(scenario.controller).commands or vessel.commands)
         self._sent_places = [list(vessel.commands).index(name) for name in self._sent_channels]
         self._actuators = vessel.actuators
-        self._goals = [key for key in scenario.goal_keys if key not in vessel.commands]  # those are in `sent_` columns
+        self._goals = [
+            key for key in scenario.goal_keys if key not in vessel.commands
+        ]  # those are in `sent_` columns
         self._around = {n: m.neutral for n, m in vessel.measured.items()}
         self._winds = [e for e in vessel.effects if isinstance(e, Force) and type(e).of_air]
         self._sent: dict[str, float] = {}  # by the controller; what acts of it is the engine's
@@ -99,7 +115,9 @@ class Runner:
         self._shown = self._watched = 0  # rows the listeners have
         self._told = monotonic()  # when they last had any
 
-    def run(self, progress: Callable[[float], None] | None = None, stop: Callable[[], bool] = bool) -> Run:
+    def run(
+        self, progress: Callable[[float], None] | None = None, stop: Callable[[], bool] = bool
+    ) -> Run:
         """Run to the end, or to an interruption, which keeps what was logged; `stop` is asked every step for one.
 
         `progress` gets the time reached [s].
@@ -109,7 +127,9 @@ class Runner:
         self._check_measured()
         try:
             while not (complete := self._finished()) and not stop():
-                if self.pace:  # before the step: what is sensed and asked for at its end is that of its time
+                if (
+                    self.pace
+                ):  # before the step: what is sensed and asked for at its end is that of its time
                     self.pace.wait(self._state.t + self.engine.step, stop)
                 elif self._leaping:
                     self._leap(self._leaping)
@@ -127,7 +147,9 @@ class Runner:
         notes = self.notes()
         name = self.scenario.name.replace("/", "_")
         log, film = self.log.recording(name, notes), self._film.recording("camera", notes)
-        return Run(self.scenario, self.seed, log, film, complete, self._steps, dict(self._saturated))
+        return Run(
+            self.scenario, self.seed, log, film, complete, self._steps, dict(self._saturated)
+        )
 
     def _start(self) -> None:
         start = self.scenario.file.start
@@ -135,7 +157,10 @@ class Runner:
         self._state = state
         with self._asked() as controller:
             controller.reset()
-            self._send({**controller.initial_commands(), **start.commands}, lambda sent: self.engine.reset(state, sent))
+            self._send(
+                {**controller.initial_commands(), **start.commands},
+                lambda sent: self.engine.reset(state, sent),
+            )
         self._leaping = Leap.possible(self.scenario, self.engine, self._imu)
         # the log's columns are known once the controller has stepped: which estimates it has
         self._control()
@@ -147,7 +172,9 @@ class Runner:
         self._film = self._table(
             ["t_s", *SEEN, *self._marks, *self._sent_channels], duration * self.scenario.camera.rate
         )
-        self._average: list[tuple[list[float], float]] = []  # commands in force, and for how long [s]
+        self._average: list[
+            tuple[list[float], float]
+        ] = []  # commands in force, and for how long [s]
         self._frames = self._shoot(state, state)
         self._write_row()
 
@@ -166,7 +193,9 @@ class Runner:
         if self.scenario.measure is None:
             return
         t = np.linspace(first.t[0], first.t[0] + self.scenario.file.duration, STILL)
-        still = Recording(first.name, t, {n: np.full(STILL, x[0]) for n, x in first.signals.items()})
+        still = Recording(
+            first.name, t, {n: np.full(STILL, x[0]) for n, x in first.signals.items()}
+        )
         try:
             with np.errstate(all="ignore"), catch_warnings():
                 simplefilter("ignore")
@@ -186,12 +215,22 @@ class Runner:
         references = [n for n in self._estimates if n.startswith("reference_")]
         force, wind = ([f"{what}_{c}" for c in self._components()] for what in ("force", "wind"))
         return [
-            "t_s", *(s.column for s in self._signals), *self._sent_channels, *self._around,
-            *(f"sent_{n}" for n in self._sent_channels), *(f"actual_{n}" for n in self._actuators),
-            *(f"sensed_{n}" for n in (*SENSED, *self._read.values())), *self._marks, *(f"camera_{n}" for n in SEEN),
-            *force, *(wind if self._winds else ()), "contacts", *(f"estimate_{n}" for n in limits), *references,
+            "t_s",
+            *(s.column for s in self._signals),
+            *self._sent_channels,
+            *self._around,
+            *(f"sent_{n}" for n in self._sent_channels),
+            *(f"actual_{n}" for n in self._actuators),
+            *(f"sensed_{n}" for n in (*SENSED, *self._read.values())),
+            *self._marks,
+            *(f"camera_{n}" for n in SEEN),
+            *force,
+            *(wind if self._winds else ()),
+            "contacts",
+            *(f"estimate_{n}" for n in limits),
+            *references,
             *(f"goal_{n}" for n in self._goals),
-        ]  # fmt: skip
+        ]
 
     def _components(self) -> list[str]:
         """Force components of the vessel's freedoms."""
@@ -223,7 +262,9 @@ class Runner:
     def _leap(self, leap: Leap) -> None:
         """On to the last step before a row, a frame or the end, if a period has just begun."""
         t = self._state.t
-        due = min(self._row_due, self._frame / self.scenario.camera.rate, self.scenario.file.duration)
+        due = min(
+            self._row_due, self._frame / self.scenario.camera.rate, self.scenario.file.duration
+        )
         periods = leap.periods(t, due)
         if not periods or abs(self._due - t - leap.period) > 1e-9:
             return
@@ -252,9 +293,13 @@ class Runner:
         """Sensors and controller, now."""
         state = self._state
         usual = self.scenario.sensors.feel(
-            state.t, (state.x, state.y, state.psi), (state.u, state.v, state.r), self.engine.acceleration(), self._imu,
+            state.t,
+            (state.x, state.y, state.psi),
+            (state.u, state.v, state.r),
+            self.engine.acceleration(),
+            self._imu,
             (state.phi, state.p),
-        )  # fmt: skip
+        )
         sense = self._sense = sensed(usual, self.scenario.aboard, self.engine, self._noise)
         goal = self.goal_at(state.t)
         with self._asked() as controller:
@@ -282,7 +327,9 @@ class Runner:
             yield self.scenario.controller
         except Exception as error:
             called = f"controller {self.scenario.file.controller['use']} at t = {self._state.t:g} s"
-            raise BadInput(f"{called}: {what_went_wrong(error, self.scenario.controller)}") from error
+            raise BadInput(
+                f"{called}: {what_went_wrong(error, self.scenario.controller)}"
+            ) from error
 
     def _shoot(self, before: State, after: State) -> list[Frame]:
         """Camera frames since the last step. A frame carries the mean command from it to the next one."""
@@ -296,7 +343,7 @@ class Runner:
                 (after.x, after.y, after.psi),
                 self._frame,
                 self._shaking,
-            )  # fmt: skip
+            )
         )
         for f in frames:
             self._close_frame()
@@ -331,9 +378,17 @@ class Runner:
                 *engine.actuators.values(),
                 *FELT_OF(sense),
                 *(sense.more[n] for n in self._read),
-                *((*frames[-1].marks, *frames[-1][1:4]) if frames else [nan] * (len(self._marks) + len(SEEN))),
+                *(
+                    (*frames[-1].marks, *frames[-1][1:4])
+                    if frames
+                    else [nan] * (len(self._marks) + len(SEEN))
+                ),
                 *(f for f, there in zip(engine.wrench(), self._axes, strict=True) if there),
-                *((f for f, there in zip(self._wind(s), self._axes, strict=True) if there) if self._winds else ()),
+                *(
+                    (f for f, there in zip(self._wind(s), self._axes, strict=True) if there)
+                    if self._winds
+                    else ()
+                ),
                 engine.contacts,
                 *(value for name in self._adaptive() for value in estimates[name]),
                 *(estimates[n].value for n in self._estimates if n.startswith("reference_")),
@@ -381,12 +436,17 @@ class Runner:
         c, n = np.cos(file.start.psi), np.sin(file.start.psi)
         starboard = c * (s.y - file.start.y) - n * (s.x - file.start.x)
         out = file.until.starboard is not None and starboard >= file.until.starboard
-        return bool(out or (file.until.turned is not None and abs(s.psi - file.start.psi) >= file.until.turned))
+        return bool(
+            out
+            or (file.until.turned is not None and abs(s.psi - file.start.psi) >= file.until.turned)
+        )
 
     def notes(self) -> Notes:
         """What a diagnosis of this run may know: vessel, load, values set, noise of the camera."""
         file, noise = self.scenario.file, self.scenario.camera.noise()
-        return Notes(vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise)
+        return Notes(
+            vessel=file.vessel, load=tuple(file.load), settings=dict(file.set), noise=noise
+        )
 
 
 def stepper(scenario: Scenario, vessel: Vessel) -> Engine | OpenWater:

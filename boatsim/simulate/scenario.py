@@ -17,11 +17,11 @@ from boatsim.physics import vessel as vessels
 from boatsim.physics.content import load_class
 from boatsim.physics.signals import STATE
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate import following
+from boatsim.simulate import tracking_errors
 from boatsim.simulate.camera import Camera, camera_over
+from boatsim.simulate.camera_log import FilmMeasure
 from boatsim.simulate.cases import Place, content
-from boatsim.simulate.film import FilmMeasure
-from boatsim.simulate.measure import Measure
+from boatsim.simulate.metric import Measure
 from boatsim.simulate.sensing import Sensor, Sensors
 
 T = TypeVar("T")
@@ -55,7 +55,9 @@ class StartTable(Table):
     theta: float = 0.0  # [rad]
     w: float = 0.0  # [m/s]
     q: float = 0.0  # [rad/s]
-    commands: dict[str, float] = {}  # to which the actuators have settled; others to the controller's first, or neutral
+    commands: dict[
+        str, float
+    ] = {}  # to which the actuators have settled; others to the controller's first, or neutral
 
     def motion(self) -> dict[str, float]:
         """Pose and velocities, by the symbols of the engine's state."""
@@ -73,13 +75,17 @@ class NormTable(Table):
     """What a norm is held against: the paper's value, and the band about our own that a change must not leave."""
 
     published: float | None = None
-    tolerance: float | None = Field(default=None, gt=0)  # either way of what is published, as its document states it
+    tolerance: float | None = Field(
+        default=None, gt=0
+    )  # either way of what is published, as its document states it
     guard: tuple[End, End] | None = None  # low, high
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
         if self.guard is not None and not self.guard[0] <= self.guard[1]:
-            raise ValueError(f"guard = {list(self.guard)}; allowed are its lower end and its upper one")
+            raise ValueError(
+                f"guard = {list(self.guard)}; allowed are its lower end and its upper one"
+            )
         if self.tolerance is not None and self.published is None:
             raise ValueError("tolerance needs published")
         return self
@@ -116,7 +122,9 @@ class ScenarioFile(Table):
     duration: float = Field(gt=0, le=86400)  # [s]
     step: float = Field(default=0.02, gt=1e-4, le=1.0)  # [s]
     seed: int = Field(default=0, ge=0)
-    engine: Literal["mujoco", "twin"] = "mujoco"  # twin: compiled code alone, in open water; the same to rounding
+    engine: Literal["mujoco", "twin"] = (
+        "mujoco"  # twin: compiled code alone, in open water; the same to rounding
+    )
     tank: TankTable | None = None
     start: StartTable = StartTable()
     until: UntilTable = UntilTable()
@@ -127,7 +135,9 @@ class ScenarioFile(Table):
     goal: list[dict[str, float | CourseTable]] = []
     set: dict[str, dict[str, object]] = {}
     effect: list[dict[str, object]] = []
-    measured: dict[str, float] = {}  # the surroundings, as the vessel's channels of that kind read them throughout
+    measured: dict[
+        str, float
+    ] = {}  # the surroundings, as the vessel's channels of that kind read them throughout
     measure: str | dict[str, object] | None = None
     log: float = Field(default=0.0, ge=0)  # [s] between rows of the log; 0: every step
     norms: dict[str, NormTable] = {}
@@ -165,7 +175,9 @@ class Scenario:
     @property
     def goal_keys(self) -> list[str]:
         """All that its goals speak of, in the order of the file."""
-        return list(dict.fromkeys(key for goal in self.file.goal for key in goal if key not in BESIDE))
+        return list(
+            dict.fromkeys(key for goal in self.file.goal for key in goal if key not in BESIDE)
+        )
 
     @property
     def lets_go(self) -> bool:
@@ -178,7 +190,11 @@ class Scenario:
         if at < 0:
             return {}
         held, courses = self._goals[at]
-        return {**held, **{k: c.at(t - self._begins[at]) for k, c in courses.items()}} if courses else held
+        return (
+            {**held, **{k: c.at(t - self._begins[at]) for k, c in courses.items()}}
+            if courses
+            else held
+        )
 
 
 def load(name: str, overrides: Mapping[str, object] | None = None) -> Scenario:
@@ -196,7 +212,9 @@ def from_table(raw: Mapping[str, object], place: Place) -> Scenario:
     label, path = place.label, place.path
     file = checked(ScenarioFile, raw, label)
     try:
-        vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent).measuring(file.measured)
+        vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent).measuring(
+            file.measured
+        )
         controller = _made(Controller, file.controller, path.parent)
         sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
         aboard = _aboard(file.sensor, path.parent)
@@ -207,7 +225,9 @@ def from_table(raw: Mapping[str, object], place: Place) -> Scenario:
         _check_norms(file, camera, measure)
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
-    return Scenario(place.name, file, vessel, controller, sensors, camera, measure, aboard, place.address)
+    return Scenario(
+        place.name, file, vessel, controller, sensors, camera, measure, aboard, place.address
+    )
 
 
 def _made(base: type[M], table: Mapping[str, object], folder: Path) -> M:
@@ -225,7 +245,9 @@ def _aboard(tables: Sequence[Mapping[str, object]], folder: Path) -> tuple[Senso
     for table in tables:
         made = _made(Sensor, table, folder)
         if twice := [n for other in aboard for n in type(other).columns if n in type(made).columns]:
-            raise BadInput(f"[[sensor]] {table['use']}: {twice[0]} is read by another sensor already")
+            raise BadInput(
+                f"[[sensor]] {table['use']}: {twice[0]} is read by another sensor already"
+            )
         aboard.append(made)
     return tuple(aboard)
 
@@ -263,29 +285,39 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
                 raise BadInput(unknown_name("[[goal]] key", key, [*BESIDE, *allowed]))
             channel, value = vessel.commands.get(key), goal[key]
             if channel and isinstance(value, float) and not channel.low <= value <= channel.high:
-                raise BadInput(f"[[goal]] {key} = {value:g}; allowed {channel.low:g} to {channel.high:g}")
+                raise BadInput(
+                    f"[[goal]] {key} = {value:g}; allowed {channel.low:g} to {channel.high:g}"
+                )
     starts = [_begin(g) for g in file.goal]
     if starts != sorted(starts):
         raise BadInput(f"[[goal]] from = {starts}; allowed are times in ascending order")
     if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
-        raise BadInput(f"controller {file.controller['use']} sets {unknown[0]}; {vessel.no_command(unknown[0])}")
+        raise BadInput(
+            f"controller {file.controller['use']} sets {unknown[0]}; {vessel.no_command(unknown[0])}"
+        )
 
 
 def _check_shape(file: ScenarioFile, controller: Controller) -> None:
     """The boat starts inside its tank, and the controller's period holds at least one step."""
     if controller.period < file.step - 1e-12:
-        raise BadInput(f"step = {file.step:g} s; allowed is at most the controller's period, {controller.period:g} s")
+        raise BadInput(
+            f"step = {file.step:g} s; allowed is at most the controller's period, {controller.period:g} s"
+        )
     if file.tank and file.engine == "twin":
-        raise BadInput('engine = "twin" with a [tank]; allowed is open water: its walls are MuJoCo\'s')
+        raise BadInput(
+            'engine = "twin" with a [tank]; allowed is open water: its walls are MuJoCo\'s'
+        )
     if file.tank:
         dx, dy = file.start.x - file.tank.centre[0], file.start.y - file.tank.centre[1]
         if abs(dx) > file.tank.length / 2 or abs(dy) > file.tank.width / 2:
-            raise BadInput(f"start x, y = {file.start.x:g}, {file.start.y:g} m lies outside the tank")
+            raise BadInput(
+                f"start x, y = {file.start.x:g}, {file.start.y:g} m lies outside the tank"
+            )
 
 
 def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) -> None:
     """Only norms of what is measured are judged, and the frames they need are taken."""
-    followed = following.units(key for goal in file.goal for key in goal)
+    followed = tracking_errors.units(key for goal in file.goal for key in goal)
     allowed = (*(type(measure).units if measure else ()), *followed)
     for name in file.norms:
         if name not in allowed:
@@ -294,4 +326,12 @@ def _check_norms(file: ScenarioFile, camera: Camera, measure: Measure | None) ->
         measure.check(camera)
 
 
-__all__ = ["CheckTable", "NormTable", "Scenario", "ScenarioFile", "UntilTable", "from_table", "load"]
+__all__ = [
+    "CheckTable",
+    "NormTable",
+    "Scenario",
+    "ScenarioFile",
+    "UntilTable",
+    "from_table",
+    "load",
+]

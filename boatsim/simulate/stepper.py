@@ -53,7 +53,9 @@ class Stepper(ABC):
         self._places = {name: i for i, name in enumerate(vessel.commands)}
         self._neutral = sent_row(vessel, {}).tolist()
         self._limits = list(vessel.limits().values())
-        self.sent = list(self._neutral)  # in the order of the vessel's inputs; what acts of it is `commands`
+        self.sent = list(
+            self._neutral
+        )  # in the order of the vessel's inputs; what acts of it is `commands`
 
     @property
     @abstractmethod
@@ -81,7 +83,9 @@ class Stepper(ABC):
         """How many contacts the hull has now."""
         return 0
 
-    def reset(self, state: State | None = None, commands: Mapping[str, float] | None = None) -> None:
+    def reset(
+        self, state: State | None = None, commands: Mapping[str, float] | None = None
+    ) -> None:
         """Put the boat at a state (default: origin, at rest, t = 0), its actuators settled at the given commands."""
         state = state or State()
         self._put(state.t, self.program.joint_rates(np.array(state[1:])[list(self.code.SHOWS)]))
@@ -104,7 +108,9 @@ class Stepper(ABC):
         if not isfinite(sum(sent)):
             taken(self.vessel, np.array(sent))  # says which
         self.sent = sent
-        self._commands[:] = [min(max(x, low), high) for x, (low, high) in zip(sent, self._limits, strict=True)]
+        self._commands[:] = [
+            min(max(x, low), high) for x, (low, high) in zip(sent, self._limits, strict=True)
+        ]
 
     @property
     def beyond(self) -> list[str]:
@@ -115,7 +121,9 @@ class Stepper(ABC):
     @property
     def commands(self) -> dict[str, float]:
         """Commands in force."""
-        return dict(zip(self.vessel.commands, self._commands.tolist(), strict=False))  # what is measured comes behind
+        return dict(
+            zip(self.vessel.commands, self._commands.tolist(), strict=False)
+        )  # what is measured comes behind
 
     def in_force(self) -> list[float]:
         """The same, without the names: in the order of the vessel's inputs."""
@@ -126,7 +134,9 @@ class Stepper(ABC):
         for _ in range(steps):
             self._advance(self.step if length is None else length)
         if not isfinite(sum(self._joint_state().tolist())):
-            raise BadPhysics(f"{self.vessel.name}: the motion is no longer finite at t = {self.t:g} s")
+            raise BadPhysics(
+                f"{self.vessel.name}: the motion is no longer finite at t = {self.t:g} s"
+            )
 
     def _advance(self, left: float) -> None:
         """One step of `left` s, cut where an actuator's signal jumps or bends."""
@@ -135,9 +145,13 @@ class Stepper(ABC):
         while left > 1e-9:
             dt = left
             if self.code.HAS_PAUSE:
-                dt = self.code.until_bend(self._commands, self._memory, left, least, self._values, self._on)
+                dt = self.code.until_bend(
+                    self._commands, self._memory, left, least, self._values, self._on
+                )
                 least, before = self.code.least_after(dt, before, least), dt
-            self.code.actuate_in_place(self._commands, self._memory, dt, self._values, self._on, self._act)
+            self.code.actuate_in_place(
+                self._commands, self._memory, dt, self._values, self._on, self._act
+            )
             self._step(dt)
             self._mean += self._mean_of_part() * (dt / whole)
             left -= dt
@@ -146,7 +160,9 @@ class Stepper(ABC):
         """(A,) mean of each actuator over what was stepped last."""
         n, held = len(self._mean), self.code.HELD
         act = self._act
-        return np.asarray((act[:n] + 4.0 * act[held : held + n] + act[2 * held : 2 * held + n]) / 6.0)
+        return np.asarray(
+            (act[:n] + 4.0 * act[held : held + n] + act[2 * held : 2 * held + n]) / 6.0
+        )
 
     @property
     def state(self) -> State:
@@ -161,5 +177,7 @@ class Stepper(ABC):
     def wrench(self) -> Wrench:
         """Sum of all force laws in body axes at the present state [N, N m]; zero along freedoms that are held."""
         last = np.int64(2 * self.code.HELD)  # the actuators at the end of the last step
-        found = self.code.forces(self.t, self._joint_state(), self._act, last, self._values, self._on)
+        found = self.code.forces(
+            self.t, self._joint_state(), self._act, last, self._values, self._on
+        )
         return Wrench(**dict(zip((Wrench._fields[i] for i in self.code.FREE), found, strict=True)))

@@ -13,7 +13,7 @@ from boatsim.errors import BadInput, BadPhysics, unknown_name
 from boatsim.physics.content import root
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
-from boatsim.simulate.hull_text import check_text
+from boatsim.simulate.hull_xml_check import check_text
 
 Model: TypeAlias = mujoco.MjModel  # for those who must not import mujoco
 SMALLEST, LARGEST = 1e-3, 1e6  # [m] of a tank
@@ -48,7 +48,9 @@ class Tank:
         for name in ("length", "width", "depth"):
             value = getattr(self, name)
             if not SMALLEST <= value <= LARGEST:
-                raise BadInput(f"tank.{name} = {value:g} m; allowed is {SMALLEST:g} to {LARGEST:g} m")
+                raise BadInput(
+                    f"tank.{name} = {value:g} m; allowed is {SMALLEST:g} to {LARGEST:g} m"
+                )
 
 
 def open_water(vessel: Vessel) -> Tank:
@@ -92,7 +94,9 @@ def build(
     try:
         model = spec.compile()
     except ValueError as error:  # sizes, masses and meshes of the hull: the tank is ours
-        raise BadInput(f"{Path(vessel.path) / vessel.hull}: no hull that MuJoCo can build: {error}") from None
+        raise BadInput(
+            f"{Path(vessel.path) / vessel.hull}: no hull that MuJoCo can build: {error}"
+        ) from None
     check_mass_matrix(model, vessel)
     return model
 
@@ -124,7 +128,9 @@ def size_tank(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
     x, y, _ = middle_of_tank
     spec.body("fan").pos = (x, y + b + 2 * WALL + 0.1, 0.2)
     # all of the water lies before the sun: what is behind it MuJoCo draws as if in shadow
-    spec.light("sun").pos = middle_of_tank + spec.light("sun").pos * max(1.0, math.hypot(a, b) / DRAWN)
+    spec.light("sun").pos = middle_of_tank + spec.light("sun").pos * max(
+        1.0, math.hypot(a, b) / DRAWN
+    )
     aim_cameras(spec, tank, vessel)
 
 
@@ -132,7 +138,10 @@ def aim_cameras(spec: mujoco.MjSpec, tank: Tank, vessel: Vessel) -> None:
     """Show the whole tank, or six boat lengths about the start where the tank is larger."""
     most = 6 * vessel.length
     long, wide = min(tank.length, most), min(tank.width, most)
-    x, y = tank.centre[0] if tank.length <= most else 0.0, -tank.centre[1] if tank.width <= most else 0.0
+    x, y = (
+        tank.centre[0] if tank.length <= most else 0.0,
+        -tank.centre[1] if tank.width <= most else 0.0,
+    )
     target = np.array([x, y, 0.0])
     above, oblique = spec.camera("above"), spec.camera("oblique")
     half = math.tan(math.radians(above.fovy) / 2)
@@ -174,12 +183,20 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
     try:
         drawing = mujoco.MjSpec.from_file(str(path))
         bodies = [body.name for body in drawing.bodies]
-        _ = [part.name for part in (*drawing.geoms, *drawing.sites, *drawing.meshes)]  # which need not be UTF-8
+        _ = [
+            part.name for part in (*drawing.geoms, *drawing.sites, *drawing.meshes)
+        ]  # which need not be UTF-8
     except (ValueError, TypeError) as error:  # a TypeError for a path that is not UTF-8
-        said = "its path is not UTF-8" if isinstance(error, TypeError) else " ".join(str(error).split())
+        said = (
+            "its path is not UTF-8"
+            if isinstance(error, TypeError)
+            else " ".join(str(error).split())
+        )
         raise BadInput(f"{path}: no hull that MuJoCo can read: {said}") from None
     if drawing.body("hull") is None:
-        raise BadInput(unknown_name(f"{path}: body", "hull", (name for name in bodies if name != "world")))
+        raise BadInput(
+            unknown_name(f"{path}: body", "hull", (name for name in bodies if name != "world"))
+        )
     drawn_for = drawing.numeric("drawn_for")
     if drawn_for is None:
         return drawing, (vessel.length, vessel.draught)
@@ -192,13 +209,20 @@ def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float
 
 
 def place_fittings(
-    drawing: mujoco.MjSpec, at: dict[str, float], marks: Mapping[str, tuple[float, float]], shift: Array
+    drawing: mujoco.MjSpec,
+    at: dict[str, float],
+    marks: Mapping[str, tuple[float, float]],
+    shift: Array,
 ) -> None:
     """Move outboards, their mount, ballast and drawn marks to where this load has them; drop what it has not."""
     for side, name in ((1, "outboard_port"), (-1, "outboard_starboard")):
         body = drawing.body(name)
         if body is not None and "motor_half_spacing" in at:
-            body.pos = (_stated(at, "motor_ahead_of_cg"), side * at["motor_half_spacing"], body.pos[2])
+            body.pos = (
+                _stated(at, "motor_ahead_of_cg"),
+                side * at["motor_half_spacing"],
+                body.pos[2],
+            )
     for name, (ahead, starboard) in marks.items():
         if (geom := drawing.geom(name)) is not None:
             geom.pos = (ahead, -starboard, geom.pos[2])
@@ -273,4 +297,6 @@ def check_mass_matrix(model: mujoco.MjModel, vessel: Vessel) -> None:
     """Every lower-triangle entry of M must be stored, or added mass would be lost without a word."""
     stored, needed = model.M_rownnz.tolist(), list(range(1, model.nv + 1))
     if stored != needed:
-        raise BadPhysics(f"{vessel.name}: mass matrix stores {stored} entries a row; needed {needed}")
+        raise BadPhysics(
+            f"{vessel.name}: mass matrix stores {stored} entries a row; needed {needed}"
+        )

@@ -8,7 +8,7 @@ import rerun.blueprint as rrb
 from boatsim.physics.signals import COMPONENTS, POSE, RATES, follower
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
-from boatsim.simulate.following import GOAL
+from boatsim.simulate.tracking_errors import GOAL
 from boatsim.view.scene import Scene
 
 WORLD = "world"
@@ -41,7 +41,9 @@ def style(name: str, number: int, boat: str = "", colour: Colour | None = None) 
     """Name, colour and width of a curve."""
     bound = name.endswith(("_low", "_high"))
     chosen = colour or _colour(name, number)
-    return rr.SeriesLines(colors=[chosen], widths=[1.0 if bound else 2.0], names=[boat or words(name)])
+    return rr.SeriesLines(
+        colors=[chosen], widths=[1.0 if bound else 2.0], names=[boat or words(name)]
+    )
 
 
 def dots(boat: str, colour: Colour) -> rr.SeriesPoints:
@@ -52,8 +54,10 @@ def dots(boat: str, colour: Colour) -> rr.SeriesPoints:
 def band_style(name: str, flagged: Colour) -> rr.SeriesLines:
     """Curve of a missing force, its band, or the part of it that was flagged."""
     for end, (label, colour, width) in {
-        "_flagged": ("flagged", flagged, 4.0), "_low": ("- 2 sd", GREY, 1.0), "_high": ("+ 2 sd", GREY, 1.0),
-    }.items():  # fmt: skip
+        "_flagged": ("flagged", flagged, 4.0),
+        "_low": ("- 2 sd", GREY, 1.0),
+        "_high": ("+ 2 sd", GREY, 1.0),
+    }.items():
         if name.endswith(end):
             return rr.SeriesLines(colors=[colour], widths=[width], names=[label])
     return rr.SeriesLines(colors=[SKY], widths=[2.0], names=["missing"])
@@ -73,7 +77,9 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
     rate = with_goals(("r_radps", "reference_r_radps", "p_radps"), names)
     return _layout(
         rrb.Vertical(
-            _view(scene, ["path", "camera"]), rrb.TextDocumentView(origin="norms", name="Norms"), row_shares=[5, 3]
+            _view(scene, ["path", "camera"]),
+            rrb.TextDocumentView(origin="norms", name="Norms"),
+            row_shares=[5, 3],
         ),
         _plot("Surge and sway velocity", speed),
         _plot("Yaw rate" if "p_radps" not in names else "Yaw and roll rate", rate),
@@ -83,7 +89,11 @@ def of_run(scene: Scene, names: Sequence[str]) -> rrb.Blueprint:
 
 def with_goals(signals: Sequence[str], names: Iterable[str]) -> list[str]:
     """Of `names` those that are one of these signals, or a goal that one of them follows."""
-    return [n for n in names if n in signals or (n.startswith(GOAL) and follower(n.removeprefix(GOAL)) in signals)]
+    return [
+        n
+        for n in names
+        if n in signals or (n.startswith(GOAL) and follower(n.removeprefix(GOAL)) in signals)
+    ]
 
 
 def of_overlay(
@@ -97,9 +107,24 @@ def of_overlay(
 
     `span` is the time [s] that all plots show, so that what is above one another happens at once.
     """
-    moved = [n for n in ("off_m", "x_m", "y_m", "psi_rad", "phi_rad", "u_mps", "v_mps", "r_radps", "p_radps")
-             if n in set(names)]  # fmt: skip
-    motion = [_plot(TITLES.get(n, words(n)), [f"{boat}/{n}" for boat in boats], span=span) for n in moved]
+    moved = [
+        n
+        for n in (
+            "off_m",
+            "x_m",
+            "y_m",
+            "psi_rad",
+            "phi_rad",
+            "u_mps",
+            "v_mps",
+            "r_radps",
+            "p_radps",
+        )
+        if n in set(names)
+    ]
+    motion = [
+        _plot(TITLES.get(n, words(n)), [f"{boat}/{n}" for boat in boats], span=span) for n in moved
+    ]
     forces = [
         _plot(
             f"Missing {axis} {'force [N]' if axis in ('surge', 'sway', 'heave') else 'moment [N m]'}",
@@ -116,7 +141,9 @@ def of_overlay(
     if "x_m" not in set(names):  # it only rolls: seen from astern
         eye = (-1.2 * scene.length, 0.0, 0.4 * scene.length)
     size = f", drawn {scene.times:.2g} times their size" if scene.times > 1.0 else ""
-    view = _view(scene, [f"paths/{boat}" for boat in boats], eye, f"{scene.vessel}: {', '.join(boats)}{size}")
+    view = _view(
+        scene, [f"paths/{boat}" for boat in boats], eye, f"{scene.vessel}: {', '.join(boats)}{size}"
+    )
     return _layout(view, rrb.Tabs(*motion), *forces)
 
 
@@ -125,7 +152,10 @@ def of_several(scene: Scene, boats: Mapping[str, Sequence[str]]) -> rrb.Blueprin
     names = list(dict.fromkeys(n for signals in boats.values() for n in signals))
 
     def plot(signal: str) -> rrb.TimeSeriesView:
-        return _plot(words(signal), [f"{boat}/{n}" for boat, own in boats.items() for n in with_goals([signal], own)])
+        return _plot(
+            words(signal),
+            [f"{boat}/{n}" for boat, own in boats.items() for n in with_goals([signal], own)],
+        )
 
     motion = [n for n in (*RATES, *POSE) if n in names]
     motion.sort(key=lambda n: len(with_goals([n], names)) < 2)  # those with a goal come first
@@ -156,11 +186,16 @@ def _layout(scene: rrb.View | rrb.Container, *plots: rrb.View | rrb.Container) -
 
 
 def _view(
-    scene: Scene, trails: Sequence[str], eye: tuple[float, float, float] | None = None, title: str = ""
+    scene: Scene,
+    trails: Sequence[str],
+    eye: tuple[float, float, float] | None = None,
+    title: str = "",
 ) -> rrb.Spatial3DView:
     """The scene seen from astern and above, or from `eye`; trails show everything up to the time cursor."""
     so_far = rrb.VisibleTimeRanges(
-        timeline=TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
+        timeline=TIMELINE,
+        start=rrb.TimeRangeBoundary.infinite(),
+        end=rrb.TimeRangeBoundary.cursor_relative(),
     )
     return rrb.Spatial3DView(
         origin=WORLD,
@@ -194,7 +229,9 @@ def _tabs(names: Sequence[str]) -> list[rrb.View | rrb.Container]:
         "PWM": [n for n in names if n.startswith("pwm_")],
         "Estimates": [n for n in names if n.startswith("estimate_")],
         "Forces": [n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_N")],
-        "Yaw moments": [n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_Nm")],
+        "Yaw moments": [
+            n for n in names if n.startswith(("force_", "wind_")) and n.endswith("_Nm")
+        ],
         "Heading": [n for n in names if n.endswith("psi_rad")],
         "Position": with_goals(("x_m", "y_m", "camera_x_m", "camera_y_m"), names),
     }
@@ -217,7 +254,10 @@ def _plot(
 def _colour(name: str, number: int) -> Colour:
     if name.endswith(("_low", "_high")):
         return GREY
-    for side, light, dark in (("port", (240, 150, 150), (200, 30, 40)), ("starboard", (140, 210, 140), (20, 130, 50))):
+    for side, light, dark in (
+        ("port", (240, 150, 150), (200, 30, 40)),
+        ("starboard", (140, 210, 140), (20, 130, 50)),
+    ):
         if side in name.split("_"):
             return dark if name.startswith("actual_") else light
     if name.startswith(GOAL):

@@ -21,9 +21,9 @@ from boatsim.files import Growing, replacing
 from boatsim.interruption import noted
 from boatsim.physics.content import vessel_address
 from boatsim.recordings.table import Notes, Recording, csv_header, csv_rows
-from boatsim.simulate import norms as judged
-from boatsim.simulate.norms import RunEntry
-from boatsim.simulate.pace import Pace
+from boatsim.simulate import evaluation as judged
+from boatsim.simulate.evaluation import RunEntry
+from boatsim.simulate.real_time_pace import Pace
 from boatsim.simulate.run import Listener, Runner
 from boatsim.simulate.scenario import Scenario
 
@@ -91,7 +91,9 @@ def run_into(
                 if so_far:
                     so_far.look()
 
-            if "yaw" in scenario.vessel.freedoms:  # the camera looks from above: it does not see a hull roll
+            if (
+                "yaw" in scenario.vessel.freedoms
+            ):  # the camera looks from above: it does not see a hull roll
                 runner.watch = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv")).add
             with steering.beside(listen) if steering else nullcontext(listen) as runner.listen:
                 run = runner.run(progress, stop)
@@ -105,7 +107,9 @@ def run_into(
     return content
 
 
-def _describe(folder: Path, runner: Runner, notes: Notes, complete: bool, steering: Steering | None) -> None:
+def _describe(
+    folder: Path, runner: Runner, notes: Notes, complete: bool, steering: Steering | None
+) -> None:
     """recording.toml, and what somebody who steers adds to it."""
     more = steering.facts() if steering else {}
     text = notes_toml(runner.scenario, notes, runner.seed, complete, more)
@@ -159,10 +163,17 @@ class CsvFile:
 
 
 def notes_toml(
-    scenario: Scenario, notes: Notes, seed: int, complete: bool, more: Mapping[str, object] | None = None
+    scenario: Scenario,
+    notes: Notes,
+    seed: int,
+    complete: bool,
+    more: Mapping[str, object] | None = None,
 ) -> str:
     """recording.toml: what a diagnosis of the run may know. Effects the scenario adds are what it has to find."""
-    lines = [f"vessel = {_value(vessel_address(scenario.vessel.file))}", f"load = {_value(list(notes.load))}"]
+    lines = [
+        f"vessel = {_value(vessel_address(scenario.vessel.file))}",
+        f"load = {_value(list(notes.load))}",
+    ]
     for effect, values in notes.settings.items():
         lines += _table(f"set.{_key(effect)}", values)
     lines += _table(f"runs.{CAMERA}.noise", notes.noise)  # recording.csv has none: it is the truth
@@ -175,14 +186,22 @@ def _table(name: str, values: Mapping[str, object]) -> list[str]:
 
 
 def _key(name: str) -> str:
-    return name if name.replace("_", "a").replace("-", "a").isalnum() and name.isascii() else _value(name)
+    return (
+        name
+        if name.replace("_", "a").replace("-", "a").isalnum() and name.isascii()
+        else _value(name)
+    )
 
 
 def _value(value: object) -> str:
     """A text, number, truth value or list of them, which TOML writes as JSON does, but in UTF-8 alone."""
     if isinstance(value, list):
         return f"[{', '.join(_value(each) for each in value)}]"
-    text = value.encode("utf-8", "backslashreplace").decode("utf-8") if isinstance(value, str) else value
+    text = (
+        value.encode("utf-8", "backslashreplace").decode("utf-8")
+        if isinstance(value, str)
+        else value
+    )
     return json.dumps(text, ensure_ascii=False)
 
 
@@ -191,7 +210,9 @@ def _log(path: Path | None, runner: Runner, viewer: str | None = None) -> "RunLo
     from boatsim.view.rerun_log import RunLog
     from boatsim.view.scene import scene_from
 
-    return RunLog(path, scene_from(runner.engine.model, runner.scenario.vessel, runner.engine.tank), viewer)
+    return RunLog(
+        path, scene_from(runner.engine.model, runner.scenario.vessel, runner.engine.tank), viewer
+    )
 
 
 @contextmanager

@@ -18,8 +18,8 @@ import rerun as rr
 from boatsim.physics.signals import POSE, Array
 from boatsim.recordings.readers.rrd import SIGNALS, TIMELINE
 from boatsim.recordings.table import Notes, Recording
-from boatsim.simulate.following import GOAL
-from boatsim.simulate.norms import MISSED, REPRODUCED, UNSTATED, NormEntry
+from boatsim.simulate.evaluation import MISSED, REPRODUCED, UNSTATED, NormEntry
+from boatsim.simulate.tracking_errors import GOAL
 from boatsim.view import blueprint
 from boatsim.view.blueprint import WORLD
 from boatsim.view.scene import OUTBOARD, Scene, Solid
@@ -46,7 +46,9 @@ BOATS = {  # as in the report; told apart by colour-blind readers too, on dark p
     "patched": (0, 165, 120),
 }
 VERDICTS = {REPRODUCED: "(the same)", MISSED: "(differs)", UNSTATED: ""}
-PARTING = 1e-9  # [s] between the end of one stretch, a gap, and the begin of the next at the same time
+PARTING = (
+    1e-9  # [s] between the end of one stretch, a gap, and the begin of the next at the same time
+)
 
 
 class Flagged(TypedDict):
@@ -68,7 +70,9 @@ class RunLog:
         self.scene, self.live = scene, viewer is not None
         self._waiting: list[Recording] = []
         self._written = monotonic()  # when something last was
-        self._trail: tuple[float, Array] | None = None  # time and place of the last point of the path
+        self._trail: tuple[float, Array] | None = (
+            None  # time and place of the last point of the path
+        )
         self._known: set[str] = set()
         self.stream = Stream("boatsim", path, viewer)
         if self.stream.heard:
@@ -82,7 +86,11 @@ class RunLog:
         """Log new rows, which follow those logged before."""
         if len(rows) and self.stream.heard:
             self._waiting.append(rows)
-        if self.live or sum(map(len, self._waiting)) >= BUFFER or monotonic() - self._written >= OFTEN:
+        if (
+            self.live
+            or sum(map(len, self._waiting)) >= BUFFER
+            or monotonic() - self._written >= OFTEN
+        ):
             self._write()
 
     def finish(self, norms: Mapping[str, NormEntry]) -> None:
@@ -101,7 +109,12 @@ class RunLog:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
+    ) -> None:
         self.close()
 
     def _say(self, text: str) -> None:
@@ -152,17 +165,28 @@ def log_overlay(
             _move(stream, stretch, scene, f"boats/{boat}")
             _log_path(stream, stretch, f"paths/{boat}", colour, None, _above(scene, number))
         for name in stretches[0].signals:
-            look = blueprint.dots(boat, colour) if number == 0 else blueprint.style(name, number, boat, colour)
+            look = (
+                blueprint.dots(boat, colour)
+                if number == 0
+                else blueprint.style(name, number, boat, colour)
+            )
             stream.log(f"{SIGNALS}/{boat}/{name}", look, static=True)
         _log_signals(stream, _with_gaps(apart), f"{SIGNALS}/{boat}")
     if missing is not None:
         marked = replace(missing, signals={**missing.signals, **_flagged(missing, intervals)})
         for name in marked.signals:
-            stream.log(f"missing/{name}", blueprint.band_style(name, COLOURS["flagged"]), static=True)
+            stream.log(
+                f"missing/{name}", blueprint.band_style(name, COLOURS["flagged"]), static=True
+            )
         _log_signals(stream, marked, "missing")
     names = [name for run in reversed(list(boats.values())) for name in run[0].signals]
-    times = [r.t for run in boats.values() for r in run] + ([missing.t] if missing is not None else [])
-    span = min((float(t[0]) for t in times), default=0.0), max((float(t[-1]) for t in times), default=1.0)
+    times = [r.t for run in boats.values() for r in run] + (
+        [missing.t] if missing is not None else []
+    )
+    span = (
+        min((float(t[0]) for t in times), default=0.0),
+        max((float(t[-1]) for t in times), default=1.0),
+    )
     forces = missing.signals if missing is not None else {}
     stream.send_blueprint(blueprint.of_overlay(scene, list(boats), names, forces, span))
     stream.close()
@@ -194,11 +218,17 @@ def log_side_by_side(path: Path | str, boats: Mapping[str, Boat], norms: str) ->
         _draw_outline(stream, boat.scene, name, number, colour)
         _move(stream, boat.recording, boat.scene, f"boats/{name}")
         _log_path(stream, boat.recording, f"paths/{name}", colour, None, _above(boat.scene, number))
-        shown = {n: x for n, x in boat.recording.signals.items() if boat.goals or not n.startswith(GOAL)}
+        shown = {
+            n: x for n, x in boat.recording.signals.items() if boat.goals or not n.startswith(GOAL)
+        }
         for signal in shown:
             is_goal = signal.startswith(GOAL)
             legend, hue = (boat.goals, blueprint.paler(colour)) if is_goal else (name, colour)
-            stream.log(f"{SIGNALS}/{name}/{signal}", blueprint.style(signal, number, legend, hue), static=True)
+            stream.log(
+                f"{SIGNALS}/{name}/{signal}",
+                blueprint.style(signal, number, legend, hue),
+                static=True,
+            )
         _log_signals(stream, replace(boat.recording, signals=shown), f"{SIGNALS}/{name}")
     stream.log("norms", rr.TextDocument(norms, media_type="text/markdown"), static=True)
     signals = {name: list(boat.recording.signals) for name, boat in boats.items()}
@@ -218,9 +248,19 @@ def norms_table(norms: Mapping[str, NormEntry]) -> str:
     for name, norm in norms.items():
         ok, ends = norm.get("ok"), [_short(end) for end in norm.get("guard") or (None, None)]
         met = "" if ok is None else "yes" if ok else "**no**"
-        span = " to ".join(ends) if all(ends) else f"at least {ends[0]}" if ends[0] else f"at most {ends[1]}"
-        value = norm.get("lacking") or f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
-        said = f"{_short(norm.get('published'))} {VERDICTS.get(norm.get('verdict') or '', '')}".strip()
+        span = (
+            " to ".join(ends)
+            if all(ends)
+            else f"at least {ends[0]}"
+            if ends[0]
+            else f"at most {ends[1]}"
+        )
+        value = (
+            norm.get("lacking") or f"{_short(norm.get('value'))} {norm.get('unit') or ''}".strip()
+        )
+        said = (
+            f"{_short(norm.get('published'))} {VERDICTS.get(norm.get('verdict') or '', '')}".strip()
+        )
         guard = span if any(ends) else ""
         lines.append(f"| {name} | {norm.get('kind', '')} | {value} | {guard} | {met} | {said} |")
     return "\n".join(lines) + "\n"
@@ -232,14 +272,19 @@ def _short(value: float | None) -> str:
 
 def _joined(parts: Sequence[Recording]) -> Recording:
     names = list(dict.fromkeys(name for part in parts for name in part.signals))
-    signals = {n: np.concatenate([p.signals.get(n, np.full(len(p), math.nan)) for p in parts]) for n in names}
+    signals = {
+        n: np.concatenate([p.signals.get(n, np.full(len(p), math.nan)) for p in parts])
+        for n in names
+    }
     return Recording(parts[0].name, np.concatenate([p.t for p in parts]), signals, Notes())
 
 
 def _apart(stretches: Sequence[Recording]) -> list[Recording]:
     """Stretches whose ends come just before the begin of the next one, which may have the same time."""
     ends = [next_one.t[0] - 2 * PARTING for next_one in stretches[1:]]
-    times = [np.append(s.t[:-1], min(s.t[-1], end)) for s, end in zip(stretches, ends, strict=False)]
+    times = [
+        np.append(s.t[:-1], min(s.t[-1], end)) for s, end in zip(stretches, ends, strict=False)
+    ]
     return [replace(s, t=t) for s, t in zip(stretches, [*times, stretches[-1].t], strict=True)]
 
 
@@ -247,7 +292,12 @@ def _with_gaps(stretches: Sequence[Recording]) -> Recording:
     """Stretches as one recording, with a row of nan before each begin but the first: curves break there."""
     parts = [stretches[0]]
     for stretch in stretches[1:]:
-        parts += [Recording("", stretch.t[:1] - PARTING, {n: np.full(1, np.nan) for n in stretch.signals}), stretch]
+        parts += [
+            Recording(
+                "", stretch.t[:1] - PARTING, {n: np.full(1, np.nan) for n in stretch.signals}
+            ),
+            stretch,
+        ]
     return _joined(parts)
 
 
@@ -273,7 +323,10 @@ def _draw_tank(stream: Stream, scene: Scene) -> None:
             stream.log(f"{WORLD}/tank/{solid.name}", _mesh(_surface(solid)), static=True)
     if any(solid.part == "tank" for solid in scene.solids):
         return
-    corners = [(x + i * length / 2, -y + j * width / 2, ABOVE) for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1), (1, 1))]
+    corners = [
+        (x + i * length / 2, -y + j * width / 2, ABOVE)
+        for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1), (1, 1))
+    ]
     edge = rr.LineStrips3D([corners], colors=[COLOURS["wall"]], radii=[0.004 * max(length, width)])
     stream.log(f"{WORLD}/tank/walls", edge, static=True)
     water = rr.Mesh3D(
@@ -285,7 +338,9 @@ def _draw_tank(stream: Stream, scene: Scene) -> None:
     stream.log(f"{WORLD}/tank/water", water, static=True)
 
 
-def _draw_hull(stream: Stream, scene: Scene, boat: str, tint: tuple[int, int, int] | None = None) -> None:
+def _draw_hull(
+    stream: Stream, scene: Scene, boat: str, tint: tuple[int, int, int] | None = None
+) -> None:
     """The hull's shapes under the entity of a boat; outboards hang from entities of their own so that they can turn."""
     for solid in scene.solids:
         if solid.part != "tank":
@@ -298,16 +353,23 @@ def _draw_hull(stream: Stream, scene: Scene, boat: str, tint: tuple[int, int, in
 
 def _above(scene: Scene, number: int) -> float:
     """Height [m] above everything on the hull, a little more for each boat: lines of different boats do not flicker."""
-    top = max((float(s.vertices[:, 2].max()) for s in scene.solids if s.part != "tank"), default=0.0)
+    top = max(
+        (float(s.vertices[:, 2].max()) for s in scene.solids if s.part != "tank"), default=0.0
+    )
     return top + (5 + number) * 0.002 * scene.length
 
 
-def _draw_outline(stream: Stream, scene: Scene, boat: str, number: int, colour: tuple[int, int, int]) -> None:
+def _draw_outline(
+    stream: Stream, scene: Scene, boat: str, number: int, colour: tuple[int, int, int]
+) -> None:
     """Outline of the hull from above with a line from its middle to the bow, and its name on one of its sides."""
     ring = scene.outline()
     height, bow, stern = _above(scene, number), float(ring[:, 0].max()), float(ring[:, 0].min())
     side = float(np.abs(ring[:, 1]).max())
-    edge, middle = np.column_stack([ring, np.full(len(ring), height)]), np.array([(0, 0, height), (bow, 0, height)])
+    edge, middle = (
+        np.column_stack([ring, np.full(len(ring), height)]),
+        np.array([(0, 0, height), (bow, 0, height)]),
+    )
     entity = f"{WORLD}/boats/{boat}/outline"
     stream.log(entity, rr.LineStrips3D([edge, middle], colors=[colour], radii=[-1.5]), static=True)
     place = [(stern, 0.0), (bow, side), (bow, -side), (stern, side)][number % 4]
@@ -331,7 +393,9 @@ def _mesh(solid: Solid, tint: tuple[int, int, int] | None = None) -> rr.Mesh3D:
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     colour = [round(255 * c) for c in solid.colour] if tint is None else [*tint, 255]
     return rr.Mesh3D(
-        vertex_positions=corners.reshape(-1, 3), vertex_normals=np.repeat(normals, 3, axis=0), albedo_factor=colour
+        vertex_positions=corners.reshape(-1, 3),
+        vertex_normals=np.repeat(normals, 3, axis=0),
+        albedo_factor=colour,
     )
 
 
@@ -377,7 +441,9 @@ def _log_arrows(stream: Stream, rows: Recording, scene: Scene) -> None:
     for what in ("force", "wind"):
         if f"{what}_X_N" in rows.signals and f"{what}_Y_N" in rows.signals:
             vector = _flat(rows[f"{what}_X_N"], rows[f"{what}_Y_N"])
-            height = scene.length * (0.2 if what == "force" else 0.35)  # one above the other, so that both can be read
+            height = scene.length * (
+                0.2 if what == "force" else 0.35
+            )  # one above the other, so that both can be read
             _arrow(stream, rows.t, what, scene, vector, _flat(zero, zero, height), COLOURS[what])
 
 
@@ -394,10 +460,15 @@ def _arrow(
     entity = f"{WORLD}/boat/{name}"
     words = {"force": "total force"}.get(name, name.replace("_", " "))
     look = rr.Arrows3D.from_fields(
-        colors=[colour], radii=[0.012 * scene.length], labels=[words], show_labels=not name.startswith("thrust")
+        colors=[colour],
+        radii=[0.012 * scene.length],
+        labels=[words],
+        show_labels=not name.startswith("thrust"),
     )
     stream.log(entity, look, static=True)
-    stream.send_columns(entity, _when(t), rr.Arrows3D.columns(vectors=scene.reach * newtons, origins=at))
+    stream.send_columns(
+        entity, _when(t), rr.Arrows3D.columns(vectors=scene.reach * newtons, origins=at)
+    )
 
 
 def _log_path(
@@ -431,10 +502,16 @@ def _log_camera(stream: Stream, rows: Recording) -> None:
     if not {"camera_x_m", "camera_y_m"} <= rows.signals.keys():
         return
     x, y = rows["camera_x_m"], rows["camera_y_m"]
-    fresh = np.isfinite(x) & np.isfinite(y) & (np.append(True, np.diff(x) != 0) | np.append(True, np.diff(y) != 0))
+    fresh = (
+        np.isfinite(x)
+        & np.isfinite(y)
+        & (np.append(True, np.diff(x) != 0) | np.append(True, np.diff(y) != 0))
+    )
     if fresh.any():
         entity = f"{WORLD}/camera"
-        stream.log(entity, rr.Points3D.from_fields(colors=[COLOURS["camera"]], radii=[-1.2]), static=True)
+        stream.log(
+            entity, rr.Points3D.from_fields(colors=[COLOURS["camera"]], radii=[-1.2]), static=True
+        )
         points = rr.Points3D.columns(positions=_flat(x[fresh], y[fresh], 1.5 * ABOVE))
         stream.send_columns(entity, _when(rows.t[fresh]), points)
 

@@ -20,7 +20,14 @@ if TYPE_CHECKING:
 Triangles = NDArray[np.uint32]
 SEEN = (0, 1, 2)  # MuJoCo geom groups that its viewers draw; touching shapes are in group 3
 OUTBOARD = "outboard_"  # bodies of this name turn with the steering of their side
-ROUND, PILL, BALL, BARREL, BRICK, MESH = 2, 3, 4, 5, 6, 7  # mjtGeom: sphere, capsule, ellipsoid, cylinder, box, mesh
+ROUND, PILL, BALL, BARREL, BRICK, MESH = (
+    2,
+    3,
+    4,
+    5,
+    6,
+    7,
+)  # mjtGeom: sphere, capsule, ellipsoid, cylinder, box, mesh
 REACH = 0.6  # a full-thrust arrow is this part of the boat's length
 PUSH = 0.05  # share of the weight that a force as long as REACH has on a boat whose thrust is not a command
 GRAVITY = 9.81  # [m/s^2]
@@ -52,7 +59,9 @@ class Scene:
 
     vessel: str
     length: float  # [m]
-    tank: tuple[float, float, float, float]  # [m] length along x, width along y, centre x, centre y (SNAME)
+    tank: tuple[
+        float, float, float, float
+    ]  # [m] length along x, width along y, centre x, centre y (SNAME)
     solids: tuple[Solid, ...] = ()
     thrusters: tuple[Thruster, ...] = ()
     reach: float = 0.3  # [m/N] length of an arrow per newton
@@ -61,10 +70,17 @@ class Scene:
 
     def enlarged(self, times: float) -> "Scene":
         """The same with boats drawn so many times as large; the water and their paths stay."""
-        solids = (s if s.part == "tank" else s._replace(vertices=times * s.vertices) for s in self.solids)
+        solids = (
+            s if s.part == "tank" else s._replace(vertices=times * s.vertices) for s in self.solids
+        )
         thrusters = (t._replace(x=times * t.x, y=times * t.y) for t in self.thrusters)
-        return replace(self, length=times * self.length, solids=tuple(solids), thrusters=tuple(thrusters),
-                       times=times * self.times)  # fmt: skip
+        return replace(
+            self,
+            length=times * self.length,
+            solids=tuple(solids),
+            thrusters=tuple(thrusters),
+            times=times * self.times,
+        )
 
     def outline(self) -> Array:
         """(V, 2) m, closed, of what is drawn of the hull, seen from above (its convex hull)."""
@@ -87,14 +103,18 @@ def scene_from(model: "Model", vessel: "Vessel", tank: "Tank") -> Scene:
     )
 
 
-def plain_scene(length: float, beam: float, tank: tuple[float, float, float, float], name: str = "boat") -> Scene:
+def plain_scene(
+    length: float, beam: float, tank: tuple[float, float, float, float], name: str = "boat"
+) -> Scene:
     """A scene without a model: a box of the boat's size [m] with a pointed bow."""
     half, side, low, high = 0.5 * length, 0.5 * beam, -0.05 * length, 0.08 * length
     outline = [(-half, side), (-half, -side), (0.5 * half, -side), (half, 0.0), (0.5 * half, side)]
     vertices = np.array([(x, y, z) for z in (low, high) for x, y in outline])
     caps = [(0, i + 1, i) for i in (1, 2, 3)] + [(5, 5 + i, 6 + i) for i in (1, 2, 3)]
     sides = [t for i in range(5) for j in [(i + 1) % 5] for t in ((i, j, 5 + j), (i, 5 + j, 5 + i))]
-    solid = Solid("hull", "hull", vertices, np.array(caps + sides, dtype=np.uint32), (0.93, 0.62, 0.13, 1.0))
+    solid = Solid(
+        "hull", "hull", vertices, np.array(caps + sides, dtype=np.uint32), (0.93, 0.62, 0.13, 1.0)
+    )
     return Scene(name, length, tank, (solid,), (), REACH * length)
 
 
@@ -124,11 +144,15 @@ def _solids(model: "Model") -> Iterator[Solid]:
         shape = _shape(model, geom)
         if shape is not None:
             vertices, triangles = shape
-            part, placed = _in_part(model, body, _turned(model.geom_quat[geom], vertices) + model.geom_pos[geom])
+            part, placed = _in_part(
+                model, body, _turned(model.geom_quat[geom], vertices) + model.geom_pos[geom]
+            )
             material = int(model.geom_matid[geom])
             rgba = model.mat_rgba[material] if material >= 0 else model.geom_rgba[geom]
             r, g, b, a = map(float, rgba)
-            yield Solid(part, model.geom(geom).name or f"shape_{geom}", placed, triangles, (r, g, b, a))
+            yield Solid(
+                part, model.geom(geom).name or f"shape_{geom}", placed, triangles, (r, g, b, a)
+            )
 
 
 def _in_part(model: "Model", body: int, vertices: Array) -> tuple[str, Array]:
@@ -156,11 +180,13 @@ def _shape(model: "Model", geom: int) -> tuple[Array, Triangles] | None:
         mesh = int(model.geom_dataid[geom])
         at, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
         face, faces = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
-        return np.array(model.mesh_vert[at : at + count], dtype=float), model.mesh_face[face : face + faces].astype(
-            "u4"
-        )
+        return np.array(model.mesh_vert[at : at + count], dtype=float), model.mesh_face[
+            face : face + faces
+        ].astype("u4")
     if kind in (ROUND, BALL):
-        vertices, triangles = _lathe([(np.cos(a), np.sin(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 17)])
+        vertices, triangles = _lathe(
+            [(np.cos(a), np.sin(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 17)]
+        )
         return vertices * (size if kind == BALL else size[0]), triangles
     if kind == PILL:
         ends = [(np.cos(a), np.sin(a), np.sign(a)) for a in np.linspace(-np.pi / 2, np.pi / 2, 18)]
@@ -169,12 +195,16 @@ def _shape(model: "Model", geom: int) -> tuple[Array, Triangles] | None:
         vertices, triangles = _lathe([(0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0)])
         return vertices * (size[0], size[0], size[1]), triangles
     if kind == BRICK:
-        vertices, triangles = _lathe([(0.0, -1.0), (2**0.5, -1.0), (2**0.5, 1.0), (0.0, 1.0)], 4, np.pi / 4)
+        vertices, triangles = _lathe(
+            [(0.0, -1.0), (2**0.5, -1.0), (2**0.5, 1.0), (0.0, 1.0)], 4, np.pi / 4
+        )
         return vertices * size, triangles
     return None
 
 
-def _lathe(profile: list[tuple[float, float]], around: int = 32, start: float = 0.0) -> tuple[Array, Triangles]:
+def _lathe(
+    profile: list[tuple[float, float]], around: int = 32, start: float = 0.0
+) -> tuple[Array, Triangles]:
     """Surface of revolution about z of a profile of (radius, z), every strip with vertices of its own."""
     angles = start + np.linspace(0.0, 2.0 * np.pi, around, endpoint=False)
     vertices: list[Array] = []
@@ -182,7 +212,9 @@ def _lathe(profile: list[tuple[float, float]], around: int = 32, start: float = 
     for (r0, z0), (r1, z1) in zip(profile[:-1], profile[1:], strict=True):
         base = 2 * around * len(triangles)
         for r, z in ((r0, z0), (r1, z1)):
-            vertices.append(np.column_stack([r * np.cos(angles), r * np.sin(angles), np.full(around, z)]))
+            vertices.append(
+                np.column_stack([r * np.cos(angles), r * np.sin(angles), np.full(around, z)])
+            )
         i, j = np.arange(around), (np.arange(around) + 1) % around
         strip = [(i, j, around + j), (i, around + j, around + i)]
         triangles.append(base + np.concatenate([np.column_stack(corner) for corner in strip]))

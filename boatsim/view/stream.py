@@ -33,7 +33,10 @@ class Stream:
         if viewer is not None:
             self._viewer = rr.RecordingStream(name, send_properties=False)
             self._viewer.set_sinks(rr.GrpcSink(viewer))
-        self._to = [*([to_file] if path is not None else []), *([self._viewer] if self._viewer else [])]
+        self._to = [
+            *([to_file] if path is not None else []),
+            *([self._viewer] if self._viewer else []),
+        ]
         self.heard = bool(self._to)
 
     def log(self, entity: str, what: rr.AsComponents, static: bool = False) -> None:
@@ -91,6 +94,10 @@ def _pieces(whole: bytes, first: bool) -> Iterator[bytes]:
 def _end(stream: rr.RecordingStream) -> None:
     try:
         stream.flush(timeout_sec=PATIENCE)
-    except (RuntimeError, TimeoutError, ValueError) as error:  # a viewer that was closed while the run went on
+    except (
+        RuntimeError,
+        TimeoutError,
+        ValueError,
+    ) as error:  # a viewer that was closed while the run went on
         warnings.warn(f"the viewer did not take all of the log ({error})", stacklevel=4)
     stream.disconnect()

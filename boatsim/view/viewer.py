@@ -18,7 +18,10 @@ from urllib.parse import quote
 
 from boatsim.errors import BoatsimError
 
-PORT, PAGE = 9876, 9090  # where a viewer listens, and the web viewer's page is, unless these are taken
+PORT, PAGE = (
+    9876,
+    9090,
+)  # where a viewer listens, and the web viewer's page is, unless these are taken
 HERE = "127.0.0.1"
 PATIENCE = 15.0  # [s] for a viewer to start
 SETTLED = 0.3  # [s] after which it has all its ports, or has ended because one is taken
@@ -47,7 +50,9 @@ def shown(serve: bool) -> Iterator[Viewer | None]:
 
 def display() -> bool:
     """Whether there is a screen to open a window on."""
-    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    return sys.platform in ("darwin", "win32") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
 
 
 def _opened() -> bool:
@@ -76,10 +81,14 @@ def _served() -> Iterator[Viewer]:
 def _serving(page: int) -> "tuple[subprocess.Popen[bytes], Viewer] | None":
     """A web viewer on a port; None if it does not start there, as where another one was quicker."""
     to = _free(0)
-    started = _rerun("--serve-web", "--bind", HERE, "--port", str(to), "--web-viewer-port", str(page))
+    started = _rerun(
+        "--serve-web", "--bind", HERE, "--port", str(to), "--web-viewer-port", str(page)
+    )
     try:
         if _up(started, to, page) and not _ends(started, SETTLED):
-            return started, Viewer(_address(to), f"http://{HERE}:{page}/?url={quote(_address(to), safe='')}")
+            return started, Viewer(
+                _address(to), f"http://{HERE}:{page}/?url={quote(_address(to), safe='')}"
+            )
     except BaseException:
         _end(started)
         raise
@@ -114,7 +123,9 @@ def _rerun(*options: str) -> "subprocess.Popen[bytes]":
     beside = Path(sys.executable).parent / "rerun"
     command = [str(beside)] if beside.is_file() else [sys.executable, "-m", "rerun"]
     silent = subprocess.DEVNULL
-    return subprocess.Popen([*command, *options], stdin=silent, stdout=silent, stderr=silent, start_new_session=True)
+    return subprocess.Popen(
+        [*command, *options], stdin=silent, stdout=silent, stderr=silent, start_new_session=True
+    )
 
 
 def _up(started: "subprocess.Popen[bytes]", *ports: int) -> bool:

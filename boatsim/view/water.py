@@ -18,7 +18,9 @@ BEYOND = 4.0  # times as much water as the view shows
 
 def around(boat: Vessel, boats: Mapping[str, Sequence[Recording]]) -> Scene:
     """The scene for an overlay; a nominal boat, which may run away, does not decide how much of the water is shown."""
-    paths = [r for name, runs in boats.items() for r in runs if name != "nominal" or len(boats) == 1]
+    paths = [
+        r for name, runs in boats.items() for r in runs if name != "nominal" or len(boats) == 1
+    ]
     spans = [_span([r.signals[n] for r in paths if n in r.signals]) for n in ("x_m", "y_m")]
     sizes, centre = [high - low for low, high in spans], (sum(spans[0]) / 2, sum(spans[1]) / 2)
     times = max(1.0, SEEN * max(sizes) / boat.length)

@@ -9,9 +9,9 @@ from boatsim.errors import BadInput
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import batch
-from boatsim.warp.alone import Alone
-from boatsim.warp.boats import Boats
+from boatsim.warp.device_state import Boats
 from boatsim.warp.on_mujoco import OnMujoco
+from boatsim.warp.standalone import Alone
 
 MOST = 2**24  # whole numbers up to here are what they are in single precision
 
@@ -39,14 +39,18 @@ class Batch(batch.Batch):
         that has no form there too.
         """
         if mujoco and double:
-            raise BadInput("double = true; mujoco_warp knows single precision alone (allowed with mujoco = false)")
+            raise BadInput(
+                "double = true; mujoco_warp knows single precision alone (allowed with mujoco = false)"
+            )
         self._ahead = False  # the device has stepped since its states were read
         self._changed = True  # what is here has changed since it was sent there
         self._double = double
         self._numbers = np.zeros(0, dtype=np.int64)  # (n,) of each boat's vessel
         super().__init__(vessels, n, step, seeds=seeds)
         self._there = Boats(self.program, self.n, step, device, "float64" if double else "float32")
-        self.motion: OnMujoco | Alone = OnMujoco(self._there, self.vessels) if mujoco else Alone(self._there)
+        self.motion: OnMujoco | Alone = (
+            OnMujoco(self._there, self.vessels) if mujoco else Alone(self._there)
+        )
         self.send()
 
     def reset(
@@ -60,7 +64,9 @@ class Batch(batch.Batch):
         super().reset(states, commands, boats)
         self._changed = True
 
-    def advance(self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1) -> None:
+    def advance(
+        self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1
+    ) -> None:
         """As there: steps of all boats with the commands held."""
         if commands is not None:
             self._commands[:] = self._taken(commands, np.arange(self.n))
@@ -131,8 +137,12 @@ class Batch(batch.Batch):
     def _check_courses(self) -> None:
         """Raises BadInput for a random course by a number that single precision lacks: it would be another one."""
         for effect, first in zip(self.program.effects, self.program.offsets, strict=True):
-            pairs = zip(type(effect).params(), effect.values(), effect.seeded(1).values(), strict=True)
+            pairs = zip(
+                type(effect).params(), effect.values(), effect.seeded(1).values(), strict=True
+            )
             for place, (key, value, other) in enumerate(pairs):
                 worst = self._p[:, first + place].max()
                 if value != other and worst > MOST and not self._double:
-                    raise BadInput(f"{effect.name}.{key} = {worst:.0f}; in single precision allowed to {MOST}")
+                    raise BadInput(
+                        f"{effect.name}.{key} = {worst:.0f}; in single precision allowed to {MOST}"
+                    )

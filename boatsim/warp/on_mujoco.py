@@ -16,12 +16,25 @@ from boatsim.physics.kernel.equations import COORDINATES, SIGN
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
-from boatsim.warp.boats import Boats
+from boatsim.warp.device_state import Boats
 
-STAGES = ((0.0, 0), (0.5, 1), (0.5, 1), (1.0, 2))  # of a step: its share, and the actuators at begin, middle or end
-BODY = ("body_mass", "body_subtreemass", "body_inertia", "body_ipos", "jnt_pos")  # what loads differ in
+STAGES = (
+    (0.0, 0),
+    (0.5, 1),
+    (0.5, 1),
+    (1.0, 2),
+)  # of a step: its share, and the actuators at begin, middle or end
+BODY = (
+    "body_mass",
+    "body_subtreemass",
+    "body_inertia",
+    "body_ipos",
+    "jnt_pos",
+)  # what loads differ in
 IDLE = (
-    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT | mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_GRAVITY
+    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+    | mujoco.mjtDisableBit.mjDSBL_CONTACT
+    | mujoco.mjtDisableBit.mjDSBL_GRAVITY
 )
 
 
@@ -33,18 +46,24 @@ class OnMujoco:
         try:
             import mujoco_warp
         except ImportError:
-            raise BadInput('a batch on MuJoCo needs mujoco_warp: pip install "boatsim[warp]"') from None
+            raise BadInput(
+                'a batch on MuJoCo needs mujoco_warp: pip install "boatsim[warp]"'
+            ) from None
         self.boats, self._mjw = boats, mujoco_warp
         self._models = [world.build(v, step=boats.step, show=False) for v in vessels]
         model = self._models[0]
         model.opt.disableflags = IDLE  # nothing touches anything; its forces are ours
         joints = [model.joint(i).name for i in range(model.njnt)]
         coordinates = [COORDINATES[i] for i in boats.code.FREE]
-        self._place = np.array([joints.index(c) for c in coordinates])  # of each coordinate among MuJoCo's joints
+        self._place = np.array(
+            [joints.index(c) for c in coordinates]
+        )  # of each coordinate among MuJoCo's joints
         self._sign = np.array([float(SIGN[c]) for c in coordinates])
         with boats.wp.ScopedDevice(boats.device):
             self.model = mujoco_warp.put_model(model)
-            self.data = mujoco_warp.put_data(model, mujoco.MjData(model), nworld=boats.n, nconmax=0, njmax=0)
+            self.data = mujoco_warp.put_data(
+                model, mujoco.MjData(model), nworld=boats.n, nconmax=0, njmax=0
+            )
         self._part, self._left, self._least, self._before = (boats.zeros() for _ in range(4))
         self._ahead = boats.filled(np.zeros(boats.n), int)
         self._unfinished = boats.filled(np.zeros(1), int)
@@ -59,7 +78,10 @@ class OnMujoco:
         """Boats become of the vessels of these numbers (n,): each world has its hull's mass, inertia and joints."""
         b = self.boats
         for name in BODY if len(self._models) > 1 else ():
-            found, there = np.stack([getattr(m, name) for m in self._models])[numbers], getattr(self.model, name)
+            found, there = (
+                np.stack([getattr(m, name) for m in self._models])[numbers],
+                getattr(self.model, name),
+            )
             if len(there) == b.n:
                 there.assign(found)
             else:
@@ -117,9 +139,19 @@ class OnMujoco:
         """Actuators over a part of each boat's own step, then a Runge-Kutta step as long."""
         b = self.boats
         b.launch(
-            "begin_part", b.commands, b.step, b.p, b.t, self._part, self._ahead, self._left, self._least, self._before,
-            b.memory, b.act,
-        )  # fmt: skip
+            "begin_part",
+            b.commands,
+            b.step,
+            b.p,
+            b.t,
+            self._part,
+            self._ahead,
+            self._left,
+            self._least,
+            self._before,
+            b.memory,
+            b.act,
+        )
         self._stage = 0
         self._mjw.step(self.model, self.data)
 
@@ -128,7 +160,18 @@ class OnMujoco:
         (share, place), self._stage, b = STAGES[self._stage], self._stage + 1, self.boats
         at = place * int(b.code.HELD)
         b.launch(
-            "add_forces", b.t, self._part, share, at, data.qpos, data.qvel, b.act, b.p, b.k, data.qfrc_passive, data.M
+            "add_forces",
+            b.t,
+            self._part,
+            share,
+            at,
+            data.qpos,
+            data.qvel,
+            b.act,
+            b.p,
+            b.k,
+            data.qfrc_passive,
+            data.M,
         )
 
     def _any_left(self) -> bool:

@@ -27,7 +27,11 @@ def text_of(program: Program, real: str) -> str:
             translation.function(getattr(code, name), kinds)
     except NoForm as error:
         raise BadInput(f"{program.vessel.name}: {error}") from None
-    limits = {"{real}": real, "{enough}": repr(code.run.ENOUGH), "{shortest}": repr(code.run.SHORTEST)}
+    limits = {
+        "{real}": real,
+        "{enough}": repr(code.run.ENOUGH),
+        "{shortest}": repr(code.run.SHORTEST),
+    }
     text = "\n\n".join([HEAD, translation.text, FORCES, PARTS, ALONE])
     for mark, number in limits.items():
         text = text.replace(mark, number)

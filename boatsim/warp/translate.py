@@ -14,6 +14,16 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
 from boatsim.errors import BadInput
+from boatsim.warp.function_names import (
+    CASTS,
+    MATH,
+    OF_TRUTHS,
+    OF_TWO,
+    OF_WHOLE,
+    OF_WHOLES,
+    OPERATORS,
+    safe,
+)
 from boatsim.warp.values import (
     BITS,
     NONE,
@@ -33,7 +43,6 @@ from boatsim.warp.values import (
     tuple_of,
     written,
 )
-from boatsim.warp.words import CASTS, MATH, OF_TRUTHS, OF_TWO, OF_WHOLE, OF_WHOLES, OPERATORS, safe
 
 
 class NoForm(BadInput):
@@ -60,7 +69,14 @@ class Translation:
         if kind not in self._records:
             found = Record(self.unused(name), tuple(kind._fields))
             self.structs.append(
-                "\n".join(["@wp.struct", f"class {found.name}:", *(f"    {f}: T" for f in found.fields), ""])
+                "\n".join(
+                    [
+                        "@wp.struct",
+                        f"class {found.name}:",
+                        *(f"    {f}: T" for f in found.fields),
+                        "",
+                    ]
+                )
             )
             self._records[kind] = found
         return self._records[kind]
@@ -87,7 +103,9 @@ class Translation:
 class Body:
     """One function on its way."""
 
-    def __init__(self, program: Translation, function: Callable[..., Any], kinds: Sequence[Kind]) -> None:
+    def __init__(
+        self, program: Translation, function: Callable[..., Any], kinds: Sequence[Kind]
+    ) -> None:
         self.program, self.python = program, function
         self.file, self.first = inspect.getsourcefile(function), function.__code__.co_firstlineno
         tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
@@ -109,9 +127,13 @@ class Body:
     def text(self) -> str:
         """The function in Warp's Python."""
         self.block(self.tree.body)
-        taken = ", ".join(f"{v.text}: {written(v.kind)}" for a in self.arguments.values() for v in flat(a))
+        taken = ", ".join(
+            f"{v.text}: {written(v.kind)}" for a in self.arguments.values() for v in flat(a)
+        )
         whole = ["@wp.func", f"def {self.name}({taken}):", f"    {self.about!r}", *self.lines]
-        return ast.unparse(ast.parse("\n".join(whole))) + "\n"  # without the brackets that nobody needs
+        return (
+            ast.unparse(ast.parse("\n".join(whole))) + "\n"
+        )  # without the brackets that nobody needs
 
     # Statements -------------------------------------------------------------------------------------------------------
 
@@ -163,7 +185,9 @@ class Body:
         value = self.value(node.value)
         read = {n.id for n in ast.walk(node.value) if isinstance(n, ast.Name)}
         set_ = {n.id for t in node.targets for n in ast.walk(t) if isinstance(n, ast.Name)}
-        if (len(flat(value)) > 1 and read & set_) or (len(node.targets) > 1 and isinstance(node.value, ast.Call)):
+        if (len(flat(value)) > 1 and read & set_) or (
+            len(node.targets) > 1 and isinstance(node.value, ast.Call)
+        ):
             value = self.kept(value)
         for target in node.targets:
             self.assign(target, value)
@@ -171,7 +195,9 @@ class Body:
     def say_AugAssign(self, node: ast.AugAssign) -> None:
         """Read, and then written: Warp's own would be atomic."""
         before = ast.parse(ast.unparse(node.target), mode="eval").body
-        self.assign(node.target, self.value(ast.copy_location(ast.BinOp(before, node.op, node.value), node)))
+        self.assign(
+            node.target, self.value(ast.copy_location(ast.BinOp(before, node.op, node.value), node))
+        )
 
     def assign(self, target: ast.expr, value: Value) -> None:
         """A value to what stands on the left."""
@@ -187,12 +213,16 @@ class Body:
             if known is not None and known.kind == REAL and value.kind in (WHOLE, TRUTH):
                 value = real(value)
             if known is not None and known.kind != value.kind:
-                raise self.refuse(target, f"'{target.id}', which is now of one kind, now of another,")
+                raise self.refuse(
+                    target, f"'{target.id}', which is now of one kind, now of another,"
+                )
             own = named(value.kind, safe(target.id))
             self.variables[target.id] = own
             for to, of in zip(flat(own), flat(value), strict=True):
                 # a constant of its own: Warp would take the bare one for fixed for good
-                self.say(f"{to.text} = {f'int({of.text})' if of.kind == WHOLE and of.fixed is not None else of.text}")
+                self.say(
+                    f"{to.text} = {f'int({of.text})' if of.kind == WHOLE and of.fixed is not None else of.text}"
+                )
         else:
             raise self.refuse(target, f"'{ast.unparse(target)} = ...'")
 
@@ -211,7 +241,11 @@ class Body:
     def say_For(self, node: ast.For) -> None:
         """A loop over a range."""
         call = node.iter
-        if not (isinstance(call, ast.Call) and self.found(call.func) is range and isinstance(node.target, ast.Name)):
+        if not (
+            isinstance(call, ast.Call)
+            and self.found(call.func) is range
+            and isinstance(node.target, ast.Name)
+        ):
             raise self.refuse(node, "a loop over anything but a range")
         bounds = ", ".join(self.value(a).text for a in call.args)
         self.variables[node.target.id] = Value(WHOLE, safe(node.target.id))
@@ -327,7 +361,11 @@ class Body:
         if isinstance(node.op, ast.USub) and isinstance(of.fixed, int | float):
             return constant(-of.fixed)
         if isinstance(node.op, ast.Not):
-            return constant(not of.fixed) if of.fixed is not None else Value(TRUTH, f"(not {truth(of).text})")
+            return (
+                constant(not of.fixed)
+                if of.fixed is not None
+                else Value(TRUTH, f"(not {truth(of).text})")
+            )
         return Value(of.kind, f"({self.operator(node.op)}{of.text})")
 
     def of_BinOp(self, node: ast.BinOp) -> Value:
@@ -442,9 +480,13 @@ class Body:
     def call(self, what: Any, given: Sequence[Value]) -> Value:
         """A call of a function of ours; a tuple that it returns goes into variables."""
         python = getattr(what, "py_func", what)
-        floats = [python.__annotations__.get(n) in (float, "float") for n in python.__code__.co_varnames[: len(given)]]
+        floats = [
+            python.__annotations__.get(n) in (float, "float")
+            for n in python.__code__.co_varnames[: len(given)]
+        ]
         given = [
-            real(v) if is_float and v.kind in (WHOLE, TRUTH) else v for v, is_float in zip(given, floats, strict=True)
+            real(v) if is_float and v.kind in (WHOLE, TRUTH) else v
+            for v, is_float in zip(given, floats, strict=True)
         ]
         name, kind = self.program.function(what, [v.kind for v in given])
         text = f"{name}({', '.join(leaf.text for v in given for leaf in flat(v))})"
@@ -474,6 +516,8 @@ class Body:
         if kind == WHOLE and isinstance(value.fixed, int | float):
             return constant(int(value.fixed))
         if kind == BITS and isinstance(value.fixed, int):
-            parts = (str(value.fixed >> shift & 0xFFFF) for shift in (48, 32, 16, 0))  # Warp's literals are shorter
+            parts = (
+                str(value.fixed >> shift & 0xFFFF) for shift in (48, 32, 16, 0)
+            )  # Warp's literals are shorter
             return Value(BITS, f"bits_({', '.join(parts)})")
         return Value(kind, f"{kind}({value.text})")

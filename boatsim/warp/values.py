@@ -16,7 +16,9 @@ class Record:
     fields: tuple[str, ...]
 
 
-Kind: TypeAlias = "str | Record | tuple[Kind, ...]"  # a tuple is no value of Warp's: its parts go their own ways
+Kind: TypeAlias = (
+    "str | Record | tuple[Kind, ...]"  # a tuple is no value of Warp's: its parts go their own ways
+)
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,11 @@ def flat(value: Value) -> list[Value]:
     """All parts of a value that Warp knows: of nothing there are none."""
     if value.kind == NOTHING:
         return []
-    return [leaf for part in value.parts for leaf in flat(part)] if isinstance(value.kind, tuple) else [value]
+    return (
+        [leaf for part in value.parts for leaf in flat(part)]
+        if isinstance(value.kind, tuple)
+        else [value]
+    )
 
 
 def named(kind: Kind, name: str) -> Value:
@@ -68,7 +74,10 @@ def real(value: Value) -> Value:
         return value
     if isinstance(value.fixed, bool | int):
         return constant(float(value.fixed))
-    return Value(REAL, f"wp.where({value.text}, T(1.0), T(0.0))" if value.kind == TRUTH else f"T({value.text})")
+    return Value(
+        REAL,
+        f"wp.where({value.text}, T(1.0), T(0.0))" if value.kind == TRUTH else f"T({value.text})",
+    )
 
 
 def truth(value: Value) -> Value:

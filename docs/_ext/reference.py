@@ -26,8 +26,11 @@ SHELVES = {  # folder of pages -> its heading and what stands below it
     "commands": ("Commands", "What each says to `--help`."),
     "effects": ("Effects", FITTED),
     "controllers": ("Controllers", "One a file, in `controllers/`."),
-    "measures": ("Measures", "One measure of a run a file, in `boatsim/measures/`."),
-    "sensors": ("Sensors", "Beside the usual ones of `[sensors]`; one a file, in `boatsim/simulate/sensors/`."),
+    "measures": ("Measures", "One measure of a run a file, in `boatsim/metrics/`."),
+    "sensors": (
+        "Sensors",
+        "Beside the usual ones of `[sensors]`; one a file, in `boatsim/simulate/sensors/`.",
+    ),
     "vessels": ("Vessels", "A folder each, in `models/`."),
     "scenarios": ("Scenarios", "In `scenarios/`, a folder for each vessel."),
 }
@@ -48,10 +51,17 @@ def _entry_page(kind: str, name: str) -> str:
     one = entry(kind, name)
     lines = [f"# {name}", "", f"{_sentence(one.words)}.", ""]
     lines += [_plain(line) for line in one.doc] + ([""] if one.doc else [])
-    lines += [f"- **{what}**: {_plain(text)}" for what, text in one.said] + ([""] if one.said else [])
+    lines += [f"- **{what}**: {_plain(text)}" for what, text in one.said] + (
+        [""] if one.said else []
+    )
     if one.numbers:
         head, *rows = one.numbers
-        lines += [_row(head), _row("---" for _ in head), *(_row(map(_plain, row)) for row in rows), ""]
+        lines += [
+            _row(head),
+            _row("---" for _ in head),
+            *(_row(map(_plain, row)) for row in rows),
+            "",
+        ]
     return "\n".join([*lines, "```toml", *one.paste, "```", ""])
 
 
@@ -61,7 +71,18 @@ def _vessel_page(name: str) -> str:
     lines = lines[lines.index(f"{name}: vessel") + 1 :]
     words, *rest = lines[: lines.index("")] if "" in lines else lines
     rest = [line for line in rest if not line.startswith("  file: ")]
-    return "\n".join([f"# {name}", "", f"{_sentence(words.strip()).rstrip('.')}.", "", "```text", *rest, "```", ""])
+    return "\n".join(
+        [
+            f"# {name}",
+            "",
+            f"{_sentence(words.strip()).rstrip('.')}.",
+            "",
+            "```text",
+            *rest,
+            "```",
+            "",
+        ]
+    )
 
 
 def _scenarios() -> Iterator[tuple[str, str]]:
@@ -71,7 +92,10 @@ def _scenarios() -> Iterator[tuple[str, str]]:
         folders.setdefault(name.partition("/")[0], []).append(name)
     for folder, names in folders.items():
         lines = [f"# {folder}", "", "| `boatsim run` | what |", "| --- | --- |"]
-        lines += [_row((f"`{name}`", _plain(str(cases.content(name)[0].get("about", ""))))) for name in names]
+        lines += [
+            _row((f"`{name}`", _plain(str(cases.content(name)[0].get("about", "")))))
+            for name in names
+        ]
         yield f"scenarios/{folder}", "\n".join([*lines, ""])
 
 
@@ -83,9 +107,14 @@ def _commands() -> Iterator[tuple[str, str]]:
     with group.make_context("boatsim", [], resilient_parsing=True) as above:
         for name in group.list_commands(above):
             command = group.get_command(above, name)
-            inside = command.make_context(name, [], parent=above, resilient_parsing=True, terminal_width=100)
+            inside = command.make_context(
+                name, [], parent=above, resilient_parsing=True, terminal_width=100
+            )
             text = command.get_help(inside)
-            yield f"commands/{name}", "\n".join([f"# boatsim {name}", "", "```text", *text.splitlines(), "```", ""])
+            yield (
+                f"commands/{name}",
+                "\n".join([f"# boatsim {name}", "", "```text", *text.splitlines(), "```", ""]),
+            )
 
 
 def _index(shelf: str, found: Mapping[str, str]) -> str:
@@ -95,7 +124,9 @@ def _index(shelf: str, found: Mapping[str, str]) -> str:
     lines = [f"# {title}", "", below, ""]
     for name in names:
         words = found[f"{shelf}/{name}"].splitlines()[2].rstrip(".")
-        lines.append(f"- [{name}]({name}.md){'' if words.startswith(('|', '```')) else f': {words}'}")
+        lines.append(
+            f"- [{name}]({name}.md){'' if words.startswith(('|', '```')) else f': {words}'}"
+        )
     return "\n".join([*lines, "", "```{toctree}", ":hidden:", "", *names, "```", ""])
 
 
@@ -110,7 +141,9 @@ def _sentence(text: str) -> str:
 def _plain(text: str) -> str:
     """Text as it is, with no sign of it taken for Markdown, but for what stands in backticks."""
     parts = re.split(r"(`[^`]*`)", text)
-    return "".join(p if p.startswith("`") else re.sub(r"([\\*_<>|\[\]$])", r"\\\1", p) for p in parts)
+    return "".join(
+        p if p.startswith("`") else re.sub(r"([\\*_<>|\[\]$])", r"\\\1", p) for p in parts
+    )
 
 
 def write(app: "Sphinx") -> None:

@@ -53,7 +53,9 @@ def pattern(line: str) -> str:
 def same(shown: str, printed: str) -> bool:
     """Whether two figures agree to one unit of the last digit shown, and half of one of the other's."""
     units = [10.0 ** -len(text.partition(".")[2]) for text in (shown, printed)]
-    return abs(float(shown) - float(printed)) <= 1.01 * units[0] + (0.5 * units[1] if units[1] > units[0] else 0.0)
+    return abs(float(shown) - float(printed)) <= 1.01 * units[0] + (
+        0.5 * units[1] if units[1] > units[0] else 0.0
+    )
 
 
 def difference(shown: Sequence[str], printed: Sequence[str]) -> str:
@@ -64,7 +66,11 @@ def difference(shown: Sequence[str], printed: Sequence[str]) -> str:
         if not rest:
             return "\n".join((f"not printed: {line}", "printed:", *printed[at:]))
         found = printed[rest[0]]
-        wrong = [f"{a} is {b}" for a, b in zip(numbers(line), numbers(found), strict=True) if not same(a, b)]
+        wrong = [
+            f"{a} is {b}"
+            for a, b in zip(numbers(line), numbers(found), strict=True)
+            if not same(a, b)
+        ]
         if wrong:
             return f"{line.strip()}: {'; '.join(wrong)}"
         at = rest[0] + 1
@@ -78,9 +84,14 @@ def wrong(page: str, home: Path) -> Iterator[tuple[int, str]]:
     for block in blocks(page):
         script = f'cd "{here}"\n{block.commands}\npwd > {place}\n'
         done = subprocess.run(
-            ["bash", "-euo", "pipefail", "-c", script], env=_environment(home),
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600,
-        )  # fmt: skip
+            ["bash", "-euo", "pipefail", "-c", script],
+            env=_environment(home),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=600,
+        )
         if done.returncode != block.code:
             yield block.line, f"exit code {done.returncode} instead of {block.code}:\n{done.stdout}"
             return
@@ -94,5 +105,11 @@ def _environment(home: Path) -> dict[str, str]:
     caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     compiled = os.environ.get("BOATSIM_CACHE", str(caches / "boatsim"))
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    own = {"HOME": str(home), "PATH": path, "BOATSIM_CACHE": compiled, "COLUMNS": "120", "TERM": "dumb"}
+    own = {
+        "HOME": str(home),
+        "PATH": path,
+        "BOATSIM_CACHE": compiled,
+        "COLUMNS": "120",
+        "TERM": "dumb",
+    }
     return os.environ | own

@@ -30,21 +30,35 @@ ALONE = "--alone"  # in this process
 
 def main() -> int:
     """Print a line for each reader."""
-    asked = argparse.ArgumentParser(prog="python -m tests.fuzz", description="Mutated files for every reader.")
+    asked = argparse.ArgumentParser(
+        prog="python -m tests.fuzz", description="Mutated files for every reader."
+    )
     asked.add_argument("--count", type=int, default=1000, help="mutated files in all")
-    asked.add_argument("--seconds", type=float, default=float("inf"), help="for all of them, if that is less")
+    asked.add_argument(
+        "--seconds", type=float, default=float("inf"), help="for all of them, if that is less"
+    )
     asked.add_argument("--seed", type=int, default=0)
-    asked.add_argument("--reader", choices=sorted(READERS), action="append", help="only this; may be repeated")
+    asked.add_argument(
+        "--reader", choices=sorted(READERS), action="append", help="only this; may be repeated"
+    )
     asked.add_argument(ALONE, action="store_true", help=argparse.SUPPRESS)
     given = asked.parse_args()
     chosen = given.reader or list(READERS)
     if given.alone:
         return alone(chosen[0], given.count, given.seconds, given.seed)
-    print(f"{'reader':16}" + "".join(f"{heading:>{width}}" for heading, width, _ in COLUMNS.values()))
-    shares, sums, codes = sum(READERS[name].share for name in chosen), dict.fromkeys(COLUMNS, 0.0), []
+    print(
+        f"{'reader':16}" + "".join(f"{heading:>{width}}" for heading, width, _ in COLUMNS.values())
+    )
+    shares, sums, codes = (
+        sum(READERS[name].share for name in chosen),
+        dict.fromkeys(COLUMNS, 0.0),
+        [],
+    )
     for name in chosen:
         share = READERS[name].share / shares
-        code, figures = apart(name, round(given.count * share), given.seconds / len(chosen), given.seed)
+        code, figures = apart(
+            name, round(given.count * share), given.seconds / len(chosen), given.seed
+        )
         codes.append(code)
         for key, value in figures.items():
             sums[key] = max(sums[key], value) if key in ("slowest", "memory") else sums[key] + value
@@ -62,20 +76,29 @@ def apart(name: str, count: int, seconds: float, seed: int) -> tuple[int, dict[s
         figures = {key: float(value) for key, value in json.loads(last).items()}
         print(row(name, figures), *said, sep="\n", flush=True)
     except ValueError:  # native code has ended it
-        print(f"{name}: its process ended with {done.returncode}", done.stdout, done.stderr[-4000:], sep="\n")
+        print(
+            f"{name}: its process ended with {done.returncode}",
+            done.stdout,
+            done.stderr[-4000:],
+            sep="\n",
+        )
         return 1, {}
     return done.returncode, figures
 
 
 def row(name: str, figures: dict[str, float]) -> str:
     """A line of the table."""
-    return f"{name:16}" + "".join(f"{figures[key]:{width}.{digits}f}" for key, (_, width, digits) in COLUMNS.items())
+    return f"{name:16}" + "".join(
+        f"{figures[key]:{width}.{digits}f}" for key, (_, width, digits) in COLUMNS.items()
+    )
 
 
 def alone(name: str, count: int, seconds: float, seed: int) -> int:
     """Drive a reader here, and print what broke it and last its figures."""
     faulthandler.enable()
-    faulthandler.dump_traceback_later(seconds + 60.0 * PATIENCE if seconds < float("inf") else 6 * 3600.0, exit=True)
+    faulthandler.dump_traceback_later(
+        seconds + 60.0 * PATIENCE if seconds < float("inf") else 6 * 3600.0, exit=True
+    )
     found = drive(READERS[name], count, seed, seconds)
     for broken in found.kinds():
         show(name, broken)

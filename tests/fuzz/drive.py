@@ -46,7 +46,9 @@ class Found:
     refused: int = 0
     slowest: float = 0.0  # [s]
     seconds: float = 0.0  # in all
-    memory: float = 0.0  # [MB] by which the process grew at most beyond what it took for whole files
+    memory: float = (
+        0.0  # [MB] by which the process grew at most beyond what it took for whole files
+    )
     broken: list[Broken] = field(default_factory=list)
 
     @property
@@ -67,7 +69,11 @@ class Found:
     def figures(self) -> dict[str, float]:
         """All numbers."""
         numbers = {k: v for k, v in asdict(self).items() if k != "broken"}
-        return numbers | {"files": self.files, "hung": self.hung, "raised": len(self.broken) - self.hung}
+        return numbers | {
+            "files": self.files,
+            "hung": self.hung,
+            "raised": len(self.broken) - self.hung,
+        }
 
 
 def drive(reader: Reader, count: int, number: int = 0, seconds: float = float("inf")) -> Found:

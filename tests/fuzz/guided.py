@@ -11,7 +11,12 @@ from pathlib import Path
 import atheris
 
 # the readers, and the libraries in Python that they hand a file to
-WATCHED = ["boatsim.recordings", "boatsim.files", "boatsim.physics.vessel", "boatsim.physics.content"]
+WATCHED = [
+    "boatsim.recordings",
+    "boatsim.files",
+    "boatsim.physics.vessel",
+    "boatsim.physics.content",
+]
 WATCHED += ["boatsim.simulate.scenario", "boatsim.simulate.world"]
 WATCHED += ["mcap", "pymavlink.DFReader", "pynmea2", "pyulog", "rosbags"]
 LONGEST = 1 << 18  # [bytes] of a file that is tried

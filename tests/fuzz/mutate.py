@@ -7,18 +7,60 @@ from hypothesis import strategies as st
 VALUES = [
     text.encode()
     for text in (
-        "nan", "inf", "-inf", "-1", "0", "0.0", "1e308", "1e-308", "1e400", "9" * 30, "9" * 400, "true", "1979-05-27",
-        "[]", "{}", "[[]]", "[1, 2]", "{a = 1}", '""', '"x"', '"../x"', '"x.py"', '"\\u0000"', '"current"', "surge",
+        "nan",
+        "inf",
+        "-inf",
+        "-1",
+        "0",
+        "0.0",
+        "1e308",
+        "1e-308",
+        "1e400",
+        "9" * 30,
+        "9" * 400,
+        "true",
+        "1979-05-27",
+        "[]",
+        "{}",
+        "[[]]",
+        "[1, 2]",
+        "{a = 1}",
+        '""',
+        '"x"',
+        '"../x"',
+        '"x.py"',
+        '"\\u0000"',
+        '"current"',
+        "surge",
         "name",
     )
-]  # fmt: skip
+]
 LINES = [
     text.encode("utf-8", "surrogatepass")
     for text in (
-        "[a]\n", "[[effect]]\n", 'use = "wind"\n', "use = 3\n", 'name = "t_s"\n', "on = []\n", 'on = "x"\n', "[" * 40,
-        "#", "=", ",", ",,", "\n", "\r", "\r\n", "\0", "\ufeff", "\u202e", "\udcff", "ü", "'''",
+        "[a]\n",
+        "[[effect]]\n",
+        'use = "wind"\n',
+        "use = 3\n",
+        'name = "t_s"\n',
+        "on = []\n",
+        'on = "x"\n',
+        "[" * 40,
+        "#",
+        "=",
+        ",",
+        ",,",
+        "\n",
+        "\r",
+        "\r\n",
+        "\0",
+        "\ufeff",
+        "\u202e",
+        "\udcff",
+        "ü",
+        "'''",
     )
-]  # fmt: skip
+]
 SIZES = [  # what a count or a length of a binary file may say
     number.to_bytes(size, order)
     for size in (2, 4, 8)
@@ -46,7 +88,11 @@ class Edit:
             lines = file.split(b"\n")
             i, k = int(self.at * len(lines)) % len(lines), int(self.to * len(lines)) % len(lines)
             return b"\n".join([*lines[:i], lines[k], *lines[i:]])
-        changed = {"put": file[:a] + self.content + file[a:], "cut": file[:a] + file[b:], "end": file[:a]}
+        changed = {
+            "put": file[:a] + self.content + file[a:],
+            "cut": file[:a] + file[b:],
+            "end": file[:a],
+        }
         return changed.get(self.kind, file[:a] + self.content + file[a + len(self.content) :])
 
 
@@ -63,7 +109,9 @@ def edits(between: bytes) -> st.SearchStrategy[list[Edit]]:
     """A few changes: of a text mostly of whole words and lines, so that it gets past the parser."""
     share = st.floats(0.0, 1.0, allow_nan=False)
     raw = st.binary(min_size=1, max_size=8) | st.sampled_from(SIZES)
-    bytewise = st.builds(Edit, st.sampled_from(["put", "cut", "end", "over", "over"]), share, share, raw)
+    bytewise = st.builds(
+        Edit, st.sampled_from(["put", "cut", "end", "over", "over"]), share, share, raw
+    )
     if not between:
         return st.lists(bytewise, min_size=1, max_size=3)
     word = st.builds(Edit, st.just("word"), share, share, st.sampled_from(VALUES), st.just(between))

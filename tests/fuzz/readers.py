@@ -6,13 +6,13 @@ from functools import cache
 from pathlib import Path
 
 from boatsim.cli.exits import FAULTS, words
-from boatsim.diagnose.analysis import vessel_for
+from boatsim.diagnosis.pipeline import vessel_for
 from boatsim.physics import vessel
 from boatsim.recordings import table
 from boatsim.recordings.importing.convert import convert
 from boatsim.recordings.importing.log import Log, open_log
 from boatsim.recordings.importing.mapping import read_map
-from boatsim.recordings.importing.propose import listing, proposal
+from boatsim.recordings.importing.mapping_proposal import listing, proposal
 from boatsim.simulate import scenario, world
 from tests.fuzz import seeds
 from tests.fuzz.seeds import LOGS, files
@@ -85,10 +85,14 @@ READERS = {
     "rrd": Reader("run.rrd", lambda: [seeds.rrd_file()], table.read, b"", share=0.02),
     "recording.toml": Reader("noted/recording.toml", seeds.notes, _notes),
     "vessel.toml": Reader(
-        "boat/vessel.toml", files(*(f"models/{n}/vessel.toml" for n in BOATS)), lambda path: vessel.load(str(path))
+        "boat/vessel.toml",
+        files(*(f"models/{n}/vessel.toml" for n in BOATS)),
+        lambda path: vessel.load(str(path)),
     ),
     "hull.xml": Reader("hull/hull.xml", files("models/trial_boat/hull.xml"), _hull, XML),
-    "scenario.toml": Reader("scenario.toml", seeds.scenarios, lambda path: scenario.load(str(path))),
+    "scenario.toml": Reader(
+        "scenario.toml", seeds.scenarios, lambda path: scenario.load(str(path))
+    ),
     "map.toml": Reader("map/map.toml", lambda: [seeds.MAP.encode()], _map),
     "table.csv": Reader("table.csv", seeds.tables, _log),
     "table.parquet": _binary("table.parquet", "stacked.parquet"),
@@ -98,5 +102,7 @@ READERS = {
     "mcap": _binary("log.mcap", "ros2.mcap"),
     "bag": _binary("log.bag", "ros1.bag"),
     "db3": Reader("bag/ros2_bag.db3", files(LOGS / "ros2_bag" / "ros2_bag.db3"), _bag, b""),
-    "metadata.yaml": Reader("bag_about/metadata.yaml", files(LOGS / "ros2_bag" / "metadata.yaml"), _bag, XML),
+    "metadata.yaml": Reader(
+        "bag_about/metadata.yaml", files(LOGS / "ros2_bag" / "metadata.yaml"), _bag, XML
+    ),
 }

@@ -17,7 +17,11 @@ from boatsim.physics.content import root
 DATA = Path(__file__).parents[1] / "data"
 LOGS = DATA / "logs"
 ROWS = 30
-SCENARIOS = ("martin_tank_model/release.toml", "mariner/turning_circle_35.toml", "mariner/pull_out_20.toml")
+SCENARIOS = (
+    "martin_tank_model/release.toml",
+    "mariner/turning_circle_35.toml",
+    "mariner/pull_out_20.toml",
+)
 SCENARIO = """
 vessel = "joystick_boat"
 load = ["heavy", "wide"]
@@ -110,7 +114,13 @@ def csv_file() -> bytes:
 def parquet_file() -> bytes:
     """A recording with integers and a text."""
     path, t = folder() / "seed.parquet", np.arange(float(ROWS))
-    columns = {"t_s": t, "x_m": t, "psi_rad": 0.01 * t, "n": np.arange(ROWS), "note": ["a", "b"] * (ROWS // 2)}
+    columns = {
+        "t_s": t,
+        "x_m": t,
+        "psi_rad": 0.01 * t,
+        "n": np.arange(ROWS),
+        "note": ["a", "b"] * (ROWS // 2),
+    }
     parquet.write_table(pa.table(columns), path)
     return path.read_bytes()
 
@@ -130,7 +140,10 @@ def rrd_file() -> bytes:
 
 def notes() -> list[bytes]:
     """recording.toml of our own and of data."""
-    return [NOTES.encode(), *files(DATA / "trials" / "recording.toml", DATA / "kvlcc2_roll_decay" / "recording.toml")()]
+    return [
+        NOTES.encode(),
+        *files(DATA / "trials" / "recording.toml", DATA / "kvlcc2_roll_decay" / "recording.toml")(),
+    ]
 
 
 def scenarios() -> list[bytes]:
@@ -141,7 +154,15 @@ def scenarios() -> list[bytes]:
 def table() -> str:
     """The table of MAP."""
     rows = [
-        (0.1 * i, 58.0 + 1e-5 * i, 11.0 + 2e-5 * i, 3.0 * i % 360, 0.1 * i % 5, i % 90.0, 90.0 - i % 90)
+        (
+            0.1 * i,
+            58.0 + 1e-5 * i,
+            11.0 + 2e-5 * i,
+            3.0 * i % 360,
+            0.1 * i % 5,
+            i % 90.0,
+            90.0 - i % 90,
+        )
         for i in range(2 * ROWS)
     ]
     return TABLE + "".join(";".join(f"{x:.7g}" for x in row) + "\n" for row in rows)
@@ -150,7 +171,9 @@ def table() -> str:
 def tables() -> list[bytes]:
     """Tables of several makes."""
     begin = b"".join((LOGS / "table.csv").read_bytes().splitlines(keepends=True)[: 8 * ROWS])
-    dated = "date_time,x_m,mode\n" + "".join(f"2024-05-01T10:00:{i:02d}Z,{i},AUTO\n" for i in range(ROWS))
+    dated = "date_time,x_m,mode\n" + "".join(
+        f"2024-05-01T10:00:{i:02d}Z,{i},AUTO\n" for i in range(ROWS)
+    )
     return [table().encode(), begin, dated.encode()]
 
 

@@ -22,11 +22,31 @@ MESSAGES = {  # name -> number, format, columns, units, multipliers
     "RCIN": (136, "QHHHH", "TimeUS,C1,C2,C3,C4", "sYYYY", "F0000"),
     "RCOU": (137, "QHHHH", "TimeUS,C1,C2,C3,C4", "sYYYY", "F0000"),
 }
-SIZES = {"b": "b", "B": "B", "H": "H", "f": "f", "d": "d", "L": "i", "Q": "Q", "n": "4s", "N": "16s", "Z": "64s"}
+SIZES = {
+    "b": "b",
+    "B": "B",
+    "H": "H",
+    "f": "f",
+    "d": "d",
+    "L": "i",
+    "Q": "Q",
+    "n": "4s",
+    "N": "16s",
+    "Z": "64s",
+}
 UNITS = {
-    "s": "s", "d": "deg", "h": "degheading", "E": "rad/s", "D": "deglatitude", "U": "deglongitude", "Y": "us",
-    "n": "m/s", "#": "instance", "-": "", "b": "B",
-}  # fmt: skip
+    "s": "s",
+    "d": "deg",
+    "h": "degheading",
+    "E": "rad/s",
+    "D": "deglatitude",
+    "U": "deglongitude",
+    "Y": "us",
+    "n": "m/s",
+    "#": "instance",
+    "-": "",
+    "b": "B",
+}
 MULTIPLIERS = {"F": 1e-6, "G": 1e-7, "0": 1.0, "-": 0.0}
 FUNCTIONS = {"port": 73, "starboard": 74, "motor": 70, "helm": 26}  # SERVOn_FUNCTION
 ENDS = (1100.0, 1500.0, 1900.0)  # [us]
@@ -35,7 +55,9 @@ ENDS = (1100.0, 1500.0, 1900.0)  # [us]
 def _packed(name: str, *values: object) -> bytes:
     number, layout, *_ = MESSAGES[name]
     cells = [v.encode() if isinstance(v, str) else v for v in values]
-    return b"\xa3\x95" + bytes([number]) + struct.pack("<" + "".join(SIZES[c] for c in layout), *cells)
+    return (
+        b"\xa3\x95" + bytes([number]) + struct.pack("<" + "".join(SIZES[c] for c in layout), *cells)
+    )
 
 
 def _head(outputs: list[str], us: int) -> list[bytes]:
@@ -47,7 +69,10 @@ def _head(outputs: list[str], us: int) -> list[bytes]:
     out += [_packed("MULT", us, ord(k), v) for k, v in MULTIPLIERS.items()]
     out += [_packed("FMTU", us, number, u, m) for number, _, _, u, m in MESSAGES.values()]
     for i, output in enumerate(outputs, 1):
-        ends = dict(zip(("MIN", "TRIM", "MAX"), ENDS, strict=True)) | {"REVERSED": 0.0, "FUNCTION": FUNCTIONS[output]}
+        ends = dict(zip(("MIN", "TRIM", "MAX"), ENDS, strict=True)) | {
+            "REVERSED": 0.0,
+            "FUNCTION": FUNCTIONS[output],
+        }
         out += [_packed("PARM", us, f"SERVO{i}_{k}", float(v), 0.0) for k, v in ends.items()]
     return out
 
@@ -70,8 +95,15 @@ def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
         elif kind == 1:
             out.append(_packed("IMU", at, 0, 0.0, 0.0, seen.gyro.values["r"][i]))
         elif kind == 2:
-            speed, course = seen.fixes.values["speed"][i], np.degrees(seen.fixes.values["course"][i]) % 360.0
-            out.append(_packed("GPS", at, 0, 3, 14, round(lat[i] * 1e7), round(lon[i] * 1e7), speed, course))
+            speed, course = (
+                seen.fixes.values["speed"][i],
+                np.degrees(seen.fixes.values["course"][i]) % 360.0,
+            )
+            out.append(
+                _packed(
+                    "GPS", at, 0, 3, 14, round(lat[i] * 1e7), round(lon[i] * 1e7), speed, course
+                )
+            )
         else:
             cells = [int(pulses[n][i]) for n in outputs] + [0] * (4 - len(outputs))
             out.append(_packed("RCIN", at, 1500, 1500, 1500, 1500))

@@ -37,7 +37,9 @@ def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
         when = datetime.fromtimestamp(earth.EPOCH + at, UTC)
         clock = f"{when:%H%M%S}.{when.microsecond // 10_000:02d}"
         place = f"{_angle(lat[i], 2, 'NS')},{_angle(lon[i], 3, 'EW')}"
-        out.append(_sentence(f"GPRMC,{clock},A,{place},{knots[i]:.2f},{course[i]:.1f},{when:%d%m%y},,,A"))
+        out.append(
+            _sentence(f"GPRMC,{clock},A,{place},{knots[i]:.2f},{course[i]:.1f},{when:%d%m%y},,,A")
+        )
         out.append(_sentence(f"HEHDT,{psi[i]:.2f},T"))
         out.append(_sentence(f"TIROT,{r[i]:.1f},A"))
         for number, name in enumerate(engines, 1):
@@ -48,8 +50,13 @@ def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
             out.append(_sentence(f"IIRSA,{np.degrees(orders['helm'][i]):.1f},A,,V"))
     path = folder / f"{stem}.nmea"
     path.write_text("".join(out), encoding="ascii", newline="")
-    scales = {n: Scale(f"RPM[{k}].shaft", -boat.top_rpm, 0.0, boat.top_rpm) for k, n in enumerate(engines, 1)}
+    scales = {
+        n: Scale(f"RPM[{k}].shaft", -boat.top_rpm, 0.0, boat.top_rpm)
+        for k, n in enumerate(engines, 1)
+    }
     most = float(np.degrees(boat.helm_most))
     return Written(
-        path, scales | ({"helm": Scale("RSA.rudder_starboard", -most, 0.0, most)} if "helm" in orders else {})
+        path,
+        scales
+        | ({"helm": Scale("RSA.rudder_starboard", -most, 0.0, most)} if "helm" in orders else {}),
     )

@@ -14,10 +14,14 @@ TOPICS = {
     "vehicle_attitude": ("uint64_t timestamp;float[4] q;", "<Q4f"),
     "vehicle_angular_velocity": ("uint64_t timestamp;float[3] xyz;", "<Q3f"),
     "vehicle_local_position": (
-        "uint64_t timestamp;float x;float y;float z;float vx;float vy;float heading;", "<Q6f",
+        "uint64_t timestamp;float x;float y;float z;float vx;float vy;float heading;",
+        "<Q6f",
     ),
-    "actuator_outputs": ("uint64_t timestamp;uint32_t noutputs;float[4] output;uint8_t[4] _padding0;", "<QI4f"),
-}  # fmt: skip
+    "actuator_outputs": (
+        "uint64_t timestamp;uint32_t noutputs;float[4] output;uint8_t[4] _padding0;",
+        "<QI4f",
+    ),
+}
 
 
 def _message(kind: str, body: bytes) -> bytes:
@@ -29,7 +33,9 @@ def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
     us = round(earth.BOOT * 1e6)
     out = [b"\x55\x4c\x6f\x67\x01\x12\x35\x01" + struct.pack("<Q", us), _message("B", bytes(40))]
     out += [_message("F", f"{name}:{fields}".encode()) for name, (fields, _) in TOPICS.items()]
-    out += [_message("A", struct.pack("<BH", 0, k) + name.encode()) for k, name in enumerate(TOPICS)]
+    out += [
+        _message("A", struct.pack("<BH", 0, k) + name.encode()) for k, name in enumerate(TOPICS)
+    ]
     outputs = [n for n in ("helm", "motor", "port", "starboard") if n in seen.orders.values]
     shares = [seen.orders.values[n] / (boat.helm_most if n == "helm" else 1.0) for n in outputs]
     psi, fixes = seen.compass.values["psi"], seen.fixes.values
@@ -53,5 +59,10 @@ def write(seen: Seen, boat: Boat, folder: Path, stem: str) -> Written:
         out.append(_message("D", struct.pack("<H", kind) + struct.pack(layout, at, *packed)))
     path = folder / f"{stem}.ulg"
     path.write_bytes(b"".join(out))
-    return Written(path, {n: Scale(f"actuator_outputs.output[{i}]", 1100.0, 1500.0, 1900.0)
-                          for i, n in enumerate(outputs)})  # fmt: skip
+    return Written(
+        path,
+        {
+            n: Scale(f"actuator_outputs.output[{i}]", 1100.0, 1500.0, 1900.0)
+            for i, n in enumerate(outputs)
+        },
+    )

@@ -55,31 +55,56 @@ def messages(seen: Seen, boat: Boat, store: Any, local: bool, ned: bool) -> Iter
         ns = round((earth.EPOCH + t) * 1e9) + (0, 1_000_000, 400_000)[kind]
         if kind == 0:
             yaw, rate = (psi[i], gyro[i]) if ned else (pi / 2 - psi[i], -gyro[i])
-            yield "/imu/data", "sensor_msgs/msg/Imu", ns, nodes.make(
-                "sensor_msgs/Imu", header=nodes.header(ns, "base_link"), orientation=nodes.turned(yaw),
-                orientation_covariance=none, angular_velocity=nodes.vector(0.0, 0.0, rate),
-                angular_velocity_covariance=none, linear_acceleration=nodes.vector(0.0, 0.0, 9.81),
-                linear_acceleration_covariance=none,
-            )  # fmt: skip
+            yield (
+                "/imu/data",
+                "sensor_msgs/msg/Imu",
+                ns,
+                nodes.make(
+                    "sensor_msgs/Imu",
+                    header=nodes.header(ns, "base_link"),
+                    orientation=nodes.turned(yaw),
+                    orientation_covariance=none,
+                    angular_velocity=nodes.vector(0.0, 0.0, rate),
+                    angular_velocity_covariance=none,
+                    linear_acceleration=nodes.vector(0.0, 0.0, 9.81),
+                    linear_acceleration_covariance=none,
+                ),
+            )
         elif kind == 1 and local:
-            x, y = (fixes["north"][i], fixes["east"][i]) if ned else (fixes["east"][i], fixes["north"][i])
+            x, y = (
+                (fixes["north"][i], fixes["east"][i])
+                if ned
+                else (fixes["east"][i], fixes["north"][i])
+            )
             point = nodes.make("geometry_msgs/Point", x=float(x), y=float(y), z=0.0)
             yaw = shown[i] if ned else pi / 2 - shown[i]
             pose = nodes.make("geometry_msgs/Pose", position=point, orientation=nodes.turned(yaw))
-            made = nodes.make("geometry_msgs/PoseStamped", header=nodes.header(ns, "map"), pose=pose)
+            made = nodes.make(
+                "geometry_msgs/PoseStamped", header=nodes.header(ns, "map"), pose=pose
+            )
             yield "/boat/pose", "geometry_msgs/msg/PoseStamped", ns, made
         elif kind == 1:
             kind_of = store.types["sensor_msgs/msg/NavSatStatus"]
             made = nodes.make(
-                "sensor_msgs/NavSatFix", header=nodes.header(ns, "gps"), status=kind_of(status=2, service=1),
-                latitude=float(lat[i]), longitude=float(lon[i]), altitude=0.3, position_covariance=none,
+                "sensor_msgs/NavSatFix",
+                header=nodes.header(ns, "gps"),
+                status=kind_of(status=2, service=1),
+                latitude=float(lat[i]),
+                longitude=float(lon[i]),
+                altitude=0.3,
+                position_covariance=none,
                 position_covariance_type=0,
-            )  # fmt: skip
+            )
             yield "/gps/fix", "sensor_msgs/msg/NavSatFix", ns, made
         else:
             for name, share in seen.orders.values.items():
                 value = float(share[i])
-                yield topic(name, boat), "std_msgs/msg/Float64", ns, nodes.make("std_msgs/Float64", data=value)
+                yield (
+                    topic(name, boat),
+                    "std_msgs/msg/Float64",
+                    ns,
+                    nodes.make("std_msgs/Float64", data=value),
+                )
 
 
 def topic(name: str, boat: Boat) -> str:
@@ -114,7 +139,9 @@ def mcap(seen: Seen, boat: Boat, folder: Path, stem: str, local: bool, ned: bool
             if name not in channels:
                 text = store.generate_msgdef(kind, ros_version=2)[0]
                 schema = writer.register_schema(name=kind, encoding="ros2msg", data=text.encode())
-                channels[name] = writer.register_channel(topic=name, message_encoding="cdr", schema_id=schema)
+                channels[name] = writer.register_channel(
+                    topic=name, message_encoding="cdr", schema_id=schema
+                )
             data = bytes(store.serialize_cdr(message, kind))
             writer.add_message(channels[name], log_time=ns, data=data, publish_time=ns)
         writer.finish()

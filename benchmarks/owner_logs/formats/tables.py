@@ -24,10 +24,13 @@ def plain(seen: Seen, boat: Boat) -> Columns:
         thrusts[channel] = np.round(np.where(orders[name] > 0.0, full, back) * orders[name], 2)
     helms = {c: np.round(boat.helm_sign * orders["helm"], 4) for c in boat.helms}
     return {
-        "t_s": np.round(t, 3), "x_m": np.round(seen.fixes.values["north"], 3),
+        "t_s": np.round(t, 3),
+        "x_m": np.round(seen.fixes.values["north"], 3),
         "y_m": np.round(seen.fixes.values["east"], 3),
-        "psi_rad": np.round(np.interp(t, seen.compass.t, seen.compass.values["psi"]), 4), **thrusts, **helms,
-    }  # fmt: skip
+        "psi_rad": np.round(np.interp(t, seen.compass.t, seen.compass.values["psi"]), 4),
+        **thrusts,
+        **helms,
+    }
 
 
 def instrument(seen: Seen, boat: Boat) -> tuple[Columns, dict[str, Scale]]:
@@ -38,7 +41,9 @@ def instrument(seen: Seen, boat: Boat) -> tuple[Columns, dict[str, Scale]]:
         "timestamp_s": np.round(earth.EPOCH + t, 3),
         "gps_lat_deg": np.round(earth.held(seen.fixes.t, lat, t), 8),
         "gps_lon_deg": np.round(earth.held(seen.fixes.t, lon, t), 8),
-        "gps_speed_kn": np.round(earth.held(seen.fixes.t, seen.fixes.values["speed"], t) / 0.514444, 2),
+        "gps_speed_kn": np.round(
+            earth.held(seen.fixes.t, seen.fixes.values["speed"], t) / 0.514444, 2
+        ),
         "heading_deg": np.round(earth.compass(seen.compass.values["psi"]), 2),
         "yaw_rate_deg_s": np.round(np.degrees(np.interp(t, seen.gyro.t, seen.gyro.values["r"])), 2),
     }
@@ -60,7 +65,10 @@ def instrument(seen: Seen, boat: Boat) -> tuple[Columns, dict[str, Scale]]:
 def csv(columns: Columns, path: Path) -> None:
     """As text."""
     rows = zip(*columns.values(), strict=True)
-    lines = [",".join(columns), *(",".join("" if v != v else f"{v:.12g}" for v in row) for row in rows)]
+    lines = [
+        ",".join(columns),
+        *(",".join("" if v != v else f"{v:.12g}" for v in row) for row in rows),
+    ]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -69,7 +77,10 @@ def parquet(columns: Columns, path: Path) -> None:
     import pyarrow as pa
     from pyarrow import parquet as pq
 
-    pq.write_table(pa.table({n: pa.array(v, type=pa.float64(), from_pandas=True) for n, v in columns.items()}), path)
+    pq.write_table(
+        pa.table({n: pa.array(v, type=pa.float64(), from_pandas=True) for n, v in columns.items()}),
+        path,
+    )
 
 
 def write(columns: Columns, scales: dict[str, Scale], path: Path) -> Written:

@@ -28,7 +28,15 @@ from benchmarks.real.concealed.judging import Verdict, names_of, shares, sizes_o
 def row(study: Study, case: Case, verdict: Verdict) -> list[str]:
     """A line of the table."""
     gain = "" if verdict.gain is None else f"{verdict.gain:.1f}"
-    return [study.name, case.name, sizes_of(case.truth) or "nothing", verdict.own, gain, verdict.outcome, verdict.said]
+    return [
+        study.name,
+        case.name,
+        sizes_of(case.truth) or "nothing",
+        verdict.own,
+        gain,
+        verdict.outcome,
+        verdict.said,
+    ]
 
 
 HEADER = ["set", "concealed", "truth", "unaltered", "gain [nats]", "judged", "said"]
@@ -41,10 +49,16 @@ def wanted(study: Study, case: Case, only: Sequence[str]) -> bool:
 
 def main() -> None:
     """Every set in turn, each case printed as it is judged, then all of them against the goals."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.real.concealed", description=__doc__)
-    parser.add_argument("--only", nargs="+", default=[], help="names of sets, or parts of names of cases")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.real.concealed", description=__doc__
+    )
+    parser.add_argument(
+        "--only", nargs="+", default=[], help="names of sets, or parts of names of cases"
+    )
     parser.add_argument("--list", action="store_true", help="print the cases and run none")
-    parser.add_argument("--out", type=Path, default=OUT / "concealed", help="where patched vessels go")
+    parser.add_argument(
+        "--out", type=Path, default=OUT / "concealed", help="where patched vessels go"
+    )
     asked = parser.parse_args()
     rows, verdicts = list[list[str]](), list[Verdict]()
     for study in STUDIES:
@@ -66,7 +80,9 @@ def main() -> None:
 
 def _any_case(study: Study, only: Sequence[str]) -> bool:
     vessel = study.open(None, unaltered).vessel
-    return any(wanted(study, c, only) for c in study.cases(vessel)) or any("taken out again" in o for o in only)
+    return any(wanted(study, c, only) for c in study.cases(vessel)) or any(
+        "taken out again" in o for o in only
+    )
 
 
 def listed(study: Study, only: Sequence[str]) -> None:
@@ -74,7 +90,9 @@ def listed(study: Study, only: Sequence[str]) -> None:
     print(f"{study.name}: {study.about}")
     for case in study.cases(study.open(None, unaltered).vessel):
         if wanted(study, case, only):
-            print(f"  {case.name}: {sizes_of(case.truth) or 'nothing, which no recording can tell'}")
+            print(
+                f"  {case.name}: {sizes_of(case.truth) or 'nothing, which no recording can tell'}"
+            )
     print("  each effect that is found in the unaltered recordings, taken out again")
 
 
@@ -85,7 +103,10 @@ def run(study: Study, only: Sequence[str], out: Path) -> list[tuple[list[str], V
     print(f"\n{study.name}: {study.about}")
     print(f"  the vessel lacks: {sizes_of(patched.found) or 'nothing'}")
     left = ", ".join(sorted(names_of(patched.before))) or "nothing"
-    print(f"  with that, still named: {left} ({patched.before.findings.answer['verdict']})", flush=True)
+    print(
+        f"  with that, still named: {left} ({patched.before.findings.answer['verdict']})",
+        flush=True,
+    )
     found = []
     for case in patched.cases():
         if wanted(study, case, only):

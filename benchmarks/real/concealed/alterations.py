@@ -79,7 +79,11 @@ def late(names: Sequence[str], seconds: float) -> Alteration:
     def alter(recording: Recording) -> Recording:
         rows = round(seconds / float(np.median(np.diff(recording.t))))
         n = len(recording)
-        here, there = (slice(0, n - rows), slice(rows, n)) if rows >= 0 else (slice(-rows, n), slice(0, n + rows))
+        here, there = (
+            (slice(0, n - rows), slice(rows, n))
+            if rows >= 0
+            else (slice(-rows, n), slice(0, n + rows))
+        )
         signals = {k: v[there if k in names else here] for k, v in recording.signals.items()}
         return replace(recording, t=recording.t[here], signals=signals)
 
@@ -197,7 +201,9 @@ def begun_later(seconds: float) -> Alteration:
 
 def moved(x: float, y: float) -> Alteration:
     """Another origin of positions [m]."""
-    return lambda recording: _plus(recording, {"x_m": np.full(len(recording), x), "y_m": np.full(len(recording), y)})
+    return lambda recording: _plus(
+        recording, {"x_m": np.full(len(recording), x), "y_m": np.full(len(recording), y)}
+    )
 
 
 def turned(angle: float) -> Alteration:
@@ -205,7 +211,11 @@ def turned(angle: float) -> Alteration:
 
     def alter(recording: Recording) -> Recording:
         x, y, c, s = recording["x_m"], recording["y_m"], np.cos(angle), np.sin(angle)
-        signals = {"x_m": c * x - s * y, "y_m": s * x + c * y, "psi_rad": recording["psi_rad"] + angle}
+        signals = {
+            "x_m": c * x - s * y,
+            "y_m": s * x + c * y,
+            "psi_rad": recording["psi_rad"] + angle,
+        }
         return replace(recording, signals={**recording.signals, **signals})
 
     return alter

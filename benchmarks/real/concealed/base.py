@@ -8,10 +8,10 @@ import tomlkit
 from benchmarks.real.concealed.alterations import unaltered
 from benchmarks.real.concealed.cases import Case, Laid, Study, taken_out
 from benchmarks.real.concealed.judging import Cause, Verdict, judged, meant
-from boatsim.diagnose import analysis
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.report import patch
-from boatsim.diagnose.tried import called
+from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.report import patched_vessel
 from boatsim.physics.base import Release
 from boatsim.physics.content import load_class
 from boatsim.physics.vessel import Vessel, load
@@ -22,7 +22,7 @@ ROUNDS = 3  # of patching a vessel with what is still named with it
 def diagnosed(laid: Laid) -> Diagnosis:
     """What the vessel leaves out of some recordings."""
     boats = {r.path: laid.vessel for r in (*laid.fitted, *laid.unseen)}
-    return analysis.diagnose_recordings(laid.fitted, laid.unseen, boats, "one kept unseen")
+    return pipeline.diagnose_recordings(laid.fitted, laid.unseen, boats, "one kept unseen")
 
 
 def causes_of(found: Diagnosis) -> list[Cause]:
@@ -57,13 +57,18 @@ class Patched:
 
     def cases(self) -> list[Case]:
         """Those of the set, and each effect found taken out again."""
-        return [*self.study.cases(self.vessel), *taken_out(self.vessel, [c for c in self.found if self._there(c.name)])]
+        return [
+            *self.study.cases(self.vessel),
+            *taken_out(self.vessel, [c for c in self.found if self._there(c.name)]),
+        ]
 
     def verdict(self, case: Case) -> Verdict:
         """Of one case."""
         if case.plain:
             beside = [c for c in causes_of(self.rounds[0]) if c.name not in meant(case.truth)]
-            return judged(diagnosed(self.study.open(None, case.alter)), case.truth, self.rounds[0], beside)
+            return judged(
+                diagnosed(self.study.open(None, case.alter)), case.truth, self.rounds[0], beside
+            )
         file = self.without(case.without) if case.without else self.file
         return judged(diagnosed(self.study.open(str(file), case.alter)), case.truth, self.before)
 
@@ -98,7 +103,11 @@ class Patched:
                 raise ValueError(f"{name}: what its numbers were is not kept")
             value = getattr(made, change.parameter)
             undone = 1.0 / value if change.how == "scales" else -value
-            place = [e.name for e in self.vessel.effects].index(change.owner) if change.owner != "body" else -1
+            place = (
+                [e.name for e in self.vessel.effects].index(change.owner)
+                if change.owner != "body"
+                else -1
+            )
             table = document["body"] if place < 0 else document["effect"][place]
             owner = self.vessel.body if place < 0 else self.vessel.effects[place]
             table[change.key] = change.of(float(getattr(owner, change.key)), undone)
@@ -106,5 +115,7 @@ class Patched:
     def _written(self, found: Diagnosis, name: str) -> Path:
         """A diagnosis as a vessel's file."""
         path = self.folder / name
-        patch.write(found.problem, found.vessel, found.ranking.best, path, found.ranking.laws)
+        patched_vessel.write(
+            found.problem, found.vessel, found.ranking.best, path, found.ranking.laws
+        )
         return path

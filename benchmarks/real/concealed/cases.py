@@ -10,9 +10,9 @@ from benchmarks.real.concealed.alterations import Alteration
 from benchmarks.real.concealed.judging import Cause
 from benchmarks.real.esso_osaka_vessel import NAME as ESSO
 from benchmarks.real.esso_osaka_vessel import SOURCE, written
-from boatsim.diagnose import analysis, rules
-from boatsim.diagnose.log.held_fixes import without_repeats
-from boatsim.diagnose.log.outlying_fixes import without_outliers
+from boatsim.diagnosis import pipeline, priors
+from boatsim.diagnosis.checks.position_outliers import without_outliers
+from boatsim.diagnosis.checks.repeated_positions import without_repeats
 from boatsim.physics.base import Effect
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -45,7 +45,9 @@ class Study:
     name: str
     about: str
     there: Callable[[], bool]
-    open: Callable[[str | None, Alteration], Laid]  # with a vessel's file, or the one that the recordings name
+    open: Callable[
+        [str | None, Alteration], Laid
+    ]  # with a vessel's file, or the one that the recordings name
     cases: Callable[[Vessel], Sequence[Case]]  # by the patched vessel
 
 
@@ -53,7 +55,11 @@ class Study:
 
 
 def planar(
-    name: str, fitted: Mapping[str, float], unseen: Mapping[str, float], vessel: str | None, hertz: float = 0.0
+    name: str,
+    fitted: Mapping[str, float],
+    unseen: Mapping[str, float],
+    vessel: str | None,
+    hertz: float = 0.0,
 ) -> Callable[[str | None, Alteration], Laid]:
     """Runs of a set, each so many seconds from its beginning at most, at the usual rate or a lower one [Hz]."""
 
@@ -61,9 +67,9 @@ def planar(
         runs, boats = [], []
         for run, seconds in (*fitted.items(), *unseen.items()):
             path = RECORDINGS / name / "runs" / f"{run}.csv"
-            whole, boat = analysis.open_recording(path, patched or vessel, ())
+            whole, boat = pipeline.open_recording(path, patched or vessel, ())
             altered = alter(whole.between(whole.t[0], whole.t[0] + seconds))
-            rate = min(rules.rate(boat), hertz or rules.rate(boat))
+            rate = min(priors.rate(boat), hertz or priors.rate(boat))
             thin = without_outliers(without_repeats(altered.thinned(rate)), boat)
             runs.append(replace(thin, name=run))
             boats.append(boat)
@@ -74,12 +80,16 @@ def planar(
 
 def roll_at_rest(patched: str | None, alter: Alteration) -> Laid:
     """Windows of 20 s of the release at rest, every second one unseen."""
-    return _release(kvlcc2_roll_decay.AT_REST, patched, alter, kvlcc2_roll_decay.cut_windows, slice(1, None, 2))
+    return _release(
+        kvlcc2_roll_decay.AT_REST, patched, alter, kvlcc2_roll_decay.cut_windows, slice(1, None, 2)
+    )
 
 
 def roll_at_speed(patched: str | None, alter: Alteration) -> Laid:
     """Thirds of the release at 15.5 kn, the middle one unseen."""
-    return _release(kvlcc2_roll_decay.AT_SPEED, patched, alter, kvlcc2_roll_decay.thirds, slice(1, 2))
+    return _release(
+        kvlcc2_roll_decay.AT_SPEED, patched, alter, kvlcc2_roll_decay.thirds, slice(1, 2)
+    )
 
 
 def _release(
@@ -89,8 +99,8 @@ def _release(
     cut: Callable[[Recording], list[Recording]],
     unseen: slice,
 ) -> Laid:
-    whole, boat = analysis.open_recording(kvlcc2_roll_decay.DATA / f"{name}.csv", patched, ())
-    parts = cut(replace(alter(whole).thinned(rules.rate(boat)), name=name))
+    whole, boat = pipeline.open_recording(kvlcc2_roll_decay.DATA / f"{name}.csv", patched, ())
+    parts = cut(replace(alter(whole).thinned(priors.rate(boat)), name=name))
     apart = parts[unseen]
     return Laid([p for p in parts if all(p is not q for q in apart)], apart, boat)
 
@@ -106,11 +116,11 @@ def esso(patched: str | None, alter: Alteration) -> Laid:
     boat: Vessel | None = None
     for run in (*ESSO_FITTED, *ESSO_UNSEEN):
         path = RECORDINGS / ESSO / "runs" / f"{run}.csv"
-        whole, boat = analysis.open_recording(path, vessel, ())
+        whole, boat = pipeline.open_recording(path, vessel, ())
         stretches = esso_osaka_pond.sound(whole, path, esso_osaka_pond.SHORTEST)
         longest = max(stretches, key=lambda r: float(r.t[-1] - r.t[0]))
         part = alter(longest.between(longest.t[0], longest.t[0] + ESSO_LONGEST))
-        found.append(replace(without_outliers(part.thinned(rules.rate(boat)), boat), name=run))
+        found.append(replace(without_outliers(part.thinned(priors.rate(boat)), boat), name=run))
     assert boat is not None
     return Laid(found[: len(ESSO_FITTED)], found[len(ESSO_FITTED) :], boat)
 
@@ -153,14 +163,28 @@ def of_blueboat(vessel: Vessel) -> list[Case]:
     band = 4.0  # [N]
     return [
         Case("starboard motor gives 0.8", (uneven(0.8, "starboard"),), a.weaker(THRUSTS[1:], 0.8)),
-        Case(f"dead band of {band:g} N", (Cause("thrust_deadband", {"width_N": band}),), a.dead_band(THRUSTS, band)),
         Case(
-            "both give 0.65 astern", (Cause("weak_reverse", {"astern_factor": 0.65}),), a.weaker_astern(THRUSTS, 0.65)
+            f"dead band of {band:g} N",
+            (Cause("thrust_deadband", {"width_N": band}),),
+            a.dead_band(THRUSTS, band),
+        ),
+        Case(
+            "both give 0.65 astern",
+            (Cause("weak_reverse", {"astern_factor": 0.65}),),
+            a.weaker_astern(THRUSTS, 0.65),
         ),
         Case("commands late by 0.4 s", (late_by(0.4),), a.late(THRUSTS, 0.4)),
         Case("current of 0.25, -0.15 m/s", (flow(0.25, -0.15),), a.current(0.25, -0.15)),
-        Case("compass off by 0.12 rad", (Cause("heading_offset", {"offset_rad": 0.12}),), a.heading_off(0.12)),
-        Case("origin 80, -30 m away, clock 500 s on", (), a.chained(a.moved(80.0, -30.0), a.begun_later(500.0))),
+        Case(
+            "compass off by 0.12 rad",
+            (Cause("heading_offset", {"offset_rad": 0.12}),),
+            a.heading_off(0.12),
+        ),
+        Case(
+            "origin 80, -30 m away, clock 500 s on",
+            (),
+            a.chained(a.moved(80.0, -30.0), a.begun_later(500.0)),
+        ),
         Case("fixes late by 0.4 s", (Cause("late_fixes", {"latency_s": 0.4}),), a.late_fixes(0.4)),
         Case(
             "compass deviates by 0.15, -0.1 rad",
@@ -187,7 +211,9 @@ def of_release(vessel: Vessel) -> list[Case]:
     heel, much, slower, scale = 0.012, 0.05, 1.5, 0.75  # [rad], [rad], ratios
     bent = [Cause("righting_arm_stiffening", {"cubic_perrad2": cubic * (scale**-2 - 1.0)})]
     if damping is not None:
-        bent.append(Cause("cubic_damping", {"roll_Nms3": number(damping, "roll") * (scale**-2 - 1.0)}))
+        bent.append(
+            Cause("cubic_damping", {"roll_Nms3": number(damping, "roll") * (scale**-2 - 1.0)})
+        )
     slow = Cause("metacentric_height_error", {"factor": slower**-2})
     moment = sum(number(e, "roll") for e in vessel.effects if type(e).idea() == "steady_force")
 
@@ -197,13 +223,25 @@ def of_release(vessel: Vessel) -> list[Case]:
     def moment_of(roll: float) -> Cause:
         return Cause("steady_force", {"roll_Nm": roll})
 
-    turned = Cause("roll_offset", {"offset_rad": -2.0 * moment / stiffness}, (moment_of(-2.0 * moment),))
+    turned = Cause(
+        "roll_offset", {"offset_rad": -2.0 * moment / stiffness}, (moment_of(-2.0 * moment),)
+    )
     return [
         Case(f"roll shown {heel:g} rad more", askew(heel), a.rolled(heel)),
         Case(f"roll shown {heel:g} rad less", askew(-heel), a.rolled(-heel)),
         Case(f"roll shown {much:g} rad more", askew(much), a.rolled(much)),
-        Case(f"roll shown {heel:g} rad more, vessel as published", askew(heel), a.rolled(heel), plain=True),
-        Case(f"roll shown {much:g} rad more, vessel as published", askew(much), a.rolled(much), plain=True),
+        Case(
+            f"roll shown {heel:g} rad more, vessel as published",
+            askew(heel),
+            a.rolled(heel),
+            plain=True,
+        ),
+        Case(
+            f"roll shown {much:g} rad more, vessel as published",
+            askew(much),
+            a.rolled(much),
+            plain=True,
+        ),
         Case(f"roll shown {scale:g} times as large", tuple(bent), a.rolled(0.0, scale)),
         Case(f"seconds shown {slower:g} times as long", (slow,), a.ticking(slower)),
         Case("roll sensor the wrong way round", (turned,) if moment else (), a.rolled(0.0, -1.0)),
@@ -222,22 +260,44 @@ def of_tank(vessel: Vessel) -> list[Case]:
     late = round(0.2 * step, 1) if vessel.length < 100.0 else round(0.2 * step)
     north, east = 0.04 * U, 0.03 * U
     return [
-        Case("rudder off by 0.03 rad", (Cause("steering_offset", {"middle_rad": 0.03}),), a.off_by(RUDDER, 0.03)),
+        Case(
+            "rudder off by 0.03 rad",
+            (Cause("steering_offset", {"middle_rad": 0.03}),),
+            a.off_by(RUDDER, 0.03),
+        ),
         Case(
             "rudder steers harder to starboard by 0.25",
             (Cause("steering_asymmetry", {"gain": 0.25}),),
             a.steering_harder(RUDDER, 0.25),
         ),
-        Case(f"commands late by {late:g} s", (late_by(late),), a.late((*RUDDER, *_shafts(vessel)), late)),
-        Case(f"commands early by {late:g} s", (late_by(-late),), a.late((*RUDDER, *_shafts(vessel)), -late)),
-        Case(f"current of {north:.2g}, {east:.2g} m/s", (flow(north, east),), a.current(north, east)),
-        Case("compass off by 0.05 rad", (Cause("heading_offset", {"offset_rad": 0.05}),), a.heading_off(0.05)),
+        Case(
+            f"commands late by {late:g} s",
+            (late_by(late),),
+            a.late((*RUDDER, *_shafts(vessel)), late),
+        ),
+        Case(
+            f"commands early by {late:g} s",
+            (late_by(-late),),
+            a.late((*RUDDER, *_shafts(vessel)), -late),
+        ),
+        Case(
+            f"current of {north:.2g}, {east:.2g} m/s", (flow(north, east),), a.current(north, east)
+        ),
+        Case(
+            "compass off by 0.05 rad",
+            (Cause("heading_offset", {"offset_rad": 0.05}),),
+            a.heading_off(0.05),
+        ),
         Case(
             "positions 1.06, 0.95 as far",
             (Cause("camera_scale", {"x_fraction": 0.06, "y_fraction": -0.05}),),
             a.stretched(0.06, -0.05),
         ),
-        Case("rudder off by 0.00001 rad", (Cause("steering_offset", {"middle_rad": 1e-5}),), a.off_by(RUDDER, 1e-5)),
+        Case(
+            "rudder off by 0.00001 rad",
+            (Cause("steering_offset", {"middle_rad": 1e-5}),),
+            a.off_by(RUDDER, 1e-5),
+        ),
     ]
 
 
@@ -250,7 +310,11 @@ def of_pond(vessel: Vessel) -> list[Case]:
     """Rudder and shaft, ahead and astern, in wind."""
     both = ("delta_rad", "n_rps")
     return [
-        Case("rudder off by 0.06 rad", (Cause("steering_offset", {"middle_rad": 0.06}),), a.off_by(RUDDER, 0.06)),
+        Case(
+            "rudder off by 0.06 rad",
+            (Cause("steering_offset", {"middle_rad": 0.06}),),
+            a.off_by(RUDDER, 0.06),
+        ),
         Case(
             "shaft's dead band of 1.5 1/s",
             (Cause("shaft_deadband", {"width_pers": 1.5}),),
@@ -258,8 +322,16 @@ def of_pond(vessel: Vessel) -> list[Case]:
         ),
         Case("commands late by 1 s", (late_by(1.0),), a.late(both, 1.0)),
         Case("current of 0.06, -0.04 m/s", (flow(0.06, -0.04),), a.current(0.06, -0.04)),
-        Case("compass off by 0.1 rad", (Cause("heading_offset", {"offset_rad": 0.1}),), a.heading_off(0.1)),
-        Case("rudder off by 0.00001 rad", (Cause("steering_offset", {"middle_rad": 1e-5}),), a.off_by(RUDDER, 1e-5)),
+        Case(
+            "compass off by 0.1 rad",
+            (Cause("heading_offset", {"offset_rad": 0.1}),),
+            a.heading_off(0.1),
+        ),
+        Case(
+            "rudder off by 0.00001 rad",
+            (Cause("steering_offset", {"middle_rad": 1e-5}),),
+            a.off_by(RUDDER, 1e-5),
+        ),
     ]
 
 
@@ -272,8 +344,16 @@ def _always() -> bool:
 
 
 STUDIES = (
-    Study("roll_at_rest", "tanker released at rest, windows of 20 s", _always, roll_at_rest, of_release),
-    Study("roll_at_speed", "tanker released at 15.5 kn, thirds", _always, roll_at_speed, of_release),
+    Study(
+        "roll_at_rest",
+        "tanker released at rest, windows of 20 s",
+        _always,
+        roll_at_rest,
+        of_release,
+    ),
+    Study(
+        "roll_at_speed", "tanker released at 15.5 kn, thirds", _always, roll_at_speed, of_release
+    ),
     Study(
         "blueboat",
         "two motors on a lake: 45 and 79 s of two runs at 5 Hz, one unseen",
@@ -298,7 +378,9 @@ STUDIES = (
         "hsva",
         "tanker model: the first 80 s of two zig-zags at 4 Hz, one unseen",
         _recorded("kvlcc2_hsva_zigzag"),
-        planar("kvlcc2_hsva_zigzag", {"Z_20_05": 80.0, "Z_20_10_P": 80.0}, {"Z_15_05": 80.0}, None, 4.0),
+        planar(
+            "kvlcc2_hsva_zigzag", {"Z_20_05": 80.0, "Z_20_10_P": 80.0}, {"Z_15_05": 80.0}, None, 4.0
+        ),
         of_tank,
     ),
     Study(

@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from boatsim.diagnose.analysis import Diagnosis
-from boatsim.diagnose.fit import converge, descend
-from boatsim.diagnose.problem import Fit, Problem
-from boatsim.diagnose.report.answer import key_of
-from boatsim.diagnose.report.entries import EffectEntry
-from boatsim.diagnose.search.screen import joined
-from boatsim.diagnose.tried import FURTHER, called
+from boatsim.diagnosis.candidates import FURTHER, called
+from boatsim.diagnosis.fit import converge, descend
+from boatsim.diagnosis.pipeline import Diagnosis
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.report.answer import key_of
+from boatsim.diagnosis.report.schema import EffectEntry
+from boatsim.diagnosis.search.screening import joined
 from boatsim.physics.base import Effect
 
 VISIBLE = 6.0  # [nats] that the true structure gains over no cause, from which a cause can be told
@@ -24,7 +24,9 @@ class Cause:
     """What is concealed, in the library's words; `alike` is what says the same of this recording."""
 
     name: str
-    values: Mapping[str, float] = field(default_factory=dict)  # by parameter with unit, as an answer has them
+    values: Mapping[str, float] = field(
+        default_factory=dict
+    )  # by parameter with unit, as an answer has them
     alike: tuple["Cause", ...] = ()
 
     @property
@@ -54,7 +56,9 @@ class Verdict:
 
     outcome: str  # one of `OUTCOMES`
     said: str
-    gain: float | None  # [nats] of the true structure; None where nothing was concealed, or no entry can say it
+    gain: (
+        float | None
+    )  # [nats] of the true structure; None where nothing was concealed, or no entry can say it
     own: str = ""  # what the unaltered recordings have of the same causes, too little to be named or known already
 
 
@@ -69,14 +73,20 @@ RIGHT, SIZE, WRONG, MISSED, ALONE, FAINT = (
 OUTCOMES = (RIGHT, SIZE, WRONG, MISSED, ALONE, FAINT)
 
 
-def judged(found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: Sequence[Cause] = ()) -> Verdict:
+def judged(
+    found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: Sequence[Cause] = ()
+) -> Verdict:
     """The answer against the causes concealed, less what is named of the unaltered recordings of the same boat.
 
     `beside` are causes that this vessel lacks all along: they must be named too.
     """
     answer, every = found.findings.answer, (*truth, *beside)
     known = {c.name for c in beside} or names_of(before)
-    new = [e for e in answer["effects"] if beside or e["name"] not in known or e["name"] in meant(truth)]
+    new = [
+        e
+        for e in answer["effects"]
+        if beside or e["name"] not in known or e["name"] in meant(truth)
+    ]
     doubt = answer["unknown"]["flag"] and not before.findings.answer["unknown"]["flag"]
     gain = gain_of(found, truth, known)
     visible = gain is not None and gain > VISIBLE
@@ -88,7 +98,11 @@ def judged(found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: 
     if wrong:
         outcome = WRONG
     elif truth and all(hits):
-        sizes = all(right_size(e, cause, own.get(e["name"])) for e, cause in zip(hits, truth, strict=False) if e)
+        sizes = all(
+            right_size(e, cause, own.get(e["name"]))
+            for e, cause in zip(hits, truth, strict=False)
+            if e
+        )
         outcome = (RIGHT if sizes else SIZE) if visible else FAINT
     elif visible:
         outcome = MISSED
@@ -96,7 +110,9 @@ def judged(found: Diagnosis, truth: Sequence[Cause], before: Diagnosis, beside: 
         outcome = MISSED if doubt else ALONE
     words = [f"{in_words(e)}{' (the unaltered ones have it)' if e in of_boat else ''}" for e in new]
     said = "; ".join([*words, *(["a cause unknown"] if doubt else [])]) or "nothing new"
-    return Verdict(outcome, f"{said} ({answer['verdict']})", gain, "; ".join(map(in_numbers, own.values())))
+    return Verdict(
+        outcome, f"{said} ({answer['verdict']})", gain, "; ".join(map(in_numbers, own.values()))
+    )
 
 
 def of_the_boat(before: Diagnosis, entry: EffectEntry, known: Collection[str]) -> bool:
@@ -114,8 +130,13 @@ def of_the_boat(before: Diagnosis, entry: EffectEntry, known: Collection[str]) -
         return False
     params = type(effect).params()
     for name in (f.name for f in whole.free if f.effect == effect.name and not f.relative):
-        found, (value, sd) = entry["parameters"][key_of(name, params[name].unit)], whole.value(effect.name, name)
-        if abs(found["value"] - value) > max(SDS * float(np.hypot(found["sd"], sd)), NEAR * abs(value)):
+        found, (value, sd) = (
+            entry["parameters"][key_of(name, params[name].unit)],
+            whole.value(effect.name, name),
+        )
+        if abs(found["value"] - value) > max(
+            SDS * float(np.hypot(found["sd"], sd)), NEAR * abs(value)
+        ):
             return False
     return True
 
@@ -159,14 +180,18 @@ def right_size(entry: EffectEntry, cause: Cause, own: Mapping[str, Size] | None 
 
 def in_words(entry: EffectEntry) -> str:
     """Name and sizes of an entry, and what it is tied with."""
-    sizes = ", ".join(f"{k} {p['value']:.3g} ± {p['sd']:.2g}" for k, p in entry["parameters"].items())
+    sizes = ", ".join(
+        f"{k} {p['value']:.3g} ± {p['sd']:.2g}" for k, p in entry["parameters"].items()
+    )
     tied = f" or {' or '.join(entry['tied_with'])}" if entry["tied_with"] else ""
     return f"{entry['name']} {sizes}{tied}"
 
 
 def sizes_of(truth: Sequence[Cause]) -> str:
     """Causes with their sizes."""
-    return "; ".join(f"{c.name} {', '.join(f'{k} {x:.3g}' for k, x in c.values.items())}".strip() for c in truth)
+    return "; ".join(
+        f"{c.name} {', '.join(f'{k} {x:.3g}' for k, x in c.values.items())}".strip() for c in truth
+    )
 
 
 def gain_of(found: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> float | None:
@@ -184,7 +209,9 @@ def gain_of(found: Diagnosis, truth: Sequence[Cause], known: Collection[str]) ->
     return whole.evidence - base.evidence if truth else None
 
 
-def own_of(before: Diagnosis, truth: Sequence[Cause], known: Collection[str]) -> dict[str, dict[str, Size]]:
+def own_of(
+    before: Diagnosis, truth: Sequence[Cause], known: Collection[str]
+) -> dict[str, dict[str, Size]]:
     """Sizes of the same causes fitted to the unaltered recordings, by name and parameter with unit.
 
     A real boat has a little of everything, to which an alteration adds.
@@ -224,8 +251,12 @@ def entry_of(problem: Problem, name: str) -> Effect | None:
 def with_entry(problem: Problem, base: Fit, effect: Effect, values: Mapping[str, float]) -> Fit:
     """An entry added to a fit, begun at these values, all refitted."""
     params = type(effect).params()
-    free = [f for f in problem.parameters((effect.name,)) if f.effect == effect.name and not f.relative]
-    begin = {f.name: values.get(key_of(f.name, params[f.name].unit), f.mean + SOME * f.sd) for f in free}
+    free = [
+        f for f in problem.parameters((effect.name,)) if f.effect == effect.name and not f.relative
+    ]
+    begin = {
+        f.name: values.get(key_of(f.name, params[f.name].unit), f.mean + SOME * f.sd) for f in free
+    }
     start = joined(problem, base, effect.name, {n: x for n, x in begin.items()})
     return converge(problem, descend(problem, start, 4, 0.1))
 
@@ -245,7 +276,9 @@ def shares(verdicts: Sequence[Verdict]) -> list[tuple[str, str, str]]:
     alone = [v for v in faint if v.outcome in (ALONE, FAINT)]
 
     def of(some: Sequence[Verdict], all_of_them: Sequence[Verdict]) -> str:
-        return f"{len(some)} of {len(all_of_them)}" + (f" = {len(some) / len(all_of_them):.2f}" if all_of_them else "")
+        return f"{len(some)} of {len(all_of_them)}" + (
+            f" = {len(some) / len(all_of_them):.2f}" if all_of_them else ""
+        )
 
     return [
         ("visible causes named, with their size", of(named, visible), ">= 0.80"),

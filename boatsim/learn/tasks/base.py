@@ -72,7 +72,9 @@ class Task(Checked):
         """Starts (k, 6) of x, y, psi, u, v, r and goals (k, G), from numbers drawn by lot (k, `shares`)."""
 
     @abstractmethod
-    def look(self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale) -> tuple[Array, ...]:
+    def look(
+        self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
+    ) -> tuple[Array, ...]:
         """What the task needs to know of boats at times t [s] of their episodes; the first entries are `signals`."""
 
     def start(self, seen: tuple[Array, ...], scale: Scale) -> Array:
@@ -84,7 +86,9 @@ class Task(Checked):
         """Reward of a control step of `period` s by what is seen at its end; `memory` goes on in place."""
 
     @abstractmethod
-    def norms(self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale) -> dict[str, Array]:
+    def norms(
+        self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale
+    ) -> dict[str, Array]:
         """How episodes went that end now, `is_success` among it."""
 
 

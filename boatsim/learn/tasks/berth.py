@@ -37,14 +37,24 @@ class Berth(Task):
     shares: ClassVar[int] = 6
     memory: ClassVar[int] = 2
 
-    place: float = param(0.1, low=0.01, high=1.0, unit="L", words="from the berth, where it counts as there")
-    heading: float = param(radians(5.0), low=0.01, high=0.5, unit="rad", words="off the quay's, the same")
+    place: float = param(
+        0.1, low=0.01, high=1.0, unit="L", words="from the berth, where it counts as there"
+    )
+    heading: float = param(
+        radians(5.0), low=0.01, high=0.5, unit="rad", words="off the quay's, the same"
+    )
     speed: float = param(0.03, low=0.005, high=0.5, unit="L/s", words="of bow and stern, the same")
     hold: float = param(2.0, low=0.0, high=60.0, unit="s", words="how long it must lie so")
-    gap: float = param(0.15, low=0.0, high=2.0, unit="L", words="between the quay and the boat's side at the berth")
-    near: float = param(1.5, low=0.3, high=10.0, unit="L", words="from the berth, the nearest start")
+    gap: float = param(
+        0.15, low=0.0, high=2.0, unit="L", words="between the quay and the boat's side at the berth"
+    )
+    near: float = param(
+        1.5, low=0.3, high=10.0, unit="L", words="from the berth, the nearest start"
+    )
     far: float = param(3.0, low=0.3, high=10.0, unit="L", words="the furthest start")
-    reach: float = param(6.0, low=1.0, high=20.0, unit="L", words="from the berth, where the harbour ends")
+    reach: float = param(
+        6.0, low=1.0, high=20.0, unit="L", words="from the berth, where the harbour ends"
+    )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
         """Where the berth lies from the boat, far and near, heading off the quay's, speed, room to the quay."""
@@ -56,11 +66,17 @@ class Berth(Task):
             Signal("starboard_near_m", near, "the same"),
             Signal("sin_heading", 1.0, "of the heading, off the quay's"),
             Signal("cos_heading", 1.0, "the same"),
-            Signal("heading_near_rad", 0.3, "off the quay's, with a bound for the last of the turn"),
+            Signal(
+                "heading_near_rad", 0.3, "off the quay's, with a bound for the last of the turn"
+            ),
             Signal("u_mps", 0.5 * scale.speed, "surge velocity over ground"),
             Signal("v_mps", 0.5 * scale.speed, "sway velocity over ground"),
             Signal("r_radps", scale.speed / scale.length, "yaw rate"),
-            Signal("u_near_mps", 0.1 * scale.speed, "surge velocity, with a bound for the last of the way"),
+            Signal(
+                "u_near_mps",
+                0.1 * scale.speed,
+                "surge velocity, with a bound for the last of the way",
+            ),
             Signal("v_near_mps", 0.1 * scale.speed, "the same of sway"),
             Signal("r_near_radps", 0.2 * scale.speed / scale.length, "the same of yaw"),
             Signal("quay_m", scale.length, "between the quay and the nearest corner of the hull"),
@@ -78,9 +94,13 @@ class Berth(Task):
         bearing = radians(60.0) * (2.0 * shares[:, 1] - 1.0)
         moving = 0.05 * scale.speed * (2.0 * shares[:, 3:6] - 1.0) * (1.0, 1.0, 1.0 / scale.length)
         psi = radians(90.0) * (2.0 * shares[:, 2] - 1.0)
-        return np.column_stack([away * np.sin(bearing), away * np.cos(bearing), psi, moving]), np.empty((len(psi), 0))
+        return np.column_stack(
+            [away * np.sin(bearing), away * np.cos(bearing), psi, moving]
+        ), np.empty((len(psi), 0))
 
-    def look(self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale) -> tuple[Array, ...]:
+    def look(
+        self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
+    ) -> tuple[Array, ...]:
         """Signals, then distance [L], heading error [rad] and speed of bow and stern [L/s]."""
         c, s, off = np.cos(m.psi), np.sin(m.psi), wrapped(m.psi)
         ahead, starboard = -c * m.x - s * m.y, s * m.x - c * m.y
@@ -104,15 +124,21 @@ class Berth(Task):
         left = distance + TURN * turned
         there = (distance < self.place) & (turned < self.heading) & (speed < self.speed)
         memory[:, HELD] = (memory[:, HELD] + period) * there
-        off_by = (distance / self.place) ** 2 + (turned / self.heading) ** 2 + (speed / self.speed) ** 2
+        off_by = (
+            (distance / self.place) ** 2 + (turned / self.heading) ** 2 + (speed / self.speed) ** 2
+        )
         done = memory[:, HELD] >= self.hold - 1e-9
         lost = ~((room > 0.0) & (distance < self.reach))
-        reward = memory[:, POTENTIAL] - left - HASTE * period * scale.speed / scale.length + PAID * done
+        reward = (
+            memory[:, POTENTIAL] - left - HASTE * period * scale.speed / scale.length + PAID * done
+        )
         reward += CLOSE * period * np.exp(-0.5 * off_by)
         memory[:, POTENTIAL] = left
         return Judged(np.where(lost, -LOST, reward), done | lost)
 
-    def norms(self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale) -> dict[str, Array]:
+    def norms(
+        self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale
+    ) -> dict[str, Array]:
         """Where and how the boat is at the end."""
         room, distance, off, speed = seen[-4:]
         touched = ~(room > 0.0)

@@ -13,7 +13,9 @@ from boatsim.physics.base import param
 from boatsim.physics.signals import Array
 
 AMPLITUDE, WAVE, PHASE = range(3)  # of a goal: [m], [1/m], [rad]
-GONE, TIME, ASIDE = range(3)  # what is remembered: x [m], seconds, integral of the squared distance [L^2 s]
+GONE, TIME, ASIDE = range(
+    3
+)  # what is remembered: x [m], seconds, integral of the squared distance [L^2 s]
 LOST = 5.0  # off for losing the path
 
 
@@ -34,10 +36,18 @@ class FollowPath(Task):
 
     cruise: float = param(0.4, low=0.05, high=1.0, unit="full speed", words="speed that is wanted")
     tightest: float = param(4.0, low=1.0, high=100.0, unit="L", words="smallest radius of the path")
-    near: float = param(0.5, low=0.05, high=10.0, unit="L", words="beside the path, where the reward is 1/e")
-    within: float = param(0.3, low=0.02, high=10.0, unit="L", words="rms distance from the path that will do")
-    steady: float = param(0.8, low=0.0, high=1.0, unit="", words="mean speed made good over the wanted, that will do")
-    reach: float = param(3.0, low=0.5, high=20.0, unit="L", words="beside the path, where it is lost")
+    near: float = param(
+        0.5, low=0.05, high=10.0, unit="L", words="beside the path, where the reward is 1/e"
+    )
+    within: float = param(
+        0.3, low=0.02, high=10.0, unit="L", words="rms distance from the path that will do"
+    )
+    steady: float = param(
+        0.8, low=0.0, high=1.0, unit="", words="mean speed made good over the wanted, that will do"
+    )
+    reach: float = param(
+        3.0, low=0.5, high=20.0, unit="L", words="beside the path, where it is lost"
+    )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
         """Where the path is, its course here and one and two lengths ahead, speed."""
@@ -64,9 +74,13 @@ class FollowPath(Task):
         off = shares[:, 3:5] - 0.5
         speed = self.cruise * scale.speed * shares[:, 5]
         rest = np.zeros((len(goal), 2))
-        return np.column_stack([np.zeros(len(goal)), y + length * off[:, 0], course + off[:, 1], speed, rest]), goal
+        return np.column_stack(
+            [np.zeros(len(goal)), y + length * off[:, 0], course + off[:, 1], speed, rest]
+        ), goal
 
-    def look(self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale) -> tuple[Array, ...]:
+    def look(
+        self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
+    ) -> tuple[Array, ...]:
         """Signals, then speed along the path [m/s]."""
         y, course = self._path(m.x, goal)
         turn = m.psi - course  # of the boat, off the path
@@ -93,7 +107,9 @@ class FollowPath(Task):
         reward = period * made * np.exp(-((aside / self.near) ** 2))
         return Judged(np.where(lost, -LOST, reward), lost)
 
-    def norms(self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale) -> dict[str, Array]:
+    def norms(
+        self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale
+    ) -> dict[str, Array]:
         """Distance from the path and speed made good along it."""
         time = np.maximum(memory[:, TIME], 1e-9)
         rms, speed = np.sqrt(memory[:, ASIDE] / time), memory[:, GONE] / time

@@ -11,7 +11,11 @@ from boatsim.learn.tasks.base import Judged, Signal, Task, wrapped
 from boatsim.physics.base import param
 from boatsim.physics.signals import Array
 
-TIME, PLACE, TURN = 0, 1, 2  # what is remembered: after `settle`, seconds and integrals of squared errors
+TIME, PLACE, TURN = (
+    0,
+    1,
+    2,
+)  # what is remembered: after `settle`, seconds and integrals of squared errors
 LOST = 10.0  # off for leaving
 
 
@@ -27,11 +31,19 @@ class HoldStation(Task):
     shares: ClassVar[int] = 3
     memory: ClassVar[int] = 3
 
-    place: float = param(0.2, low=0.01, high=2.0, unit="L", words="rms distance that counts as holding it")
-    heading: float = param(radians(10.0), low=0.01, high=1.0, unit="rad", words="rms heading error, the same")
+    place: float = param(
+        0.2, low=0.01, high=2.0, unit="L", words="rms distance that counts as holding it"
+    )
+    heading: float = param(
+        radians(10.0), low=0.01, high=1.0, unit="rad", words="rms heading error, the same"
+    )
     settle: float = param(20.0, low=0.0, high=1e4, unit="s", words="after which it counts")
-    start_within: float = param(0.5, low=0.0, high=5.0, unit="L", words="of the station, each way, at the start")
-    reach: float = param(4.0, low=0.5, high=20.0, unit="L", words="from the station, where it is lost")
+    start_within: float = param(
+        0.5, low=0.0, high=5.0, unit="L", words="of the station, each way, at the start"
+    )
+    reach: float = param(
+        4.0, low=0.5, high=20.0, unit="L", words="from the station, where it is lost"
+    )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
         """Where the station lies from the boat, heading off its own, speed."""
@@ -52,9 +64,13 @@ class HoldStation(Task):
         """Near the station, at rest, within half a radian of its heading."""
         off = 2.0 * shares - 1.0
         place = self.start_within * scale.length * off[:, :2]
-        return np.column_stack([place, 0.5 * off[:, 2], np.zeros((len(off), 3))]), np.empty((len(off), 0))
+        return np.column_stack([place, 0.5 * off[:, 2], np.zeros((len(off), 3))]), np.empty(
+            (len(off), 0)
+        )
 
-    def look(self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale) -> tuple[Array, ...]:
+    def look(
+        self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
+    ) -> tuple[Array, ...]:
         """Signals, then distance [L], heading error [rad], and the time."""
         c, s = np.cos(m.psi), np.sin(m.psi)
         ahead, starboard = -c * m.x - s * m.y, s * m.x - c * m.y
@@ -74,7 +90,9 @@ class HoldStation(Task):
         reward = period * (1.0 - 2.0 * np.tanh(distance) - turned / 2.0 - 0.2 * quiet)
         return Judged(np.where(lost, -LOST, reward), lost)
 
-    def norms(self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale) -> dict[str, Array]:
+    def norms(
+        self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale
+    ) -> dict[str, Array]:
         """Root mean squares after settling."""
         _, _, _, distance, _, _ = seen[-6:]
         time = np.maximum(memory[:, TIME], 1e-9)

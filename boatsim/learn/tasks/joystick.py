@@ -29,11 +29,25 @@ class Joystick(Task):
     goals: ClassVar[int] = 2 * MOVES
     memory: ClassVar[int] = 4
 
-    sway: float = param(0.08, low=0.005, high=1.0, unit="full speed", words="the fastest sway that is asked for")
-    yaw: float = param(0.2, low=0.01, high=2.0, unit="full speed / L", words="the fastest yaw rate that is asked for")
-    moves: float = param(10.0, low=0.5, high=1e4, unit="s", words="how long the stick stays as it is")
+    sway: float = param(
+        0.08, low=0.005, high=1.0, unit="full speed", words="the fastest sway that is asked for"
+    )
+    yaw: float = param(
+        0.2,
+        low=0.01,
+        high=2.0,
+        unit="full speed / L",
+        words="the fastest yaw rate that is asked for",
+    )
+    moves: float = param(
+        10.0, low=0.5, high=1e4, unit="s", words="how long the stick stays as it is"
+    )
     within: float = param(
-        0.5, low=0.05, high=1.0, unit="", words="rms error over what is asked for at most, that will do"
+        0.5,
+        low=0.05,
+        high=1.0,
+        unit="",
+        words="rms error over what is asked for at most, that will do",
     )
 
     def signals(self, scale: Scale) -> tuple[Signal, ...]:
@@ -52,9 +66,13 @@ class Joystick(Task):
         kind, rows = shares[:, :MOVES], len(shares)
         sway = self.sway * scale.speed * (2.0 * shares[:, MOVES : 2 * MOVES] - 1.0) * (kind < 0.5)
         yaw = self.yaw * scale.speed / scale.length * (2.0 * shares[:, 2 * MOVES :] - 1.0)
-        return np.zeros((rows, 6)), np.concatenate([sway, yaw * ((kind > 0.25) & (kind < 0.75))], axis=1)
+        return np.zeros((rows, 6)), np.concatenate(
+            [sway, yaw * ((kind > 0.25) & (kind < 0.75))], axis=1
+        )
 
-    def look(self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale) -> tuple[Array, ...]:
+    def look(
+        self, m: Motion, t: Array, goal: Array, hulls: Hulls, scale: Scale
+    ) -> tuple[Array, ...]:
         """Signals, then the bound of each error."""
         at = (t / self.moves + 1e-9).astype(np.int64) % MOVES
         boats = np.arange(len(at))
@@ -73,7 +91,9 @@ class Joystick(Task):
         lost = ~np.isfinite(error)
         return Judged(-period * np.minimum(np.where(lost, 5.0, error), 5.0), lost)
 
-    def norms(self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale) -> dict[str, Array]:
+    def norms(
+        self, seen: tuple[Array, ...], memory: Array, t: Array, scale: Scale
+    ) -> dict[str, Array]:
         """Root mean square errors over what is asked for at most."""
         time = np.maximum(memory[:, TIME], 1e-9)
         surge, sway, yaw = (np.sqrt(memory[:, k] / time) for k in (SURGE, SWAY, YAW))

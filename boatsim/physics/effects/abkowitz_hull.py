@@ -22,24 +22,37 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     U = max(sqrt(m.ur * m.ur + m.vr * m.vr), SLOWEST * q.speed)
     u, v, r, d = (m.ur - q.speed) / U, m.vr / U, m.r * q.length / U, -s.angle
     X = (
-        u * (q.X_u + u * (q.X_uu + u * q.X_uuu)) + q.X_vv * v * v + q.X_rr * r * r + q.X_rv * r * v
+        u * (q.X_u + u * (q.X_uu + u * q.X_uuu))
+        + q.X_vv * v * v
+        + q.X_rr * r * r
+        + q.X_rv * r * v
         + q.gain * d * (q.X_dd * d + q.X_udd * u * d + q.X_vd * v + q.X_uvd * u * v)
-    )  # fmt: skip
+    )
     Y = (
-        v * (q.Y_v + q.Y_vu * u + v * (q.Y_vvv * v + q.Y_vvr * r)) + r * (q.Y_r + q.Y_ru * u)
-        + q.gain * d * (q.Y_d + u * (q.Y_ud + u * q.Y_uud) + q.Y_ddd * d * d + v * (q.Y_vdd * d + q.Y_vvd * v))
-        + q.Y_0 + u * (q.Y_0u + u * q.Y_0uu)
-    )  # fmt: skip
+        v * (q.Y_v + q.Y_vu * u + v * (q.Y_vvv * v + q.Y_vvr * r))
+        + r * (q.Y_r + q.Y_ru * u)
+        + q.gain
+        * d
+        * (q.Y_d + u * (q.Y_ud + u * q.Y_uud) + q.Y_ddd * d * d + v * (q.Y_vdd * d + q.Y_vvd * v))
+        + q.Y_0
+        + u * (q.Y_0u + u * q.Y_0uu)
+    )
     N = (
-        v * (q.N_v + q.N_vu * u + v * (q.N_vvv * v + q.N_vvr * r)) + r * (q.N_r + q.N_ru * u)
-        + q.gain * d * (q.N_d + u * (q.N_ud + u * q.N_uud) + q.N_ddd * d * d + v * (q.N_vdd * d + q.N_vvd * v))
-        + q.N_0 + u * (q.N_0u + u * q.N_0uu)
-    )  # fmt: skip
+        v * (q.N_v + q.N_vu * u + v * (q.N_vvv * v + q.N_vvr * r))
+        + r * (q.N_r + q.N_ru * u)
+        + q.gain
+        * d
+        * (q.N_d + u * (q.N_ud + u * q.N_uud) + q.N_ddd * d * d + v * (q.N_vdd * d + q.N_vvd * v))
+        + q.N_0
+        + u * (q.N_0u + u * q.N_0uu)
+    )
     determinant = q.m22 * q.m33 - q.m23 * q.m32
     along = X / q.m11 * U * U / q.length
     across = (q.m33 * Y - q.m23 * N) / determinant * U * U / q.length
     turning = (q.m22 * N - q.m32 * Y) / determinant * U * U / (q.length * q.length)
-    return wrench(X=q.mass * (along - m.vr * m.r), Y=q.mass * (across + m.ur * m.r), N=q.yaw_inertia * turning)
+    return wrench(
+        X=q.mass * (along - m.vr * m.r), Y=q.mass * (across + m.ur * m.r), N=q.yaw_inertia * turning
+    )
 
 
 def derivative(name: str) -> float:
@@ -59,19 +72,34 @@ class AbkowitzHull(Force):
     The origin of motion is that of the derivatives.
     """
 
-    words: ClassVar[str] = "hull and rudder forces as a polynomial in drift, rate of turn and rudder angle"
+    words: ClassVar[str] = (
+        "hull and rudder forces as a polynomial in drift, rate of turn and rudder angle"
+    )
     shown_by: ClassVar[str] = "turning circles and zig-zags"
     source: ClassVar[str] = "M. A. Abkowitz, Lectures on Ship Hydrodynamics, Hy-5, Lyngby 1964"
     roles: ClassVar = {"angle": Role("rad", "the rudder, positive turns to starboard")}
     law: ClassVar = law
 
-    length: float = param(UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
-    speed: float = param(1.0, low=0.01, high=50.0, unit="m/s", words="approach speed of the derivatives")
-    mass: float = param(UNSET, low=0.0, high=1e12, unit="kg", words="the body's", follows="vessel.body.mass")
-    yaw_inertia: float = param(
-        UNSET, low=0.0, high=1e16, unit="kg m^2", words="the body's", follows="vessel.body.yaw_inertia"
+    length: float = param(
+        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
     )
-    gain: float = param(1.0, low=0.1, high=5.0, unit="", words="rudder force per stated one", calibrates="thrust")
+    speed: float = param(
+        1.0, low=0.01, high=50.0, unit="m/s", words="approach speed of the derivatives"
+    )
+    mass: float = param(
+        UNSET, low=0.0, high=1e12, unit="kg", words="the body's", follows="vessel.body.mass"
+    )
+    yaw_inertia: float = param(
+        UNSET,
+        low=0.0,
+        high=1e16,
+        unit="kg m^2",
+        words="the body's",
+        follows="vessel.body.yaw_inertia",
+    )
+    gain: float = param(
+        1.0, low=0.1, high=5.0, unit="", words="rudder force per stated one", calibrates="thrust"
+    )
     m11: float = inertia("m' - X_udot'")
     m22: float = inertia("m' - Y_vdot'")
     m23: float = inertia("m' x_G' - Y_rdot'")

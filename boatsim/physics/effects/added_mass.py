@@ -6,7 +6,20 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics import particulars
-from boatsim.physics.base import UNSET, Boat, Force, Inertia, Mass, Release, Wrench, factor, mass, param, shift, wrench
+from boatsim.physics.base import (
+    UNSET,
+    Boat,
+    Force,
+    Inertia,
+    Mass,
+    Release,
+    Wrench,
+    factor,
+    mass,
+    param,
+    shift,
+    wrench,
+)
 
 
 @njit(inline="always")
@@ -56,7 +69,9 @@ class AddedMass(Inertia, Force):
     alone: ClassVar = True
     words: ClassVar[str] = "the water that moves with the hull adds inertia"
     shown_by: ClassVar[str] = "sharp starts and stops in sway and yaw"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.3"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.3"
+    )
     moves_with: ClassVar[str] = "water"
     inertia: ClassVar = inertia
     law: ClassVar = law
@@ -73,10 +88,26 @@ class AddedMass(Inertia, Force):
         calibrates="added_mass",
     )
     sway: float = param(
-        UNSET, low=0.0, high=1e9, unit="kg", words="-Y_vdot", fit=True, spread=5.0, axis="sway", calibrates="added_mass"
+        UNSET,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="-Y_vdot",
+        fit=True,
+        spread=5.0,
+        axis="sway",
+        calibrates="added_mass",
     )
     heave: float = param(
-        0.0, low=0.0, high=1e9, unit="kg", words="-Z_wdot", fit=True, spread=5.0, axis="heave", calibrates="added_mass"
+        0.0,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="-Z_wdot",
+        fit=True,
+        spread=5.0,
+        axis="heave",
+        calibrates="added_mass",
     )
     pitch: float = param(
         0.0,
@@ -89,8 +120,12 @@ class AddedMass(Inertia, Force):
         axis="pitch",
         calibrates="added_mass",
     )
-    sway_at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead")
-    sway_below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="sway added mass acts this far below")
+    sway_at: float = param(
+        0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead"
+    )
+    sway_below: float = param(
+        0.0, low=-100.0, high=100.0, unit="m", words="sway added mass acts this far below"
+    )
     yaw: float = param(
         UNSET,
         low=0.0,
@@ -113,9 +148,15 @@ class AddedMass(Inertia, Force):
         axis="roll",
         calibrates="added_mass",
     )
-    coriolis: float = param(1.0, low=-1.0, high=3.0, unit="", words="share of the Coriolis force that is modelled")
-    spheroid: float = param(0.0, low=0.0, high=1.0, unit="", words="1: surge, sway, yaw and roll by the hull's size")
-    roll_share: float = param(0.2, low=0.0, high=2.0, unit="", words="roll inertia per the body's, if by size")
+    coriolis: float = param(
+        1.0, low=-1.0, high=3.0, unit="", words="share of the Coriolis force that is modelled"
+    )
+    spheroid: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: surge, sway, yaw and roll by the hull's size"
+    )
+    roll_share: float = param(
+        0.2, low=0.0, high=2.0, unit="", words="roll inertia per the body's, if by size"
+    )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """Values by the vessel's size, where they are wanted."""
@@ -124,7 +165,12 @@ class AddedMass(Inertia, Force):
         share, body = particulars.spheroid(vessel.length, vessel.draught), vessel.body
         sway = share.sway * body.mass
         roll = self.roll_share * body.roll_inertia - sway * self.sway_below**2
-        return {"surge": share.surge * body.mass, "sway": sway, "yaw": share.yaw * body.yaw_inertia, "roll": roll}
+        return {
+            "surge": share.surge * body.mass,
+            "sway": sway,
+            "yaw": share.yaw * body.yaw_inertia,
+            "roll": roll,
+        }
 
 
 @dataclass(frozen=True)
@@ -144,12 +190,19 @@ class AddedMassError(Release):
 class AddedMassCoriolis(Release):
     """What the Coriolis force of the vessel's own added mass has beyond the share its model keeps."""
 
-    words: ClassVar[str] = "the water that moves with the hull turns it broadside to its course (Munk moment)"
+    words: ClassVar[str] = (
+        "the water that moves with the hull turns it broadside to its course (Munk moment)"
+    )
     shown_by: ClassVar[str] = "turning while making way sideways and ahead"
     source: ClassVar[str] = AddedMass.source
 
     fraction: float = shift(
-        "added_mass.coriolis", words="share of the force that is missing", unit="", spread=0.8, low=-1.0, high=2.0
+        "added_mass.coriolis",
+        words="share of the force that is missing",
+        unit="",
+        spread=0.8,
+        low=-1.0,
+        high=2.0,
     )
 
 
@@ -161,9 +214,16 @@ class ShallowWater(Release):
     told_by: ClassVar = ("added_mass_error",)
     words: ClassVar[str] = "the bottom is near: sway and yaw move more water and drag more"
     shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
-    source: ClassVar[str] = "assumption [A] of the checked specification of Bayless 2017, section 2 (factor k)"
+    source: ClassVar[str] = (
+        "assumption [A] of the checked specification of Bayless 2017, section 2 (factor k)"
+    )
 
     factor: float = factor(
-        "added_mass.sway", "added_mass.yaw", "cross_flow_drag.section_drag_coefficient", "cross_flow_drag.linear",
-        words="k of shallow water; 1 in deep water", low=1.0, high=10.0,
-    )  # fmt: skip
+        "added_mass.sway",
+        "added_mass.yaw",
+        "cross_flow_drag.section_drag_coefficient",
+        "cross_flow_drag.linear",
+        words="k of shallow water; 1 in deep water",
+        low=1.0,
+        high=10.0,
+    )

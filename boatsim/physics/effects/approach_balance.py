@@ -20,13 +20,24 @@ class ApproachBalance(Force):
 
     words: ClassVar[str] = "propeller and resistance hold the approach speed"
     shown_by: ClassVar[str] = "a straight run from a slightly different speed"
-    source: ClassVar[str] = "M. A. Abkowitz, Lectures on Ship Hydrodynamics, 1964: the linear term in u - U0"
+    source: ClassVar[str] = (
+        "M. A. Abkowitz, Lectures on Ship Hydrodynamics, 1964: the linear term in u - U0"
+    )
     roles: ClassVar = {"shaft": Role("1/s", "the propeller's rate, ahead positive")}
     law: ClassVar = law
 
     damping: float = param(
-        0.0, low=0.0, high=1e9, unit="N s/m", words="resistance less thrust per speed, -X_u", calibrates="damping"
+        0.0,
+        low=0.0,
+        high=1e9,
+        unit="N s/m",
+        words="resistance less thrust per speed, -X_u",
+        calibrates="damping",
     )
     speed: float = param(1.0, low=0.01, high=50.0, unit="m/s", words="approach speed, U0")
-    shaft_rate: float = param(1.0, low=0.01, high=1e3, unit="1/s", words="propeller's rate at that speed, n0")
-    gain: float = param(1.0, low=0.1, high=5.0, unit="", words="speed held per stated one", calibrates="thrust")
+    shaft_rate: float = param(
+        1.0, low=0.01, high=1e3, unit="1/s", words="propeller's rate at that speed, n0"
+    )
+    gain: float = param(
+        1.0, low=0.1, high=5.0, unit="", words="speed held per stated one", calibrates="thrust"
+    )

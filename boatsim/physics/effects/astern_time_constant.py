@@ -21,7 +21,9 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
 class AsternTimeConstant(Force):
     """The steady turn stays as it is; it is reached in another time while the hull goes astern."""
 
-    words: ClassVar[str] = "going astern the craft turns with another time constant than going ahead"
+    words: ClassVar[str] = (
+        "going astern the craft turns with another time constant than going ahead"
+    )
     shown_by: ClassVar[str] = "nozzle steps while going astern, and the same going ahead"
     source: ClassVar[str] = (
         "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, section 3.2: 1/T is not consistent"
@@ -30,5 +32,9 @@ class AsternTimeConstant(Force):
     law: ClassVar = law
     starts: ClassVar = ({"factor": 0.7}, {"factor": 1.4})
 
-    factor: float = param(1.0, low=0.1, high=10.0, unit="", words="astern per ahead", fit=True, spread=0.4, absent=1.0)
-    yaw: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
+    factor: float = param(
+        1.0, low=0.1, high=10.0, unit="", words="astern per ahead", fit=True, spread=0.4, absent=1.0
+    )
+    yaw: float = param(
+        UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw"
+    )

@@ -38,14 +38,32 @@ class BilgeKeels(Force):
     law: ClassVar = law
     starts: ClassVar = ({"breadth": 0.01}, {"breadth": 0.04})
 
-    breadth: float = param(0.0, low=0.0, high=3.0, unit="m", words="of a keel", fit=True, spread=0.02, axis="roll")
-    length: float = param(UNSET, low=0.0, high=300.0, unit="m", words="of a keel; if not given, 0.3 of the vessel's")
-    arm: float = param(
-        UNSET, low=0.0, high=60.0, unit="m", words="from the roll axis; if not given, 0.8 of that to the hull's corner"
+    breadth: float = param(
+        0.0, low=0.0, high=3.0, unit="m", words="of a keel", fit=True, spread=0.02, axis="roll"
     )
-    flow: float = param(1.0, low=0.5, high=2.0, unit="", words="speed of the water at the bilge per that of the keel")
-    frequency: float = param(UNSET, low=0.0, high=50.0, unit="rad/s", words="of roll; if not given, the vessel's own")
-    density: float = param(particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water")
+    length: float = param(
+        UNSET, low=0.0, high=300.0, unit="m", words="of a keel; if not given, 0.3 of the vessel's"
+    )
+    arm: float = param(
+        UNSET,
+        low=0.0,
+        high=60.0,
+        unit="m",
+        words="from the roll axis; if not given, 0.8 of that to the hull's corner",
+    )
+    flow: float = param(
+        1.0,
+        low=0.5,
+        high=2.0,
+        unit="",
+        words="speed of the water at the bilge per that of the keel",
+    )
+    frequency: float = param(
+        UNSET, low=0.0, high=50.0, unit="rad/s", words="of roll; if not given, the vessel's own"
+    )
+    density: float = param(
+        particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water"
+    )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """What is not given, from the vessel's size, righting arm and inertia."""
@@ -56,4 +74,6 @@ class BilgeKeels(Force):
 def _frequency(vessel: Boat) -> float:
     """Undamped frequency of roll [rad/s], 0 for a vessel that has no righting arm."""
     stiffness = getattr(vessel.effect("righting_arm"), "stiffness", 0.0)
-    return sqrt(stiffness / (vessel.body.roll_inertia + getattr(vessel.effect("added_mass"), "roll", 0.0)))
+    return sqrt(
+        stiffness / (vessel.body.roll_inertia + getattr(vessel.effect("added_mass"), "roll", 0.0))
+    )

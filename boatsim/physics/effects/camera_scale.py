@@ -12,7 +12,18 @@ from boatsim.physics.base import Measurement, Shown, param
 def shown(m: Shown, q: Any) -> Shown:
     """Recorded x = (1 + x_fraction) x about the origin of the tank, y alike."""
     return Shown(
-        (1.0 + q.x_fraction) * m.x, (1.0 + q.y_fraction) * m.y, m.z, m.phi, m.theta, m.psi, m.u, m.v, m.w, m.p, m.q, m.r
+        (1.0 + q.x_fraction) * m.x,
+        (1.0 + q.y_fraction) * m.y,
+        m.z,
+        m.phi,
+        m.theta,
+        m.psi,
+        m.u,
+        m.v,
+        m.w,
+        m.p,
+        m.q,
+        m.r,
     )
 
 
@@ -23,9 +34,15 @@ class CameraScale(Measurement):
     of_columns: ClassVar = ("x_m", "y_m")
     ruled_out_by: ClassVar = {"position_fix": ("gnss", "inertial")}
     needs: ClassVar = ("surge", "sway")
-    words: ClassVar[str] = "the camera's length scale is off, so recorded positions are stretched (not physics)"
+    words: ClassVar[str] = (
+        "the camera's length scale is off, so recorded positions are stretched (not physics)"
+    )
     shown_by: ClassVar[str] = "the same straight run along x and along y"
     shown: ClassVar = shown
 
-    x_fraction: float = param(0.0, low=-0.4, high=0.4, unit="", words="x off by", fit=True, spread=0.1)
-    y_fraction: float = param(0.0, low=-0.4, high=0.4, unit="", words="y off by", fit=True, spread=0.1)
+    x_fraction: float = param(
+        0.0, low=-0.4, high=0.4, unit="", words="x off by", fit=True, spread=0.1
+    )
+    y_fraction: float = param(
+        0.0, low=-0.4, high=0.4, unit="", words="y off by", fit=True, spread=0.1
+    )

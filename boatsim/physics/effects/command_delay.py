@@ -33,13 +33,20 @@ def remember(x: float, memory: Array, at: int, dt: float, delay: float) -> int:
 
 
 @njit
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """Mean command of the time window that is `delay` old: exact, for no step reaches beyond a change."""
     given = mean_of(x)
     i = remember(given, memory, at, dt, q.delay)
     if q.delay <= 0.0:
         return x
-    left, age, total, held = dt, 0.0, 0.0, given  # age [s] at the end of the step, walking back in time
+    left, age, total, held = (
+        dt,
+        0.0,
+        0.0,
+        given,
+    )  # age [s] at the end of the step, walking back in time
     for _ in range(HISTORY):
         held = memory[at + 1 + 2 * i]
         older = age + memory[at + 2 + 2 * i]
@@ -102,5 +109,12 @@ class CommandDelay(Channel):
     starts: ClassVar = ({"delay": 0.1},)
 
     delay: float = param(
-        0.0, low=0.0, high=60.0, unit="s", words="command to effect", fit=True, spread=0.5, within=(0.0, 1.6)
+        0.0,
+        low=0.0,
+        high=60.0,
+        unit="s",
+        words="command to effect",
+        fit=True,
+        spread=0.5,
+        within=(0.0, 1.6),
     )

@@ -52,7 +52,11 @@ def law(m: Any, q: Any) -> Wrench:
     down, bowing = strips(m.wr, -m.q, q) if q.vertical > 0.0 else (0.0, 0.0)
     k = 0.5 * q.density * q.section_drag_coefficient * q.draught  # [kg/m^2]
     even = q.linear * q.length * (m.vr + q.centre * m.r)
-    even_moment = q.linear * q.length * (q.centre * m.vr + (q.centre * q.centre + q.length * q.length / 12.0) * m.r)
+    even_moment = (
+        q.linear
+        * q.length
+        * (q.centre * m.vr + (q.centre * q.centre + q.length * q.length / 12.0) * m.r)
+    )
     return wrench(
         X=-q.surge_quadratic * m.ur * abs(m.ur),
         Y=-k * across - even,
@@ -69,7 +73,9 @@ class CrossFlowDrag(Force):
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "hull sections drag sideways with the square of the water crossing them"
     shown_by: ClassVar[str] = "sway and spin at two speeds"
-    source: ClassVar[str] = "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, section 6"
+    source: ClassVar[str] = (
+        "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, section 6"
+    )
     law: ClassVar = law
 
     section_drag_coefficient: float = param(
@@ -83,7 +89,13 @@ class CrossFlowDrag(Force):
         calibrates="damping",
     )
     surge_quadratic: float = param(
-        0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="-X_u|u| that goes with it", fit=True, spread=4.0
+        0.0,
+        low=0.0,
+        high=1e9,
+        unit="N s^2/m^2",
+        words="-X_u|u| that goes with it",
+        fit=True,
+        spread=4.0,
     )
     length: float = param(
         UNSET,
@@ -94,14 +106,31 @@ class CrossFlowDrag(Force):
         follows="vessel.length",
     )
     draught: float = param(
-        UNSET, low=0.0, high=50.0, unit="m", words="draught; if not given, the vessel's own", follows="vessel.draught"
+        UNSET,
+        low=0.0,
+        high=50.0,
+        unit="m",
+        words="draught; if not given, the vessel's own",
+        follows="vessel.draught",
     )
     density: float = param(FRESH_WATER, low=0.0, high=1500.0, unit="kg/m^3", words="of the water")
     vertical: float = param(
-        0.0, low=0.0, high=100.0, unit="", words="drag area of a section in heave per that in sway; 0: none"
+        0.0,
+        low=0.0,
+        high=100.0,
+        unit="",
+        words="drag area of a section in heave per that in sway; 0: none",
     )
     stations: float = param(
-        0.0, low=0.0, high=1000.0, unit="", words="of the trapezoidal rule along the hull; 0: the exact integral"
+        0.0,
+        low=0.0,
+        high=1000.0,
+        unit="",
+        words="of the trapezoidal rule along the hull; 0: the exact integral",
     )
-    centre: float = param(0.0, low=-250.0, high=250.0, unit="m", words="mid-length ahead of the origin of motion")
-    linear: float = param(0.0, low=0.0, high=1e9, unit="N s/m^2", words="linear sectional damping, for very slow flow")
+    centre: float = param(
+        0.0, low=-250.0, high=250.0, unit="m", words="mid-length ahead of the origin of motion"
+    )
+    linear: float = param(
+        0.0, low=0.0, high=1e9, unit="N s/m^2", words="linear sectional damping, for very slow flow"
+    )

@@ -24,5 +24,9 @@ class Current(Flow):
     shown_by: ClassVar[str] = "drifting, and runs on opposite headings"
     flow: ClassVar = flow
 
-    north: float = param(0.0, low=-5.0, high=5.0, unit="m/s", words="water velocity along x", fit=True, spread=0.06)
-    east: float = param(0.0, low=-5.0, high=5.0, unit="m/s", words="water velocity along y", fit=True, spread=0.06)
+    north: float = param(
+        0.0, low=-5.0, high=5.0, unit="m/s", words="water velocity along x", fit=True, spread=0.06
+    )
+    east: float = param(
+        0.0, low=-5.0, high=5.0, unit="m/s", words="water velocity along y", fit=True, spread=0.06
+    )

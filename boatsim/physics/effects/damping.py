@@ -5,7 +5,18 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import AXES, Force, Release, Wrench, factor, number, param, preset, shift, wrench
+from boatsim.physics.base import (
+    AXES,
+    Force,
+    Release,
+    Wrench,
+    factor,
+    number,
+    param,
+    preset,
+    shift,
+    wrench,
+)
 
 # a start too strong in one axis spoils the others, so only one of them leaves the linear law
 NEARLY_LINEAR = {"surge_exponent": 1.001, "sway_exponent": 1.001, "yaw_exponent": 1.001}
@@ -40,12 +51,21 @@ def law(m: Any, q: Any) -> Wrench:
 
 def exponent(axis: str) -> float:
     """The power of the speed of one axis."""
-    return param(1.0, low=1.0, high=3.0, unit="", words=f"power of the speed in {axis}; 1: linear", axis=axis)
+    return param(
+        1.0, low=1.0, high=3.0, unit="", words=f"power of the speed in {axis}; 1: linear", axis=axis
+    )
 
 
 def equal(axis: str, unit: str) -> float:
     """The speed at which a power law is as strong as the linear one of the same coefficient."""
-    return param(1.0, low=0.01, high=20.0, unit=unit, words="speed at which the power does not count", axis=axis)
+    return param(
+        1.0,
+        low=0.01,
+        high=20.0,
+        unit=unit,
+        words="speed at which the power does not count",
+        axis=axis,
+    )
 
 
 @dataclass(frozen=True)
@@ -54,18 +74,38 @@ class LinearDamping(Force):
 
     words: ClassVar[str] = "the water resists in proportion to the speed"
     shown_by: ClassVar[str] = "coasting down from a low speed"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4"
+    )
     law: ClassVar = law
 
-    surge: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-X_u", calibrates="damping", axis="surge")
-    sway: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway")
-    yaw: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw")
-    roll: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll")
-    heave: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-Z_w", calibrates="damping", axis="heave")
-    pitch: float = param(0.0, low=0.0, high=1e13, unit="N m s", words="-M_q", calibrates="damping", axis="pitch")
-    sway_by_yaw: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping")
-    yaw_by_sway: float = param(0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping")
-    sway_at: float = param(0.0, low=-200.0, high=200.0, unit="m", words="the sway damping acts this far ahead")
+    surge: float = param(
+        0.0, low=0.0, high=1e9, unit="N s/m", words="-X_u", calibrates="damping", axis="surge"
+    )
+    sway: float = param(
+        0.0, low=0.0, high=1e9, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway"
+    )
+    yaw: float = param(
+        0.0, low=0.0, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw"
+    )
+    roll: float = param(
+        0.0, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll"
+    )
+    heave: float = param(
+        0.0, low=0.0, high=1e9, unit="N s/m", words="-Z_w", calibrates="damping", axis="heave"
+    )
+    pitch: float = param(
+        0.0, low=0.0, high=1e13, unit="N m s", words="-M_q", calibrates="damping", axis="pitch"
+    )
+    sway_by_yaw: float = param(
+        0.0, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping"
+    )
+    yaw_by_sway: float = param(
+        0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping"
+    )
+    sway_at: float = param(
+        0.0, low=-200.0, high=200.0, unit="m", words="the sway damping acts this far ahead"
+    )
     surge_exponent: float = exponent("surge")
     sway_exponent: float = exponent("sway")
     yaw_exponent: float = exponent("yaw")
@@ -80,7 +120,9 @@ class LinearDamping(Force):
     pitch_equal: float = equal("pitch", "rad/s")
 
 
-PLAIN = dict.fromkeys(("sway_by_yaw", "yaw_by_sway", "sway_at"), 0.0) | {f"{axis}_equal": 1.0 for axis in AXES}
+PLAIN = dict.fromkeys(("sway_by_yaw", "yaw_by_sway", "sway_at"), 0.0) | {
+    f"{axis}_equal": 1.0 for axis in AXES
+}
 
 QuadraticDamping = preset(
     LinearDamping,
@@ -128,13 +170,15 @@ class DampingError(Release):
         "linear_damping.surge|surge_drag.linear|approach_balance.damping|mmg_hull.R_0|abkowitz_hull.X_u"
         "|mmg_low_speed_hull.X_0F",
         "surge_drag.quadratic",
-        words="surge", axis="surge",
-    )  # fmt: skip
+        words="surge",
+        axis="surge",
+    )
     sway_factor: float = factor(
         "linear_damping.sway|linear_hull.sway|mmg_hull.Y_v|abkowitz_hull.Y_v|mmg_low_speed_hull.C_D"
         "|cross_flow_drag.section_drag_coefficient",
-        words="sway", axis="sway",
-    )  # fmt: skip
+        words="sway",
+        axis="sway",
+    )
     yaw_factor: float = factor(
         "linear_damping.yaw|linear_hull.yaw|mmg_hull.N_r|abkowitz_hull.N_r|mmg_low_speed_hull.N_r",
         words="yaw",
@@ -150,7 +194,9 @@ class LateralCentreShift(Release):
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the water's sideways resistance acts ahead of or behind the mass centre"
     shown_by: ClassVar[str] = "pushing sideways, and coasting after a turn"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4 (Y_r, N_v)"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4 (Y_r, N_v)"
+    )
 
     shift: float = shift(
         "linear_damping.sway_at",
@@ -166,29 +212,50 @@ class LateralCentreShift(Release):
 def another_power(axis: str) -> float:
     """The power of the speed in one axis."""
     return number(
-        f"linear_damping.{axis}_exponent", words=axis, unit="", spread=0.5, low=1.0, high=3.0, absent=1.0, axis=axis
+        f"linear_damping.{axis}_exponent",
+        words=axis,
+        unit="",
+        spread=0.5,
+        low=1.0,
+        high=3.0,
+        absent=1.0,
+        axis=axis,
     )
 
 
 def agreement(axis: str, unit: str) -> float:
     """The speed at which both laws agree."""
     return number(
-        f"linear_damping.{axis}_equal", words="both laws agree", unit=unit, spread=0.5, low=0.01, high=20.0,
-        absent=1.0, axis=axis,
-    )  # fmt: skip
+        f"linear_damping.{axis}_equal",
+        words="both laws agree",
+        unit=unit,
+        spread=0.5,
+        low=0.01,
+        high=20.0,
+        absent=1.0,
+        axis=axis,
+    )
 
 
 @dataclass(frozen=True)
 class DampingExponent(Release):
     """A power law in place of the vessel's linear damping; both agree at one speed of each axis."""
 
-    words: ClassVar[str] = "damping follows another power of the speed than the first, in place of the linear one"
+    words: ClassVar[str] = (
+        "damping follows another power of the speed than the first, in place of the linear one"
+    )
     shown_by: ClassVar[str] = "the same motion at a large and at a small amplitude"
     source: ClassVar[str] = "Y. Huang and Z. Ji, Autonomous boat dynamics, eqs 4-6: d sign(x) |x|^a"
     strength: ClassVar = ("surge_exponent", "sway_exponent", "yaw_exponent")
     starts: ClassVar = tuple(
         {**NEARLY_LINEAR, f"{axis}_exponent": 2.0, f"{axis}_equal": equal}
-        for axis, equal in (("surge", 1.0), ("sway", 1.0), ("sway", 0.3), ("sway", 0.1), ("yaw", 1.0))
+        for axis, equal in (
+            ("surge", 1.0),
+            ("sway", 1.0),
+            ("sway", 0.3),
+            ("sway", 0.1),
+            ("yaw", 1.0),
+        )
     )
 
     surge_exponent: float = another_power("surge")

@@ -7,7 +7,7 @@ from numba import njit
 
 from boatsim.physics import terms
 from boatsim.physics.base import Boat, Wrench, param
-from boatsim.physics.described import Described
+from boatsim.physics.described_laws import Described
 from boatsim.physics.param import code
 
 
@@ -27,9 +27,14 @@ class DescribedForce(Described):
 
     axis: str = "surge"  # along which of `terms.DIRECTIONS`
     coefficient: float = param(
-        0.0, low=-1e15, high=1e15, unit="", words="force [N] or moment [N m] per product of the factors [SI]",
-        fit=True, spread=1.0,
-    )  # fmt: skip
+        0.0,
+        low=-1e15,
+        high=1e15,
+        unit="",
+        words="force [N] or moment [N m] per product of the factors [SI]",
+        fit=True,
+        spread=1.0,
+    )
     direction: float = code("its axis")
 
     def __post_init__(self) -> None:
@@ -38,7 +43,9 @@ class DescribedForce(Described):
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """What its words are to the program. Raises BadInput for factors that the vessel has not."""
-        return super().rules(vessel) | {"direction": terms.code_of(self.name, self.axis, terms.DIRECTIONS)}
+        return super().rules(vessel) | {
+            "direction": terms.code_of(self.name, self.axis, terms.DIRECTIONS)
+        }
 
     def shape(self) -> dict[str, object]:
         """What its table says of the law, less what has no meaning for it."""

@@ -7,7 +7,7 @@ from numba import njit
 
 from boatsim.physics import terms
 from boatsim.physics.base import Boat, Wrench, param
-from boatsim.physics.described import Described
+from boatsim.physics.described_laws import Described
 from boatsim.physics.effects.thruster import at_mount
 from boatsim.physics.param import code
 
@@ -35,9 +35,14 @@ class DescribedThrust(Described):
     side: str = "all"  # which of `SIDES`
     sense: str = "both"  # which of `SENSES`
     coefficient: float = param(
-        0.0, low=-1e9, high=1e9, unit="", words="share of the thrust per product of the factors [SI]",
-        fit=True, spread=0.3,
-    )  # fmt: skip
+        0.0,
+        low=-1e9,
+        high=1e9,
+        unit="",
+        words="share of the thrust per product of the factors [SI]",
+        fit=True,
+        spread=0.3,
+    )
     where: float = code("the side it is about")
     way: float = code("the sense it is about")
 

@@ -25,17 +25,29 @@ def missing(thrust: float, speed: float, drag: float) -> float:
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
     """Each thruster for itself, at the speed of its own mount along its own axis."""
     along, across = m.ur - t.y * m.r, m.vr + t.x * m.r
-    return at_mount(missing(t.gain * s.thrust, along * s.cos_angle + across * s.sin_angle, q.drag), s, t)
+    return at_mount(
+        missing(t.gain * s.thrust, along * s.cos_angle + across * s.sin_angle, q.drag), s, t
+    )
 
 
 @dataclass(frozen=True)
 class DraggedPropeller(Force):
     """The drag of an idle propeller is part of the hull's: a thrust against the way takes its place."""
 
-    words: ClassVar[str] = "a propeller that turns against the way adds only what exceeds the drag it has when idle"
+    words: ClassVar[str] = (
+        "a propeller that turns against the way adds only what exceeds the drag it has when idle"
+    )
     shown_by: ClassVar[str] = "one thruster astern while the boat has way on, and from rest"
     source: ClassVar[str] = "drag of a disc across the flow, 0.5 rho A C_D u^2"
     rides: ClassVar[str] = "thruster"
     law: ClassVar = law
 
-    drag: float = param(0.0, low=0.0, high=1e6, unit="N s^2/m^2", words="of one idle propeller", fit=True, spread=1.0)
+    drag: float = param(
+        0.0,
+        low=0.0,
+        high=1e6,
+        unit="N s^2/m^2",
+        words="of one idle propeller",
+        fit=True,
+        spread=1.0,
+    )

@@ -11,13 +11,17 @@ from boatsim.physics.kinds.channel import MAPS
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """Command plus k ((|source - neutral| - dead) / (span - dead))^n, to the side of neutral it is on."""
     off = source - q.neutral
     drive = (abs(off) - q.dead) / (q.span - q.dead)
     if drive <= 0.0:
         return x
-    share = drive if q.exponent == 1.0 else drive**q.exponent  # a power takes longer than all the rest
+    share = (
+        drive if q.exponent == 1.0 else drive**q.exponent
+    )  # a power takes longer than all the rest
     given = q.at_span * share if off > 0.0 else -q.at_span * share
     return Course(x.begin + given, x.middle + given, x.end + given)
 
@@ -33,18 +37,30 @@ class DriveMap(Channel):
     channel: ClassVar = channel
 
     at_span: float = param(
-        1.0, low=-1e6, high=1e6, unit="", words="k: what it gives, in its own unit, `span` off neutral"
+        1.0,
+        low=-1e6,
+        high=1e6,
+        unit="",
+        words="k: what it gives, in its own unit, `span` off neutral",
     )
-    span: float = param(1.0, low=1e-6, high=1e6, unit="", words="raw command, from neutral, at which it gives that")
-    neutral: float = param(0.0, low=-1e6, high=1e6, unit="", words="raw command at which it stands still")
-    dead: float = param(0.0, low=0.0, high=1e6, unit="", words="from neutral, below which nothing turns")
+    span: float = param(
+        1.0, low=1e-6, high=1e6, unit="", words="raw command, from neutral, at which it gives that"
+    )
+    neutral: float = param(
+        0.0, low=-1e6, high=1e6, unit="", words="raw command at which it stands still"
+    )
+    dead: float = param(
+        0.0, low=0.0, high=1e6, unit="", words="from neutral, below which nothing turns"
+    )
     exponent: float = param(1.0, low=0.5, high=3.0, unit="", words="n of the curve")
 
     def __post_init__(self) -> None:
         """Raises BadInput for a drive that is dead over all of its span."""
         super().__post_init__()
         if self.dead >= self.span:
-            raise BadInput(f"{self.name}.dead = {self.dead:g}; allowed is less than its span, {self.span:g}")
+            raise BadInput(
+                f"{self.name}.dead = {self.dead:g}; allowed is less than its span, {self.span:g}"
+            )
 
 
 PwmThrust = preset(
@@ -70,5 +86,10 @@ ShaftRpm = preset(
     words="the propeller's rate is given per minute",
     shown_by="any manoeuvre",
     acts_on="shaft",
-    fixed={"span": 60.0, "neutral": 0.0, "dead": 0.0, "exponent": 1.0},  # [rpm] that are 1/s, times a gear
+    fixed={
+        "span": 60.0,
+        "neutral": 0.0,
+        "dead": 0.0,
+        "exponent": 1.0,
+    },  # [rpm] that are 1/s, times a gear
 )

@@ -5,7 +5,19 @@ from typing import Any, ClassVar
 
 from numba import njit
 
-from boatsim.physics.base import Boat, Change, Force, Inertia, Mass, Release, Wrench, mass, param, shift, wrench
+from boatsim.physics.base import (
+    Boat,
+    Change,
+    Force,
+    Inertia,
+    Mass,
+    Release,
+    Wrench,
+    mass,
+    param,
+    shift,
+    wrench,
+)
 from boatsim.physics.particulars import GRAVITY
 
 
@@ -15,8 +27,14 @@ def inertia(q: Any) -> Mass:
     first = q.mass * q.x
     second = first * q.x
     return mass(
-        surge=q.mass, sway=q.mass, heave=q.mass, pitch=second, yaw=second, heave_pitch=-first, sway_yaw=first
-    )  # fmt: skip
+        surge=q.mass,
+        sway=q.mass,
+        heave=q.mass,
+        pitch=second,
+        yaw=second,
+        heave_pitch=-first,
+        sway_yaw=first,
+    )
 
 
 @njit(inline="always")
@@ -36,16 +54,27 @@ class ExtraMass(Inertia, Force):
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = "the boat carries a mass that the model does not know of"
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"
+    )
     moves_with: ClassVar[str] = "hull"
     inertia: ClassVar = inertia
     law: ClassVar = law
     strength: ClassVar = ("mass",)
     starts: ClassVar = ({"mass": 0.7, "x": 0.2}, {"mass": 0.7, "x": -0.2})
 
-    mass: float = param(0.0, low=0.0, high=1e9, unit="kg", words="its mass", fit=True, spread=1.5, within=(0.0, 4.6))
+    mass: float = param(
+        0.0, low=0.0, high=1e9, unit="kg", words="its mass", fit=True, spread=1.5, within=(0.0, 4.6)
+    )
     x: float = param(
-        0.0, low=-250.0, high=250.0, unit="m", words="positive forward", fit=True, spread=0.3, within=(-0.6, 0.6)
+        0.0,
+        low=-250.0,
+        high=250.0,
+        unit="m",
+        words="positive forward",
+        fit=True,
+        spread=0.3,
+        within=(-0.6, 0.6),
     )
 
 
@@ -53,16 +82,29 @@ class ExtraMass(Inertia, Force):
 class Payload(Release):
     """Mass spread over the hull like its own; the deeper draught that comes with it is an error of the added mass."""
 
-    needs: ClassVar = ("surge", "sway")  # a hull that only rolls shows no more than the ratio of moment to inertia
-    words: ClassVar[str] = "the whole boat is heavier than stated, or all that drives and brakes it is weaker alike"
+    needs: ClassVar = (
+        "surge",
+        "sway",
+    )  # a hull that only rolls shows no more than the ratio of moment to inertia
+    words: ClassVar[str] = (
+        "the whole boat is heavier than stated, or all that drives and brakes it is weaker alike"
+    )
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = ExtraMass.source
     strength: ClassVar = ("mass",)
 
     mass: float = shift(
-        "body.mass", "body.roll_inertia", "body.pitch_inertia", "body.yaw_inertia", words="more than stated",
-        unit="kg", spread=1.5, low=-1e9, high=1e9, within=(-2.3, 4.6),
-    )  # fmt: skip
+        "body.mass",
+        "body.roll_inertia",
+        "body.pitch_inertia",
+        "body.yaw_inertia",
+        words="more than stated",
+        unit="kg",
+        spread=1.5,
+        low=-1e9,
+        high=1e9,
+        within=(-2.3, 4.6),
+    )
 
     def changes(self, vessel: Boat) -> list[Change]:
         """A hull that does not pitch need not state its inertia in pitch."""
@@ -71,7 +113,10 @@ class Payload(Release):
     def weights(self, vessel: Boat) -> dict[str, float]:
         """The hull's radii of gyration stay."""
         body = vessel.body
-        inertias = ((f"body.{n}", getattr(body, n)) for n in ("roll_inertia", "pitch_inertia", "yaw_inertia"))
+        inertias = (
+            (f"body.{n}", getattr(body, n))
+            for n in ("roll_inertia", "pitch_inertia", "yaw_inertia")
+        )
         return {place: inertia / body.mass for place, inertia in inertias if inertia is not None}
 
     def ratios(self, vessel: Boat) -> dict[str, tuple[float, str]]:

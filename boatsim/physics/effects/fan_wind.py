@@ -46,4 +46,6 @@ class FanWind(Force):
     toward: float = param(0.0, low=-pi, high=pi, unit="rad", words="where the air goes")
     front: float = param(0.021, low=0.0, high=5000.0, unit="m^2", words="drag area bow-on")
     side: float = param(0.114, low=0.0, high=20000.0, unit="m^2", words="drag area beam-on")
-    arm: float = param(-0.02, low=-200.0, high=200.0, unit="m", words="side push acts this far forward")
+    arm: float = param(
+        -0.02, low=-200.0, high=200.0, unit="m", words="side push acts this far forward"
+    )

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
-from boatsim.physics.chance import course, noise
+from boatsim.physics.noise import course, noise
 
 
 @njit
@@ -27,9 +27,13 @@ def law(m: Any, q: Any) -> Wrench:
 class FilteredSea(Force):
     """Coloured noise for waves, as controllers' authors fit it: independent from axis to axis."""
 
-    words: ClassVar[str] = "waves push sway, yaw and roll, each with a noise of its own about one frequency"
+    words: ClassVar[str] = (
+        "waves push sway, yaw and roll, each with a noise of its own about one frequency"
+    )
     shown_by: ClassVar[str] = "lying across the sea without steering"
-    source: ClassVar[str] = "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V: shaping filters"
+    source: ClassVar[str] = (
+        "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V: shaping filters"
+    )
     law: ClassVar = law
 
     sway: float = param(0.0, low=0.0, high=1e9, unit="N", words="rms sway force")
@@ -37,7 +41,9 @@ class FilteredSea(Force):
     yaw: float = param(0.0, low=0.0, high=1e11, unit="N m", words="rms yaw moment")
     frequency: float = param(1.0, low=0.01, high=50.0, unit="rad/s", words="of the filter, w0")
     damping: float = param(0.1, low=0.001, high=2.0, unit="", words="of the filter, z")
-    components: float = param(160.0, low=1.0, high=2000.0, unit="", words="number of cosines on each axis")
+    components: float = param(
+        160.0, low=1.0, high=2000.0, unit="", words="number of cosines on each axis"
+    )
     realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course")
     arm: float = param(
         UNSET,

@@ -33,16 +33,44 @@ class ForwardSpeedDamping(Force):
     law: ClassVar = law
 
     sway: float = param(
-        0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="-Y_|u|v", fit=True, spread=20.0, axis="sway",
+        0.0,
+        low=0.0,
+        high=1e9,
+        unit="N s^2/m^2",
+        words="-Y_|u|v",
+        fit=True,
+        spread=20.0,
+        axis="sway",
         calibrates="damping",
-    )  # fmt: skip
+    )
     roll: float = param(
-        0.0, low=0.0, high=1e13, unit="N s^2", words="-K_|u|p", fit=True, spread=0.02, axis="roll", calibrates="damping"
+        0.0,
+        low=0.0,
+        high=1e13,
+        unit="N s^2",
+        words="-K_|u|p",
+        fit=True,
+        spread=0.02,
+        axis="roll",
+        calibrates="damping",
     )
     yaw: float = param(
-        0.0, low=0.0, high=1e13, unit="N s^2", words="-N_|u|r", fit=True, spread=2.0, axis="yaw", calibrates="damping"
+        0.0,
+        low=0.0,
+        high=1e13,
+        unit="N s^2",
+        words="-N_|u|r",
+        fit=True,
+        spread=2.0,
+        axis="yaw",
+        calibrates="damping",
     )
     at: float = param(
-        0.0, low=-500.0, high=500.0, unit="m", words="where the sway force acts, ahead of the mass centre",
-        calibrates="damping", axis="yaw",
-    )  # fmt: skip
+        0.0,
+        low=-500.0,
+        high=500.0,
+        unit="m",
+        words="where the sway force acts, ahead of the mass centre",
+        calibrates="damping",
+        axis="yaw",
+    )

@@ -16,7 +16,18 @@ def shown(m: Shown, q: Any) -> Shown:
     rate = (q.sin * cos(m.psi) - q.cos * sin(m.psi)) * m.r
     c, s = cos(off), sin(off)
     return Shown(
-        m.x, m.y, m.z, m.phi, m.theta, m.psi + off, c * m.u + s * m.v, c * m.v - s * m.u, m.w, m.p, m.q, m.r + rate
+        m.x,
+        m.y,
+        m.z,
+        m.phi,
+        m.theta,
+        m.psi + off,
+        c * m.u + s * m.v,
+        c * m.v - s * m.u,
+        m.w,
+        m.p,
+        m.q,
+        m.r + rate,
     )
 
 
@@ -28,11 +39,17 @@ class HeadingDeviation(Measurement):
     needs: ClassVar = ("surge", "yaw")
     words: ClassVar[str] = "the compass deviates with the heading (not physics)"
     shown_by: ClassVar[str] = "straight runs on four headings, or a slow full turn"
-    source: ClassVar[str] = "coefficients B and C of the classical deviation formula (Archibald Smith)"
+    source: ClassVar[str] = (
+        "coefficients B and C of the classical deviation formula (Archibald Smith)"
+    )
     shown: ClassVar = shown
 
-    cos: float = param(0.0, low=-0.6, high=0.6, unit="rad", words="error heading north", fit=True, spread=0.1)
-    sin: float = param(0.0, low=-0.6, high=0.6, unit="rad", words="error heading east", fit=True, spread=0.1)
+    cos: float = param(
+        0.0, low=-0.6, high=0.6, unit="rad", words="error heading north", fit=True, spread=0.1
+    )
+    sin: float = param(
+        0.0, low=-0.6, high=0.6, unit="rad", words="error heading east", fit=True, spread=0.1
+    )
     offset: float = param(0.0, low=-1.0, high=1.0, unit="rad", words="on every heading")
 
 

@@ -23,18 +23,41 @@ class Hydrostatics(Force):
 
     words: ClassVar[str] = "buoyancy holds the hull at its draught and rights it in roll and pitch"
     shown_by: ClassVar[str] = "a release from heave, heel or trim"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 4.2"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 4.2"
+    )
     law: ClassVar = law
 
-    heave: float = param(0.0, low=0.0, high=1e12, unit="N/m", words="rho g A_wp", calibrates="restoring", axis="heave")
-    roll: float = param(0.0, low=0.0, high=1e13, unit="N m", words="m g GM_T", calibrates="restoring", axis="roll")
+    heave: float = param(
+        0.0,
+        low=0.0,
+        high=1e12,
+        unit="N/m",
+        words="rho g A_wp",
+        calibrates="restoring",
+        axis="heave",
+    )
+    roll: float = param(
+        0.0, low=0.0, high=1e13, unit="N m", words="m g GM_T", calibrates="restoring", axis="roll"
+    )
     pitch: float = param(
-        0.0, low=0.0, high=1e15, unit="N m", words="m g GM_L, about the centre of flotation", calibrates="restoring",
+        0.0,
+        low=0.0,
+        high=1e15,
+        unit="N m",
+        words="m g GM_L, about the centre of flotation",
+        calibrates="restoring",
         axis="pitch",
-    )  # fmt: skip
-    flotation: float = param(0.0, low=-250.0, high=250.0, unit="m", words="centre of flotation ahead of the origin")
-    mass: float = param(UNSET, low=0.0, high=1e12, unit="kg", words="the boat's", follows="vessel.body.mass")
-    displacement: float = param(UNSET, low=0.0, high=1e12, unit="kg", words="mass it floats with at z = 0")
+    )
+    flotation: float = param(
+        0.0, low=-250.0, high=250.0, unit="m", words="centre of flotation ahead of the origin"
+    )
+    mass: float = param(
+        UNSET, low=0.0, high=1e12, unit="kg", words="the boat's", follows="vessel.body.mass"
+    )
+    displacement: float = param(
+        UNSET, low=0.0, high=1e12, unit="kg", words="mass it floats with at z = 0"
+    )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """The hull floats as drawn with the mass that its file states."""

@@ -8,7 +8,7 @@ from numba import njit
 
 from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
-from boatsim.physics.chance import course, drawn
+from boatsim.physics.noise import course, drawn
 
 LOWEST = 0.45  # of the modal frequency: below it lies less than 1e-13 of the energy
 GRAVITY = particulars.GRAVITY
@@ -23,7 +23,10 @@ def sections(s: float, taper: float) -> tuple[float, float]:
             2.0 / 3.0 - 0.4 * taper - s2 * (1.0 / 15.0 - taper / 21.0)
         )
     c, n = cos(s), sin(s)
-    even, square = n / s, n / s + 2.0 * c / s**2 - 2.0 * n / s**3  # halves of the integrals of cos and x^2 cos
+    even, square = (
+        n / s,
+        n / s + 2.0 * c / s**2 - 2.0 * n / s**3,
+    )  # halves of the integrals of cos and x^2 cos
     odd = (n - s * c) / s**2
     cube = (3.0 * s * s * n - s**3 * c + 6.0 * s * c - 6.0 * n) / s**4
     return 2.0 * (even - taper * square), 2.0 * (odd - taper * cube)
@@ -40,15 +43,22 @@ def law(m: Any, q: Any) -> Wrench:
     if q.course_kept != 0.0:
         run = ahead * q.speed * m.t
     else:
-        ahead, across = m.cos_psi * ahead + m.sin_psi * across, m.cos_psi * across - m.sin_psi * ahead
+        ahead, across = (
+            m.cos_psi * ahead + m.sin_psi * across,
+            m.cos_psi * across - m.sin_psi * ahead,
+        )
     modal, count = 2.0 * pi / q.modal_period, int(q.components)
     low = LOWEST * modal
     width, half = (max(q.cut, modal) - low) / count, 0.5 * q.length
-    weight = 0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length  # of water, per length of hull [N]
+    weight = (
+        0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length
+    )  # of water, per length of hull [N]
     below = 0.0
     for k in range(count):
         w = low + width * (k + drawn(q.realisation, 2 * k))
-        above = exp(-1.25 * (modal / (low + width * (k + 1))) ** 4)  # share of the energy below the cell's upper end
+        above = exp(
+            -1.25 * (modal / (low + width * (k + 1))) ** 4
+        )  # share of the energy below the cell's upper end
         number = w * w / GRAVITY  # deep water
         slope = number * q.significant_height * sqrt((above - below) / 8.0)
         theta = w * m.t - number * run + 2.0 * pi * drawn(q.realisation, 2 * k + 1)
@@ -78,16 +88,22 @@ class IrregularSea(Force):
 
     words: ClassVar[str] = "wind waves push, turn and heel the hull"
     shown_by: ClassVar[str] = "lying across the sea without steering"
-    source: ClassVar[str] = "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V"
+    source: ClassVar[str] = (
+        "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V"
+    )
     anchored: ClassVar[str] = "the ground, where the phase of its waves is counted from"
     law: ClassVar = law
 
     significant_height: float = param(
         0.0, low=0.0, high=30.0, unit="m", words="four times the elevation's rms; 0: calm"
     )
-    modal_period: float = param(7.5, low=0.2, high=40.0, unit="s", words="at the peak of the elevation's spectrum")
+    modal_period: float = param(
+        7.5, low=0.2, high=40.0, unit="s", words="at the peak of the elevation's spectrum"
+    )
     toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where the waves run to")
-    course_kept: float = param(0.0, low=0.0, high=1.0, unit="", words="1: met as on course north at `speed`")
+    course_kept: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: met as on course north at `speed`"
+    )
     speed: float = param(
         UNSET,
         low=-50.0,
@@ -99,22 +115,42 @@ class IrregularSea(Force):
     cut: float = param(3.0, low=0.0, high=100.0, unit="rad/s", words="shorter waves are left out")
     components: float = param(160.0, low=1.0, high=2000.0, unit="", words="number of waves")
     realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course")
-    sway: float = param(1.0, low=0.0, high=10.0, unit="", words="scale of the sway force; 1: by the formula")
+    sway: float = param(
+        1.0, low=0.0, high=10.0, unit="", words="scale of the sway force; 1: by the formula"
+    )
     roll: float = param(1.0, low=0.0, high=10.0, unit="", words="scale of the direct roll moment")
     yaw: float = param(1.0, low=0.0, high=10.0, unit="", words="scale of the yaw moment")
-    flat: float = param(0.0, low=0.0, high=1.0, unit="", words="1: waves long against the hull, weight times slope")
-    taper: float = param(1.0, low=-10.0, high=10.0, unit="", words="sections 1 - taper (2 x / L)^2; 1: ellipsoid")
+    flat: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: waves long against the hull, weight times slope"
+    )
+    taper: float = param(
+        1.0, low=-10.0, high=10.0, unit="", words="sections 1 - taper (2 x / L)^2; 1: ellipsoid"
+    )
     centre_depth: float = param(
         UNSET, low=0.0, high=50.0, unit="m", words="of buoyancy; if not given, 0.4 of the draught"
     )
-    density: float = param(particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water")
+    density: float = param(
+        particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water"
+    )
     length: float = param(
-        UNSET, low=0.0, high=500.0, unit="m", words="if not given, the vessel's own", follows="vessel.length"
+        UNSET,
+        low=0.0,
+        high=500.0,
+        unit="m",
+        words="if not given, the vessel's own",
+        follows="vessel.length",
     )
     draught: float = param(
-        UNSET, low=0.0, high=50.0, unit="m", words="if not given, the vessel's own", follows="vessel.draught"
+        UNSET,
+        low=0.0,
+        high=50.0,
+        unit="m",
+        words="if not given, the vessel's own",
+        follows="vessel.draught",
     )
-    mass: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="the vessel's own", follows="vessel.body.mass")
+    mass: float = param(
+        UNSET, low=0.0, high=1e9, unit="kg", words="the vessel's own", follows="vessel.body.mass"
+    )
     stiffness: float = param(
         UNSET,
         low=0.0,

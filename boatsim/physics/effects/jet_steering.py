@@ -20,10 +20,18 @@ class JetSteering(Force):
 
     words: ClassVar[str] = "the deflected jet steers in proportion to its angle"
     shown_by: ClassVar[str] = "a zig-zag"
-    source: ClassVar[str] = "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, eq. 15"
+    source: ClassVar[str] = (
+        "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, eq. 15"
+    )
     roles: ClassVar = {"angle": Role("rad", "the nozzle, positive turns to starboard going ahead")}
     law: ClassVar = law
 
-    sway: float = param(0.0, low=-1e9, high=1e9, unit="N/rad", words="Y_delta", calibrates="thrust", axis="sway")
-    roll: float = param(0.0, low=-1e9, high=1e9, unit="N m/rad", words="K_delta", calibrates="thrust", axis="roll")
-    yaw: float = param(0.0, low=-1e9, high=1e9, unit="N m/rad", words="N_delta", calibrates="thrust", axis="yaw")
+    sway: float = param(
+        0.0, low=-1e9, high=1e9, unit="N/rad", words="Y_delta", calibrates="thrust", axis="sway"
+    )
+    roll: float = param(
+        0.0, low=-1e9, high=1e9, unit="N m/rad", words="K_delta", calibrates="thrust", axis="roll"
+    )
+    yaw: float = param(
+        0.0, low=-1e9, high=1e9, unit="N m/rad", words="N_delta", calibrates="thrust", axis="yaw"
+    )

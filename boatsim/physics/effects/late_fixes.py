@@ -27,12 +27,23 @@ class LateFixes(Measurement):
 
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("surge", "sway", "yaw")
-    ruled_out_by: ClassVar = {"position_fix": ("camera", "tracking")}  # one picture shows place and heading
-    words: ClassVar[str] = "recorded positions are older than the headings beside them (not physics)"
+    ruled_out_by: ClassVar = {
+        "position_fix": ("camera", "tracking")
+    }  # one picture shows place and heading
+    words: ClassVar[str] = (
+        "recorded positions are older than the headings beside them (not physics)"
+    )
     shown_by: ClassVar[str] = "sharp turns at full speed"
     source: ClassVar[str] = "kinematics: a steady turn over the delay"
     shown: ClassVar = shown
 
     latency: float = param(
-        0.0, low=0.0, high=60.0, unit="s", words="positions older by", fit=True, spread=0.2, within=(0.0, 1.0)
+        0.0,
+        low=0.0,
+        high=60.0,
+        unit="s",
+        words="positions older by",
+        fit=True,
+        spread=0.2,
+        within=(0.0, 1.0),
     )

@@ -34,34 +34,70 @@ class LinearHull(Force):
     )
     law: ClassVar = law
 
-    trim: float = param(0.0, low=-20.0, high=20.0, unit="m", words="draught aft less draught forward")
+    trim: float = param(
+        0.0, low=-20.0, high=20.0, unit="m", words="draught aft less draught forward"
+    )
     block: float = param(0.5, low=0.05, high=1.0, unit="", words="block coefficient")
-    ahead: float = param(0.0, low=-200.0, high=200.0, unit="m", words="mass centre ahead of midship, LCG")
-    above_keel: float = param(0.0, low=0.0, high=100.0, unit="m", words="mass centre above the keel, VCG")
-    heel_to_yaw: float = param(-0.0076, low=-1.0, high=1.0, unit="", words="N'phi; -0.0076 for Martin's worked example")
-    density: float = param(particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water")
-    speed: float = param(UNSET, low=-50.0, high=50.0, unit="m/s", words="approach speed", follows="speed_hold.speed")
-    sway: float = param(UNSET, low=-1e11, high=1e11, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway")
-    sway_by_yaw: float = param(UNSET, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping")
-    yaw_by_sway: float = param(UNSET, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping")
-    yaw: float = param(UNSET, low=-1e13, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw")
+    ahead: float = param(
+        0.0, low=-200.0, high=200.0, unit="m", words="mass centre ahead of midship, LCG"
+    )
+    above_keel: float = param(
+        0.0, low=0.0, high=100.0, unit="m", words="mass centre above the keel, VCG"
+    )
+    heel_to_yaw: float = param(
+        -0.0076, low=-1.0, high=1.0, unit="", words="N'phi; -0.0076 for Martin's worked example"
+    )
+    density: float = param(
+        particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water"
+    )
+    speed: float = param(
+        UNSET, low=-50.0, high=50.0, unit="m/s", words="approach speed", follows="speed_hold.speed"
+    )
+    sway: float = param(
+        UNSET, low=-1e11, high=1e11, unit="N s/m", words="-Y_v", calibrates="damping", axis="sway"
+    )
+    sway_by_yaw: float = param(
+        UNSET, low=-1e11, high=1e11, unit="N s", words="-Y_r", calibrates="damping"
+    )
+    yaw_by_sway: float = param(
+        UNSET, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping"
+    )
+    yaw: float = param(
+        UNSET, low=-1e13, high=1e13, unit="N m s", words="-N_r", calibrates="damping", axis="yaw"
+    )
     yaw_by_heel: float = param(
         UNSET, low=-1e13, high=1e13, unit="N m", words="N_phi", calibrates="damping", axis="roll"
     )
-    below: float = param(UNSET, low=-100.0, high=100.0, unit="m", words="depth of the sway force, z_H", axis="roll")
-    arm: float = param(UNSET, low=-100.0, high=100.0, unit="m", words="roll moment per force that accelerates in sway")
-    mass: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="the vessel's own", follows="vessel.body.mass")
+    below: float = param(
+        UNSET, low=-100.0, high=100.0, unit="m", words="depth of the sway force, z_H", axis="roll"
+    )
+    arm: float = param(
+        UNSET,
+        low=-100.0,
+        high=100.0,
+        unit="m",
+        words="roll moment per force that accelerates in sway",
+    )
+    mass: float = param(
+        UNSET, low=0.0, high=1e9, unit="kg", words="the vessel's own", follows="vessel.body.mass"
+    )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """Derivatives and levers of the vessel's size, speed and added mass. Raises BadInput without that."""
         L, T = vessel.length, vessel.draught
-        m_x, m_y, sway_below = (self.followed(f"added_mass.{key}", vessel) for key in ("surge", "sway", "sway_below"))
+        m_x, m_y, sway_below = (
+            self.followed(f"added_mass.{key}", vessel) for key in ("surge", "sway", "sway_below")
+        )
         d = particulars.derivatives(L, vessel.beam, T, self.trim, self.block)
-        q, x = 0.5 * self.density * L * T * self.speed, -self.ahead  # x: midship seen from the mass centre
+        q, x = (
+            0.5 * self.density * L * T * self.speed,
+            -self.ahead,
+        )  # x: midship seen from the mass centre
         below = self.above_keel - 0.5 * T
         return {
             "sway": -q * d.sway_by_sway,
-            "sway_by_yaw": -q * L * d.sway_by_yaw + m_x * self.speed,  # m_x V: Coriolis force of the water
+            "sway_by_yaw": -q * L * d.sway_by_yaw
+            + m_x * self.speed,  # m_x V: Coriolis force of the water
             "yaw_by_sway": -q * (L * d.yaw_by_sway + d.sway_by_sway * x),
             "yaw": -q * L * (L * d.yaw_by_yaw + d.sway_by_yaw * x),
             "yaw_by_heel": q * L * self.speed * self.heel_to_yaw,

@@ -29,13 +29,22 @@ class MassCentreShift(Inertia, Force):
     needs: ClassVar = ("sway", "yaw")
     words: ClassVar[str] = "the mass centre lies ahead of or behind where the model has it"
     shown_by: ClassVar[str] = "sharp starts and stops sideways, and fast turns"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"
+    )
     moves_with: ClassVar[str] = "hull"
     inertia: ClassVar = inertia
     law: ClassVar = law
 
     shift: float = param(
-        0.0, low=-200.0, high=200.0, unit="m", words="positive forward", fit=True, spread=0.1, within=(-0.6, 0.6)
+        0.0,
+        low=-200.0,
+        high=200.0,
+        unit="m",
+        words="positive forward",
+        fit=True,
+        spread=0.1,
+        within=(-0.6, 0.6),
     )
     hull_mass: float = param(
         UNSET,

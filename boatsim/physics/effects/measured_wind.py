@@ -29,7 +29,9 @@ class MeasuredWind(Force):
 
     words: ClassVar[str] = "the measured wind pushes the hull downwind and swings its bow"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"
+    )
     anchored: ClassVar[str] = "the air"
     law: ClassVar = law
     of_air: ClassVar = True
@@ -38,12 +40,26 @@ class MeasuredWind(Force):
         "comes_from": Role("rad", "where the wind comes from, clockwise from the x axis"),
     }
 
-    front: float = param(0.021, low=0.0, high=5000.0, unit="m^2", words="drag area bow-on", calibrates="wind")
-    side: float = param(0.114, low=0.0, high=20000.0, unit="m^2", words="drag area beam-on", calibrates="wind")
+    front: float = param(
+        0.021, low=0.0, high=5000.0, unit="m^2", words="drag area bow-on", calibrates="wind"
+    )
+    side: float = param(
+        0.114, low=0.0, high=20000.0, unit="m^2", words="drag area beam-on", calibrates="wind"
+    )
     arm: float = param(
-        0.0, low=-200.0, high=200.0, unit="m", words="side push acts this far forward", calibrates="wind"
+        0.0,
+        low=-200.0,
+        high=200.0,
+        unit="m",
+        words="side push acts this far forward",
+        calibrates="wind",
     )
     swing: float = param(
-        0.0, low=-200.0, high=200.0, unit="m", words="further forward with the wind from astern", calibrates="wind"
+        0.0,
+        low=-200.0,
+        high=200.0,
+        unit="m",
+        words="further forward with the wind from astern",
+        calibrates="wind",
     )
     density: float = param(AIR_DENSITY, low=0.5, high=2.0, unit="kg/m^3", words="of the air")

@@ -23,15 +23,27 @@ def law(m: Any, q: Any) -> Wrench:
     v, r = m.vr / U, m.r * q.length / U
     against = min(max(BOW_ON * m.ur / U, -1.0), 1.0)
     X = -q.R_0 * against + v * v * (q.X_vv + q.X_vvvv * v * v) + r * (q.X_vr * v + q.X_rr * r)
-    Y = v * (q.Y_v + v * (q.Y_vvv * v + q.Y_vvr * r)) + r * (q.Y_r + r * (q.Y_vrr * v + q.Y_rrr * r))
-    N = v * (q.N_v + v * (q.N_vvv * v + q.N_vvr * r)) + r * (q.N_r + r * (q.N_vrr * v + q.N_rrr * r))
+    Y = v * (q.Y_v + v * (q.Y_vvv * v + q.Y_vvr * r)) + r * (
+        q.Y_r + r * (q.Y_vrr * v + q.Y_rrr * r)
+    )
+    N = v * (q.N_v + v * (q.N_vvv * v + q.N_vvr * r)) + r * (
+        q.N_r + r * (q.N_vrr * v + q.N_rrr * r)
+    )
     k = 0.5 * q.density * q.length * q.draught * U * U  # [N]
     return wrench(X=k * X + q.m_y * m.vr * m.r, Y=k * Y - q.m_x * m.ur * m.r, N=k * q.length * N)
 
 
 def derivative(name: str, axis: str) -> float:
     """A nondimensional derivative from captive tests, known as well as these are."""
-    return param(0.0, low=-10.0, high=10.0, unit="", words=f"{name}', nondimensional", calibrates="damping", axis=axis)
+    return param(
+        0.0,
+        low=-10.0,
+        high=10.0,
+        unit="",
+        words=f"{name}', nondimensional",
+        calibrates="damping",
+        axis=axis,
+    )
 
 
 @dataclass(frozen=True)
@@ -40,14 +52,24 @@ class MmgHull(Force):
 
     words: ClassVar[str] = "hull forces as polynomials in drift and rate of turn (MMG)"
     shown_by: ClassVar[str] = "turning circles and zig-zags"
-    source: ClassVar[str] = "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015 (MMG standard method)"
+    source: ClassVar[str] = (
+        "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015 (MMG standard method)"
+    )
     law: ClassVar = law
 
-    length: float = param(UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
-    draught: float = param(UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught")
+    length: float = param(
+        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
+    )
+    draught: float = param(
+        UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught"
+    )
     density: float = param(1000.0, low=0.0, high=1100.0, unit="kg/m^3", words="of the water")
-    m_x: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge")
-    m_y: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway")
+    m_x: float = param(
+        UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge"
+    )
+    m_y: float = param(
+        UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway"
+    )
     R_0: float = derivative("R_0", "surge")
     X_vv: float = derivative("X_vv", "surge")
     X_vr: float = derivative("X_vr", "surge")

@@ -47,16 +47,28 @@ def coefficient(words: str, axis: str = "") -> float:
 class MmgLowSpeedHull(Force):
     """Of a ship that stops, backs and turns on the spot; needs added_mass with coriolis = 0. Origin midship."""
 
-    words: ClassVar[str] = "hull forces from rest to astern: lift with the way and cross-flow drag (MMG, low speed)"
+    words: ClassVar[str] = (
+        "hull forces from rest to astern: lift with the way and cross-flow drag (MMG, low speed)"
+    )
     shown_by: ClassVar[str] = "stopping, backing and turning on the spot"
-    source: ClassVar[str] = "Y. Yoshimura, I. Nakao, A. Ishibashi, MARSIM 2009 (unified model, ocean and harbour)"
+    source: ClassVar[str] = (
+        "Y. Yoshimura, I. Nakao, A. Ishibashi, MARSIM 2009 (unified model, ocean and harbour)"
+    )
     law: ClassVar = law
 
-    length: float = param(UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
-    draught: float = param(UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught")
+    length: float = param(
+        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
+    )
+    draught: float = param(
+        UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught"
+    )
     density: float = param(1000.0, low=0.0, high=1100.0, unit="kg/m^3", words="of the water")
-    m_x: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge")
-    m_y: float = param(UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway")
+    m_x: float = param(
+        UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge"
+    )
+    m_y: float = param(
+        UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.sway"
+    )
     X_0F: float = coefficient("X_0(F)', resistance ahead", "surge")
     X_0A: float = coefficient("X_0(A)', resistance astern", "surge")
     X_vr: float = coefficient("X_vr'", "surge")
@@ -65,5 +77,7 @@ class MmgLowSpeedHull(Force):
     N_v: float = coefficient("N_v'", "yaw")
     N_r: float = coefficient("N_r'", "yaw")
     C_D: float = coefficient("C_D, cross-flow drag of a section")
-    C_rY: float = coefficient("C_rY, how much turning counts in the cross flow that makes sway force", "sway")
+    C_rY: float = coefficient(
+        "C_rY, how much turning counts in the cross flow that makes sway force", "sway"
+    )
     C_rN: float = coefficient("C_rN, and in that which makes yaw moment", "yaw")

@@ -78,16 +78,29 @@ def number(words: str) -> float:
 class MmgLowSpeedPropeller(Force):
     """One propeller on the centre line, in all four quadrants."""
 
-    words: ClassVar[str] = "a propeller pushes ahead or astern, and aside when it backs (MMG, low speed)"
+    words: ClassVar[str] = (
+        "a propeller pushes ahead or astern, and aside when it backs (MMG, low speed)"
+    )
     shown_by: ClassVar[str] = "crash stops and backing"
-    source: ClassVar[str] = "Y. Miyauchi, A. Maki, N. Umeda, D. M. Rachman, Y. Akimoto, J. Mar. Sci. Technol. 27, 2022"
+    source: ClassVar[str] = (
+        "Y. Miyauchi, A. Maki, N. Umeda, D. M. Rachman, Y. Akimoto, J. Mar. Sci. Technol. 27, 2022"
+    )
     roles: ClassVar = {"shaft": Role("1/s", "the propeller's rate, ahead positive")}
     law: ClassVar = law
 
-    length: float = param(UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length")
-    draught: float = param(UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught")
+    length: float = param(
+        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
+    )
+    draught: float = param(
+        UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught"
+    )
     density: float = param(
-        UNSET, low=0.0, high=1100.0, unit="kg/m^3", words="of the water", follows="mmg_low_speed_hull.density"
+        UNSET,
+        low=0.0,
+        high=1100.0,
+        unit="kg/m^3",
+        words="of the water",
+        follows="mmg_low_speed_hull.density",
     )
     diameter: float = param(1.0, low=0.001, high=20.0, unit="m", words="D_P")
     pitch_ratio: float = param(1.0, low=0.0, high=3.0, unit="", words="P / D_P")
@@ -95,7 +108,9 @@ class MmgLowSpeedPropeller(Force):
     wake: float = param(0.0, low=0.0, high=1.0, unit="", words="w_P0, on a straight course ahead")
     wake_tau: float = number("tau, how much a slide of the stern thins the wake")
     wake_C_P: float = number("C_P, and its square")
-    propeller_at: float = param(-0.5, low=-1.0, high=1.0, unit="", words="x_P', lengths ahead of midship")
+    propeller_at: float = param(
+        -0.5, low=-1.0, high=1.0, unit="", words="x_P', lengths ahead of midship"
+    )
     k0: float = number("K_T at J = 0, shaft ahead")
     k1: float = number("of J in K_T")
     k2: float = number("of J^2 in K_T")
@@ -103,7 +118,9 @@ class MmgLowSpeedPropeller(Force):
     astern_C2: float = number("of J_s in it")
     astern_from: float = number("J_s below which it is constant")
     astern_stop: float = number("that constant")
-    aside_low: float = number("J_s below which the side force of a backing shaft has its first form")
+    aside_low: float = number(
+        "J_s below which the side force of a backing shaft has its first form"
+    )
     aside_high: float = number("J_s above which it has its last")
     Y_low: float = number("side force over 1/2 rho L d (n D_P)^2 in the first form")
     Y_low_J: float = number("of J_s in it")
@@ -121,4 +138,6 @@ class MmgLowSpeedPropeller(Force):
     N_braked: float = number("yaw moment over 1/2 rho L^2 d (n P)^2, shaft ahead and ship astern")
     N_braked_J: float = number("of J_s in it")
     N_braked_JJ: float = number("of J_s^2 in it")
-    gain: float = param(1.0, low=0.1, high=5.0, unit="", words="thrust per stated one", calibrates="thrust")
+    gain: float = param(
+        1.0, low=0.1, high=5.0, unit="", words="thrust per stated one", calibrates="thrust"
+    )

@@ -25,16 +25,30 @@ class NomotoYaw(Force):
 
     words: ClassVar[str] = "the yaw rate follows the jet with one lag"
     shown_by: ClassVar[str] = "steering steps"
-    source: ClassVar[str] = "K. Nomoto et al., On the steering qualities of ships, Int. Shipbuild. Progr. 4, 1957"
+    source: ClassVar[str] = (
+        "K. Nomoto et al., On the steering qualities of ships, Int. Shipbuild. Progr. 4, 1957"
+    )
     roles: ClassVar = {"angle": Role("rad", "the nozzle, positive turns to starboard going ahead")}
     law: ClassVar = law
 
-    gain: float = param(0.0, low=-1e3, high=1e3, unit="1/s", words="K at the start", calibrates="thrust", axis="yaw")
-    gain_later: float = param(
-        0.0, low=-1e3, high=1e3, unit="1/s", words="K from `duration` on", calibrates="thrust", axis="yaw"
+    gain: float = param(
+        0.0, low=-1e3, high=1e3, unit="1/s", words="K at the start", calibrates="thrust", axis="yaw"
     )
-    time_constant: float = param(0.0, low=0.0, high=1e4, unit="s", words="T at the start; 0: the law is not there")
-    time_constant_later: float = param(1.0, low=1e-3, high=1e4, unit="s", words="T from `duration` on")
+    gain_later: float = param(
+        0.0,
+        low=-1e3,
+        high=1e3,
+        unit="1/s",
+        words="K from `duration` on",
+        calibrates="thrust",
+        axis="yaw",
+    )
+    time_constant: float = param(
+        0.0, low=0.0, high=1e4, unit="s", words="T at the start; 0: the law is not there"
+    )
+    time_constant_later: float = param(
+        1.0, low=1e-3, high=1e4, unit="s", words="T from `duration` on"
+    )
     duration: float = param(1.0, low=1e-3, high=1e6, unit="s", words="time in which they change")
     inertia: float = param(
         UNSET,

@@ -22,17 +22,29 @@ class PlaningLag(Reaction):
     """Every change of speed is scaled down at low speed, where the wetted area is large; steady speeds stay."""
 
     needs: ClassVar = ("surge",)
-    words: ClassVar[str] = "the craft changes its speed more slowly the less it planes; steady speeds are right"
+    words: ClassVar[str] = (
+        "the craft changes its speed more slowly the less it planes; steady speeds are right"
+    )
     shown_by: ClassVar[str] = "throttle steps at low and at high speed"
-    source: ClassVar[str] = "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, section III-A"
+    source: ClassVar[str] = (
+        "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, section III-A"
+    )
     reaction: ClassVar = reaction
     strength: ClassVar = ("full_speed",)
     starts: ClassVar = ({"full_speed": 2.0, "least": 0.3}, {"full_speed": 8.0, "least": 0.3})
 
     full_speed: float = param(
-        0.0, low=0.0, high=100.0, unit="m/s", words="speed from which nothing lags", fit=True, spread=8.0
+        0.0,
+        low=0.0,
+        high=100.0,
+        unit="m/s",
+        words="speed from which nothing lags",
+        fit=True,
+        spread=8.0,
     )
-    least: float = param(0.2, low=0.02, high=1.0, unit="", words="smallest factor", fit=True, spread=0.3, absent=0.2)
+    least: float = param(
+        0.2, low=0.02, high=1.0, unit="", words="smallest factor", fit=True, spread=0.3, absent=0.2
+    )
     hull_mass: float = param(
         UNSET,
         low=0.0,

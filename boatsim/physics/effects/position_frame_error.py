@@ -14,7 +14,20 @@ def shown(m: Shown, q: Any) -> Shown:
     """Position and speed of a point `forward` and `starboard` of the mass centre."""
     c, s = cos(m.psi), sin(m.psi)
     x, y = m.x + c * q.forward - s * q.starboard, m.y + s * q.forward + c * q.starboard
-    return Shown(x, y, m.z, m.phi, m.theta, m.psi, m.u - m.r * q.starboard, m.v + m.r * q.forward, m.w, m.p, m.q, m.r)
+    return Shown(
+        x,
+        y,
+        m.z,
+        m.phi,
+        m.theta,
+        m.psi,
+        m.u - m.r * q.starboard,
+        m.v + m.r * q.forward,
+        m.w,
+        m.p,
+        m.q,
+        m.r,
+    )
 
 
 @dataclass(frozen=True)
@@ -27,5 +40,9 @@ class PositionFrameError(Measurement):
     shown_by: ClassVar[str] = "turning on the spot"
     shown: ClassVar = shown
 
-    forward: float = param(0.0, low=-400.0, high=400.0, unit="m", words="ahead by", fit=True, spread=0.1)
-    starboard: float = param(0.0, low=-400.0, high=400.0, unit="m", words="to starboard by", fit=True, spread=0.05)
+    forward: float = param(
+        0.0, low=-400.0, high=400.0, unit="m", words="ahead by", fit=True, spread=0.1
+    )
+    starboard: float = param(
+        0.0, low=-400.0, high=400.0, unit="m", words="to starboard by", fit=True, spread=0.05
+    )

@@ -22,11 +22,19 @@ class PropWalk(Force):
     needs: ClassVar = ("sway",)
     words: ClassVar[str] = "the propellers walk the stern sideways, most of all astern"
     shown_by: ClassVar[str] = "straight astern, then straight ahead"
-    source: ClassVar[str] = "J. Brix (ed.), Manoeuvring Technical Manual, 1993; a third of it ahead is an assumption"
+    source: ClassVar[str] = (
+        "J. Brix (ed.), Manoeuvring Technical Manual, 1993; a third of it ahead is an assumption"
+    )
     rides: ClassVar[str] = "thruster"
     law: ClassVar = law
 
     side_force_per_thrust: float = param(
-        0.0, low=-0.6, high=0.6, unit="", words="starboard force per thrust, astern", fit=True, spread=0.1
+        0.0,
+        low=-0.6,
+        high=0.6,
+        unit="",
+        words="starboard force per thrust, astern",
+        fit=True,
+        spread=0.1,
     )
     ahead_share: float = param(1.0 / 3.0, low=0.0, high=1.0, unit="", words="of it ahead")

@@ -47,7 +47,11 @@ class Propeller(Force):
 
     ahead: float = param(1.0, low=0.0, high=1e9, unit="N s^2/rad^2", words="k ahead")
     astern: float = param(1.0, low=0.0, high=1e9, unit="N s^2/rad^2", words="k astern")
-    x: float = param(0.0, low=-500.0, high=500.0, unit="m", words="mount ahead of the origin of motion")
+    x: float = param(
+        0.0, low=-500.0, high=500.0, unit="m", words="mount ahead of the origin of motion"
+    )
     y: float = param(0.0, low=-100.0, high=100.0, unit="m", words="to starboard of it")
     z: float = param(0.0, low=-100.0, high=100.0, unit="m", words="below it")
-    gain: float = param(1.0, low=0.1, high=5.0, unit="", words="thrust per stated thrust", calibrates="thrust")
+    gain: float = param(
+        1.0, low=0.1, high=5.0, unit="", words="thrust per stated thrust", calibrates="thrust"
+    )

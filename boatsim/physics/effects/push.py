@@ -48,12 +48,20 @@ class Push(Force):
     frequency: float = param(0.4 * pi, low=0.0, high=100.0, unit="rad/s", words="of the sine")
     phase: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="of the sine at t = 0")
     toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where it pushes to")
-    arm: float = param(0.0, low=-200.0, high=200.0, unit="m", words="its side force acts this far forward")
-    turns_with_hull: float = param(0.0, low=0.0, high=1.0, unit="", words="1: the bearing is one of the hull")
+    arm: float = param(
+        0.0, low=-200.0, high=200.0, unit="m", words="its side force acts this far forward"
+    )
+    turns_with_hull: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: the bearing is one of the hull"
+    )
     heel_arm: float = param(
-        UNSET, low=-100.0, high=100.0, unit="m", words="roll moment per sway force; if not given, the vessel's own",
+        UNSET,
+        low=-100.0,
+        high=100.0,
+        unit="m",
+        words="roll moment per sway force; if not given, the vessel's own",
         follows="linear_hull.arm?",
-    )  # fmt: skip
+    )
 
 
 ALWAYS = {"begin": -EVER, "end": EVER}
@@ -87,10 +95,18 @@ Gust = preset(
 class GustOffCentre(Release):
     """A yaw moment in proportion to the side force of the vessel's own gust."""
 
-    words: ClassVar[str] = "the known disturbance also turns the boat: it acts away from the mass centre"
+    words: ClassVar[str] = (
+        "the known disturbance also turns the boat: it acts away from the mass centre"
+    )
     shown_by: ClassVar[str] = "the same manoeuvre with the disturbance from another side"
     source: ClassVar[str] = "Y. Huang and Z. Ji, Autonomous boat dynamics, eq. 7, with a lever"
 
     arm: float = shift(
-        "gust.arm", words="lever that is missing", unit="m", spread=0.1, low=-200.0, high=200.0, within=(-1.2, 1.2)
+        "gust.arm",
+        words="lever that is missing",
+        unit="m",
+        spread=0.1,
+        low=-200.0,
+        high=200.0,
+        within=(-1.2, 1.2),
     )

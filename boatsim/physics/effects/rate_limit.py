@@ -15,7 +15,9 @@ INSTANT = 2.0  # [rad/s] 115 deg/s; a steering that turns faster follows its com
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """A ramp to the command, then its lag, then the command."""
     if q.rate >= q.instant:
         memory[at] = x.end
@@ -47,9 +49,19 @@ class RateLimit(Channel):
     channel: ClassVar = channel
     pause: ClassVar = pause
 
-    rate: float = param(NEVER, low=1e-6, high=NEVER, unit="1/s", words="fastest change, in the channel's unit a second")
-    instant: float = param(NEVER, low=1e-3, high=NEVER, unit="1/s", words="from which the command is followed at once")
-    lag: float = param(0.0, low=0.0, high=60.0, unit="s", words="time constant of the last of the way")
+    rate: float = param(
+        NEVER,
+        low=1e-6,
+        high=NEVER,
+        unit="1/s",
+        words="fastest change, in the channel's unit a second",
+    )
+    instant: float = param(
+        NEVER, low=1e-3, high=NEVER, unit="1/s", words="from which the command is followed at once"
+    )
+    lag: float = param(
+        0.0, low=0.0, high=60.0, unit="s", words="time constant of the last of the way"
+    )
 
 
 SteeringRateLimit = preset(
@@ -63,9 +75,14 @@ SteeringRateLimit = preset(
     starts=({"rate": 0.1}, {"rate": 0.4}, {"rate": 1.2}),
     frees={
         "rate": {
-            "low": 0.0005, "high": 50.0, "unit": "rad/s", "words": "fastest turning", "spread": 2.0, "absent": INSTANT,
+            "low": 0.0005,
+            "high": 50.0,
+            "unit": "rad/s",
+            "words": "fastest turning",
+            "spread": 2.0,
+            "absent": INSTANT,
         },
         "lag": {"spread": 0.3},
     },
     fixed={"instant": INSTANT},
-)  # fmt: skip
+)

@@ -24,7 +24,13 @@ class RightingArm(Force):
     law: ClassVar = law
 
     stiffness: float = param(
-        UNSET, low=0.0, high=1e13, unit="N m", words="m g GM, per rad", calibrates="restoring", axis="roll"
+        UNSET,
+        low=0.0,
+        high=1e13,
+        unit="N m",
+        words="m g GM, per rad",
+        calibrates="restoring",
+        axis="roll",
     )
     cubic: float = param(
         0.0,
@@ -35,7 +41,9 @@ class RightingArm(Force):
         axis="roll",
     )
     list: float = param(0.0, low=-0.5, high=0.5, unit="rad", words="heel at rest", axis="roll")
-    metacentric_height: float = param(0.0, low=0.0, high=50.0, unit="m", words="GM, from which the stiffness follows")
+    metacentric_height: float = param(
+        0.0, low=0.0, high=50.0, unit="m", words="GM, from which the stiffness follows"
+    )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """The stiffness of the vessel's weight at the given GM."""
@@ -48,9 +56,16 @@ class MetacentricHeightError(Release):
 
     words: ClassVar[str] = "the metacentric height is off by more than its stated uncertainty"
     shown_by: ClassVar[str] = "the period of a roll decay"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 4"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 4"
+    )
 
-    starts: ClassVar = ({"factor": 0.5}, {"factor": 0.8}, {"factor": 1.25}, {"factor": 2.0})  # a period off is another
+    starts: ClassVar = (
+        {"factor": 0.5},
+        {"factor": 0.8},
+        {"factor": 1.25},
+        {"factor": 2.0},
+    )  # a period off is another
 
     factor: float = factor("righting_arm.stiffness", words="GM per stated GM", axis="roll")
 
@@ -65,6 +80,11 @@ class RightingArmStiffening(Release):
     shown_by: ClassVar[str] = "a roll decay from a large heel"
 
     cubic: float = shift(
-        "righting_arm.cubic", words="relative change per heel squared", unit="1/rad^2", spread=3.0, low=-20.0,
-        high=20.0, axis="roll",
-    )  # fmt: skip
+        "righting_arm.cubic",
+        words="relative change per heel squared",
+        unit="1/rad^2",
+        spread=3.0,
+        low=-20.0,
+        high=20.0,
+        axis="roll",
+    )

@@ -22,20 +22,35 @@ class RollDamping(Force):
 
     words: ClassVar[str] = "the hull's roll is damped in proportion to its rate"
     shown_by: ClassVar[str] = "a roll decay"
-    source: ClassVar[str] = "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix IV"
+    source: ClassVar[str] = (
+        "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix IV"
+    )
     law: ClassVar = law
 
-    at_rest: float = param(0.09, low=0.0, high=2.0, unit="", words="per critical, without headway; 0.09: hard chine")
-    round_bilge: float = param(0.0, low=0.0, high=1.0, unit="", words="1: grows with headway by the published formula")
-    roll: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll")
+    at_rest: float = param(
+        0.09, low=0.0, high=2.0, unit="", words="per critical, without headway; 0.09: hard chine"
+    )
+    round_bilge: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="1: grows with headway by the published formula"
+    )
+    roll: float = param(
+        UNSET, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll"
+    )
     stiffness: float = param(
-        UNSET, low=0.0, high=1e13, unit="N m", words="the vessel's m g GM", follows="righting_arm.stiffness"
+        UNSET,
+        low=0.0,
+        high=1e13,
+        unit="N m",
+        words="the vessel's m g GM",
+        follows="righting_arm.stiffness",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """The coefficient of the vessel's own stiffness, inertia, form and speed. Raises BadInput."""
         inertia = vessel.body.roll_inertia + self._water(vessel)
-        ratio = self.at_rest + (self._with_headway(vessel, self.stiffness) if self.round_bilge else 0.0)
+        ratio = self.at_rest + (
+            self._with_headway(vessel, self.stiffness) if self.round_bilge else 0.0
+        )
         return {"roll": 2.0 * ratio * sqrt(self.stiffness * inertia)}
 
     def _with_headway(self, vessel: Boat, stiffness: float) -> float:
@@ -46,5 +61,7 @@ class RollDamping(Force):
 
     def _water(self, vessel: Boat) -> float:
         """Roll inertia of the water about the origin."""
-        roll, sway, below = (self.followed(f"added_mass.{key}?", vessel) for key in ("roll", "sway", "sway_below"))
+        roll, sway, below = (
+            self.followed(f"added_mass.{key}?", vessel) for key in ("roll", "sway", "sway_below")
+        )
         return roll + sway * below**2

@@ -29,4 +29,6 @@ class RollOffset(Measurement):
     source: ClassVar[str] = "instrument not zeroed on the upright hull"
     shown: ClassVar = shown
 
-    offset: float = param(0.0, low=-0.5, high=0.5, unit="rad", words="roll off by", fit=True, spread=0.05)
+    offset: float = param(
+        0.0, low=-0.5, high=0.5, unit="rad", words="roll off by", fit=True, spread=0.05
+    )

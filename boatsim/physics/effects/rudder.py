@@ -36,13 +36,37 @@ class Rudder(Force):
     roles: ClassVar = {"angle": Role("rad", "the rudder, positive where its coefficients say")}
     law: ClassVar = law
 
-    sway: float = param(UNSET, low=-1e11, high=1e11, unit="N/rad", words="Y_delta", calibrates="thrust", axis="sway")
-    yaw: float = param(UNSET, low=-1e13, high=1e13, unit="N m/rad", words="N_delta", calibrates="thrust", axis="yaw")
-    roll: float = param(UNSET, low=-1e13, high=1e13, unit="N m/rad", words="K_delta", calibrates="thrust", axis="roll")
-    stall: float = param(NEVER, low=0.02, high=NEVER, unit="rad", words="angle from which the force grows no further")
-    area: float = param(0.0, low=0.0, high=500.0, unit="m^2", words="of the blade; 0: coefficients as given")
+    sway: float = param(
+        UNSET, low=-1e11, high=1e11, unit="N/rad", words="Y_delta", calibrates="thrust", axis="sway"
+    )
+    yaw: float = param(
+        UNSET,
+        low=-1e13,
+        high=1e13,
+        unit="N m/rad",
+        words="N_delta",
+        calibrates="thrust",
+        axis="yaw",
+    )
+    roll: float = param(
+        UNSET,
+        low=-1e13,
+        high=1e13,
+        unit="N m/rad",
+        words="K_delta",
+        calibrates="thrust",
+        axis="roll",
+    )
+    stall: float = param(
+        NEVER, low=0.02, high=NEVER, unit="rad", words="angle from which the force grows no further"
+    )
+    area: float = param(
+        0.0, low=0.0, high=500.0, unit="m^2", words="of the blade; 0: coefficients as given"
+    )
     aspect: float = param(1.5, low=0.1, high=10.0, unit="", words="span per chord")
-    inflow: float = param(0.0, low=0.0, high=50.0, unit="m/s", words="speed of the water at the blade, V_R")
+    inflow: float = param(
+        0.0, low=0.0, high=50.0, unit="m/s", words="speed of the water at the blade, V_R"
+    )
     at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="place ahead of the mass centre")
     below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="place below the mass centre")
 
@@ -50,7 +74,9 @@ class Rudder(Force):
         """The coefficients of a blade, where one is given. Raises BadInput on a vessel without linear_hull."""
         if not self.area:
             return {}
-        density, block, arm = (self.followed(f"linear_hull.{key}", vessel) for key in ("density", "block", "arm"))
+        density, block, arm = (
+            self.followed(f"linear_hull.{key}", vessel) for key in ("density", "block", "arm")
+        )
         slope = particulars.rudder_slope(self.area, self.aspect, self.inflow, density)
         sway = -(1.0 + particulars.hull_share(block)) * slope
         return {"sway": sway, "yaw": self.at * sway, "roll": (arm - self.below) * sway}
@@ -62,10 +88,19 @@ class RudderStall(Release):
 
     words: ClassVar[str] = "the rudder stalls: beyond an angle its force grows no further"
     shown_by: ClassVar[str] = "turns at small and at large rudder angles"
-    source: ClassVar[str] = "L. F. Whicker, L. F. Fehlner, DTMB report 933, 1958: lift of low aspect ratio surfaces"
+    source: ClassVar[str] = (
+        "L. F. Whicker, L. F. Fehlner, DTMB report 933, 1958: lift of low aspect ratio surfaces"
+    )
     thresholds: ClassVar = {"angle": (0.3, 0.45, 0.6, 0.75, 0.9)}
 
     angle: float = number(
-        "rudder.stall", "mmg_rudder.stall", "mmg_low_speed_rudder.stall",
-        words="angle of stall", unit="rad", spread=1.0, low=0.02, high=NEVER, absent=NEVER,
-    )  # fmt: skip
+        "rudder.stall",
+        "mmg_rudder.stall",
+        "mmg_low_speed_rudder.stall",
+        words="angle of stall",
+        unit="rad",
+        spread=1.0,
+        low=0.02,
+        high=NEVER,
+        absent=NEVER,
+    )

@@ -26,7 +26,9 @@ class RudderRace(Force):
     """
 
     needs: ClassVar = ("surge", "sway", "yaw")
-    words: ClassVar[str] = "the rudder stands in the propeller's race: it steers by the thrust too, at rest as well"
+    words: ClassVar[str] = (
+        "the rudder stands in the propeller's race: it steers by the thrust too, at rest as well"
+    )
     shown_by: ClassVar[str] = "short bursts of thrust with the rudder over, from rest"
     source: ClassVar[str] = (
         "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015, equation 28, in its limit of a race that reaches "
@@ -40,11 +42,28 @@ class RudderRace(Force):
     law: ClassVar = law
 
     normal_force_per_thrust: float = param(
-        0.0, low=0.0, high=5.0, unit="", words="at a right angle to the race", fit=True, spread=0.7, calibrates="thrust"
+        0.0,
+        low=0.0,
+        high=5.0,
+        unit="",
+        words="at a right angle to the race",
+        fit=True,
+        spread=0.7,
+        calibrates="thrust",
     )
-    at: float = param(UNSET, low=-500.0, high=500.0, unit="m", words="rudder ahead of the mass centre; else by its own")
+    at: float = param(
+        UNSET,
+        low=-500.0,
+        high=500.0,
+        unit="m",
+        words="rudder ahead of the mass centre; else by its own",
+    )
     side: float = param(
-        UNSET, low=-1.0, high=1.0, unit="", words="where a positive angle pushes, 1 starboard; else as the rudder's own"
+        UNSET,
+        low=-1.0,
+        high=1.0,
+        unit="",
+        words="where a positive angle pushes, 1 starboard; else as the rudder's own",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:

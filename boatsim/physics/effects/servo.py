@@ -33,13 +33,17 @@ def towards(goal: float, memory: Array, at: int, dt: float, rate: float, lag: fl
         area += rest * (left - lag * (1.0 - decay))
         rest *= decay
     elif needed <= dt:
-        rest = 0.0  # there, to the last bit: a ramp that is left over would ask for a step of its own
+        rest = (
+            0.0  # there, to the last bit: a ramp that is left over would ask for a step of its own
+        )
     memory[at] = goal - rest
     return course(y, y + area / dt, memory[at])
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """Towards the limited command."""
     return towards(min(max(mean_of(x), -q.range), q.range), memory, at, dt, q.rate, q.lag)
 
@@ -67,5 +71,7 @@ class Servo(Channel):
     pause: ClassVar = pause
 
     range: float = param(pi / 4, low=0.0, high=pi, unit="rad", words="largest angle either way")
-    rate: float = param(400.0 * pi / 180.0, low=0.001, high=1e3, unit="rad/s", words="fastest turning")
+    rate: float = param(
+        400.0 * pi / 180.0, low=0.001, high=1e3, unit="rad/s", words="fastest turning"
+    )
     lag: float = param(0.06, low=0.0, high=60.0, unit="s", words="time constant")

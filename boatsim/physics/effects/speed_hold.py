@@ -20,7 +20,9 @@ class SpeedHold(Force):
 
     words: ClassVar[str] = "the speed ahead through the water is held constant"
     shown_by: ClassVar[str] = "turning hard at constant power"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.5: u = u0"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.5: u = u0"
+    )
     law: ClassVar = law
 
     speed: float = param(0.0, low=-50.0, high=50.0, unit="m/s", words="that is held")

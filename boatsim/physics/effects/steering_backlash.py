@@ -18,7 +18,9 @@ def pushed(y: float, x: float, half: float) -> float:
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """Pushed along by the command's course; where it hung in its play before anyone looked is a number of its own."""
     half = 0.5 * q.width * (1.0 if dt < LONG else q.behind)
     begin = pushed(memory[at], x.begin, half)
@@ -32,9 +34,13 @@ class SteeringBacklash(Channel):
     """Free play between steering command and thruster angle."""
 
     ruled_out_by: ClassVar = {"steering_measured": (True,)}
-    words: ClassVar[str] = "the steering linkage has play, so an angle stays behind when the steering reverses"
+    words: ClassVar[str] = (
+        "the steering linkage has play, so an angle stays behind when the steering reverses"
+    )
     shown_by: ClassVar[str] = "small steering reversals while pushing"
-    source: ClassVar[str] = "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, 1996 (play operator)"
+    source: ClassVar[str] = (
+        "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, 1996 (play operator)"
+    )
     acts_on: ClassVar[str] = "angle"
     slots: ClassVar[int] = 1
     stage: ClassVar[int] = COMMANDS
@@ -43,8 +49,15 @@ class SteeringBacklash(Channel):
     thresholds: ClassVar = {"width": (0.07, 0.3)}
     strength: ClassVar = ("width",)
 
-    width: float = param(0.0, low=0.0, high=0.8, unit="rad", words="total play", fit=True, spread=0.2)
+    width: float = param(
+        0.0, low=0.0, high=0.8, unit="rad", words="total play", fit=True, spread=0.2
+    )
     behind: float = param(
-        0.0, low=0.0, high=1.0, unit="", fit=True, spread=0.5,
+        0.0,
+        low=0.0,
+        high=1.0,
+        unit="",
+        fit=True,
+        spread=0.5,
         words="how far the first angle is behind: 0 in the middle of the play, 1 as come from straight ahead",
-    )  # fmt: skip
+    )

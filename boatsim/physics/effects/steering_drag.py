@@ -20,8 +20,12 @@ class SteeringDrag(Force):
 
     words: ClassVar[str] = "the rudder brakes with the square of its angle"
     shown_by: ClassVar[str] = "large rudder angles that reverse before the ship turns"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9"
+    )
     rides: ClassVar[str] = "rudder"
     law: ClassVar = law
 
-    drag: float = param(0.0, low=0.0, high=1e11, unit="N/rad^2", words="-X_delta_delta", fit=True, spread=0.1)
+    drag: float = param(
+        0.0, low=0.0, high=1e11, unit="N/rad^2", words="-X_delta_delta", fit=True, spread=0.1
+    )

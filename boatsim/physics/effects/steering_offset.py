@@ -16,7 +16,9 @@ def turned(x: float, side: float, q: Any) -> float:
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """At each instant for itself."""
     return Course(turned(x.begin, side, q), turned(x.middle, side, q), turned(x.end, side, q))
 
@@ -31,15 +33,30 @@ class SteeringOffset(Channel):
     stage: ClassVar[int] = DEEDS
     channel: ClassVar = channel
 
-    port: float = param(0.0, low=-0.6, high=0.6, unit="rad", words="added to the port angle", fit=True, spread=0.12)
+    port: float = param(
+        0.0, low=-0.6, high=0.6, unit="rad", words="added to the port angle", fit=True, spread=0.12
+    )
     starboard: float = param(
-        0.0, low=-0.6, high=0.6, unit="rad", words="added to the starboard angle", fit=True, spread=0.12
+        0.0,
+        low=-0.6,
+        high=0.6,
+        unit="rad",
+        words="added to the starboard angle",
+        fit=True,
+        spread=0.12,
     )
     middle: float = param(
-        0.0, low=-0.6, high=0.6, unit="rad", words="added to the angle of a steering on the centreline", fit=True,
+        0.0,
+        low=-0.6,
+        high=0.6,
+        unit="rad",
+        words="added to the angle of a steering on the centreline",
+        fit=True,
         spread=0.12,
-    )  # fmt: skip
-    gain: float = param(0.0, low=-0.9, high=0.9, unit="", words="share more to starboard, less to port")
+    )
+    gain: float = param(
+        0.0, low=-0.9, high=0.9, unit="", words="share more to starboard, less to port"
+    )
 
 
 SteeringAsymmetry = preset(

@@ -23,4 +23,6 @@ class SurgeDrag(Force):
     law: ClassVar = law
 
     linear: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="-X_u", calibrates="damping")
-    quadratic: float = param(0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="-X_u|u|", calibrates="damping")
+    quadratic: float = param(
+        0.0, low=0.0, high=1e9, unit="N s^2/m^2", words="-X_u|u|", calibrates="damping"
+    )

@@ -7,7 +7,10 @@ from numba import njit
 
 from boatsim.physics.base import Force, Wrench, param, preset, wrench
 
-TWICE = (-9.2, 9.2)  # [kg] of a boat of 4.6 kg: no hull moves more water with it than twice its own mass
+TWICE = (
+    -9.2,
+    9.2,
+)  # [kg] of a boat of 4.6 kg: no hull moves more water with it than twice its own mass
 
 
 @njit(inline="always")
@@ -21,13 +24,21 @@ class SwayYawCoupling(Force):
     """Cross terms of hull lift and added mass at a small angle to the flow; a moment alone is the Munk moment."""
 
     needs: ClassVar = ("surge", "sway", "yaw")
-    words: ClassVar[str] = "a hull with way on feels a side force when it turns and a moment when it drifts"
+    words: ClassVar[str] = (
+        "a hull with way on feels a side force when it turns and a moment when it drifts"
+    )
     shown_by: ClassVar[str] = "the same turns at two speeds ahead, and astern"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 6"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 6"
+    )
     law: ClassVar = law
 
-    sway: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="-Y_ur", fit=True, spread=5.0, within=TWICE)
-    yaw: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="-N_uv", fit=True, spread=5.0, within=TWICE)
+    sway: float = param(
+        0.0, low=-1e9, high=1e9, unit="kg", words="-Y_ur", fit=True, spread=5.0, within=TWICE
+    )
+    yaw: float = param(
+        0.0, low=-1e9, high=1e9, unit="kg", words="-N_uv", fit=True, spread=5.0, within=TWICE
+    )
     mass: float = param(0.0, low=-1e9, high=1e9, unit="kg", words="X_vr")
 
 
@@ -37,6 +48,8 @@ SpeedLossInTurn = preset(
     words="a hull that drifts while it turns loses speed, in proportion to drift times yaw rate",
     shown_by="turning circles and large zig-zags with the propeller held",
     source="H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015: m_y + X_vr",
-    frees={"mass": {"words": "m_y + X_vr", "spread": 4.0}},  # negative force: the hull drifts outwards
+    frees={
+        "mass": {"words": "m_y + X_vr", "spread": 4.0}
+    },  # negative force: the hull drifts outwards
     fixed={"sway": 0.0, "yaw": 0.0},
 )

@@ -55,14 +55,26 @@ class Tether(Force):
         ),
     )
 
-    tension: float = param(0.0, low=0.0, high=1e6, unit="N", words="steady pull", fit=True, spread=0.15)
-    stiffness: float = param(0.0, low=0.0, high=1e6, unit="N/m", words="pull per stretch", fit=True, spread=0.5)
-    length: float = param(0.0, low=0.0, high=1e4, unit="m", words="of the slack line", fit=True, spread=3.0)
-    drag: float = param(0.0, low=0.0, high=1e6, unit="N s/m", words="of the line in the water", fit=True, spread=0.5)
+    tension: float = param(
+        0.0, low=0.0, high=1e6, unit="N", words="steady pull", fit=True, spread=0.15
+    )
+    stiffness: float = param(
+        0.0, low=0.0, high=1e6, unit="N/m", words="pull per stretch", fit=True, spread=0.5
+    )
+    length: float = param(
+        0.0, low=0.0, high=1e4, unit="m", words="of the slack line", fit=True, spread=3.0
+    )
+    drag: float = param(
+        0.0, low=0.0, high=1e6, unit="N s/m", words="of the line in the water", fit=True, spread=0.5
+    )
     north: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=4.0)
     east: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=3.0)
     at: float = param(
-        UNSET, low=-500.0, high=500.0, unit="m", words="made fast this far ahead; if not given, at the stern"
+        UNSET,
+        low=-500.0,
+        high=500.0,
+        unit="m",
+        words="made fast this far ahead; if not given, at the stern",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:

@@ -16,7 +16,9 @@ def beyond(x: float, q: Any) -> float:
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """At each instant for itself."""
     return Course(beyond(x.begin, q), beyond(x.middle, q), beyond(x.end, q))
 
@@ -41,5 +43,12 @@ ShaftDeadband = preset(
     "ShaftDeadband",
     words="small commands do not turn the shaft and all rates are less by a constant",
     acts_on="shaft",
-    frees={"width": {"high": 1e4, "unit": "1/s", "words": "half width, in the unit of the command", "spread": 0.1}},
+    frees={
+        "width": {
+            "high": 1e4,
+            "unit": "1/s",
+            "words": "half width, in the unit of the command",
+            "spread": 0.1,
+        }
+    },
 )

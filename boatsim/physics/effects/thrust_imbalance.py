@@ -10,7 +10,9 @@ from boatsim.physics.kinds.channel import DEEDS
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """Port thrust times 1 + f, starboard times 1 - f."""
     share = 1.0 - side * q.fraction
     return Course(x.begin * share, x.middle * share, x.end * share)
@@ -27,5 +29,11 @@ class ThrustImbalance(Channel):
     channel: ClassVar = channel
 
     fraction: float = param(
-        0.0, low=-0.6, high=0.6, unit="", words="port times 1 + f, starboard times 1 - f", fit=True, spread=0.15
+        0.0,
+        low=-0.6,
+        high=0.6,
+        unit="",
+        words="port times 1 + f, starboard times 1 - f",
+        fit=True,
+        spread=0.15,
     )

@@ -13,7 +13,9 @@ SAME = 1e-9  # of a command: what is left of the other way round is nothing
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """First-order lag, exact for a command whose course is a parabola."""
     if q.time_constant < NONE:
         memory[at] = x.end

@@ -21,12 +21,28 @@ class ThrustLossWithSpeed(Force):
 
     words: ClassVar[str] = "the propellers push less the faster the boat goes"
     shown_by: ClassVar[str] = "the same thrust command from rest and at full speed"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T(J)"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T(J)"
+    )
     rides: ClassVar[str] = "thruster"
     law: ClassVar = law
 
     loss: float = param(
-        0.0, low=0.0, high=50.0, unit="s/m", words="share lost per speed ahead", fit=True, spread=0.5,
+        0.0,
+        low=0.0,
+        high=50.0,
+        unit="s/m",
+        words="share lost per speed ahead",
+        fit=True,
+        spread=0.5,
         calibrates="thrust",
-    )  # fmt: skip
-    curve: float = param(0.0, low=-20.0, high=20.0, unit="s^2/m^2", words="and per speed squared", fit=True, spread=0.1)
+    )
+    curve: float = param(
+        0.0,
+        low=-20.0,
+        high=20.0,
+        unit="s^2/m^2",
+        words="and per speed squared",
+        fit=True,
+        spread=0.1,
+    )

@@ -27,17 +27,23 @@ class Thruster(Force):
 
     words: ClassVar[str] = "a thruster pushes, and steers where it can be turned"
     shown_by: ClassVar[str] = "any manoeuvre"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 11.2"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 11.2"
+    )
     roles: ClassVar = {
         "thrust": Role("N", "its thrust, ahead positive"),
         "angle": Role("rad", "where it pushes, 0 ahead, positive to starboard", fixed=0.0),
     }
     law: ClassVar = law
 
-    x: float = param(0.0, low=-500.0, high=500.0, unit="m", words="mount ahead of the origin of motion")
+    x: float = param(
+        0.0, low=-500.0, high=500.0, unit="m", words="mount ahead of the origin of motion"
+    )
     y: float = param(0.0, low=-100.0, high=100.0, unit="m", words="to starboard of it")
     z: float = param(0.0, low=-100.0, high=100.0, unit="m", words="below it")
-    gain: float = param(1.0, low=0.1, high=5.0, unit="", words="thrust per commanded thrust", calibrates="thrust")
+    gain: float = param(
+        1.0, low=0.1, high=5.0, unit="", words="thrust per commanded thrust", calibrates="thrust"
+    )
 
 
 @dataclass(frozen=True)
@@ -48,7 +54,13 @@ class ThrustGainError(Release):
     shown_by: ClassVar[str] = "runs at several thrust levels"
 
     factor: float = factor(
-        "thruster.gain", "propeller.gain", "mmg_propeller.gain", "mmg_low_speed_propeller.gain",
+        "thruster.gain",
+        "propeller.gain",
+        "mmg_propeller.gain",
+        "mmg_low_speed_propeller.gain",
         "water_jet.gain",
-        words="thrust per stated thrust", spread=0.3, low=0.2, high=3.0,
-    )  # fmt: skip
+        words="thrust per stated thrust",
+        spread=0.3,
+        low=0.2,
+        high=3.0,
+    )

@@ -34,19 +34,35 @@ class WaterJet(Force):
 
     words: ClassVar[str] = "a water jet pushes with the power that the throttle sets"
     shown_by: ClassVar[str] = "throttle steps"
-    source: ClassVar[str] = "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, eq. 10 and Table 2"
+    source: ClassVar[str] = (
+        "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, eq. 10 and Table 2"
+    )
     roles: ClassVar = {"throttle": Role("", "the handle, 1 idle to 7 full")}
     law: ClassVar = law
 
-    m1: float = param(12.10, low=0.0, high=1e3, unit="m^2/s^3", words="throttle below 2: per throttle")
+    m1: float = param(
+        12.10, low=0.0, high=1e3, unit="m^2/s^3", words="throttle below 2: per throttle"
+    )
     q1: float = param(-11.30, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle below 2: at 0")
     s0: float = param(-21.1, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: at 0")
-    s1: float = param(-20.0, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: per throttle")
-    s2: float = param(18.5, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: per throttle squared")
-    m2: float = param(10.00, low=0.0, high=1e3, unit="m^2/s^3", words="throttle from 4: per throttle")
-    q2: float = param(154.9, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle from 4: at 0; printed 164.5")
-    slowest: float = param(0.5, low=0.01, high=100.0, unit="m/s", words="below this speed the thrust rises no more")
-    gain: float = param(1.0, low=0.0, high=20.0, unit="", words="power per stated power", calibrates="thrust")
+    s1: float = param(
+        -20.0, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: per throttle"
+    )
+    s2: float = param(
+        18.5, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: per throttle squared"
+    )
+    m2: float = param(
+        10.00, low=0.0, high=1e3, unit="m^2/s^3", words="throttle from 4: per throttle"
+    )
+    q2: float = param(
+        154.9, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle from 4: at 0; printed 164.5"
+    )
+    slowest: float = param(
+        0.5, low=0.01, high=100.0, unit="m/s", words="below this speed the thrust rises no more"
+    )
+    gain: float = param(
+        1.0, low=0.0, high=20.0, unit="", words="power per stated power", calibrates="thrust"
+    )
     mass: float = param(
         UNSET,
         low=0.0,

@@ -6,10 +6,15 @@ from typing import Any, ClassVar, Self
 from numba import njit
 
 from boatsim.physics.base import Swell, Unsteady, Wrench, param, wrench
-from boatsim.physics.chance import course, noise
+from boatsim.physics.noise import course, noise
 
 WAVES = 64.0  # components of the realisation on each axis
-SURGE, SWAY, ROLL, YAW = 100.0, 101.0, 102.0, 103.0  # channels of the noise, beyond those of other effects
+SURGE, SWAY, ROLL, YAW = (
+    100.0,
+    101.0,
+    102.0,
+    103.0,
+)  # channels of the noise, beyond those of other effects
 
 
 @njit
@@ -52,18 +57,65 @@ class WaveForcing(Unsteady):
     strength: ClassVar = ("surge", "sway", "yaw", "roll")
     starts: ClassVar = tuple({"frequency": w} for w in (1.5, 2.2, 3.2, 4.5, 6.5))
 
-    surge: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms surge force", fit=True, spread=0.2, axis="surge")
-    sway: float = param(0.0, low=0.0, high=1e7, unit="N", words="rms sway force", fit=True, spread=0.2, axis="sway")
-    yaw: float = param(0.0, low=0.0, high=1e9, unit="N m", words="rms yaw moment", fit=True, spread=0.06, axis="yaw")
-    roll: float = param(0.0, low=0.0, high=1e9, unit="N m", words="rms roll moment", fit=True, spread=0.02, axis="roll")
+    surge: float = param(
+        0.0,
+        low=0.0,
+        high=1e7,
+        unit="N",
+        words="rms surge force",
+        fit=True,
+        spread=0.2,
+        axis="surge",
+    )
+    sway: float = param(
+        0.0, low=0.0, high=1e7, unit="N", words="rms sway force", fit=True, spread=0.2, axis="sway"
+    )
+    yaw: float = param(
+        0.0,
+        low=0.0,
+        high=1e9,
+        unit="N m",
+        words="rms yaw moment",
+        fit=True,
+        spread=0.06,
+        axis="yaw",
+    )
+    roll: float = param(
+        0.0,
+        low=0.0,
+        high=1e9,
+        unit="N m",
+        words="rms roll moment",
+        fit=True,
+        spread=0.02,
+        axis="roll",
+    )
     frequency: float = param(
-        3.0, low=0.05, high=20.0, unit="rad/s", words="of encounter", fit=True, spread=1.5, absent=3.0
+        3.0,
+        low=0.05,
+        high=20.0,
+        unit="rad/s",
+        words="of encounter",
+        fit=True,
+        spread=1.5,
+        absent=3.0,
     )
     damping: float = param(
-        0.08, low=0.005, high=0.5, unit="", words="width of the spectrum", fit=True, spread=0.05, absent=0.08
+        0.08,
+        low=0.005,
+        high=0.5,
+        unit="",
+        words="width of the spectrum",
+        fit=True,
+        spread=0.05,
+        absent=0.08,
     )
-    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still")
+    realisation: float = param(
+        1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still"
+    )
 
     def seeded(self, seed: int) -> Self:
         """Another course for each seed, unless the water is still."""
-        return replace(self, realisation=course(self.realisation, seed) if self.realisation else 0.0)
+        return replace(
+            self, realisation=course(self.realisation, seed) if self.realisation else 0.0
+        )

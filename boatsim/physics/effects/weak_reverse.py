@@ -16,7 +16,9 @@ def weakened(x: float, q: Any) -> float:
 
 
 @njit(inline="always")
-def channel(x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any) -> Course:
+def channel(
+    x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
+) -> Course:
     """At each instant for itself."""
     return Course(weakened(x.begin, q), weakened(x.middle, q), weakened(x.end, q))
 
@@ -35,5 +37,12 @@ class WeakReverse(Channel):
     channel: ClassVar = channel
 
     astern_factor: float = param(
-        1.0, low=0.05, high=1.5, unit="", words="astern thrust per commanded thrust", fit=True, spread=0.3, absent=1.0
+        1.0,
+        low=0.05,
+        high=1.5,
+        unit="",
+        words="astern thrust per commanded thrust",
+        fit=True,
+        spread=0.3,
+        absent=1.0,
     )

@@ -27,16 +27,28 @@ class Wind(Force):
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = "a steady wind pushes the hull in one direction of the world"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
-    source: ClassVar[str] = "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"
+    source: ClassVar[str] = (
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"
+    )
     law: ClassVar = law
     of_air: ClassVar = True
     strength: ClassVar = ("force",)
-    starts: ClassVar = tuple({"force": 0.08, "toward": quarter * pi / 2} for quarter in (-1, 0, 1, 2))
+    starts: ClassVar = tuple(
+        {"force": 0.08, "toward": quarter * pi / 2} for quarter in (-1, 0, 1, 2)
+    )
 
     force: float = param(
-        0.0, low=0.0, high=1e7, unit="N", words="side force with the wind on the beam", fit=True, spread=0.15
+        0.0,
+        low=0.0,
+        high=1e7,
+        unit="N",
+        words="side force with the wind on the beam",
+        fit=True,
+        spread=0.15,
     )
-    toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where it blows to", fit=True, spread=3.0)
+    toward: float = param(
+        0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where it blows to", fit=True, spread=3.0
+    )
     arm: float = param(
         0.0,
         low=-200.0,

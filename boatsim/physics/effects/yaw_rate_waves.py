@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self
 from numba import njit
 
 from boatsim.physics.base import UNSET, Boat, Swell, Unsteady, Wrench, param, wrench
-from boatsim.physics.chance import course, drawn, line
+from boatsim.physics.noise import course, drawn, line
 
 WAVES = 64  # components of the realisation
 FIRST = 20_000  # of the numbers drawn: beyond those of other effects, which may have the same realisation
@@ -21,7 +21,11 @@ def component(k: int, q: Any) -> tuple[float, float, float]:
     ends of the line, which reach to zero and to infinity, would drown all others.
     """
     w, weight = line((k + 0.5) / WAVES - 0.5, q.damping)
-    return q.frequency * w, q.rms * sqrt(2.0 * weight / WAVES), 2.0 * pi * drawn(q.realisation, FIRST + k)
+    return (
+        q.frequency * w,
+        q.rms * sqrt(2.0 * weight / WAVES),
+        2.0 * pi * drawn(q.realisation, FIRST + k),
+    )
 
 
 @njit
@@ -54,20 +58,34 @@ class YawRateWaves(Unsteady):
     swell: ClassVar = swell
     strength: ClassVar = ("rms",)
 
-    rms: float = param(0.0, low=0.0, high=10.0, unit="rad/s", words="rms of the wave's yaw rate r_w")
+    rms: float = param(
+        0.0, low=0.0, high=10.0, unit="rad/s", words="rms of the wave's yaw rate r_w"
+    )
     frequency: float = param(3.0, low=0.05, high=20.0, unit="rad/s", words="of the filter, omega_w")
     damping: float = param(0.1, low=0.005, high=0.9, unit="", words="of the filter, lambda_w")
     inertia: float = param(
-        UNSET, low=0.0, high=1e13, unit="kg m^2", words="in yaw, of hull and water; if not given, the vessel's own"
+        UNSET,
+        low=0.0,
+        high=1e13,
+        unit="kg m^2",
+        words="in yaw, of hull and water; if not given, the vessel's own",
     )
-    drag: float = param(UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw")
-    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still")
+    drag: float = param(
+        UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw"
+    )
+    realisation: float = param(
+        1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still"
+    )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """The vessel's inertia in yaw, its water's included."""
-        yaw, sway, at = (self.followed(f"added_mass.{key}?", vessel) for key in ("yaw", "sway", "sway_at"))
+        yaw, sway, at = (
+            self.followed(f"added_mass.{key}?", vessel) for key in ("yaw", "sway", "sway_at")
+        )
         return {"inertia": vessel.body.yaw_inertia + (yaw + sway * at**2)}
 
     def seeded(self, seed: int) -> Self:
         """Another course for each seed, unless the water is still."""
-        return replace(self, realisation=course(self.realisation, seed) if self.realisation else 0.0)
+        return replace(
+            self, realisation=course(self.realisation, seed) if self.realisation else 0.0
+        )

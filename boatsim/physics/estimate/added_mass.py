@@ -10,7 +10,13 @@ STRIPS = "strips of 0.5 pi rho T^2, J. N. Newman, Marine Hydrodynamics, 1977, se
 
 def surge(hull: Hull) -> Estimate:
     """[kg] of all hulls."""
-    value = hull.hulls * 2.7 * DENSITY * (hull.mass / hull.hulls / DENSITY) ** (5.0 / 3.0) / hull.length**2
+    value = (
+        hull.hulls
+        * 2.7
+        * DENSITY
+        * (hull.mass / hull.hulls / DENSITY) ** (5.0 / 3.0)
+        / hull.length**2
+    )
     return Estimate(value, "2.7 rho V^(5/3) / L^2, H. Soeding 1982 (Fossen 2021, eq. 6.41)")
 
 
@@ -30,4 +36,7 @@ def yaw(hull: Hull) -> Estimate:
     if not hull.slender:
         return Estimate(strips / 12.0 + apart, STRIPS)
     fullness = 0.017 * hull.block * hull.breadth / hull.draught
-    return Estimate(strips * max(1.0 / 12.0 + fullness - 0.33 * hull.breadth / hull.length, 0.01) + apart, CLARKE)
+    return Estimate(
+        strips * max(1.0 / 12.0 + fullness - 0.33 * hull.breadth / hull.length, 0.01) + apart,
+        CLARKE,
+    )

@@ -3,7 +3,9 @@
 from boatsim.errors import BadInput
 from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
 
-BLOCK = 0.4  # displaced water per length x beam x draught; C_b of a pontoon of the Otter, MSS otter.m
+BLOCK = (
+    0.4  # displaced water per length x beam x draught; C_b of a pontoon of the Otter, MSS otter.m
+)
 PONTOON = 0.25  # beam of one of two hulls per beam overall; Otter 0.25 m of 1.08 m, MSS otter.m
 FULLEST = 1.0  # a box
 
@@ -12,19 +14,28 @@ def breadth(beam: float, hulls: int) -> Estimate:
     """Beam of one hull [m]."""
     if hulls == 1:
         return Estimate(beam, "the boat's own")
-    return Estimate(PONTOON * beam, f"{PONTOON:g} of the beam for each of two hulls, as the Otter (MSS otter.m)")
+    return Estimate(
+        PONTOON * beam, f"{PONTOON:g} of the beam for each of two hulls, as the Otter (MSS otter.m)"
+    )
 
 
 def draught(length: float, beam: float, mass: float, hulls: int) -> Estimate:
     """Draught [m] that carries the mass at the usual fullness of small hulls."""
     value = mass / (DENSITY * BLOCK * hulls * length * breadth(beam, hulls).value)
-    return Estimate(value, f"mass / (rho C_b L B), C_b = {BLOCK:g} as a pontoon of the Otter (MSS otter.m)")
+    return Estimate(
+        value, f"mass / (rho C_b L B), C_b = {BLOCK:g} as a pontoon of the Otter (MSS otter.m)"
+    )
 
 
 def hull(length: float, beam: float, mass: float, hulls: int, stated: float | None) -> Hull:
     """The hull by its particulars. Raises BadInput where mass and size can not be of one boat."""
     found = Hull(
-        length, beam, mass, stated or draught(length, beam, mass, hulls).value, hulls, breadth(beam, hulls).value
+        length,
+        beam,
+        mass,
+        stated or draught(length, beam, mass, hulls).value,
+        hulls,
+        breadth(beam, hulls).value,
     )
     if found.block > FULLEST + 1e-9:
         raise BadInput(

@@ -14,4 +14,6 @@ def yaw(hull: Hull) -> Estimate:
 
 def roll(hull: Hull) -> Estimate:
     """[kg m^2] about the mass centre."""
-    return Estimate(hull.mass * (ROLL * hull.beam) ** 2, f"mass x ({ROLL:g} B)^2, ITTC 7.5-02-07-02.1")
+    return Estimate(
+        hull.mass * (ROLL * hull.beam) ** 2, f"mass x ({ROLL:g} B)^2, ITTC 7.5-02-07-02.1"
+    )

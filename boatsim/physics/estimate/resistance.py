@@ -9,7 +9,10 @@ from boatsim.physics.particulars import GRAVITY
 SERVICE = 0.3  # Froude number of an easy speed: waves begin to cost
 FORM = 0.2  # friction of a hull's shape beside that of a plate, 1 + k of the ITTC 1978 method
 WAVES = 4e-3  # residuary resistance coefficient at that speed: M. Insel, A. F. Molland 1992, slender hulls
-LINEAR, LINEAR_SLENDER = 0.5, 0.1  # part of it that goes with the first power; friction of a long hull with the 1.85th
+LINEAR, LINEAR_SLENDER = (
+    0.5,
+    0.1,
+)  # part of it that goes with the first power; friction of a long hull with the 1.85th
 
 
 def service_speed(hull: Hull) -> float:
@@ -31,13 +34,19 @@ def at_service(hull: Hull) -> Estimate:
     return Estimate(0.5 * DENSITY * wetted(hull) * total * speed * speed, rule)
 
 
-def coefficients(hull: Hull, thrust: float | None, top_speed: float | None) -> tuple[Estimate, Estimate]:
+def coefficients(
+    hull: Hull, thrust: float | None, top_speed: float | None
+) -> tuple[Estimate, Estimate]:
     """Linear [N s/m] and quadratic [N s^2/m^2] surge damping, each a part of the resistance at one speed.
 
     That is the speed reached at full `thrust` [N, at rest] where both are known, else the service speed.
     """
     if thrust is not None and top_speed is not None:
-        force, speed, rule = LEFT * thrust, top_speed, f"{LEFT:g} of full thrust at the top speed stated"
+        force, speed, rule = (
+            LEFT * thrust,
+            top_speed,
+            f"{LEFT:g} of full thrust at the top speed stated",
+        )
     else:
         (force, rule), speed = at_service(hull), service_speed(hull)
         rule = f"{rule} at {speed:.3g} m/s"

@@ -18,7 +18,9 @@ def area(hull: Hull) -> Estimate:
 def slope(blade: float, speed: float) -> Estimate:
     """Force to starboard per angle [N/rad] of a blade [m^2] in water that passes at a speed [m/s]."""
     value = particulars.rudder_slope(blade, ASPECT, speed, DENSITY)
-    return Estimate(value, f"A. Fujii, T. Tsuda 1961, {blade:.3g} m^2 of aspect {ASPECT:g} at {speed:.3g} m/s")
+    return Estimate(
+        value, f"A. Fujii, T. Tsuda 1961, {blade:.3g} m^2 of aspect {ASPECT:g} at {speed:.3g} m/s"
+    )
 
 
 def race() -> Estimate:
@@ -28,4 +30,7 @@ def race() -> Estimate:
     V^2 = 8 T / (pi rho D^2) far behind, and `REACHES` of that speed at the blade.
     """
     value = particulars.lift_slope(ASPECT) * REACHES**2 * 4.0 / (pi * ASPECT)
-    return Estimate(value, "f_alpha kappa^2 4 / (pi aspect), momentum theory of a blade as high as the propeller")
+    return Estimate(
+        value,
+        "f_alpha kappa^2 4 / (pi aspect), momentum theory of a blade as high as the propeller",
+    )

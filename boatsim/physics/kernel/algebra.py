@@ -43,7 +43,9 @@ class Sum:
         for factors, n in self.terms.items():
             one = " * ".join((*([f"{abs(n)}.0"] if abs(n) != 1 or not factors else []), *factors))
             text += (" - " if n < 0 else " + ") + one
-        return text.removeprefix(" + ") if text.startswith(" + ") else "-" + text.removeprefix(" - ")
+        return (
+            text.removeprefix(" + ") if text.startswith(" + ") else "-" + text.removeprefix(" - ")
+        )
 
 
 ZERO = Sum({})

@@ -38,9 +38,19 @@ def settle_boats(boats: Any, commands: Array, memory: Array, p: Array, on: Any, 
 
 @unlocked
 def advance_boats(
-    boats: Any, t: Array, y: Array, commands: Array, memory: Array, act: Array, dt: float, steps: int, p: Array,
-    on: Any, k: Array, extra: Array,
-) -> None:  # fmt: skip
+    boats: Any,
+    t: Array,
+    y: Array,
+    commands: Array,
+    memory: Array,
+    act: Array,
+    dt: float,
+    steps: int,
+    p: Array,
+    on: Any,
+    k: Array,
+    extra: Array,
+) -> None:
     """Steps of dt [s] with each row of commands (n, C) held; t, states y (n, 2 NQ) and actuators in place."""
     for b in boats:
         begin = t[b]
@@ -57,7 +67,15 @@ def advance_boats(
 
 @unlocked
 def feel_boats(
-    boats: Any, t: Array, y: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, felt: Array
+    boats: Any,
+    t: Array,
+    y: Array,
+    act: Array,
+    p: Array,
+    on: Any,
+    k: Array,
+    extra: Array,
+    felt: Array,
 ) -> None:
     """Time and what `feels` says of boats, without noise, to rows of felt (n, 11)."""
     last = np.int64(2 * HELD)  # the actuators at the end of the last step

@@ -70,6 +70,8 @@ def make_native(offsets: dict[str, int], size: int) -> Callable[..., Any]:
         factor_mass(model, data)
 
     options = {"nopython": True, "error_model": "numpy"}
-    native = on_disk(CFunc(called, ((types.voidptr, types.voidptr), types.void), {}, options), called)
+    native = on_disk(
+        CFunc(called, ((types.voidptr, types.voidptr), types.void), {}, options), called
+    )
     native.compile()
     return native

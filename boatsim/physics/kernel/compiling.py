@@ -11,7 +11,7 @@ from typing import Any
 from numba import njit
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
-from boatsim.physics.reach import stamp
+from boatsim.physics.dependency_hash import stamp
 
 SEAL = sha256().digest_size  # bytes in front of what is kept
 

@@ -8,11 +8,15 @@ from boatsim.physics.signals import Array
 # [sd] a measurement further off is taken for an outlier: its pull falls with its distance, its penalty grows with the
 # logarithm (as of a Cauchy distribution), neither with a jump at which a fit would get stuck
 GATE = 5.0
-IN_A_ROW = 2  # outliers of one channel; a further one means that the filter has lost track and must follow
+IN_A_ROW = (
+    2  # outliers of one channel; a further one means that the filter has lost track and must follow
+)
 
 
 @lean
-def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int, ny: int, own: int) -> float:
+def weigh(
+    P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int, ny: int, own: int
+) -> float:
     """Gain (n,) of one measurement and P row' (n,), in place; returns the inverse sd of its prediction error.
 
     A measurement shows the motion, the first `ny` entries of its `row`, and the state `own`, its instrument's wandering
@@ -38,9 +42,21 @@ def weigh(P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int, ny
 
 @lean
 def take(
-    error: float, row: Array, noise: float, full: bool, outliers: Array, z: Array, P: Array, Ph: Array, n: int,
-    ny: int, own: int, gain: Array, scale: Array, white: Array,
-) -> float:  # fmt: skip
+    error: float,
+    row: Array,
+    noise: float,
+    full: bool,
+    outliers: Array,
+    z: Array,
+    P: Array,
+    Ph: Array,
+    n: int,
+    ny: int,
+    own: int,
+    gain: Array,
+    scale: Array,
+    white: Array,
+) -> float:
     """Correct z by one measurement, and P if `full`; returns what it adds to the log likelihood.
 
     Of `outliers`, `scale` and `white` the first entry belongs to the measurement's channel.

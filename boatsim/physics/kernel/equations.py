@@ -19,8 +19,20 @@ from boatsim.physics.signals import AXES, MASS_ENTRIES, Motion, Wrench
 
 COORDINATES = ("x", "y", "z", "phi", "theta", "psi")
 JOINTS = ("x", "y", "z", "psi", "theta", "phi")  # MuJoCo's order: yaw, then pitch, then roll
-SIGN = {"x": 1, "y": -1, "z": -1, "phi": 1, "theta": -1, "psi": -1}  # SNAME = sign * z-up, coordinate and rate alike
-RIGID, WATER, HULL, WHOLE = 0, 6, 18, 30  # where constants begin: m, x_G, z_G, I_x, I_y, I_z; then 12 entries each
+SIGN = {
+    "x": 1,
+    "y": -1,
+    "z": -1,
+    "phi": 1,
+    "theta": -1,
+    "psi": -1,
+}  # SNAME = sign * z-up, coordinate and rate alike
+RIGID, WATER, HULL, WHOLE = (
+    0,
+    6,
+    18,
+    30,
+)  # where constants begin: m, x_G, z_G, I_x, I_y, I_z; then 12 entries each
 CONSTANTS = 42
 LINEAR, ANGULAR = range(3), range(3, 6)
 
@@ -53,7 +65,9 @@ class Frame:
     """Kinematics at one state, by the names its numbers have in the code written so far."""
 
     R: list[list[Sum]]  # body axes to earth axes
-    J: list[list[Sum]]  # 6 by 6: body rates per joint rate, all coordinates; columns of held ones are not used
+    J: list[
+        list[Sum]
+    ]  # 6 by 6: body rates per joint rate, all coordinates; columns of held ones are not used
     nu: list[Sum]  # (6,) body rates
     turning: list[Sum]  # (3,) rate at which the axes turn
     drift: list[Sum]  # (6,) J' q': body acceleration at constant joint rates
@@ -97,12 +111,19 @@ class Writer:
             [-st, ct * sf, ct * cf],
         ]
         R = [[lines.let(f"R{i}{j}", R[i][j]) for j in LINEAR] for i in LINEAR]
-        T = [[ONE, ZERO, -st], [ZERO, cf, lines.let("T12", ct * sf)], [ZERO, -sf, lines.let("T22", ct * cf)]]
+        T = [
+            [ONE, ZERO, -st],
+            [ZERO, cf, lines.let("T12", ct * sf)],
+            [ZERO, -sf, lines.let("T22", ct * cf)],
+        ]
         J = [[ZERO] * 6 for _ in range(6)]
         for i in LINEAR:
             for j in LINEAR:
                 J[i][j], J[3 + i][3 + j] = R[j][i], T[i][j]
-        nu = [lines.let("uvwpqr"[i] + "_", total(J[i][j] * self.rate(j) for j in self.free)) for i in range(6)]
+        nu = [
+            lines.let("uvwpqr"[i] + "_", total(J[i][j] * self.rate(j) for j in self.free))
+            for i in range(6)
+        ]
         turning = nu[3:] if self.tilts else [ZERO, ZERO, nu[5]]
         phid, thetad, psid = (self.rate(i) for i in ANGULAR)
         bend = [ZERO, ZERO, ZERO]
@@ -112,12 +133,15 @@ class Writer:
                 ct * cf * phid * psid - sf * phid * thetad - st * sf * thetad * psid,
                 -(cf * phid * thetad) - st * cf * thetad * psid - ct * sf * phid * psid,
             ]
-        drift = [-a for a in cross(turning, nu[:3])] + [lines.let(f"bend{i}", a) for i, a in enumerate(bend)]
+        drift = [-a for a in cross(turning, nu[:3])] + [
+            lines.let(f"bend{i}", a) for i, a in enumerate(bend)
+        ]
         water = [ZERO, ZERO, ZERO]
         if current and {0, 1} & set(self.free):
             lines.say("north, east = flow(p, on)")
             water = [
-                lines.let(f"{n}_water", R[0][i] * name("north") + R[1][i] * name("east")) for i, n in enumerate("uvw")
+                lines.let(f"{n}_water", R[0][i] * name("north") + R[1][i] * name("east"))
+                for i, n in enumerate("uvw")
             ]
         return Frame(R, J, nu, turning, drift, water)
 
@@ -125,7 +149,12 @@ class Writer:
         """The motion as a force law sees it."""
         through = [frame.nu[i] - frame.water[i] for i in LINEAR]
         psi = ("c_psi", "s_psi") if 5 in self.free else ("1.0", "0.0")
-        values = [*(str(self.coordinate(i)) for i in range(6)), *map(str, frame.nu), *map(str, through), *psi]
+        values = [
+            *(str(self.coordinate(i)) for i in range(6)),
+            *map(str, frame.nu),
+            *map(str, through),
+            *psi,
+        ]
         assert len(values) + 1 == len(Motion._fields)
         return f"Motion(t, {', '.join(values)})"
 
@@ -142,11 +171,19 @@ class Writer:
         spin = frame.turning
         p, q, r = frame.nu[3:]
         at_centre = cross(spin, frame.nu[:3])
-        lever = [ZERO, ZERO, ZERO] if self.centred else [name("k[1]"), ZERO, name("k[2]") if self.tilts else ZERO]
+        lever = (
+            [ZERO, ZERO, ZERO]
+            if self.centred
+            else [name("k[1]"), ZERO, name("k[2]") if self.tilts else ZERO]
+        )
         at_centre = [a + b for a, b in zip(at_centre, cross(spin, cross(spin, lever)), strict=True)]
         force = [lines.let(f"rigid{i}", -(m * a)) for i, a in enumerate(at_centre)]
         gyroscopic = [(q * r, 1, 2), (r * p, 2, 0), (p * q, 0, 1)]
-        moment = [a * (inertia[i] - inertia[j]) for a, i, j in gyroscopic] if self.tilts else [ZERO, ZERO, ZERO]
+        moment = (
+            [a * (inertia[i] - inertia[j]) for a, i, j in gyroscopic]
+            if self.tilts
+            else [ZERO, ZERO, ZERO]
+        )
         return force + [a + b for a, b in zip(cross(lever, force), moment, strict=True)]
 
     def load(self, lines: Lines, frame: Frame, extra: str) -> list[Sum]:
@@ -177,13 +214,17 @@ class Writer:
             load = [a - b for a, b in zip(load, self.weighed(WHOLE, frame.drift), strict=True)]
             named = [lines.let(f"load{i}", a) for i, a in enumerate(load)]
             self.factor(lines, frame)
-            found = self.solved(lines, [total(frame.J[a][i] * named[a] for a in range(6)) for i in self.free], "")
+            found = self.solved(
+                lines, [total(frame.J[a][i] * named[a] for a in range(6)) for i in self.free], ""
+            )
             lines.say(f"return {self.tuple(found)}")
             return lines.text
         pushed = {i: lines.let(f"load{i}", load[i]) for i in self.free}
         nudot = {i: total(entry(WHOLE, i, j) * pushed[j] for j in self.free) for i in self.free}
         for i in LINEAR:
-            if i in nudot:  # the drift of level or tilting axes taken out: acceleration along them, over ground
+            if (
+                i in nudot
+            ):  # the drift of level or tilting axes taken out: acceleration along them, over ground
                 nudot[i] = nudot[i] - frame.drift[i]
         moved = {i: lines.let(f"a{i}", a) for i, a in nudot.items()}
         lines.say(f"return {self.tuple(self.joints(lines, frame, moved, moving=True))}")
@@ -191,7 +232,11 @@ class Writer:
 
     def joints(self, lines: Lines, frame: Frame, body: dict[int, Sum], moving: bool) -> list[str]:
         """Joint accelerations of body accelerations; `moving`: with what the Euler rates themselves bring about."""
-        found = {i: str(total(frame.R[i][j] * body[j] for j in LINEAR if j in body)) for i in LINEAR if i in self.free}
+        found = {
+            i: str(total(frame.R[i][j] * body[j] for j in LINEAR if j in body))
+            for i in LINEAR
+            if i in self.free
+        }
         if not self.tilts:
             return [*found.values(), *(str(body[i]) for i in ANGULAR if i in body)]
         cf, sf, ct, st = (name(n) for n in ("c_phi", "s_phi", "c_theta", "s_theta"))
@@ -199,9 +244,12 @@ class Writer:
         along = sf * body[4] + cf * body[5] + (phid * thetad if moving else ZERO)
         lines.say(f"along = {along}")
         rest = [
-            body[3] + (thetad * psid * name("secant") if moving else ZERO) + name("along") * st * name("secant"),
+            body[3]
+            + (thetad * psid * name("secant") if moving else ZERO)
+            + name("along") * st * name("secant"),
             cf * body[4] - sf * body[5] - (phid * psid * ct if moving else ZERO),
-            name("along") * name("secant") + (thetad * psid * st * name("secant") if moving else ZERO),
+            name("along") * name("secant")
+            + (thetad * psid * st * name("secant") if moving else ZERO),
         ]
         if moving:
             lines.text.insert(len(lines.text) - 1, "secant = 1.0 / c_theta")
@@ -230,7 +278,8 @@ class Writer:
             lines.say(f"y{tag}{i} = {value}" + "".join(f" - L{i}{k} * y{tag}{k}" for k in range(i)))
         for i in reversed(range(self.n)):
             lines.say(
-                f"x{tag}{i} = y{tag}{i} / D{i}" + "".join(f" - L{k}{i} * x{tag}{k}" for k in range(i + 1, self.n))
+                f"x{tag}{i} = y{tag}{i} / D{i}"
+                + "".join(f" - L{k}{i} * x{tag}{k}" for k in range(i + 1, self.n))
             )
         return [f"x{tag}{i}" for i in range(self.n)]
 
@@ -280,7 +329,8 @@ class Writer:
         frame = self.frame(lines, current=False)
         lines.say("a = accelerations(t, s, act, at, p, on, k, extra)")
         ahead, aside = (
-            total(frame.J[row][i] * name(f"a[{b}]") for b, i in enumerate(self.free) if i in LINEAR) for row in (0, 1)
+            total(frame.J[row][i] * name(f"a[{b}]") for b, i in enumerate(self.free) if i in LINEAR)
+            for row in (0, 1)
         )
         u, v, _, rolling, _, turning = frame.nu
         x, y, _, roll, _, heading = (self.coordinate(i) for i in range(6))
@@ -310,7 +360,9 @@ class Writer:
             psi, north, east = self.free.index(5), self.n, self.n + 1
             lines.say("if code < NQ + 2:")
             lines.say(f"    c, s_ = cos(s[{psi}]), sin(s[{psi}])")
-            lines.say(f"    along, across = c * s[{north}] + s_ * s[{east}], c * s[{east}] - s_ * s[{north}]")
+            lines.say(
+                f"    along, across = c * s[{north}] + s_ * s[{east}], c * s[{east}] - s_ * s[{north}]"
+            )
             lines.say("    if code == NQ:")
             lines.say(f"        row[{north}], row[{east}], row[{psi}] = c, s_, across")
             lines.say("        return float(along)")
@@ -335,18 +387,24 @@ class Writer:
         load = {}
         for a in needed:
             bent = total(added[a][j] * frame.drift[j] for j in range(6))
-            load[a] = lines.let(f"load{a}", name(f"f.{Wrench._fields[a]}") + self.carried(frame, a) - bent)
+            load[a] = lines.let(
+                f"load{a}", name(f"f.{Wrench._fields[a]}") + self.carried(frame, a) - bent
+            )
         for b, i in enumerate(order):
             force = total(frame.J[a][i] * load[a] for a in needed)
             lines.say(f"force[{b}] += {force if SIGN[COORDINATES[i]] > 0 else -force}")
         mass = [
-            [lines.let(f"M{a}{c}", added[a][c]) if c >= a else ZERO for c in range(6)] if a in needed else [ZERO] * 6
+            [lines.let(f"M{a}{c}", added[a][c]) if c >= a else ZERO for c in range(6)]
+            if a in needed
+            else [ZERO] * 6
             for a in range(6)
         ]
         mass = [[mass[min(a, c)][max(a, c)] for c in range(6)] for a in range(6)]
         for b, i in enumerate(order):
             for d, j in enumerate(order[: b + 1]):
-                value = total(frame.J[a][i] * mass[a][c] * frame.J[c][j] for a in needed for c in needed)
+                value = total(
+                    frame.J[a][i] * mass[a][c] * frame.J[c][j] for a in needed for c in needed
+                )
                 if value:
                     same = SIGN[COORDINATES[i]] == SIGN[COORDINATES[j]]
                     lines.say(f"M[{b * (b + 1) // 2 + d}] += {value if same else -value}")

@@ -38,14 +38,28 @@ NY, CALM = np.int64(2 * NQ), np.int64(3 * NQ)
 NZ = np.int64(CALM + (2 * NQ if HAS_SWELL else 0) + (NQ if HAS_WANDER else 0))
 STEADY = 1.4  # a step in time constants of the quickest motion: half of what Runge-Kutta bears
 LEAST = 0.01  # of an interval, which a step is at least: a boat quicker than that has run away
-INVERT = 10  # rounds of the inversion of what the instruments show, which is never far from the truth
+INVERT = (
+    10  # rounds of the inversion of what the instruments show, which is never far from the truth
+)
 
 
 @lean
 def predict(
-    times: Array, i: int, lateness: float, row: int, y: Array, given: Array, commands: Array, memory: Array,
-    max_step: float, p: Array, on: Any, k: Array, force: Array, act: Array,
-) -> int:  # fmt: skip
+    times: Array,
+    i: int,
+    lateness: float,
+    row: int,
+    y: Array,
+    given: Array,
+    commands: Array,
+    memory: Array,
+    max_step: float,
+    p: Array,
+    on: Any,
+    k: Array,
+    force: Array,
+    act: Array,
+) -> int:
     """Carry y (2 NQ,) from row i - 1 to row i in place, the latent force constant.
 
     The motion of row i happened `lateness` before its time; commands hold from the times on at which they were `given`.
@@ -71,8 +85,18 @@ def predict(
 
 @lean
 def transition(
-    t: float, h: float, z: Array, act: Array, p: Array, on: Any, k: Array, force: Array, F: Array, A: Array, B: Array,
-) -> float:  # fmt: skip
+    t: float,
+    h: float,
+    z: Array,
+    act: Array,
+    p: Array,
+    on: Any,
+    k: Array,
+    force: Array,
+    F: Array,
+    A: Array,
+    B: Array,
+) -> float:
     """Linearised transition F of motion and lasting forces over h: exponential of the Jacobian of the accelerations.
 
     Returns the rate at which the quickest motion dies out there [1/s].
@@ -139,7 +163,9 @@ def wandering(w: Wander, j: int) -> float:
 
 
 @lean
-def diffuse(h: float, m: int, n: int, sigma: Array, tau: float, s: Swell, w: Wander, P: Array) -> None:
+def diffuse(
+    h: float, m: int, n: int, sigma: Array, tau: float, s: Swell, w: Wander, P: Array
+) -> None:
     """Add to P what the noise behind latent forces and instruments does over h."""
     decay = exp(-h / tau)
     for j in range(NQ):
@@ -173,7 +199,9 @@ def look(z: Array, codes: Any, H: Array, p: Array, on: Any) -> None:
     seen = shown(moved(z), p, on)
     for c in range(len(codes)):
         H[c, 0] = seen[SHOWS[codes[c]]]
-    for j in range(NY - 1, -1, -1):  # the first column last: until then it keeps what is seen from z itself
+    for j in range(
+        NY - 1, -1, -1
+    ):  # the first column last: until then it keeps what is seen from z itself
         here = z[j]
         z[j] = here + BESIDE
         beside = shown(moved(z), p, on)
@@ -212,7 +240,9 @@ def begin(z0: Array, P0: Array, m: int, n: int, s: Swell, w: Wander, z: Array, P
     for a in range(CALM):
         z[a] = z0[a]
     copy_square(P0, P, CALM)
-    for j in range(n - m):  # the first fix was off by an error as large as any: the boat is the other way by as much
+    for j in range(
+        n - m
+    ):  # the first fix was off by an error as large as any: the boat is the other way by as much
         variance = wandering(w, j) ** 2
         P[m + j, m + j] = variance
         P[j, j] += variance
@@ -237,8 +267,17 @@ def felt(z: Array, h: float, s: Swell, m: int, y: Array, force: Array) -> None:
 
 @lean
 def spread(
-    F: Array, h: float, tau: float, s: Swell, w: Wander, m: int, n: int, sigma: Array, P: Array, work: Array,
-) -> None:  # fmt: skip
+    F: Array,
+    h: float,
+    tau: float,
+    s: Swell,
+    w: Wander,
+    m: int,
+    n: int,
+    sigma: Array,
+    P: Array,
+    work: Array,
+) -> None:
     """Carry P over h; F comes as the transition of motion and lasting forces, and leaves with that of all forces."""
     for a in range(NY, CALM):
         F[a, a] = exp(-h / tau)
@@ -277,10 +316,29 @@ def across(F: Array, z: Array, about: Array, y: Array) -> None:
 
 @lean
 def follow(
-    times: Array, i: int, lateness: float, row: int, z: Array, y: Array, given: Array, commands: Array, memory: Array,
-    remembered: Array, max_step: float, steps: Array, p: Array, on: Any, k: Array, force: Array, act: Array, s: Swell,
-    m: int, F: Array, A: Array, B: Array,
-) -> int:  # fmt: skip
+    times: Array,
+    i: int,
+    lateness: float,
+    row: int,
+    z: Array,
+    y: Array,
+    given: Array,
+    commands: Array,
+    memory: Array,
+    remembered: Array,
+    max_step: float,
+    steps: Array,
+    p: Array,
+    on: Any,
+    k: Array,
+    force: Array,
+    act: Array,
+    s: Swell,
+    m: int,
+    F: Array,
+    A: Array,
+    B: Array,
+) -> int:
     """`predict`, with the transition F linearised about the state z before, with the actuators at this interval's end.
 
     In steps that follow the quickest motion there: those that suited the row before may be too long. Fills steps[i] and
@@ -290,14 +348,18 @@ def follow(
     if i == 1:
         steps[i] = max_step
     copy(memory, remembered)
-    last = predict(times, i, lateness, row, y, given, commands, memory, steps[i], p, on, k, force, act)
+    last = predict(
+        times, i, lateness, row, y, given, commands, memory, steps[i], p, on, k, force, act
+    )
     rate = transition(times[i - 1] - lateness, h, z, act, p, on, k, force, F, A, B)
     longest = max(min(max_step, STEADY / max(rate, 1e-9)), LEAST * h)
     if longest < 0.5 * steps[i]:
         steps[i] = longest
         felt(z, h, s, m, y, force)
         copy(remembered, memory)
-        last = predict(times, i, lateness, row, y, given, commands, memory, longest, p, on, k, force, act)
+        last = predict(
+            times, i, lateness, row, y, given, commands, memory, longest, p, on, k, force, act
+        )
     if i + 1 < len(times):
         steps[i + 1] = longest
     return last
@@ -305,9 +367,24 @@ def follow(
 
 @lean
 def correct(
-    measured: Array, codes: Any, p: Array, on: Any, noise: Array, full: bool, m: int, n: int, z: Array, P: Array,
-    H: Array, row: Array, Ph: Array, outliers: Array, gains: Array, scale: Array, white: Array,
-) -> float:  # fmt: skip
+    measured: Array,
+    codes: Any,
+    p: Array,
+    on: Any,
+    noise: Array,
+    full: bool,
+    m: int,
+    n: int,
+    z: Array,
+    P: Array,
+    H: Array,
+    row: Array,
+    Ph: Array,
+    outliers: Array,
+    gains: Array,
+    scale: Array,
+    white: Array,
+) -> float:
     """Correct z, and P if `full`, by one row of the recording (C,); returns what it adds to the log likelihood."""
     likelihood = 0.0
     if full:
@@ -322,18 +399,54 @@ def correct(
             own = m + codes[c]
             error -= z[own]
         likelihood += take(
-            error, row, noise[c], full, outliers[c:], z, P, Ph, n, NY, own, gains[c], scale[c:], white[c:]
+            error,
+            row,
+            noise[c],
+            full,
+            outliers[c:],
+            z,
+            P,
+            Ph,
+            n,
+            NY,
+            own,
+            gains[c],
+            scale[c:],
+            white[c:],
         )
     return likelihood
 
 
 @compiled
 def kalman(
-    times: Array, measured: Array, codes: Any, given: Array, commands: Array, max_step: float, body: Array, p: Array,
-    on: Any, sigma: Array, tau: float, noise: Array, z0: Array, P0: Array, rates: Array, full: bool, fresh: bool,
-    linear: Array, steps: Array, gains: Array, scale: Array, white: Array, keep: bool, means: Array,
-    covariances: Array, transitions: Array, predicted: Array,
-) -> float:  # fmt: skip
+    times: Array,
+    measured: Array,
+    codes: Any,
+    given: Array,
+    commands: Array,
+    max_step: float,
+    body: Array,
+    p: Array,
+    on: Any,
+    sigma: Array,
+    tau: float,
+    noise: Array,
+    z0: Array,
+    P0: Array,
+    rates: Array,
+    full: bool,
+    fresh: bool,
+    linear: Array,
+    steps: Array,
+    gains: Array,
+    scale: Array,
+    white: Array,
+    keep: bool,
+    means: Array,
+    covariances: Array,
+    transitions: Array,
+    predicted: Array,
+) -> float:
     """One pass. measured (N, C), nan where missing; noise (C,) and sigma (NQ,) are variances of sensors and force.
 
     commands (M, K): each row is in force from when it was given (M,).
@@ -367,12 +480,34 @@ def kalman(
         felt(about, h, s, m, y, force)
         if full and fresh:
             held = follow(
-                times, i, lateness, held, about, y, given, commands, memory, remembered, max_step, steps, p, on, k,
-                force, act, s, m, F, work, work2,
-            )  # fmt: skip
+                times,
+                i,
+                lateness,
+                held,
+                about,
+                y,
+                given,
+                commands,
+                memory,
+                remembered,
+                max_step,
+                steps,
+                p,
+                on,
+                k,
+                force,
+                act,
+                s,
+                m,
+                F,
+                work,
+                work2,
+            )
             copy_square(F, linear[i], CALM)
         else:
-            held = predict(times, i, lateness, held, y, given, commands, memory, steps[i], p, on, k, force, act)
+            held = predict(
+                times, i, lateness, held, y, given, commands, memory, steps[i], p, on, k, force, act
+            )
             if full or i == 1:
                 copy_square(linear[i], F, CALM)
         if i == 1:
@@ -384,7 +519,23 @@ def kalman(
             copy(z, predicted[i])
             copy_square(F, transitions[i], NZ)
         likelihood += correct(
-            measured[i], codes, p, on, noise, full, m, n, z, P, H, row, Ph, outliers, gains[i], scale[i], white[i]
+            measured[i],
+            codes,
+            p,
+            on,
+            noise,
+            full,
+            m,
+            n,
+            z,
+            P,
+            H,
+            row,
+            Ph,
+            outliers,
+            gains[i],
+            scale[i],
+            white[i],
         )
         if keep:
             copy(z, means[i])
@@ -394,13 +545,26 @@ def kalman(
 
 @compiled
 def smooth(
-    means: Array, covariances: Array, transitions: Array, predicted: Array, gains: Array, sigma: Array, times: Array,
-    tau: float, p: Array, on: Any,
-) -> None:  # fmt: skip
+    means: Array,
+    covariances: Array,
+    transitions: Array,
+    predicted: Array,
+    gains: Array,
+    sigma: Array,
+    times: Array,
+    tau: float,
+    p: Array,
+    on: Any,
+) -> None:
     """Rauch-Tung-Striebel smoother, in place on means (N, n) and covariances (N, n, n); fills its gains (N, n, n)."""
     s, w = swell(p, on), wander(p, on)
     m, n = sizes(s, w)
-    ahead, cross, G, work = np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros((NZ, NZ)), np.zeros((NZ, NZ))
+    ahead, cross, G, work = (
+        np.zeros((NZ, NZ)),
+        np.zeros((NZ, NZ)),
+        np.zeros((NZ, NZ)),
+        np.zeros((NZ, NZ)),
+    )
     off = np.zeros(NZ)
     for i in range(len(times) - 2, -1, -1):
         multiply(transitions[i + 1], covariances[i], cross, n)  # F P
@@ -408,7 +572,9 @@ def smooth(
         carry(transitions[i + 1], ahead, work, n)
         diffuse(times[i + 1] - times[i], m, n, sigma, tau, s, w, ahead)
         for j in range(n):
-            ahead[j, j] *= 1.0 + 1e-9  # positions and rates are driven through the force alone: keep it invertible
+            ahead[j, j] *= (
+                1.0 + 1e-9
+            )  # positions and rates are driven through the force alone: keep it invertible
             ahead[j, j] += 1e-18
         copy_square(ahead, work, n)
         solve(work, cross, n)
@@ -426,9 +592,18 @@ def smooth(
 
 @compiled
 def free_runs(
-    times: Array, given: Array, commands: Array, max_step: float, body: Array, p: Array, on: Any, starts: Any,
-    ends: Any, states: Array, out: Array,
-) -> None:  # fmt: skip
+    times: Array,
+    given: Array,
+    commands: Array,
+    max_step: float,
+    body: Array,
+    p: Array,
+    on: Any,
+    starts: Any,
+    ends: Any,
+    states: Array,
+    out: Array,
+) -> None:
     """Free runs from row starts[j] to ends[j] out of states[j] (2 NQ,), driven by the commands alone.
 
     Actuator memory runs from the first row on, latent forces are zero. Fills out (runs, N, 2 NQ) with every channel
@@ -444,13 +619,30 @@ def free_runs(
         rows[i - 1] = held
         for j in range(NY):
             y[j] = 0.0
-        held = predict(times, i, lateness, held, y, given, commands, memory, max_step, p, on, k, nothing, act)
+        held = predict(
+            times, i, lateness, held, y, given, commands, memory, max_step, p, on, k, nothing, act
+        )
     for run in range(len(starts)):
         copy(states[run], y)
         copy(saved[starts[run]], memory)
         held = rows[starts[run]]
         for i in range(starts[run], ends[run] + 1):
             if i > starts[run]:
-                held = predict(times, i, lateness, held, y, given, commands, memory, max_step, p, on, k, nothing, act)
+                held = predict(
+                    times,
+                    i,
+                    lateness,
+                    held,
+                    y,
+                    given,
+                    commands,
+                    memory,
+                    max_step,
+                    p,
+                    on,
+                    k,
+                    nothing,
+                    act,
+                )
             for code in range(NY):
                 out[run, i, code] = shows(y, code, p, on)

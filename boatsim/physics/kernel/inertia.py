@@ -8,7 +8,10 @@ from boatsim.physics.signals import Array
 from .laws import inertias
 from .motion import CLOSED, FREED
 
-BLOCKS = ((0, 2, 4), (1, 3, 5))  # surge, heave, pitch and sway, roll, yaw: alike on both sides, they do not mix
+BLOCKS = (
+    (0, 2, 4),
+    (1, 3, 5),
+)  # surge, heave, pitch and sway, roll, yaw: alike on both sides, they do not mix
 DIAGONAL, COUPLINGS = ((0, 2, 4), (1, 3, 5)), ((6, 7, 8), (9, 10, 11))  # entries of `Mass`
 
 
@@ -19,14 +22,22 @@ def invert(m: Array) -> None:
         (i, j, k), (d, e, f), (x, y, z) = DIAGONAL[b], COUPLINGS[b], BLOCKS[b]
         xx, yy = FREED[x] * m[i] + 1.0 - FREED[x], FREED[y] * m[j] + 1.0 - FREED[y]
         zz = FREED[z] * m[k] + 1.0 - FREED[z]
-        xy, xz, yz = FREED[x] * FREED[y] * m[d], FREED[x] * FREED[z] * m[e], FREED[y] * FREED[z] * m[f]
+        xy, xz, yz = (
+            FREED[x] * FREED[y] * m[d],
+            FREED[x] * FREED[z] * m[e],
+            FREED[y] * FREED[z] * m[f],
+        )
         determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
         m[i], m[j], m[k] = (
-            (yy * zz - yz * yz) / determinant, (xx * zz - xz * xz) / determinant, (xx * yy - xy * xy) / determinant
-        )  # fmt: skip
+            (yy * zz - yz * yz) / determinant,
+            (xx * zz - xz * xz) / determinant,
+            (xx * yy - xy * xy) / determinant,
+        )
         m[d], m[e], m[f] = (
-            (xz * yz - xy * zz) / determinant, (xy * yz - yy * xz) / determinant, (xy * xz - xx * yz) / determinant
-        )  # fmt: skip
+            (xz * yz - xy * zz) / determinant,
+            (xy * yz - yy * xz) / determinant,
+            (xy * xz - xx * yz) / determinant,
+        )
 
 
 @lean
@@ -43,7 +54,11 @@ def constants(body: Array, p: Array, on: Any, k: Array) -> None:
     inertias(p, on, k[6:18], k[18:30])
     whole = k[30:42]
     whole[0] = whole[1] = whole[2] = m
-    whole[3], whole[4], whole[5] = body[3] + m * z * z, body[4] + m * (x * x + z * z), body[5] + m * x * x
+    whole[3], whole[4], whole[5] = (
+        body[3] + m * z * z,
+        body[4] + m * (x * x + z * z),
+        body[5] + m * x * x,
+    )
     whole[7], whole[8], whole[9], whole[10], whole[11] = m * z, -m * x, -m * z, m * x, -m * x * z
     for i in range(12):
         whole[i] += k[6 + i]

@@ -30,7 +30,9 @@ def inertias(p: Array, on: Any, water: Array, hull: Array) -> None:
     raise NotImplementedError
 
 
-def actuate(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array, held: Any) -> None:
+def actuate(
+    commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array, held: Any
+) -> None:
     """One step of all channels: commands (those the vessel takes) to act (3 held,): begin, middle, end of the step."""
     raise NotImplementedError
 

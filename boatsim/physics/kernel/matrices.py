@@ -5,7 +5,9 @@ from math import sqrt
 from boatsim.physics.kernel.compiling import lean
 from boatsim.physics.signals import Array
 
-SMALLEST = 2.0**-40  # share of a step over which an exponential begins; a matrix stiffer than that has gone wild
+SMALLEST = (
+    2.0**-40
+)  # share of a step over which an exponential begins; a matrix stiffer than that has gone wild
 
 
 @lean

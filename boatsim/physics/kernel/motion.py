@@ -19,7 +19,9 @@ CLOSED = True  # the whole mass matrix is inverted once
 BESIDE = 1e-6  # [m, rad, m/s, rad/s] of a one-sided difference
 
 
-def step_in_place(t: float, y: Array, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Array) -> None:
+def step_in_place(
+    t: float, y: Array, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Array
+) -> None:
     """One Runge-Kutta step of fourth order; act: the actuators at its begin, middle and end."""
 
 
@@ -28,7 +30,9 @@ def forces(t: float, s: Array, act: Array, at: Any, p: Array, on: Any) -> tuple[
     raise NotImplementedError
 
 
-def slopes(t: float, s: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array) -> None:
+def slopes(
+    t: float, s: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array
+) -> None:
     """Derivatives of the joint accelerations by the state, one-sided, to out (NQ, 2 NQ)."""
 
 
@@ -36,7 +40,9 @@ def force_slopes(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) 
     """Derivatives of the joint accelerations by a body force over the freedoms, to A[row:, column:]."""
 
 
-def feels(t: float, s: Any, act: Array, at: Any, p: Array, on: Any, k: Array, extra: Any) -> tuple[float, ...]:
+def feels(
+    t: float, s: Any, act: Array, at: Any, p: Array, on: Any, k: Array, extra: Any
+) -> tuple[float, ...]:
     """What instruments aboard would feel: psi, r, acceleration over ground along x and y, u, v, x, y, phi, p."""
     raise NotImplementedError
 

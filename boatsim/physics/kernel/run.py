@@ -18,7 +18,9 @@ ENOUGH = 1e-9  # [s] a step is done
 
 
 @lean
-def actuate_in_place(commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array) -> None:
+def actuate_in_place(
+    commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array
+) -> None:
     """One step of all channels: act holds the actuators at its begin, in its middle and at its end."""
     actuate(commands, memory, dt, p, on, act, np.int64(HELD))
 
@@ -35,7 +37,9 @@ def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> Non
 
 
 @lean
-def until_bend(commands: Array, memory: Array, left: float, least: float, p: Array, on: Any) -> float:
+def until_bend(
+    commands: Array, memory: Array, left: float, least: float, p: Array, on: Any
+) -> float:
     """Length of the next step: no further than `left`, nor, beyond `least`, than where a signal jumps or bends."""
     if HAS_PAUSE:
         return min(left, max(pause(commands, memory, p, on), least))
@@ -50,9 +54,18 @@ def least_after(part: float, before: float, least: float) -> float:
 
 @compiled
 def rollout(
-    t0: float, y: Array, commands: Array, memory: Array, dt: float, substeps: int, body: Array, p: Array, on: Any,
-    extra: Array, out: Array,
-) -> None:  # fmt: skip
+    t0: float,
+    y: Array,
+    commands: Array,
+    memory: Array,
+    dt: float,
+    substeps: int,
+    body: Array,
+    p: Array,
+    on: Any,
+    extra: Array,
+    out: Array,
+) -> None:
     """Free run: row i of commands (N, C) is held for `substeps` steps of dt; states to out (N + 1, 2 NQ)."""
     k, act = np.zeros(K), np.zeros(3 * HELD)
     constants(body, p, on, k)

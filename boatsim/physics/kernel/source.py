@@ -16,7 +16,16 @@ from .laws import HELD, flow, wrench
 
 def function(head: str, about: str, body: list[str], compiled: str) -> str:
     """A compiled function of the written program."""
-    return "\n".join([f"@{compiled}", f"def {head}:", f'    """{about}"""', *(f"    {line}" for line in body), "", ""])
+    return "\n".join(
+        [
+            f"@{compiled}",
+            f"def {head}:",
+            f'    """{about}"""',
+            *(f"    {line}" for line in body),
+            "",
+            "",
+        ]
+    )
 
 
 def entries(array: str, n: int) -> str:
@@ -26,7 +35,9 @@ def entries(array: str, n: int) -> str:
 
 def step(n: int) -> list[str]:
     """Body of one Runge-Kutta step of fourth order over 2 n states."""
-    moved = [f"s[{i}] + h * z[{n + i}]" for i in range(n)] + [f"s[{n + i}] + h * a[{i}]" for i in range(n)]
+    moved = [f"s[{i}] + h * z[{n + i}]" for i in range(n)] + [
+        f"s[{n + i}] + h * a[{i}]" for i in range(n)
+    ]
     ended = [f"s[{i}] + w * v{i}" for i in range(n)] + [f"s[{n + i}] + w * r{i}" for i in range(n)]
     return [
         "begin, middle, end = np.int64(0), np.int64(HELD), np.int64(2 * HELD)  # plain integers count as types",
@@ -104,41 +115,74 @@ def written(freedoms: tuple[str, ...], centred: bool) -> str:
         function(
             "accelerations(t, s, act, at, p, on, k, extra)",
             "Joint accelerations; extra is a further body force over the freedoms, act[at:] the actuators now.",
-            w.accelerations(), "inlined",
+            w.accelerations(),
+            "inlined",
         ),
         function(
             "step(t, s, dt, act, p, on, k, extra)",
             "One Runge-Kutta step of fourth order; act: the actuators at its begin, middle and end.",
-            step(w.n), "inlined",
+            step(w.n),
+            "inlined",
         ),
-        function("step_in_place(t, y, dt, act, p, on, k, extra)", "`step` on arrays.", step_in_place(w.n), "lean"),
-        function("steps(t, y, dt, n, act, p, on, k)", "N steps, actuators held, in place.", steps(w.n), "lean"),
-        function("forces(t, s, act, at, p, on)", "Body force of all laws, over the freedoms.", w.forces(), "lean"),
+        function(
+            "step_in_place(t, y, dt, act, p, on, k, extra)",
+            "`step` on arrays.",
+            step_in_place(w.n),
+            "lean",
+        ),
+        function(
+            "steps(t, y, dt, n, act, p, on, k)",
+            "N steps, actuators held, in place.",
+            steps(w.n),
+            "lean",
+        ),
+        function(
+            "forces(t, s, act, at, p, on)",
+            "Body force of all laws, over the freedoms.",
+            w.forces(),
+            "lean",
+        ),
         function(
             "slopes(t, s, act, p, on, k, extra, out)",
-            "Derivatives of the joint accelerations by the state, one-sided.", slopes(w.n), "lean",
+            "Derivatives of the joint accelerations by the state, one-sided.",
+            slopes(w.n),
+            "lean",
         ),
         function(
             "force_slopes(s, k, A, row, column)",
             "Derivatives of the joint accelerations by a body force over the freedoms, to A[row:, column:].",
-            w.force_slopes(), "inlined" if w.closed else "lean",
+            w.force_slopes(),
+            "inlined" if w.closed else "lean",
         ),
-        function("moved(s)", "What instruments that show the truth would show of a state.", w.moved(), "inlined"),
+        function(
+            "moved(s)",
+            "What instruments that show the truth would show of a state.",
+            w.moved(),
+            "inlined",
+        ),
         function(
             "feels(t, s, act, at, p, on, k, extra)",
             "What instruments aboard would feel: psi, r, acceleration over ground along x and y, u, v, x, y, phi, p.",
-            w.feels(), "inlined",
+            w.feels(),
+            "inlined",
         ),
-        function("jacobian(s, J)", "Body rates per joint rate, to J (6, NQ) of zeros.", w.jacobian(), "inlined"),
+        function(
+            "jacobian(s, J)",
+            "Body rates per joint rate, to J (6, NQ) of zeros.",
+            w.jacobian(),
+            "inlined",
+        ),
         function(
             "observe_level(s, code, row)",
             "Expected value of one measured channel and its row of the measurement matrix, axes that do not tilt.",
-            w.level_rates(), "inlined",
+            w.level_rates(),
+            "inlined",
         ),
         function(
             "add_to_mujoco(t, q, qd, act, at, p, k, force, M)",
             "Add the passive force and the lower triangle of J' M J, MuJoCo's z-up joints (yaw, pitch, roll last).",
-            w.add_to_mujoco(), "inlined",
+            w.add_to_mujoco(),
+            "inlined",
         ),
-    ]  # fmt: skip
+    ]
     return "\n".join([*head(w), *functions])

@@ -18,7 +18,11 @@ def actuators(program: Composed) -> Sequence[Station]:
         place = program.held.index(name)
         rows = (("", "begin"), ("held + ", "middle"), ("2 * held + ", "end"))
         end = [f"act[{row}{place}] = x.{when}" for row, when in rows]
-        turned = [program.held.index(f"{part}_{name}") for part in ("cos", "sin") if f"{part}_{name}" in program.held]
+        turned = [
+            program.held.index(f"{part}_{name}")
+            for part in ("cos", "sin")
+            if f"{part}_{name}" in program.held
+        ]
         if turned:  # first: it looks at the end of the step before, which the rows still hold
             places = ", ".join(f"np.int64({k})" for k in (place, *turned))
             end.insert(0, f"hold_turned(x, act, held, {places})")
@@ -43,11 +47,17 @@ def pausing(program: Composed) -> Sequence[Station]:
 
 # Stages: what is wrong with a command comes before the actuator that follows it, what is wrong with its deed after it
 MAPS = -3  # what makes a signal out of a raw command, at once
-DELAYS = -2  # what shifts a command in time: what follows sees it arrive, and it sees commands alone
-COMMANDS = -1  # what the actuator never hears of: a dead band, play in the linkage; the actuator itself is 0
+DELAYS = (
+    -2
+)  # what shifts a command in time: what follows sees it arrive, and it sees commands alone
+COMMANDS = (
+    -1
+)  # what the actuator never hears of: a dead band, play in the linkage; the actuator itself is 0
 DEEDS = 1  # what an actuator that has followed gives: weak astern, uneven, askew
 INSTANT = "1e-9"  # [s] of a signal that is asked for as it is now
-ACTUATE = Part("actuate", "commands, memory, dt, p, on, act, held", ("pass",), "", stations=actuators)
+ACTUATE = Part(
+    "actuate", "commands, memory, dt, p, on, act, held", ("pass",), "", stations=actuators
+)
 PAUSE = Part("pause", "commands, memory, p, on", ("left = np.inf",), "left", stations=pausing)
 
 
@@ -65,19 +75,29 @@ class Channel(Kind):
 
     parts: ClassVar = (ACTUATE, PAUSE)
     laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes")
-    acts_on: ClassVar[str] = "thrust"  # roles (a|b) of the signals it acts on where `on` names none; "": all
+    acts_on: ClassVar[str] = (
+        "thrust"  # roles (a|b) of the signals it acts on where `on` names none; "": all
+    )
     slots: ClassVar[int] = 0
-    either_side: ClassVar[bool] = False  # of the actuator that follows: some have it in the command, some in the deed
+    either_side: ClassVar[bool] = (
+        False  # of the actuator that follows: some have it in the command, some in the deed
+    )
     pause: ClassVar[Callable[..., float] | None] = None
     passes: ClassVar[Callable[..., float] | None] = None
     channel: ClassVar[Callable[..., Course]]
 
-    fed_by: Sequence[str] = field(default=(), kw_only=True)  # commands that feed the channels in `on`, one for each
-    other_side: bool = field(default=False, kw_only=True)  # of the actuator than is usual, for what may be on either
+    fed_by: Sequence[str] = field(
+        default=(), kw_only=True
+    )  # commands that feed the channels in `on`, one for each
+    other_side: bool = field(
+        default=False, kw_only=True
+    )  # of the actuator than is usual, for what may be on either
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(self, "fed_by", (self.fed_by,) if isinstance(self.fed_by, str) else tuple(self.fed_by))
+        object.__setattr__(
+            self, "fed_by", (self.fed_by,) if isinstance(self.fed_by, str) else tuple(self.fed_by)
+        )
         if self.other_side not in ((False, True) if type(self).either_side else (False,)):
             allowed = "true or false" if type(self).either_side else "false: it has its place"
             raise BadInput(f"{self.name}: other_side = {self.other_side!r}; allowed is {allowed}")
@@ -85,7 +105,9 @@ class Channel(Kind):
     @property
     def standing(self) -> int:
         """Before or behind the actuator that follows, by its stage or the other way round."""
-        return (DEEDS if type(self).stage < 0 else COMMANDS) if self.other_side else type(self).stage
+        return (
+            (DEEDS if type(self).stage < 0 else COMMANDS) if self.other_side else type(self).stage
+        )
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:

@@ -25,37 +25,69 @@ class Role:
 
     unit: str
     words: str
-    fixed: float | None = None  # what it is where nothing is bound to it; None: a channel must be named
+    fixed: float | None = (
+        None  # what it is where nothing is bound to it; None: a channel must be named
+    )
 
 
 @dataclass(frozen=True)
 class Effect(Checked):
     """One instance of an idea on a vessel. Subclasses are of one or several of the kinds in this folder."""
 
-    words: ClassVar[str] = ""  # the sentence a report prints: "a steady wind pushes the hull downwind ..."
+    words: ClassVar[str] = (
+        ""  # the sentence a report prints: "a steady wind pushes the hull downwind ..."
+    )
     words_above: ClassVar[str] = ""  # the same where the factor by which it weakens is above one
     shown_by: ClassVar[str] = ""  # the manoeuvre that shows it best
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law
-    strength: ClassVar[tuple[str, ...]] = ()  # parameters that say how strong it is; empty: all that may be fitted
-    facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}  # fact in a recording's notes -> the parameters it states
-    starts: ClassVar[tuple[Mapping[str, float], ...]] = ()  # where a fit starts; empty: a tenth of each spread
-    thresholds: ClassVar[Mapping[str, tuple[float, ...]]] = {}  # parameter -> starts in largest commands recorded
-    roles: ClassVar[Mapping[str, Role]] = {}  # signals its law takes as its third argument, each with a channel
-    stage: ClassVar[int] = 0  # those of a lower one come first in the program; else the order is that of the files
-    needs: ClassVar[tuple[str, ...]] = ()  # freedoms without which it can not act, besides those of its parameters
-    ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}  # fact -> what it must say for the effect not to act
-    told_by: ClassVar[tuple[str, ...]] = ()  # entries that show the same: it is tried only where somebody asks for it
-    random: ClassVar[bool] = False  # only its spectrum can be fitted: the filter follows its course, a free run can not
+    strength: ClassVar[
+        tuple[str, ...]
+    ] = ()  # parameters that say how strong it is; empty: all that may be fitted
+    facts: ClassVar[
+        Mapping[str, tuple[str, ...]]
+    ] = {}  # fact in a recording's notes -> the parameters it states
+    starts: ClassVar[
+        tuple[Mapping[str, float], ...]
+    ] = ()  # where a fit starts; empty: a tenth of each spread
+    thresholds: ClassVar[
+        Mapping[str, tuple[float, ...]]
+    ] = {}  # parameter -> starts in largest commands recorded
+    roles: ClassVar[
+        Mapping[str, Role]
+    ] = {}  # signals its law takes as its third argument, each with a channel
+    stage: ClassVar[int] = (
+        0  # those of a lower one come first in the program; else the order is that of the files
+    )
+    needs: ClassVar[
+        tuple[str, ...]
+    ] = ()  # freedoms without which it can not act, besides those of its parameters
+    ruled_out_by: ClassVar[
+        Mapping[str, tuple[object, ...]]
+    ] = {}  # fact -> what it must say for the effect not to act
+    told_by: ClassVar[
+        tuple[str, ...]
+    ] = ()  # entries that show the same: it is tried only where somebody asks for it
+    random: ClassVar[bool] = (
+        False  # only its spectrum can be fitted: the filter follows its course, a free run can not
+    )
     alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
-    described: ClassVar[bool] = False  # a law that the diagnosis writes itself, of terms: no entry of the library
-    sees_held: ClassVar[bool] = False  # its law takes all actuators besides: `act`, `at`, the place of what it recalls
-    rides: ClassVar[str] = ""  # idea whose every instance it acts at: its law takes their signals and their values
+    described: ClassVar[bool] = (
+        False  # a law that the diagnosis writes itself, of terms: no entry of the library
+    )
+    sees_held: ClassVar[bool] = (
+        False  # its law takes all actuators besides: `act`, `at`, the place of what it recalls
+    )
+    rides: ClassVar[str] = (
+        ""  # idea whose every instance it acts at: its law takes their signals and their values
+    )
 
     filled: frozenset[str] = field(  # parameters by `completed`, which nobody stated
         default=frozenset(), kw_only=True, repr=False, compare=False, metadata={"ours": True}
     )
-    name: str = field(default="", kw_only=True)  # of this instance; that of the idea where there is one only
+    name: str = field(
+        default="", kw_only=True
+    )  # of this instance; that of the idea where there is one only
     # role -> channel or a number that is held; or the channels, or the instances it rides on, that it acts on
     on: Mapping[str, str | float] | Sequence[str] = field(default=(), kw_only=True, hash=False)
 
@@ -73,9 +105,17 @@ class Effect(Checked):
             numbers = [c for c in on.values() if not isinstance(c, str)]
             good = wants_table and all(type(c) in (int, float) and isfinite(c) for c in numbers)
         else:
-            good = isinstance(on, list | tuple) and all(isinstance(c, str) for c in on) and not (wants_table and on)
+            good = (
+                isinstance(on, list | tuple)
+                and all(isinstance(c, str) for c in on)
+                and not (wants_table and on)
+            )
         if not good:
-            allowed = f"a table of {', '.join(type(self).roles)}" if wants_table else "a name or a list of names"
+            allowed = (
+                f"a table of {', '.join(type(self).roles)}"
+                if wants_table
+                else "a name or a list of names"
+            )
             raise BadInput(f"{self.name}: on = {self.on!r}; allowed is {allowed}")
         return dict(on) if isinstance(on, Mapping) else tuple(on)
 
@@ -92,7 +132,12 @@ class Effect(Checked):
     @classmethod
     def signals_type(cls) -> Callable[..., tuple[float, ...]]:
         """NamedTuple type of the signals of its roles, with cosine and sine of those that are angles."""
-        angles = [f"{part}_{n}" for n, role in cls.roles.items() if role.unit == "rad" for part in ("cos", "sin")]
+        angles = [
+            f"{part}_{n}"
+            for n, role in cls.roles.items()
+            if role.unit == "rad"
+            for part in ("cos", "sin")
+        ]
         return _named((*cls.roles, *angles))
 
     @classmethod
@@ -100,7 +145,9 @@ class Effect(Checked):
         """Signals of its roles as the law's third argument; one not given is as if nothing were bound to it, or 0."""
         held = {name: role.fixed or 0.0 for name, role in cls.roles.items()} | given
         angles = [name for name, role in cls.roles.items() if role.unit == "rad"]
-        parts = {f"{part}_{n}": of(held[n]) for n in angles for part, of in (("cos", cos), ("sin", sin))}
+        parts = {
+            f"{part}_{n}": of(held[n]) for n in angles for part, of in (("cos", cos), ("sin", sin))
+        }
         return cls.signals_type()(**held, **parts)
 
     def values(self) -> tuple[float, ...]:
@@ -125,13 +172,18 @@ class Effect(Checked):
         for name, about in type(self).params().items():
             if about.follows and not self.stated(name):
                 own = own.having({name: self.followed(about.follows, vessel)})
-        ruled = {n: x for n, x in own.rules(vessel).items() if not own.stated(n)} if own._left() else {}
+        ruled = (
+            {n: x for n, x in own.rules(vessel).items() if not own.stated(n)} if own._left() else {}
+        )
         own = own.having(ruled)
         for fact, names in type(self).facts.items():
             for missing in (n for n in names if not own.stated(n)):
                 where = f"state it in its table, or {fact} among the facts of a recording or of the vessel's diagnosis"
                 raise BadInput(f"{vessel.name}: {self.name} needs {missing}: {where}")
-        return replace(own.having(dict.fromkeys(own._left(), 0.0)), filled=frozenset(self._left()) | self.filled)
+        return replace(
+            own.having(dict.fromkeys(own._left(), 0.0)),
+            filled=frozenset(self._left()) | self.filled,
+        )
 
     def ratios(self, vessel: "Boat") -> dict[str, tuple[float, str]]:
         """What recordings really tell where a parameter is but one way to put it: name -> value, meaning in words."""
@@ -148,7 +200,11 @@ class Effect(Checked):
     def still_as_on(self, vessel: "Boat") -> bool:
         """Whether what `rules` gave for words that no file may state is still so, now that the vessel is whole."""
         ruled = self.rules(vessel)
-        return all(ruled[f.name] == getattr(self, f.name) for f in fields(self) if {"param", "ours"} <= set(f.metadata))
+        return all(
+            ruled[f.name] == getattr(self, f.name)
+            for f in fields(self)
+            if {"param", "ours"} <= set(f.metadata)
+        )
 
     def _left(self) -> list[str]:
         """Parameters without a value."""
@@ -227,7 +283,9 @@ class Site(NamedTuple):
 
     number: int  # of the effect
     values: str  # V3(p[7], p[8])
-    signals: tuple[str, ...] = ()  # further arguments: the bound signals, and the values of what the effect rides on
+    signals: tuple[
+        str, ...
+    ] = ()  # further arguments: the bound signals, and the values of what the effect rides on
 
     def call(self, law: str, *first: str) -> str:
         """Text of a call of one of the effect's compiled functions."""
@@ -248,7 +306,9 @@ class Composed(Protocol):
     effects: tuple[Effect, ...]
     signals: tuple[str, ...]  # actuators, and readings of what is measured around the boat
     commands: tuple[str, ...]  # what the vessel takes: commands, then what is measured
-    held: Sequence[str]  # what `act` holds: signals, cosine and sine of angles; for described laws sums, recalled
+    held: Sequence[
+        str
+    ]  # what `act` holds: signals, cosine and sine of angles; for described laws sums, recalled
     sums: Mapping[str, Sequence[str]]  # of these, the actuators that each sum is of
 
     def sites(self, number: int) -> Sequence[Site]:
@@ -294,7 +354,9 @@ class Kind(Effect):
     """Base of the kinds: what effects of one add to the program."""
 
     parts: ClassVar[tuple[Part, ...]] = ()  # functions that this kind brings along
-    laws: ClassVar[tuple[str, ...]] = ()  # its compiled functions, those that an effect may leave out being None
+    laws: ClassVar[
+        tuple[str, ...]
+    ] = ()  # its compiled functions, those that an effect may leave out being None
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:

@@ -28,7 +28,11 @@ class Recall(Kind):
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
         """Follow the actuator that the law looks back at."""
-        if station.channel != WHOLE or part not in (ACTUATE, PAUSE) or not (own := program.own(number)):
+        if (
+            station.channel != WHOLE
+            or part not in (ACTUATE, PAUSE)
+            or not (own := program.own(number))
+        ):
             return
         values = program.sites(number)[0].values
         if part is ACTUATE:

@@ -43,7 +43,9 @@ class Release(Effect):
             for place in (p for places in about.releases for p in _there(places, vessel)):
                 owner, _, key = place.partition(".")
                 instances = ["body"] if owner == "body" else vessel.known_as(owner)
-                found += [Change(name, one, key, about.how, weights.get(place, 1.0)) for one in instances]
+                found += [
+                    Change(name, one, key, about.how, weights.get(place, 1.0)) for one in instances
+                ]
         return found
 
     def weights(self, vessel: Boat) -> dict[str, float]:
@@ -54,5 +56,8 @@ class Release(Effect):
         """Raises BadInput where the vessel has none of the numbers."""
         if not self.changes(vessel):
             places = (p for about in type(self).params().values() for p in about.releases)
-            self.needed(vessel, " or ".join(dict.fromkeys(p.partition(".")[0] for p in next(places).split("|"))))
+            self.needed(
+                vessel,
+                " or ".join(dict.fromkeys(p.partition(".")[0] for p in next(places).split("|"))),
+            )
         return super().completed(vessel)

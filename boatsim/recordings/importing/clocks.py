@@ -10,14 +10,31 @@ from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS
 
 # names of columns that are times, likeliest first; what follows may be the unit
-CLOCK = re.compile(r"^(t|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?|time_?(s|ms|us|ns)?)$")
-ENDING = re.compile(r"[\s_.\[(/]*(?<![a-z])(seconds?|secs?|milliseconds?|s|ms|us|µs|ns|usec|msec|nsec)[\])]*$")
+CLOCK = re.compile(
+    r"^(t|time|timestamp|stamp|date_?time|utc|gps_?time|epoch|elapsed|seconds?|time_?(s|ms|us|ns)?)$"
+)
+ENDING = re.compile(
+    r"[\s_.\[(/]*(?<![a-z])(seconds?|secs?|milliseconds?|s|ms|us|µs|ns|usec|msec|nsec)[\])]*$"
+)
 SPELT = {
-    "second": "s", "seconds": "s", "sec": "s", "secs": "s", "millisecond": "ms", "milliseconds": "ms", "msec": "ms",
-    "µs": "us", "usec": "us", "nsec": "ns",
-}  # fmt: skip
+    "second": "s",
+    "seconds": "s",
+    "sec": "s",
+    "secs": "s",
+    "millisecond": "ms",
+    "milliseconds": "ms",
+    "msec": "ms",
+    "µs": "us",
+    "usec": "us",
+    "nsec": "ns",
+}
 YEAR_2000, YEAR_2100 = 946684800.0, 4102444800.0  # [s] since 1970
-SINCE_1970 = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))  # units in which that may be counted
+SINCE_1970 = (
+    ("s", 1.0),
+    ("ms", 1e-3),
+    ("us", 1e-6),
+    ("ns", 1e-9),
+)  # units in which that may be counted
 
 
 def clock_of(columns: Mapping[str, Array]) -> str | None:

@@ -13,17 +13,29 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.signals import POSE, RATES
 from boatsim.recordings.expression import Expression, parse
-from boatsim.recordings.held import repeats
 from boatsim.recordings.importing.clocks import YEAR_2000, YEAR_2100
 from boatsim.recordings.importing.frames import local
 from boatsim.recordings.importing.log import Log, Signal, rate_of
 from boatsim.recordings.importing.mapping import Map, Position, Range
-from boatsim.recordings.importing.resample import LEAST_LOST, Samples, clock, held, longest_hold, placed, samples
-from boatsim.recordings.raw import refuse
+from boatsim.recordings.importing.resample import (
+    LEAST_LOST,
+    Samples,
+    clock,
+    held,
+    longest_hold,
+    placed,
+    samples,
+)
+from boatsim.recordings.raw_table import refuse
+from boatsim.recordings.repeated_values import repeats
 from boatsim.recordings.table import FEWEST_ROWS, GAP, Recording, fair_gaps, is_command
 
 TOGETHER = (("x_m", "y_m"), ("psi_rad",))  # columns that come with one fix
-HELD = ("stick_", "sent_", "reference_")  # beside commands, what somebody wants is in force until he wants otherwise
+HELD = (
+    "stick_",
+    "sent_",
+    "reference_",
+)  # beside commands, what somebody wants is in force until he wants otherwise
 ALIKE = 1.5  # times as fast as the poses: from there on commands set the clock
 NEAR = 0.05  # of a step of the rows: what is measured so near to a row is in it
 ROUNDS = 4
@@ -54,7 +66,9 @@ class _Work:
         self.remarks.append(f"{self.log.path}: {text}")
 
 
-def convert(log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, float]] | None = None) -> Recording:
+def convert(
+    log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, float]] | None = None
+) -> Recording:
     """The recording that a map makes of a log; `channels` are the vessel's commands with their ends.
 
     Raises BadInput, one line with the map's key, for a signal that is not there and for what can not be converted.
@@ -70,11 +84,20 @@ def convert(log: Log, map: Map, file: str, channels: Mapping[str, tuple[float, f
         work.columns[name] = Column(_of_use(work, name, samples(t, values)), is_held)
     _drop_repeats(work)
     rows, near = _clock(work)
-    signals = {n: held(rows, c.given) if c.held else placed(rows, c.given, near) for n, c in work.columns.items()}
+    signals = {
+        n: held(rows, c.given) if c.held else placed(rows, c.given, near)
+        for n, c in work.columns.items()
+    }
     _say_what_was_held(work, rows)
     rows, signals = _whole(work, rows, signals)
     _say_times(work, rows)
-    return Recording(log.path.stem, np.round(rows - rows[0], 6), signals, remarks=tuple(work.remarks), path=log.path)
+    return Recording(
+        log.path.stem,
+        np.round(rows - rows[0], 6),
+        signals,
+        remarks=tuple(work.remarks),
+        path=log.path,
+    )
 
 
 def _signal(work: _Work, key: str, text: str) -> tuple[Signal, Expression]:
@@ -110,14 +133,18 @@ def _column(work: _Work, name: str, what: str | Range) -> tuple[Array, Array]:
             f"{name}: {beyond} of {len(values)} samples lie beyond {ends[0][0]:g} to {ends[2][0]:g}, and are taken "
             "as its ends"
         )
-    return signal.t, np.interp(values, np.array([a for a, _ in ends]), np.array([b for _, b in ends]))
+    return signal.t, np.interp(
+        values, np.array([a for a, _ in ends]), np.array([b for _, b in ends])
+    )
 
 
 def _add_position(work: _Work, position: Position) -> None:
     north, how_north = _signal(work, "position.latitude", position.latitude)
     east, how_east = _signal(work, "position.longitude", position.longitude)
     if len(north.t) != len(east.t) or not np.array_equal(north.t, east.t, equal_nan=True):
-        raise BadInput(f"{work.file}: position: latitude and longitude are of two streams; name those of one fix")
+        raise BadInput(
+            f"{work.file}: position: latitude and longitude are of two streams; name those of one fix"
+        )
     t, lat, lon = north.t, how_north.of(north.values), how_east.of(east.values)
     there = np.isfinite(t) & np.isfinite(lat) & np.isfinite(lon)
     if there.any() and max(np.abs(lat[there]).max() / 0.5, np.abs(lon[there]).max()) > np.pi + 1e-9:
@@ -127,11 +154,15 @@ def _add_position(work: _Work, position: Position) -> None:
         )
     nowhere = there & (lat == 0.0) & (lon == 0.0)
     if nowhere.any():
-        work.say(f"{int(nowhere.sum())} fixes at latitude and longitude 0, before satellites were found, are left out")
+        work.say(
+            f"{int(nowhere.sum())} fixes at latitude and longitude 0, before satellites were found, are left out"
+        )
     there &= ~nowhere
     inside = there & _in_use(work, t)
     if not inside.any():
-        raise BadInput(f"{work.file}: position: there is no fix of {position.latitude!r} in the part to use")
+        raise BadInput(
+            f"{work.file}: position: there is no fix of {position.latitude!r} in the part to use"
+        )
     t, lat, lon = t[inside], lat[inside], lon[inside]
     first = int(np.argmin(t))
     at = position.origin or (degrees(lat[first]), degrees(lon[first]))
@@ -167,7 +198,9 @@ def _drop_repeats(work: _Work) -> None:
                 "no measurements; they are left empty"
             )
             for name, c in zip(names, there, strict=True):
-                work.columns[name] = replace(c, given=Samples(c.given.t[~repeated], c.given.values[~repeated]))
+                work.columns[name] = replace(
+                    c, given=Samples(c.given.t[~repeated], c.given.values[~repeated])
+                )
 
 
 def _clock(work: _Work) -> tuple[Array, float]:
@@ -182,7 +215,12 @@ def _clock(work: _Work) -> tuple[Array, float]:
     quick = max(orders.values(), key=lambda c: c.given.rate, default=fastest)
     if quick.given.rate > ALIKE * fastest.given.rate:
         fastest = quick
-    begin = max([min(float(c.given.t[0]) for c in poses.values()), *(float(c.given.t[0]) for c in orders.values())])
+    begin = max(
+        [
+            min(float(c.given.t[0]) for c in poses.values()),
+            *(float(c.given.t[0]) for c in orders.values()),
+        ]
+    )
     end = max(float(c.given.t[-1]) for c in poses.values())
     if work.map.rate:
         if (end - begin) * work.map.rate > MOST_ROWS:
@@ -202,7 +240,9 @@ def _clock(work: _Work) -> tuple[Array, float]:
         )
     _say_rates(work, rows)
     if work.map.rate:
-        work.say(f"what is measured is put into the nearest row, up to {0.5 / work.map.rate:.3g} s from its own time")
+        work.say(
+            f"what is measured is put into the nearest row, up to {0.5 / work.map.rate:.3g} s from its own time"
+        )
         return rows, 1.0 / work.map.rate
     near = NEAR * float(np.median(np.diff(rows)))
     others = sorted((c.given for c in poses.values() if c is not fastest), key=lambda s: -s.rate)
@@ -218,17 +258,25 @@ def _say_rates(work: _Work, rows: Array) -> None:
         if not c.held and c.given.rate < 0.9 * rate:
             slow.setdefault(f"{c.given.rate:.3g}", []).append(name)
         elif c.given.rate > 1.1 * rate and inside > len(rows):
-            quick.setdefault(f"{c.given.rate:.3g} times a second: {inside - len(rows)} samples", []).append(name)
+            quick.setdefault(
+                f"{c.given.rate:.3g} times a second: {inside - len(rows)} samples", []
+            ).append(name)
     for times, names in slow.items():
-        work.say(f"{', '.join(names)}: measured {times} times a second; the other rows, {rate:.3g} a second, are empty")
+        work.say(
+            f"{', '.join(names)}: measured {times} times a second; the other rows, {rate:.3g} a second, are empty"
+        )
     for what, names in quick.items():
-        work.say(f"{', '.join(names)}: logged {what} between the {rate:.3g} rows a second are left out")
+        work.say(
+            f"{', '.join(names)}: logged {what} between the {rate:.3g} rows a second are left out"
+        )
 
 
 def _say_what_was_held(work: _Work, rows: Array) -> None:
     for name, c in work.columns.items():
         if c.held and (longest := longest_hold(rows, c.given)):
-            work.say(f"{name} is held for up to {longest:.3g} s without a new value; was it still in force?")
+            work.say(
+                f"{name} is held for up to {longest:.3g} s without a new value; was it still in force?"
+            )
 
 
 def _whole(work: _Work, rows: Array, signals: dict[str, Array]) -> tuple[Array, dict[str, Array]]:
@@ -243,29 +291,48 @@ def _whole(work: _Work, rows: Array, signals: dict[str, Array]) -> tuple[Array, 
             kept &= np.isfinite(values)
     for _ in range(ROUNDS):  # rows that are left out may make a slow column of one that was not
         fair = fair_gaps({n: v[kept] for n, v in signals.items()})
-        unfair = [np.isnan(v[kept]) & ~fair.get(n, False) for n, v in signals.items() if n in (*POSE, *RATES)]
+        unfair = [
+            np.isnan(v[kept]) & ~fair.get(n, False)
+            for n, v in signals.items()
+            if n in (*POSE, *RATES)
+        ]
         lost = np.flatnonzero(kept)[np.any(unfair, axis=0)]
         if not len(lost):
             break
-        work.say(f"{len(lost)} rows in which a pose or rate is missing that the others have are left out")
+        work.say(
+            f"{len(lost)} rows in which a pose or rate is missing that the others have are left out"
+        )
         kept[lost] = False
     if kept.sum() < FEWEST_ROWS:
-        raise refuse(work.log.path, f"{int(kept.sum())} rows have all that is needed; at least {FEWEST_ROWS} must")
+        raise refuse(
+            work.log.path,
+            f"{int(kept.sum())} rows have all that is needed; at least {FEWEST_ROWS} must",
+        )
     for name in [n for n in signals if n in (*POSE, *RATES)]:
         if np.isfinite(signals[name][kept]).sum() < FEWEST_ROWS:
-            raise refuse(work.log.path, f"{name} has fewer than {FEWEST_ROWS} samples in the rows", column=name)
+            raise refuse(
+                work.log.path,
+                f"{name} has fewer than {FEWEST_ROWS} samples in the rows",
+                column=name,
+            )
     return rows[kept], {name: values[kept] for name, values in signals.items()}
 
 
 def _say_times(work: _Work, rows: Array) -> None:
     if YEAR_2000 < rows[0] < YEAR_2100:
-        work.say(f"t_s = 0 is {datetime.fromtimestamp(float(rows[0]), UTC).isoformat(timespec='milliseconds')}")
+        work.say(
+            f"t_s = 0 is {datetime.fromtimestamp(float(rows[0]), UTC).isoformat(timespec='milliseconds')}"
+        )
     elif isfinite(work.begin):
         work.say(f"t_s = 0 is {rows[0] - work.begin:.3f} s after the log begins")
     steps = np.diff(rows)
     if (longest := float(steps.max())) > max(LEAST_LOST, 5.0 * float(np.median(steps))):
         where = float(rows[int(np.argmax(steps))] - rows[0])
-        more = "; no diagnosis reads over that: cut the log with use = [from_s, to_s]" if longest > GAP else ""
+        more = (
+            "; no diagnosis reads over that: cut the log with use = [from_s, to_s]"
+            if longest > GAP
+            else ""
+        )
         work.say(f"there is a gap of {longest:.3g} s at t = {where:.3f} s{more}")
 
 
@@ -286,4 +353,8 @@ def notes_of(path: Path, vessel: str, fix: str | None) -> str:
 
 
 def _quoted(text: str) -> str:
-    return "".join(c if c.isprintable() and c not in '"\\' else f"\\u{ord(c):04x}" for c in text if ord(c) < 0x10000)
+    return "".join(
+        c if c.isprintable() and c not in '"\\' else f"\\u{ord(c):04x}"
+        for c in text
+        if ord(c) < 0x10000
+    )

@@ -12,10 +12,12 @@ import numpy as np
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.content import module_of, names
-from boatsim.recordings.raw import refuse
+from boatsim.recordings.raw_table import refuse
 
 MOST_BYTES = 2_000_000_000  # of a file
-MOST_TEXT = 50_000_000  # [bytes] of a text that is read line by line, which takes 20 times as much memory
+MOST_TEXT = (
+    50_000_000  # [bytes] of a text that is read line by line, which takes 20 times as much memory
+)
 MOST_VALUES = 25_000_000  # of all signals together; 200 MB
 MOST_SIGNALS = 5_000
 HUGE = 1e20  # times in ns since 1970 are 2e18; nothing that is measured is so large
@@ -30,7 +32,9 @@ class Signal:
     values: Array  # (N,)
     unit: str = ""  # as the format says; "" where it says nothing
     about: str = ""  # what the format says of it: "throttle left"
-    pulse: tuple[float, float, float] | None = None  # low, neutral, high of an output, in the signal's unit
+    pulse: tuple[float, float, float] | None = (
+        None  # low, neutral, high of an output, in the signal's unit
+    )
 
 
 @dataclass(frozen=True)
@@ -53,14 +57,20 @@ class Room:
         """Note so many more values; raises BadInput where there are too many."""
         self.values += values
         if self.values > MOST_VALUES:
-            raise refuse(self.path, f"holds more than {MOST_VALUES:,} values; cut the log into shorter ones")
+            raise refuse(
+                self.path, f"holds more than {MOST_VALUES:,} values; cut the log into shorter ones"
+            )
         if signals > MOST_SIGNALS:
-            raise refuse(self.path, f"has more than {MOST_SIGNALS:,} signals; no log of a boat has as many")
+            raise refuse(
+                self.path, f"has more than {MOST_SIGNALS:,} signals; no log of a boat has as many"
+            )
 
 
 def needs(path: Path, library: str, extra: str) -> BadInput:
     """The error of a reader whose library is not installed."""
-    return refuse(path, f"reading it needs {library}; install it with: pip install 'boatsim[{extra}]'")
+    return refuse(
+        path, f"reading it needs {library}; install it with: pip install 'boatsim[{extra}]'"
+    )
 
 
 def damaged(path: Path, what: str, error: BaseException) -> BadInput:
@@ -93,8 +103,13 @@ def open_log(path: Path) -> Log:
     found = reader_for(path)(path)
     if not found.signals:
         raise refuse(path, "has no signals: nothing in it has numbers and times")
-    times = {id(s.t): _plausible(s.t) for s in found.signals.values()}  # which signals of one stream share
-    signals = {n: replace(s, t=times[id(s.t)], values=_plausible(s.values)) for n, s in found.signals.items()}
+    times = {
+        id(s.t): _plausible(s.t) for s in found.signals.values()
+    }  # which signals of one stream share
+    signals = {
+        n: replace(s, t=times[id(s.t)], values=_plausible(s.values))
+        for n, s in found.signals.items()
+    }
     return replace(found, signals=signals)
 
 
@@ -109,15 +124,21 @@ def reader_for(path: Path) -> Callable[[Path], Log]:
         raise refuse(path, "there is no such file")
     suffixes = known_suffixes()
     if path.is_dir() and not (path / BAG).is_file():
-        raise refuse(path, f"is a folder; a log is a file, or the folder of a ROS 2 bag with its {BAG}")
+        raise refuse(
+            path, f"is a folder; a log is a file, or the folder of a ROS 2 bag with its {BAG}"
+        )
     if not path.is_dir() and not path.is_file():
         raise refuse(path, "is a device or a pipe; a log is a file")
     suffix = "/" if path.is_dir() else path.suffix.lower()
     if suffix not in suffixes:
         allowed = ", ".join(sorted(s for s in suffixes if s != "/"))
-        raise refuse(path, f"its suffix {suffix or '(none)'!r} is of no known format; there are: {allowed}")
+        raise refuse(
+            path, f"its suffix {suffix or '(none)'!r} is of no known format; there are: {allowed}"
+        )
     if path.is_file() and path.stat().st_size > MOST_BYTES:
-        raise refuse(path, f"has {path.stat().st_size:,} bytes; at most {MOST_BYTES:,} are read: cut the log")
+        raise refuse(
+            path, f"has {path.stat().st_size:,} bytes; at most {MOST_BYTES:,} are read: cut the log"
+        )
     read: Callable[[Path], Log] = module_of("log", suffixes[suffix]).read
     return read
 
@@ -132,7 +153,10 @@ def signals_of(
 ) -> dict[str, Signal]:
     """Signals of one stream; `t` (N,) and every field (N,) are of the same rows."""
     prefix, units = f"{stream}." if stream else "", units or {}
-    return {f"{prefix}{name}": Signal(t, np.asarray(v, dtype=float), units.get(name, "")) for name, v in fields.items()}
+    return {
+        f"{prefix}{name}": Signal(t, np.asarray(v, dtype=float), units.get(name, ""))
+        for name, v in fields.items()
+    }
 
 
 def rate_of(t: Array) -> float:

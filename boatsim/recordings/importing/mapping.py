@@ -40,7 +40,9 @@ class Position(Table):
     @classmethod
     def _on_earth(cls, found: tuple[float, float] | None) -> tuple[float, float] | None:
         if found and not (abs(found[0]) < 89.0 and abs(found[1]) <= 360.0):
-            raise ValueError("allowed is [latitude, longitude] in degrees, not nearer than 1 degree to a pole")
+            raise ValueError(
+                "allowed is [latitude, longitude] in degrees, not nearer than 1 degree to a pole"
+            )
         return found
 
 
@@ -49,7 +51,9 @@ class Map(Table):
 
     about: str = ""
     vessel: str | None = None
-    rate: float | None = Field(None, gt=0.0, le=1000.0)  # [Hz] of rows; None: that of the fastest signal
+    rate: float | None = Field(
+        None, gt=0.0, le=1000.0
+    )  # [Hz] of rows; None: that of the fastest signal
     use: tuple[float, float] | None = None  # [s] since the log begins; None: all of it
     time: str | None = None  # of a table whose time is not found by its name; ends in s
     position: Position | None = None
@@ -76,7 +80,9 @@ class Map(Table):
         if self.use and not self.use[0] < self.use[1]:
             raise ValueError("use must be [from_s, to_s], the second larger")
         if not self.position and not set(self.columns) & {*POSE, *RATES}:
-            raise ValueError(f"no pose: give position, or at least one column of {', '.join((*POSE, *RATES))}")
+            raise ValueError(
+                f"no pose: give position, or at least one column of {', '.join((*POSE, *RATES))}"
+            )
         return self
 
 

@@ -79,7 +79,9 @@ def held(rows: Array, given: Samples) -> Array:
     last = np.searchsorted(given.t, rows + SAME, side="right") - 1
     known = last >= 0
     found[known] = given.values[last[known]]
-    area = np.append(0.0, np.cumsum(given.values[:-1] * np.diff(given.t)))  # under the held value, at each sample
+    area = np.append(
+        0.0, np.cumsum(given.values[:-1] * np.diff(given.t))
+    )  # under the held value, at each sample
     at = np.where(known, area[last] + given.values[last] * (rows - given.t[last]), np.nan)
     newest = np.searchsorted(given.t, rows[1:] - SAME) - 1  # before the next row
     changed = np.flatnonzero(known[:-1] & (newest > last[:-1]))

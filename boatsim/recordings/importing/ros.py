@@ -27,19 +27,33 @@ BUILT_IN = {  # which definitions of ROS 2 do not always bring along
 FIELD = re.compile(r"^\s*([\w/]+)(?:<=\d+)?(\[(?:<=)?(\d*)\])?\s+([A-Za-z]\w*)\s*(.*)$")
 SECTION = re.compile(r"^=+\s*$\s*^MSG:\s*(\S+)\s*$", re.MULTILINE)
 DEEPEST = 20  # messages in messages
-MOST_ELEMENTS = 16  # of a list of numbers that are kept; covariances and pictures have more, or are called so
+MOST_ELEMENTS = (
+    16  # of a list of numbers that are kept; covariances and pictures have more, or are called so
+)
 MOST_PARTS = 4  # of a list of messages
 MOST_EMPTY = 1000  # messages of no size in a message
 MOST_SIZE = 1_000_000  # [bytes] of a message that is read; only pictures and clouds are larger
 AGREE = 10.0  # [s] by which a message's own stamp and the time of its logging may differ
 
 UNITS = {  # of the usual messages (common_interfaces, mavros_msgs), by the end of the name
-    "angular_velocity.x": "rad/s", "angular_velocity.y": "rad/s", "angular_velocity.z": "rad/s",
-    "angular.x": "rad/s", "angular.y": "rad/s", "angular.z": "rad/s",
-    "linear.x": "m/s", "linear.y": "m/s", "linear.z": "m/s",
-    "position.x": "m", "position.y": "m", "position.z": "m", "latitude": "deg", "longitude": "deg",
-    "linear_acceleration.x": "m/s^2", "linear_acceleration.y": "m/s^2", "linear_acceleration.z": "m/s^2",
-}  # fmt: skip
+    "angular_velocity.x": "rad/s",
+    "angular_velocity.y": "rad/s",
+    "angular_velocity.z": "rad/s",
+    "angular.x": "rad/s",
+    "angular.y": "rad/s",
+    "angular.z": "rad/s",
+    "linear.x": "m/s",
+    "linear.y": "m/s",
+    "linear.z": "m/s",
+    "position.x": "m",
+    "position.y": "m",
+    "position.z": "m",
+    "latitude": "deg",
+    "longitude": "deg",
+    "linear_acceleration.x": "m/s^2",
+    "linear_acceleration.y": "m/s^2",
+    "linear_acceleration.z": "m/s^2",
+}
 
 
 @dataclass(frozen=True)
@@ -74,9 +88,14 @@ class Topic:
 def definitions(text: str, root: str) -> dict[str, list[Part]]:
     """Parts of a message and of those in it, from definitions written one below the other. Raises ValueError."""
     pieces = SECTION.split(text)
-    texts = BUILT_IN | dict(zip(map(_full, pieces[1::2]), pieces[2::2], strict=True)) | {_full(root): pieces[0]}
+    texts = (
+        BUILT_IN
+        | dict(zip(map(_full, pieces[1::2]), pieces[2::2], strict=True))
+        | {_full(root): pieces[0]}
+    )
     return {
-        name: [part for line in body.splitlines() if (part := _part(line, name, texts))] for name, body in texts.items()
+        name: [part for line in body.splitlines() if (part := _part(line, name, texts))]
+        for name, body in texts.items()
     }
 
 
@@ -112,7 +131,9 @@ class Decoder:
         """Each level of messages in messages once, however many ways lead there."""
         level = {self.root}
         for _ in range(DEEPEST + 1):
-            level = {part.kind for name in level for part in self.parts[name] if part.kind in self.parts}
+            level = {
+                part.kind for name in level for part in self.parts[name] if part.kind in self.parts
+            }
         if level:
             raise ValueError(f"{self.root} holds itself, or messages in messages too deep to read")
 
@@ -123,7 +144,9 @@ class Decoder:
         order = ">" if self.cdr and data[1] == 0 else "<"
         found: dict[str, float] = {}
         try:
-            _Cursor(data[4:] if self.cdr else data, order, self.cdr, self.parts).message(self.root, "", found)
+            _Cursor(data[4:] if self.cdr else data, order, self.cdr, self.parts).message(
+                self.root, "", found
+            )
         except (struct.error, IndexError) as error:
             raise ValueError(str(error)) from error
         return found
@@ -132,9 +155,13 @@ class Decoder:
 class _Cursor:
     """Where in a message one is."""
 
-    def __init__(self, data: bytes, order: str, aligned: bool, parts: Mapping[str, list[Part]]) -> None:
+    def __init__(
+        self, data: bytes, order: str, aligned: bool, parts: Mapping[str, list[Part]]
+    ) -> None:
         self.data, self.order, self.aligned, self.parts, self.at = data, order, aligned, parts, 0
-        self.left = MOST_EMPTY + len(data)  # messages in it that are looked at: those of no size have no other bound
+        self.left = MOST_EMPTY + len(
+            data
+        )  # messages in it that are looked at: those of no size have no other bound
 
     def message(self, name: str, prefix: str, found: dict[str, float] | None) -> None:
         self.left -= 1
@@ -176,7 +203,9 @@ class _Cursor:
     def several(self, part: Part, name: str, found: dict[str, float] | None) -> None:
         count = int(self.number("uint32")) if part.count == -1 else part.count or 0
         if count > len(self.data) - self.at:
-            raise ValueError(f"{name} is said to have {count} elements, more than the message has bytes")
+            raise ValueError(
+                f"{name} is said to have {count} elements, more than the message has bytes"
+            )
         if part.kind in NUMBERS:
             letter, size = NUMBERS[part.kind]
             if count:
@@ -209,8 +238,13 @@ def log_of(path: Path, topics: Mapping[str, Topic], remarks: list[str]) -> Log:
             if abs(float(np.median(own - logged))) < AGREE:
                 t = own
             else:
-                remarks.append(f"{path}: the stamps of {name} are of another clock; the times of logging are used")
-        units = {n: next((u for end, u in UNITS.items() if f".{n}".endswith(f".{end}")), "") for n in columns}
+                remarks.append(
+                    f"{path}: the stamps of {name} are of another clock; the times of logging are used"
+                )
+        units = {
+            n: next((u for end, u in UNITS.items() if f".{n}".endswith(f".{end}")), "")
+            for n in columns
+        }
         signals |= signals_of(name, t, columns, units)
         if len(signals) > MOST_SIGNALS:
             Room(path).take(0, len(signals))

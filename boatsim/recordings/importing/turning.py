@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.importing.guess import Guess
+from boatsim.recordings.importing.signal_classification import Guess
 
 SURE = 0.3  # correlation with the turning from which a signal steers
 AHEAD = 0.2  # by which that of the one that steers, less its correlation with the speed, is ahead of every other's
@@ -32,7 +32,9 @@ class Turning:
                 t, order = np.unique(g.signal.t[there], return_index=True)
                 values = g.signal.values[there][order]
                 if column == "psi_rad" and len(t) > 2:
-                    values = np.gradient(np.unwrap(values, period=360.0 if g.word == "deg" else 2.0 * np.pi), t)
+                    values = np.gradient(
+                        np.unwrap(values, period=360.0 if g.word == "deg" else 2.0 * np.pi), t
+                    )
                 compass = column == "psi_rad" and "yaw" not in g.tokens
                 self.t, self.r = t, -values if enu and not compass else values
                 return

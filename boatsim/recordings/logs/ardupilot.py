@@ -9,8 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.errors import BadInput
-from boatsim.recordings.importing.log import Log, Room, Signal, damaged, needs, numbered, quiet, signals_of
-from boatsim.recordings.raw import refuse
+from boatsim.recordings.importing.log import (
+    Log,
+    Room,
+    Signal,
+    damaged,
+    needs,
+    numbered,
+    quiet,
+    signals_of,
+)
+from boatsim.recordings.raw_table import refuse
 
 SUFFIXES = (".bin",)
 # letter of a FMT message -> numpy type and factor (libraries/AP_Logger/LogStructure.h); arrays and texts have none
@@ -21,12 +30,30 @@ LETTERS: dict[str, tuple[str, float | None]] = {
     "L": ("i4", 1e-7), "M": ("u1", 1.0), "q": ("i8", 1.0), "Q": ("u8", 1.0),
 }  # fmt: skip
 CLOCKS = {"TimeUS": 1e-6, "TimeMS": 1e-3}  # [s]
-ITS_OWN = ("FMT", "FMTU", "UNIT", "MULT", "PARM", "MSG", "FILE")  # about the log, not about the boat
-UNITS = {"degheading": "deg", "deglatitude": "deg", "deglongitude": "deg", "µs": "us"}  # its words, ours
+ITS_OWN = (
+    "FMT",
+    "FMTU",
+    "UNIT",
+    "MULT",
+    "PARM",
+    "MSG",
+    "FILE",
+)  # about the log, not about the boat
+UNITS = {
+    "degheading": "deg",
+    "deglatitude": "deg",
+    "deglongitude": "deg",
+    "µs": "us",
+}  # its words, ours
 FUNCTIONS = {  # of SERVOn_FUNCTION, from the list of parameters of Rover
-    0: "disabled", 1: "passed through from the pilot", 26: "ground steering", 70: "throttle", 73: "throttle left",
-    74: "throttle right", **{32 + k: f"motor {k}" for k in range(1, 9)},
-}  # fmt: skip
+    0: "disabled",
+    1: "passed through from the pilot",
+    26: "ground steering",
+    70: "throttle",
+    73: "throttle left",
+    74: "throttle right",
+    **{32 + k: f"motor {k}" for k in range(1, 9)},
+}
 STICK, OUTPUT = "pilot's stick", "output"
 
 
@@ -38,7 +65,9 @@ class _Formats(dict[int, Any]):
             raise ValueError(f"messages {number} have no length")
         super().__setitem__(number, format)
 
-    kept = property(lambda self: self._formats, lambda self, found: setattr(self, "_formats", _Formats(found)))
+    kept = property(
+        lambda self: self._formats, lambda self, found: setattr(self, "_formats", _Formats(found))
+    )
 
 
 def read(path: Path) -> Log:
@@ -76,13 +105,17 @@ def _log(path: Path, index: Any) -> Log:
                 if found := _signals(part, format):
                     streams[format.name, instance] = found
     called = numbered(list(streams))
-    signals = {f"{called[key]}.{name}": s for key, found in streams.items() for name, s in found.items()}
+    signals = {
+        f"{called[key]}.{name}": s for key, found in streams.items() for name, s in found.items()
+    }
     remark = f"{path}: not read, its length is not that of its format: {', '.join(skipped)[:200]}"
     explained = _explained(signals, _parameters(data, index))
     return Log(path, explained, "NED", (remark,) if skipped else ())
 
 
-def _rows(data: NDArray[np.uint8], offsets: NDArray[np.int64], format: Any) -> "NDArray[Any] | None":
+def _rows(
+    data: NDArray[np.uint8], offsets: NDArray[np.int64], format: Any
+) -> "NDArray[Any] | None":
     """(N,) records of a message, those left out that the file cuts; None where format and length disagree."""
     kinds = [LETTERS[letter][0] for letter in format.format]
     names = [f"{i} {name}" for i, name in enumerate(format.columns)]
@@ -100,7 +133,10 @@ def _rows(data: NDArray[np.uint8], offsets: NDArray[np.int64], format: Any) -> "
 
 def _instances(rows: "NDArray[Any]", format: Any) -> list[tuple[int, "NDArray[Any]"]]:
     """The records of each sensor of several, by its number."""
-    if not format.instance_field or LETTERS[format.format[format.columns.index(format.instance_field)]][1] is None:
+    if (
+        not format.instance_field
+        or LETTERS[format.format[format.columns.index(format.instance_field)]][1] is None
+    ):
         return [(0, rows)]
     number = rows[_field(format, format.instance_field)]
     return [(int(i), rows[number == i]) for i in np.unique(number)]
@@ -135,7 +171,9 @@ def _parameters(data: NDArray[np.uint8], index: Any) -> dict[str, float]:
     rows = _rows(data, np.asarray(index.offsets[number], dtype=np.int64), format)
     if rows is None or LETTERS[format.format[format.columns.index("Value")]][1] is None:
         return {}
-    names = [bytes(n).split(b"\0")[0].decode("ascii", "replace") for n in rows[_field(format, "Name")]]
+    names = [
+        bytes(n).split(b"\0")[0].decode("ascii", "replace") for n in rows[_field(format, "Name")]
+    ]
     values = rows[_field(format, "Value")].astype(float)
     return {n: float(v) for n, v in zip(names, values, strict=True) if np.isfinite(v)}
 
@@ -149,9 +187,15 @@ def _explained(signals: Mapping[str, Signal], parameters: Mapping[str, float]) -
         if stream == "RCIN" and number.isdigit():
             found[name] = replace(signal, unit="us", about=f"{STICK} {number}")
         elif stream == "RCOU" and number.isdigit():
-            drives = FUNCTIONS.get(int(parameters.get(f"SERVO{number}_FUNCTION", -1)), f"{OUTPUT} {number}")
-            ends = [parameters.get(f"SERVO{number}_{end}", np.nan) for end in ("MIN", "TRIM", "MAX")]
+            drives = FUNCTIONS.get(
+                int(parameters.get(f"SERVO{number}_FUNCTION", -1)), f"{OUTPUT} {number}"
+            )
+            ends = [
+                parameters.get(f"SERVO{number}_{end}", np.nan) for end in ("MIN", "TRIM", "MAX")
+            ]
             low, neutral, high = ends[::-1] if parameters.get(f"SERVO{number}_REVERSED") else ends
             known = low < neutral < high or low > neutral > high
-            found[name] = replace(signal, unit="us", about=drives, pulse=(low, neutral, high) if known else None)
+            found[name] = replace(
+                signal, unit="us", about=drives, pulse=(low, neutral, high) if known else None
+            )
     return found

@@ -31,7 +31,9 @@ def read(path: Path) -> Log:
         if not any(len(topic.logged) for topic in topics.values()):
             raise damaged(path, "MCAP", error) from error
         remarks.append(f"{path}: ends early or is damaged; what stands before is used")
-    return log_of(path, {name: topic for name, topic in topics.items() if len(topic.logged)}, remarks)
+    return log_of(
+        path, {name: topic for name, topic in topics.items() if len(topic.logged)}, remarks
+    )
 
 
 def _fill(path: Path, topics: dict[str, Topic], remarks: list[str]) -> None:
@@ -46,12 +48,18 @@ def _fill(path: Path, topics: dict[str, Topic], remarks: list[str]) -> None:
             if decode is not None:
                 names[record.id] = record.topic
                 topics.setdefault(record.topic, Topic(decode))
-        elif isinstance(record, Message) and record.channel_id in names and len(record.data) <= MOST_SIZE:
+        elif (
+            isinstance(record, Message)
+            and record.channel_id in names
+            and len(record.data) <= MOST_SIZE
+        ):
             name = names[record.channel_id]
             try:
                 topics[name].add(record.log_time * 1e-9, record.data, room)
             except ValueError as error:
-                remarks.append(f"{path}: messages of {name} that can not be read are left out ({error})")
+                remarks.append(
+                    f"{path}: messages of {name} that can not be read are left out ({error})"
+                )
 
 
 def _records(path: Path) -> "Iterator[Any]":
@@ -82,18 +90,24 @@ def _unpacked(compression: str, data: bytes) -> bytes:
     return data
 
 
-def _decoder(channel: Any, schema: Any, remarks: list[str], path: Path) -> "Callable[[bytes], dict[str, float]] | None":
+def _decoder(
+    channel: Any, schema: Any, remarks: list[str], path: Path
+) -> "Callable[[bytes], dict[str, float]] | None":
     """What takes the numbers out of a channel's messages; None, and a remark, where its encoding is not read."""
     encoding = (channel.message_encoding, schema.encoding if schema else "")
     try:
         if encoding in (("cdr", "ros2msg"), ("ros1", "ros1msg")):
-            return Decoder(schema.data.decode("utf-8", "replace"), schema.name, encoding[0] == "cdr")
+            return Decoder(
+                schema.data.decode("utf-8", "replace"), schema.name, encoding[0] == "cdr"
+            )
     except (ValueError, RecursionError) as error:
         remarks.append(f"{path}: {channel.topic} is not read ({error})")
         return None
     if channel.message_encoding == "json":
         return _numbers_of_json
-    remarks.append(f"{path}: {channel.topic} is not read: its messages are {' '.join(encoding).strip() or 'unknown'}")
+    remarks.append(
+        f"{path}: {channel.topic} is not read: its messages are {' '.join(encoding).strip() or 'unknown'}"
+    )
     return None
 
 

@@ -10,14 +10,22 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.log import MOST_TEXT, Log, Room, Signal, needs
-from boatsim.recordings.raw import refuse
+from boatsim.recordings.raw_table import refuse
 
 SUFFIXES = (".nmea", ".0183", ".txt", ".log")
-FIELDS: dict[str, dict[str, tuple[str, str]]] = {  # sentence -> our field: attribute of the library, unit
-    "GGA": {"latitude": ("latitude", "deg"), "longitude": ("longitude", "deg"), "quality": ("gps_qual", "")},
+FIELDS: dict[
+    str, dict[str, tuple[str, str]]
+] = {  # sentence -> our field: attribute of the library, unit
+    "GGA": {
+        "latitude": ("latitude", "deg"),
+        "longitude": ("longitude", "deg"),
+        "quality": ("gps_qual", ""),
+    },
     "GLL": {"latitude": ("latitude", "deg"), "longitude": ("longitude", "deg")},
     "RMC": {
-        "latitude": ("latitude", "deg"), "longitude": ("longitude", "deg"), "speed": ("spd_over_grnd", "kn"),
+        "latitude": ("latitude", "deg"),
+        "longitude": ("longitude", "deg"),
+        "speed": ("spd_over_grnd", "kn"),
         "course": ("true_course", "deg"),
     },
     "VTG": {"course": ("true_track", "deg"), "speed": ("spd_over_grnd_kts", "kn")},
@@ -28,11 +36,13 @@ FIELDS: dict[str, dict[str, tuple[str, str]]] = {  # sentence -> our field: attr
     "RSA": {"rudder_starboard": ("rsa_starboard", "deg"), "rudder_port": ("rsa_port", "deg")},
     "RPM": {"shaft": ("speed", "rpm")},
     "VHW": {"speed_water": ("water_speed_knots", "kn")},
-}  # fmt: skip
+}
 NUMBERED = {"RPM": "engine_no"}  # several of these are told apart
 STATUS = {"RMC": "status", "GLL": "status"}  # "A" where the fix is valid
 SENTENCE = re.compile(r"[$!][A-Za-z]{1,5}[\w]*,[^\r\n]*")
-STAMP = re.compile(r"(?:^|[\s,;\\]|c:)(\d{9,13}(?:\.\d+)?)(?=[\s,;*\\])")  # of the logger: s or ms since 1970
+STAMP = re.compile(
+    r"(?:^|[\s,;\\]|c:)(\d{9,13}(?:\.\d+)?)(?=[\s,;*\\])"
+)  # of the logger: s or ms since 1970
 DAY = 86400.0  # [s]
 
 
@@ -43,16 +53,26 @@ def read(path: Path) -> Log:
     except ImportError as error:
         raise needs(path, "pynmea2", "nmea") from error
     if path.stat().st_size > MOST_TEXT:
-        raise refuse(path, f"has {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of text are read: cut the log")
+        raise refuse(
+            path,
+            f"has {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of text are read: cut the log",
+        )
     lines = path.read_bytes().decode("ascii", "replace").splitlines()
     kept, bad = _sentences(path, lines, pynmea2.parse)
     if not kept:
-        raise refuse(path, "has no NMEA 0183 sentence that can be read; if it is a table, call it .csv")
+        raise refuse(
+            path, "has no NMEA 0183 sentence that can be read; if it is a table, call it .csv"
+        )
     t, counted = _times(kept)
-    remarks = [f"{path}: {bad} of {len(lines)} lines are no whole sentences and are left out"] if bad else []
+    remarks = (
+        [f"{path}: {bad} of {len(lines)} lines are no whole sentences and are left out"]
+        if bad
+        else []
+    )
     if counted is None:
         raise refuse(
-            path, "no sentence has a time (GGA, RMC, GLL, or a logger's stamp in front); without one none can be placed"
+            path,
+            "no sentence has a time (GGA, RMC, GLL, or a logger's stamp in front); without one none can be placed",
         )
     if counted:
         remarks.append(
@@ -79,11 +99,18 @@ def _sentences(
             continue
         when = _stamp(line) if stamped else clock.read(sentence)
         valid = name not in STATUS or getattr(sentence, STATUS[name], "A") == "A"
-        numbers = {ours: _float(sentence, theirs) for ours, (theirs, _) in FIELDS[name].items()} if valid else {}
+        numbers = (
+            {ours: _float(sentence, theirs) for ours, (theirs, _) in FIELDS[name].items()}
+            if valid
+            else {}
+        )
         number = _float(sentence, NUMBERED[name]) if name in NUMBERED else 0.0
         room.take(len(numbers) + 1)
         found.append((when, f"{name}[{number:.0f}]" if name in NUMBERED else name, numbers))
-    return [(when if when is None else when + clock.midnight, name, values) for when, name, values in found], bad
+    return [
+        (when if when is None else when + clock.midnight, name, values)
+        for when, name, values in found
+    ], bad
 
 
 class _Clock:
@@ -97,7 +124,9 @@ class _Clock:
         of_day = getattr(sentence, "timestamp", None)
         if not isinstance(of_day, time):
             return None
-        now = of_day.hour * 3600.0 + of_day.minute * 60.0 + of_day.second + of_day.microsecond * 1e-6
+        now = (
+            of_day.hour * 3600.0 + of_day.minute * 60.0 + of_day.second + of_day.microsecond * 1e-6
+        )
         self.days += DAY if now < self.last - 0.5 * DAY else 0.0
         self.last = now
         day = getattr(sentence, "datestamp", None)

@@ -9,7 +9,7 @@ from typing import Any
 from boatsim.errors import BadInput
 from boatsim.recordings.importing.log import BAG, MOST_BYTES, Log, Room, damaged, needs
 from boatsim.recordings.importing.ros import MOST_SIZE, Decoder, Topic, log_of
-from boatsim.recordings.raw import refuse
+from boatsim.recordings.raw_table import refuse
 
 SUFFIXES = (".bag", ".db3", "/")
 MOST_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
@@ -38,7 +38,9 @@ def read(path: Path) -> Log:
         if not any(len(topic.logged) for topic in topics.values()):
             raise damaged(path, "a bag of ROS", error) from error
         remarks.append(f"{path}: ends early or is damaged; what stands before is used")
-    return log_of(path, {name: topic for name, topic in topics.items() if len(topic.logged)}, remarks)
+    return log_of(
+        path, {name: topic for name, topic in topics.items() if len(topic.logged)}, remarks
+    )
 
 
 def _check_folder(path: Path, folder: Path) -> None:
@@ -50,9 +52,13 @@ def _check_folder(path: Path, folder: Path) -> None:
         raise refuse(path, f"a ROS 2 bag needs its {BAG} beside it")
     if about.stat().st_size > MOST_ABOUT:
         raise refuse(about, "is too large for what a bag says of itself")
-    said = YAML(typ="safe").load(about.read_text(encoding="utf-8", errors="replace"))["rosbag2_bagfile_information"]
+    said = YAML(typ="safe").load(about.read_text(encoding="utf-8", errors="replace"))[
+        "rosbag2_bagfile_information"
+    ]
     if str(said.get("compression_mode") or "none").lower() != "none":
-        raise refuse(path, "is compressed; unpack it first: ros2 bag convert, with compression_mode none")
+        raise refuse(
+            path, "is compressed; unpack it first: ros2 bag convert, with compression_mode none"
+        )
     if str(said.get("storage_identifier")) == "mcap":
         raise refuse(path, "is a folder of MCAP files; give the .mcap in it")
     if sum(file.stat().st_size for file in folder.iterdir() if file.is_file()) > MOST_BYTES:
@@ -93,7 +99,9 @@ def _fill(path: Path, bag: Any, topics: dict[str, Topic], remarks: list[str]) ->
             try:
                 topics[connection.topic].add(when * 1e-9, bytes(data), room)
             except ValueError as error:
-                remarks.append(f"{path}: messages of {connection.topic} that can not be read are left out ({error})")
+                remarks.append(
+                    f"{path}: messages of {connection.topic} that can not be read are left out ({error})"
+                )
 
 
 def _usual(name: str) -> str:

@@ -13,7 +13,7 @@ from boatsim.physics.base import Array
 from boatsim.recordings.importing.clocks import clock_of, dates, seconds
 from boatsim.recordings.importing.log import MOST_SIGNALS, MOST_TEXT, Log, Room, Signal, damaged
 from boatsim.recordings.notes import unit_of
-from boatsim.recordings.raw import no_twins, refuse
+from boatsim.recordings.raw_table import no_twins, refuse
 
 if TYPE_CHECKING:
     from pyarrow import ChunkedArray
@@ -35,7 +35,12 @@ def read(path: Path) -> Log:
     return _csv(path)
 
 
-def _log(path: Path, columns: Mapping[str, Array], units: Mapping[str, str], remarks: tuple[str, ...] = ()) -> Log:
+def _log(
+    path: Path,
+    columns: Mapping[str, Array],
+    units: Mapping[str, str],
+    remarks: tuple[str, ...] = (),
+) -> Log:
     clock = clock_of(columns)
     count = len(next(iter(columns.values()), ()))
     t = np.arange(count, dtype=float) if clock is None else seconds(clock, columns[clock])
@@ -44,7 +49,11 @@ def _log(path: Path, columns: Mapping[str, Array], units: Mapping[str, str], rem
         for name, values in columns.items()
         if np.isfinite(values).any()
     }
-    untimed = (f"{path}: no column is called a time: rows are counted; the map can say `time`",) if not clock else ()
+    untimed = (
+        (f"{path}: no column is called a time: rows are counted; the map can say `time`",)
+        if not clock
+        else ()
+    )
     return Log(path, signals, remarks=(*remarks, *untimed))
 
 
@@ -60,8 +69,12 @@ def _parquet(path: Path) -> dict[str, Array]:
 
     try:
         file = parquet.ParquetFile(path)
-        Room(path).take(file.metadata.num_rows * file.metadata.num_columns, file.metadata.num_columns)
-        table = file.read(columns=[f.name for f in file.schema_arrow if _is_number(pa.types, f.type)])
+        Room(path).take(
+            file.metadata.num_rows * file.metadata.num_columns, file.metadata.num_columns
+        )
+        table = file.read(
+            columns=[f.name for f in file.schema_arrow if _is_number(pa.types, f.type)]
+        )
     except (pa.ArrowException, OSError, ValueError) as error:
         raise damaged(path, "Parquet", error) from error
     no_twins(path, table.column_names)
@@ -79,7 +92,10 @@ def _parquet(path: Path) -> dict[str, Array]:
 
 def _is_number(types: Any, kind: Any) -> bool:
     """Whether a column is numbers, true or false, or times; texts are not even unpacked."""
-    return any(getattr(types, f"is_{k}")(kind) for k in ("integer", "floating", "decimal", "boolean", "timestamp"))
+    return any(
+        getattr(types, f"is_{k}")(kind)
+        for k in ("integer", "floating", "decimal", "boolean", "timestamp")
+    )
 
 
 @dataclass(frozen=True)
@@ -116,7 +132,11 @@ def _head(path: Path) -> _Head:
         raise refuse(path, f"has {len(header)} columns; no log of a boat has as many")
     no_twins(path, header)
     if all(_number(cell, separator) is not None for cell in header):
-        raise refuse(path, "has no header: its first row is numbers; names of columns are needed", lines[0][0] + 1)
+        raise refuse(
+            path,
+            "has no header: its first row is numbers; names of columns are needed",
+            lines[0][0] + 1,
+        )
     units = {name: found[1].strip() for name in header if (found := BRACKETS.search(name))}
     below = next(csv.reader([lines[1][1]], delimiter=separator), [])
     if len(below) == len(header) and _is_units(below, header, separator):
@@ -140,7 +160,9 @@ def _quick(path: Path, head: _Head) -> dict[str, Array] | None:
             path,
             arrow.ReadOptions(column_names=head.columns, skip_rows=head.row),
             arrow.ParseOptions(delimiter=head.separator),
-            arrow.ConvertOptions(column_types=dict.fromkeys(head.columns, pa.string()), strings_can_be_null=False),
+            arrow.ConvertOptions(
+                column_types=dict.fromkeys(head.columns, pa.string()), strings_can_be_null=False
+            ),
         )
         for piece in pieces:
             room.take(piece.num_rows * piece.num_columns, piece.num_columns)
@@ -179,7 +201,9 @@ def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str,
     rows, remarks = _rows(path, kept, head.separator, len(head.columns))
     if not rows:
         raise refuse(path, "has a header and no rows")
-    return {n: _column([row[i] for row in rows], head.separator) for i, n in enumerate(head.columns)}, remarks
+    return {
+        n: _column([row[i] for row in rows], head.separator) for i, n in enumerate(head.columns)
+    }, remarks
 
 
 def _text(path: Path, found: bytes) -> str:
@@ -224,7 +248,11 @@ def _rows(
 def _is_units(row: Sequence[str], header: Sequence[str], separator: str) -> bool:
     """Whether the row below the header says units: no numbers, and few long words."""
     filled = [cell for cell in row if cell.strip()]
-    words = [c for c in filled if _number(c, separator) is None and len(c.strip()) <= 10 and dates([c]) is None]
+    words = [
+        c
+        for c in filled
+        if _number(c, separator) is None and len(c.strip()) <= 10 and dates([c]) is None
+    ]
     return bool(filled) and len(words) == len(filled) and 2 * len(filled) >= len(header)
 
 

@@ -8,16 +8,32 @@ import numpy as np
 
 from boatsim.errors import BadInput
 from boatsim.recordings.importing.frames import with_angles
-from boatsim.recordings.importing.log import Log, Room, Signal, damaged, needs, numbered, quiet, signals_of
+from boatsim.recordings.importing.log import (
+    Log,
+    Room,
+    Signal,
+    damaged,
+    needs,
+    numbered,
+    quiet,
+    signals_of,
+)
 
 SUFFIXES = (".ulg", ".ulog")
 SCALED = {  # fields whose integers are not in the unit of their name (msg/SensorGps.msg, msg/VehicleGpsPosition.msg)
-    ("vehicle_gps_position", "lat"): (1e-7, "deg"), ("vehicle_gps_position", "lon"): (1e-7, "deg"),
-    ("sensor_gps", "lat"): (1e-7, "deg"), ("sensor_gps", "lon"): (1e-7, "deg"),
-}  # fmt: skip
+    ("vehicle_gps_position", "lat"): (1e-7, "deg"),
+    ("vehicle_gps_position", "lon"): (1e-7, "deg"),
+    ("sensor_gps", "lat"): (1e-7, "deg"),
+    ("sensor_gps", "lon"): (1e-7, "deg"),
+}
 UNITS = {  # of PX4's messages (msg/*.msg), by topic and field
-    "latitude_deg": "deg", "longitude_deg": "deg", "heading": "rad", "roll": "rad", "pitch": "rad", "yaw": "rad",
-}  # fmt: skip
+    "latitude_deg": "deg",
+    "longitude_deg": "deg",
+    "heading": "rad",
+    "roll": "rad",
+    "pitch": "rad",
+    "yaw": "rad",
+}
 LOCAL = {"x": "m", "y": "m", "z": "m", "vx": "m/s", "vy": "m/s", "vz": "m/s"}
 TOPICS = {
     "vehicle_local_position": LOCAL,
@@ -71,10 +87,14 @@ def _log(path: Path, topics: list, corrupt: bool) -> Log:  # type: ignore[type-a
         t = topic.data.get("timestamp")
         if t is None or not len(t):
             continue
-        fields = {n: v for n, v in topic.data.items() if "timestamp" not in n and "_padding" not in n}
+        fields = {
+            n: v for n, v in topic.data.items() if "timestamp" not in n and "_padding" not in n
+        }
         room.take(len(t) * len(fields), len(signals) + len(fields))
         known = UNITS | TOPICS.get(topic.name, {})
-        units = {n: "us" if PULSES.match(topic.name) and "[" in n else known.get(n, "") for n in fields}
+        units = {
+            n: "us" if PULSES.match(topic.name) and "[" in n else known.get(n, "") for n in fields
+        }
         for name in fields:
             if (topic.name, name) in SCALED:
                 factor, units[name] = SCALED[topic.name, name]

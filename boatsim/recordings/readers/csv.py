@@ -9,7 +9,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.limits import LONGEST_HEADER, MOST_CELLS, check_shape
-from boatsim.recordings.raw import Raw, no_twins, numbers, refuse
+from boatsim.recordings.raw_table import Raw, no_twins, numbers, refuse
 
 if TYPE_CHECKING:
     from pyarrow import ChunkedArray, Table
@@ -37,7 +37,9 @@ def _check_cells(path: Path, columns: int) -> None:
         while block := file.read(BLOCK):
             cells += block.count(b",") + block.count(b"\n")
             if cells > MOST_CELLS:
-                raise refuse(path, f"has more than {MOST_CELLS:.3g} cells; a recording has at most so many")
+                raise refuse(
+                    path, f"has more than {MOST_CELLS:.3g} cells; a recording has at most so many"
+                )
         check_shape(path, columns, cells)
 
 
@@ -48,7 +50,9 @@ def _quick(path: Path, first: bytes, content: bytes) -> Raw | None:
         return None
     if (table := _table(header, content)) is None:
         return None
-    if content.count(b"\n") + (not content.endswith(b"\n")) != 1 + table.num_rows:  # a blank line, or none of ours
+    if (
+        content.count(b"\n") + (not content.endswith(b"\n")) != 1 + table.num_rows
+    ):  # a blank line, or none of ours
         return None
     raw = Raw(path, {}, range(2, 2 + table.num_rows))
     for name, column in zip(header, table.columns, strict=True):
@@ -74,10 +78,15 @@ def _table(header: list[str], content: bytes) -> "Table | None":
     import pyarrow as pa  # 60 ms, comes with rerun-sdk
     from pyarrow import csv as arrow
 
-    texts = arrow.ConvertOptions(column_types=dict.fromkeys(header, pa.string()), strings_can_be_null=False)
+    texts = arrow.ConvertOptions(
+        column_types=dict.fromkeys(header, pa.string()), strings_can_be_null=False
+    )
     try:
         return arrow.read_csv(
-            pa.BufferReader(content), arrow.ReadOptions(skip_rows=1, column_names=header), None, texts
+            pa.BufferReader(content),
+            arrow.ReadOptions(skip_rows=1, column_names=header),
+            None,
+            texts,
         )
     except pa.ArrowException:
         return None
@@ -93,7 +102,9 @@ def _numbers(raw: Raw, name: str, column: "ChunkedArray") -> Array:
         found = np.array(filled.cast(pa.float64()).to_numpy(), dtype=float)
     except pa.ArrowException:
         return numbers(raw, name, column.to_pylist())
-    plain = np.isnan(found).sum() == filled.null_count  # what else is called nan there need not be so here
+    plain = (
+        np.isnan(found).sum() == filled.null_count
+    )  # what else is called nan there need not be so here
     return found if plain else numbers(raw, name, column.to_pylist())
 
 
@@ -115,7 +126,9 @@ def _cells(path: Path, content: bytes) -> tuple[list[str], list[list[str]], list
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise refuse(path, "is not a text file; a recording is CSV, Parquet or the .rrd of a run") from error
+        raise refuse(
+            path, "is not a text file; a recording is CSV, Parquet or the .rrd of a run"
+        ) from error
     if "\0" in text:
         raise refuse(path, "is not a text file; a recording is CSV, Parquet or the .rrd of a run")
     reader = csv.reader(StringIO(text, newline=None))
@@ -132,6 +145,10 @@ def _cells(path: Path, content: bytes) -> tuple[list[str], list[list[str]], list
     header = [name.strip() for name in rows[0]]
     for character, called in ((";", "semicolons"), ("\t", "tabs")):
         if len(header) == 1 and character in header[0]:
-            raise refuse(path, f"is separated by {called}; allowed are commas, with a point in decimal numbers", 1)
+            raise refuse(
+                path,
+                f"is separated by {called}; allowed are commas, with a point in decimal numbers",
+                1,
+            )
     no_twins(path, header)
     return header, rows[1:], lines[1:]

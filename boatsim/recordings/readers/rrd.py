@@ -19,7 +19,7 @@ from rerun.chunk import RrdReader
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.recordings.limits import check_shape
-from boatsim.recordings.raw import Raw
+from boatsim.recordings.raw_table import Raw
 
 TIMELINE = "sim_time"
 SIGNALS = "signals"
@@ -36,7 +36,15 @@ def read(path: Path) -> Raw:
     """The columns of a run's `.rrd`, t_s first; rows in which a signal was not logged are nan. Raises BadInput."""
     with tempfile.TemporaryDirectory(prefix="boatsim-") as folder:
         table = Path(folder) / "table.npz"
-        words = [sys.executable, "-P", "-c", READ, json.dumps(sys.path), os.fspath(path), os.fspath(table)]
+        words = [
+            sys.executable,
+            "-P",
+            "-c",
+            READ,
+            json.dumps(sys.path),
+            os.fspath(path),
+            os.fspath(table),
+        ]
         done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
         if done.returncode == REFUSED:
             raise BadInput(done.stdout.decode("utf-8", "replace"))
@@ -71,7 +79,9 @@ def columns_of(path: Path) -> dict[str, Array]:
             cells += len(values)
             check_shape(path, len(series), cells)
     except (ValueError, OSError, RuntimeError) as error:
-        raise BadInput(f"{path}: can not be read as .rrd ({' '.join(str(error).split())[:200]})") from error
+        raise BadInput(
+            f"{path}: can not be read as .rrd ({' '.join(str(error).split())[:200]})"
+        ) from error
     if not series:
         raise BadInput(f"{path}: is not the log of a boatsim run; it has nothing under /{SIGNALS}")
     rows = np.unique(np.concatenate([part for times, _ in series.values() for part in times]))
@@ -102,4 +112,8 @@ def _scalars(path: Path) -> Iterator[tuple[str, Array, Array]]:
         batch = chunk.to_record_batch()
         values = batch.column(batch.schema.names.index("Scalars:scalars"))
         times = batch.column(batch.schema.names.index(TIMELINE)).cast("int64")
-        yield name, times.to_numpy(zero_copy_only=False), values.flatten().to_numpy(zero_copy_only=False)
+        yield (
+            name,
+            times.to_numpy(zero_copy_only=False),
+            values.flatten().to_numpy(zero_copy_only=False),
+        )

@@ -19,7 +19,9 @@ class Inclinometer(Sensor):
     columns: ClassVar = {"phi": "phi_rad", "p": "p_radps"}
 
     roll_sd: float = param(0.002, low=0.0, high=0.5, unit="rad", words="noise of the angle")
-    rate_sd: float = param(0.00175, low=0.0, high=0.5, unit="rad/s", words="noise of the rate, 0.1 deg/s")
+    rate_sd: float = param(
+        0.00175, low=0.0, high=0.5, unit="rad/s", words="noise of the rate, 0.1 deg/s"
+    )
 
     def read(self, engine: Stepper, rng: np.random.Generator) -> Mapping[str, float]:
         """The boat's roll, off by the noise."""

@@ -1,0 +1,41 @@
+"""How the actuators stood when a recording began: settled to its first commands, or still as they are at rest.
+
+A log often begins with the manoeuvre. A propeller that takes its time then spools up in the first rows, and were it
+taken to run already, the boat would seem to change its speed more slowly than it does.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from boatsim.diagnosis.filter import Levels, Track
+from boatsim.physics.commands import sent_row, taken
+
+BEFORE = (
+    1.0  # [s] ahead of the first row: actuators settle to what was in force then, however long ago
+)
+TOLD = 6.0  # [nats] by which the recording must be likelier with actuators that begin at rest
+SLOW = 0.2  # of the largest speed recorded, which a boat that lies still is below when the recording begins
+
+
+def begun(track: Track, levels: Levels) -> Track:
+    """The track, its actuators at neutral before the first row where the boat lies still then and is likelier so."""
+    vessel = track.program.vessel
+    rest = track.orders[0].copy()
+    commands = len(vessel.commands)
+    rest[:commands] = taken(vessel, sent_row(vessel, {}))[:commands]
+    if not commands or np.array_equal(rest, track.orders[0]):
+        return track
+    given, orders = np.append(track.times[0] - BEFORE, track.given), np.vstack([rest, track.orders])
+    resting = replace(track, given=given, orders=orders)
+    on = track.program.switches()
+    settled, from_rest = (t.likelihood(t.values, on, levels) for t in (track, resting))
+    return resting if from_rest > settled + TOLD and _lies_still(resting, levels) else track
+
+
+def _lies_still(track: Track, levels: Levels) -> bool:
+    """Whether the boat does when the recording begins: where it does not, a wrong vessel may ask for less thrust."""
+    nq = track.program.module.NQ
+    means, _ = track.smoothed(track.values, track.program.switches(), levels)
+    energy = means[:, nq : 2 * nq] ** 2 @ track.inertia
+    return bool(energy[0] <= SLOW**2 * energy.max())

@@ -1,0 +1,456 @@
+"""A whole diagnosis: recordings and a vessel in, findings out."""
+
+import os
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.candidates import (
+    Library,
+    less,
+    library_for,
+    with_stated_errors,
+    without_ruled_out,
+)
+from boatsim.diagnosis.checks import data_cleaning, run_checks
+from boatsim.diagnosis.checks.entry import entry, joined, sources_of
+from boatsim.diagnosis.checks.finding import PROBABLY, Finding
+from boatsim.diagnosis.checks.hypothesis_test import tried
+from boatsim.diagnosis.checks.initial_actuator_state import begun
+from boatsim.diagnosis.correlation_time import timed
+from boatsim.diagnosis.covariance_inflation import widened
+from boatsim.diagnosis.experiment_design import next_experiment
+from boatsim.diagnosis.filter import Track, axes_of, noise_beside, noise_of, nominal_levels, track
+from boatsim.diagnosis.free_runs import errors, free_runs
+from boatsim.diagnosis.locate import missing_force as locate
+from boatsim.diagnosis.locate import nominal_forces
+from boatsim.diagnosis.locate.mean_force import mean_left
+from boatsim.diagnosis.problem import Problem, check_taken_up
+from boatsim.diagnosis.report import assumptions, before_after
+from boatsim.diagnosis.report.answer import compose, meanings
+from boatsim.diagnosis.report.findings import Findings, Missing
+from boatsim.diagnosis.report.formatting import capital, listed
+from boatsim.diagnosis.report.schema import Answer, LogEntry
+from boatsim.diagnosis.search.ranking import Ranking, rank
+from boatsim.diagnosis.symbolic.residual_description import described
+from boatsim.diagnosis.symbolic.slots import write
+from boatsim.errors import BadInput
+from boatsim.files import Value
+from boatsim.physics import vessel as vessels
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+from boatsim.progress import Report, part, silent
+from boatsim.recordings.notes import notes_for
+from boatsim.recordings.table import Recording, read
+
+SAME_SCALE = 0.01  # scales this close are one
+NEXT = "next.toml"  # scenario of the next experiment, in the folder of the answer
+READ, RANKING, DESCRIBING, SHOWING = (
+    0.05,
+    (0.1, 0.7),
+    (0.7, 0.85),
+    0.9,
+)  # shares of the work, by experience
+LOOKING = "looking at the log"
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Findings with what is needed to write patched vessel and overlay."""
+
+    findings: Findings
+    vessel: Vessel
+    problem: Problem
+    ranking: Ranking
+    remarks: tuple[str, ...]  # what was read and not used
+    plan: next_experiment.Plan | None = None  # what to record next
+
+    def laid(self, recording: Recording, stated: Mapping[str, float] | None = None) -> Track:
+        """A further recording on the same program, with the laws that were described; `stated` is sensor noise."""
+        made = begun(track(recording, self.problem.program, stated), self.problem.ambient)
+        for w in self.ranking.description.terms if self.ranking.description else ():
+            write(self.problem, w.term.name, w.term, [made])
+        return made
+
+
+def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
+    """The vessel of a recording: the name on the command line, else the one its notes give. Raises BadInput."""
+    file = notes_for(path)
+    notes, name = file.notes, file.notes.vessel if vessel is None else vessel
+    beside = file.folder if vessel is None else None
+    if not path.exists():
+        raise BadInput(f"{path}: there is no such file")
+    if not name:
+        raise BadInput(
+            f"{path}: no vessel given; name one with --vessel or in a recording.toml beside it"
+        )
+    try:
+        found = vessels.load(name, load or notes.load, notes.settings, beside=beside)
+    except BadInput as error:
+        by_notes = not vessel or notes.settings or (notes.load and not load)
+        raise BadInput(
+            f"{path} by its recording.toml: {error}" if by_notes else str(error)
+        ) from None
+    wanted = notes.scale
+    if wanted is None or found.scale is None or abs(wanted / found.scale - 1.0) < SAME_SCALE:
+        return found
+    same = next(
+        (n for n, scale in found.scales.items() if abs(wanted / scale - 1.0) < SAME_SCALE), None
+    )
+    if vessel or same is None:
+        hint = f"; the vessel at that scale is {same}" if same else ""
+        raise BadInput(
+            f"{path}: scale = {wanted:g}, but {found.name} is at scale {found.scale:g}{hint}"
+        )
+    return vessels.load(same, load or notes.load, notes.settings)
+
+
+def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple[Recording, Vessel]:
+    """A recording read with its vessel's names of columns and command limits. Raises BadInput."""
+    found = vessel_for(path, vessel, load)
+    return data_cleaning.opened(read(path, found.limits(), found.columns), found), found
+
+
+def diagnose(
+    runs: Sequence[Path],
+    hold_out: Sequence[Path] = (),
+    vessel: str | None = None,
+    load: Sequence[str] = (),
+    library: Sequence[str] = (),
+    without: Sequence[str] = (),
+    horizon: float | None = None,
+    facts: Mapping[str, Value] | None = None,
+    report: Report = silent,
+) -> Diagnosis:
+    """Locate, name and model what the vessel leaves out of the recordings. Raises BadInput.
+
+    `horizon` is the length [s] of the free runs by which it is judged, if not the usual one; `facts` are those of all
+    the recordings that their notes do not state.
+    """
+    _check_apart([*runs, *hold_out])
+    opened = []
+    for i, path in enumerate(paths := (*runs, *hold_out)):
+        report(
+            f"reading {len(paths)} {'recording' if len(paths) == 1 else 'recordings'}",
+            READ * i / len(paths),
+        )
+        opened.append(open_recording(path, vessel, load))
+    report(LOOKING, READ)
+    stated = [replace(r.notes, facts={**(facts or {}), **r.notes.facts}) for r, _ in opened]
+    opened = [(replace(r, notes=notes), b) for (r, b), notes in zip(opened, stated, strict=True)]
+    boats = [boat for _, boat in opened]
+    if len({(b.file, b.freedoms) for b in boats}) > 1:
+        raise BadInput(
+            f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}"
+        )
+    lasts = data_cleaning.lasting([r for r, _ in opened])
+    thin = [data_cleaning.thinned(r, b, lasts) for r, b in opened]
+    seen = [
+        f
+        for (r, b), t in zip(opened, thin, strict=True)
+        for f in run_checks.at_the_recording(r, t, b)
+    ]
+    named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
+    fitted, unseen, note = before_after.split(named[: len(runs)], named[len(runs) :])
+    remarks = tuple(dict.fromkeys(m for r in thin for m in r.remarks))
+    vessels_of = {r.path: b for r, b in opened}
+    rest = part(report, READ, 1.0)
+    return diagnose_recordings(
+        fitted, unseen, vessels_of, note, library, without, remarks, horizon, seen, rest
+    )
+
+
+def pose(
+    fitted: Sequence[Recording],
+    unseen: Sequence[Recording],
+    boats: Mapping[Path | None, Vessel],
+    library: Sequence[str] = (),
+    horizon: float | None = None,
+) -> tuple[Problem, list[Track], Callable[[Recording], Track], Library]:
+    """The question that opened recordings put: them on one program, those unseen, how one is laid, what is tried."""
+    boat, facts = boats[fitted[0].path], fitted[0].notes.facts
+    columns = sorted({c for r in fitted for c in r.signals})
+    known = {
+        path: with_stated_errors(without_ruled_out(b, facts), facts) for path, b in boats.items()
+    }
+    there = {path: library_for(b, library, facts, columns) for path, b in known.items()}
+    programs = {path: Program(b, there[path].compiled) for path, b in known.items()}
+    stated, levels = noise_of(boat, fitted), nominal_levels(boat, fitted)
+
+    def lay(recording: Recording) -> Track:
+        return begun(track(recording, programs[recording.path], stated), levels)
+
+    laid = [lay(r) for r in fitted]
+    laid += [
+        begun(track(r, programs[r.path], stated, noise_beside(boat, fitted, r)), levels)
+        for r in unseen
+    ]
+    uncertainty = priors.uncertainty(boat)
+    check_taken_up(boat, uncertainty, f"{boat.file.parent.name}/{boat.file.name}: diagnosis")
+    for r in (*fitted, *unseen):
+        check_taken_up(
+            boats[r.path],
+            r.notes.coefficient_uncertainty,
+            f"{r.path or r.name} by its recording.toml",
+        )
+    uncertainty |= fitted[0].notes.coefficient_uncertainty
+    problem = Problem(laid[: len(fitted)], levels, uncertainty, horizon)
+    return problem, laid[len(fitted) :], lay, there[fitted[0].path]
+
+
+def check(
+    runs: Sequence[Path], vessel: str | None = None, load: Sequence[str] = ()
+) -> tuple[dict[Path, list[LogEntry]], list[BadInput]]:
+    """What is wrong with each of some files, and what can not be told from it; and those that can not be read at all.
+
+    A file whose table is at fault is not laid on its vessel. Raises BadInput where no vessel is named, or several.
+    """
+    boats = {path: vessel_for(path, vessel, load) for path in runs}
+    if len({(b.file, b.freedoms) for b in boats.values()}) > 1:
+        raise BadInput(
+            f"recordings of different vessels: {', '.join(sorted({b.name for b in boats.values()}))}"
+        )
+    found: list[Finding] = []
+    refused, thin = list[BadInput](), list[Recording]()
+    for path, boat in boats.items():
+        table = []
+        try:
+            found += (table := run_checks.at_the_table(path, boat))
+            opened = data_cleaning.opened(read(path, boat.limits(), boat.columns), boat)
+        except BadInput as error:
+            if not table:
+                refused.append(error)
+            continue
+        thinned = data_cleaning.thinned(opened, boat, data_cleaning.lasting([opened]))
+        found += [
+            *run_checks.at_the_recording(opened, thinned, boat),
+            *run_checks.at_the_limits(opened, boat),
+        ]
+        if not table:
+            thin.append(replace(thinned, name=str(path)))
+    if thin:
+        try:
+            known: dict[Path | None, Vessel] = dict(boats.items())
+            problem, _, lay, _ = pose(thin, (), known)
+            found += [replace(f, run=str(thin[0].path)) for f in tried(thin, lay, problem)]
+        except BadInput as error:
+            refused.append(error)
+    by_file = {path: [f for f in found if f.run == str(path)] for path in runs}
+    return {
+        p: [entry(f, sources_of(f, f.run, boats[p])) for f in fs] for p, fs in by_file.items()
+    }, refused
+
+
+def hint(
+    runs: Sequence[Path], hold_out: Sequence[Path], vessel: str | None, load: Sequence[str]
+) -> str:
+    """What `check` would write into the recording.toml of the first file that is refused; "" where it knows nothing."""
+    for path in (*runs, *hold_out):
+        try:
+            boat = vessel_for(path, vessel, load)
+            found = run_checks.at_the_table(path, boat)
+        except BadInput:
+            return ""
+        for made in (entry(f, sources_of(f, f.run, boat)) for f in found):
+            if made["lines"]:
+                return f"; {PROBABLY}: {made['name'].replace('_', ' ')}, write into recording.toml {joined(made['lines'])}"
+    return ""
+
+
+def diagnose_recordings(
+    fitted: Sequence[Recording],
+    unseen: Sequence[Recording],
+    boats: Mapping[Path | None, Vessel],
+    note: str,
+    library: Sequence[str] = (),
+    without: Sequence[str] = (),
+    remarks: tuple[str, ...] = (),
+    horizon: float | None = None,
+    seen: Sequence[Finding] = (),
+    report: Report = silent,
+) -> Diagnosis:
+    """The same for recordings that are already opened, thinned and split: `boats` is the vessel of each file.
+
+    `note` says in words what was kept unseen, `seen` is what is wrong with the files. Raises BadInput.
+    """
+    boat = boats[fitted[0].path]
+    problem, unseen_tracks, lay, there = pose(fitted, unseen, boats, library, horizon)
+    candidates = less(there, without)
+    report("compiling, or loading what was compiled before")
+    _compile(problem)
+    begin = time.perf_counter()
+    try:
+        with threadpool_limits(
+            1, "blas"
+        ):  # matrices are small: threads cost more, on a busy machine twentyfold
+            report("laying the log on the vessel, as it may have been meant", RANKING[0] / 2)
+            seen = [*seen, *tried(fitted, lay, problem)]
+            ranking = rank(problem, candidates, unseen_tracks, report=part(report, *RANKING))
+            a_fact = "time_constant_s" in fitted[0].notes.ambient
+            report("choosing the correlation time of the water", RANKING[1])
+            if not a_fact and (again := timed(problem, ranking.best)) is not problem:
+                report("selecting once more, with that time", RANKING[1])
+                problem, ranking = again, rank(again, candidates, unseen_tracks, ranking.best)
+            before, ranking = (
+                ranking,
+                _described(problem, ranking, unseen_tracks, part(report, *DESCRIBING)),
+            )
+            report("planning what to record next", DESCRIBING[1])
+            plan = next_experiment.next_experiment(
+                problem, *next_experiment.question(replace(before, named=ranking.named))
+            )
+            report("free runs", SHOWING)
+            findings = _findings(problem, ranking, unseen_tracks, boat, note, plan)
+    except (np.linalg.LinAlgError, FloatingPointError) as error:
+        where = fitted[0].path or fitted[0].name
+        raise BadInput(
+            f"{where}: {boat.name} can not follow this recording ({error}); are its units right?"
+        ) from None
+    assumptions.add(findings.answer, problem, there, candidates)
+    _add_log(findings.answer, seen, fitted[0], boats)
+    findings.answer["seconds"] = round(time.perf_counter() - begin, 3)
+    return Diagnosis(findings, boat, problem, ranking, remarks, plan)
+
+
+def _add_log(
+    answer: Answer, seen: Sequence[Finding], first: Recording, boats: Mapping[Path | None, Vessel]
+) -> None:
+    """What is wrong with the log itself; what is certain of the whole of it comes first in the verdict."""
+    named = [f if f.run else replace(f, run=str(first.path or first.name)) for f in seen]
+    paths = {str(path): boat for path, boat in boats.items()}
+    answer["log"] = [
+        entry(f, sources_of(f, f.run, paths.get(f.run, boats[first.path]))) for f in named
+    ]
+    if certain := [f.said for f in named if f.of_the_whole_log]:
+        rest = answer["sentence"]
+        answer["sentence"] = (
+            f"{capital(PROBABLY)}: {listed(certain)}. Taken as it is: {rest[:1].lower()}{rest[1:]}"
+        )
+
+
+def _check_apart(paths: Sequence[Path]) -> None:
+    """What is judged on must not be what was fitted."""
+    seen: set[str] = set()
+    for path in paths:
+        if (real := os.path.realpath(path)) in seen:
+            raise BadInput(f"{path}: given twice; a recording is either fitted or held out, once")
+        seen.add(real)
+
+
+def _names(paths: Sequence[Path]) -> list[str]:
+    """Short names that tell the recordings apart: the stem, with as many folders in front as that takes."""
+    for depth in range(1, 9):
+        short = ["/".join(p.resolve().with_suffix("").parts[-depth:]) for p in paths]
+        if len(set(short)) == len(short):
+            return short
+    return [str(p) for p in paths]
+
+
+def _compile(problem: Problem) -> None:
+    """Compile or load the filter before the clock starts: the first time takes far longer than any diagnosis."""
+    nominal, on = problem.nominal(), problem.program.switches()
+    track = problem.tracks[0]
+    track.free_runs(
+        problem.values(track, nominal.free, nominal.theta),
+        on,
+        problem.ambient,
+        float(np.ptp(track.times)),
+    )
+    rest = np.zeros((1, 2 * problem.program.module.NQ))
+    nominal_forces.along(track, rest, nominal_forces.actuators(track)[:1], track.values)
+
+
+def _described(
+    problem: Problem, ranking: Ranking, unseen: Sequence[Track], report: Report
+) -> Ranking:
+    """The same with a law written down for what nothing explains, and without entries that but stood for it."""
+    found = (
+        described(problem, ranking.best, ranking.recalibrated, unseen, report)
+        if ranking.unknown
+        else None
+    )
+    if found is None:
+        return ranking
+    named = tuple(n for n in ranking.named if n.name in found.fit.suspects)
+    best = ranking.best if found.fit is ranking.best else widened(problem, found.fit)
+    terms = (
+        replace(w, sd=best.value(w.term.name, "coefficient")[1]) if w.carries else w
+        for w in found.terms
+    )
+    return replace(ranking, best=best, named=named, description=replace(found, terms=tuple(terms)))
+
+
+def _findings(
+    problem: Problem,
+    ranking: Ranking,
+    unseen: Sequence[Track],
+    vessel: Vessel,
+    note: str,
+    plan: next_experiment.Plan | None,
+) -> Findings:
+    """Locate and show, then the answer."""
+    longest = max(float(np.ptp(t.times)) for t in unseen)
+    horizon = min(problem.horizon, float(f"{longest:.3g}") if longest < problem.horizon else np.inf)
+    fits = before_after.fits_of(problem, ranking)
+    everything = before_after.in_time([*problem.tracks, *unseen])
+    forces = locate.missing_force(problem, ranking.recalibrated, everything)
+    left = locate.force_left(problem, ranking.best, everything)
+    stretches = free_runs(problem, fits, unseen, horizon)
+    parts = before_after.by_part(problem, fits, everything, horizon) if ranking.adds else []
+    table = before_after.table_of(parts, problem.tracks, horizon)
+    axes = axes_of(vessel)
+
+    def columns(values: Array) -> dict[str, Array]:
+        return {axis: values[:, i] for i, axis in enumerate(axes)}
+
+    missing = tuple(
+        Missing(
+            f.run,
+            f.t,
+            columns(f.mean),
+            columns(f.sd),
+            {a: locate.UNITS[a] for a in axes},
+            columns(g.mean),
+        )
+        for f, g in zip(forces, left, strict=True)
+    )
+    recalibrated = ranking.recalibrated
+    sd = np.sqrt(np.diag(recalibrated.covariance))
+    coefficients = {
+        f"{f.effect}.{f.name}": (float(x), float(s))
+        for f, x, s in zip(recalibrated.free, recalibrated.theta, sd, strict=True)
+    }
+    held_out = tuple(t.name for t in unseen)
+    answer = compose(
+        problem,
+        ranking,
+        forces,
+        left,
+        stretches,
+        held_out,
+        horizon,
+        next_experiment.entry(plan, NEXT),
+    )
+    answer["mean_left"] = mean_left(problem, ranking.best, everything)
+    return Findings(
+        answer,
+        vessel.name,
+        tuple(t.name for t in problem.tracks),
+        held_out,
+        note,
+        missing,
+        tuple(stretches),
+        tuple(before_after.remarks(parts, problem.tracks, errors(stretches), ranking)),
+        coefficients,
+        (table,) if table[2] else (),
+        meanings(problem.program.suspects, problem.program.vessel),
+        ranking.description.terms if ranking.description else (),
+        next_experiment.steps(plan),
+        (vessel.length, vessel.beam),
+    )

@@ -1,0 +1,66 @@
+"""What a diagnosis took for granted: what it tried and left out and why, stated facts, the numbers that rules gave."""
+
+from collections.abc import Sequence
+
+from boatsim.diagnosis.candidates import Library, called
+from boatsim.diagnosis.filter import axes_of
+from boatsim.diagnosis.locate.missing_force import UNITS
+from boatsim.diagnosis.locate.nominal_forces import full_thrust
+from boatsim.diagnosis.problem import Problem
+from boatsim.diagnosis.report.formatting import listed, number, plain, quantity
+from boatsim.diagnosis.report.schema import AmbientEntry, Answer, LeftOutEntry, RulesEntry
+from boatsim.diagnosis.search.evidence import price
+
+
+def add(answer: Answer, problem: Problem, library: Library, tried: Sequence[str]) -> None:
+    """Put it into the answer; entries of the library that are not among those tried the user took out."""
+    taken_out = {n: "--without" for n in library.tried if n not in tried}
+    reasons = dict(library.left_out) | taken_out
+    by_idea = {called(n): why for n, why in sorted(reasons.items())}
+    left_out: list[LeftOutEntry] = [{"name": n, "reason": why} for n, why in by_idea.items()]
+    answer["tried"] = sorted({called(n) for n in tried})
+    answer["left_out"] = left_out
+    answer["facts"] = dict(problem.tracks[0].facts)
+    answer["rules"] = _rules(problem, len(tried))
+
+
+def _rules(problem: Problem, number_tried: int) -> RulesEntry:
+    vessel, levels = problem.program.vessel, problem.ambient
+    thrust = full_thrust(problem.tracks[0])
+    ambient: dict[str, AmbientEntry] = {}
+    for axis, rms in zip(axes_of(vessel), levels.force.tolist(), strict=True):
+        ambient[axis] = {"rms": float(f"{rms:.3g}"), "unit": UNITS[axis]}
+        if thrust > 0.0 and UNITS[axis] == "N":
+            ambient[axis]["share_of_full_thrust"] = float(f"{rms / thrust:.3g}")
+    return {
+        "ambient": ambient,
+        "time_constant_s": float(f"{levels.time_constant:.3g}"),
+        "horizon_s": problem.horizon,
+        "effect_gain_nats": round(price(number_tried), 2),
+        "overridden": dict(vessel.diagnosis.reasons),
+    }
+
+
+def in_words(answer: Answer) -> list[str]:
+    """The same in sentences, a line each; none of an answer that does not hold it."""
+    if "rules" not in answer:
+        return []
+    told = [f"tried {len(answer['tried'])} entries of the library"]
+    if left_out := answer["left_out"]:
+        reasons = dict.fromkeys(e["reason"] for e in left_out)
+        by_reason = [
+            (why, [plain(e["name"]) for e in left_out if e["reason"] == why]) for why in reasons
+        ]
+        why_not = "; ".join(f"{listed(names)} ({why})" for why, names in by_reason)
+        told = [f"{told[0]}; left out {len(left_out)}: {why_not}"]
+    rules = answer["rules"]
+    levels = []
+    for axis, level in rules["ambient"].items():
+        share = level.get("share_of_full_thrust")
+        of_thrust = f", {number(100.0 * share, 2)} % of full thrust" if share is not None else ""
+        levels.append(f"{quantity(level['rms'], level['unit'], digits=2)} in {axis}{of_thrust}")
+    told.append(
+        f"never called missing: an unsteady force of {listed(levels)} (rms), as moving water makes"
+    )
+    told += [f"{rule} is the vessel file's own: {why}" for rule, why in rules["overridden"].items()]
+    return told

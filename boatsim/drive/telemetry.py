@@ -1,0 +1,97 @@
+"""What the page is shown: once the boat, its water and its dials, then the state of each moment."""
+
+from collections.abc import Mapping
+from math import isfinite
+
+from boatsim.control.base import wrap
+from boatsim.drive.clock import Clock
+from boatsim.drive.driver_input import Hands
+from boatsim.drive.stick_mapping import HEADING, Dials
+from boatsim.physics.signals import follower
+from boatsim.recordings.notes import unit_of
+from boatsim.recordings.table import Recording
+from boatsim.simulate.run import Runner
+from boatsim.simulate.scenario import Scenario
+from boatsim.simulate.tracking_errors import units
+from boatsim.view.scene import scene_from
+
+MOTION = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps", "r_radps")
+
+
+class Painter:
+    """Turns rows of a run's log into what its page draws."""
+
+    def __init__(self, runner: Runner, dials: Dials, scenario: Scenario) -> None:
+        self._scene = scene_from(runner.engine.model, scenario.vessel, runner.engine.tank)
+        self._dials, self._scenario = dials, scenario
+
+    def hello(self) -> dict[str, object]:
+        """What does not change."""
+        scene, file = self._scene, self._scenario.file
+        return {
+            "vessel": scene.vessel,
+            "controller": str(file.controller["use"]),
+            "about": file.about,
+            "length": scene.length,
+            "reach": scene.reach,
+            "outline": [[round(float(x), 4), round(-float(y), 4)] for x, y in scene.outline()],
+            "tank": None if scene.open else list(scene.tank),
+            "start": [file.start.x, file.start.y, file.start.psi],
+            "thrusters": [{"name": t.name, "x": t.x, "y": t.y} for t in scene.thrusters],
+            "period": self._scenario.controller.period,
+            "dials": [self._dial(key) for key in self._dials.keys],
+            "units": units(self._dials.keys),
+        }
+
+    def _dial(self, key: str) -> dict[str, object]:
+        """A goal or channel: between which values, and which signal shows what became of it."""
+        mine = [d for d in self._dials.dials if d.key == key]
+        ends = [self._dials.neutral[key] + x for d in mine for x in (d.low, d.high)]
+        follows = follower(key)
+        channel = key in self._scenario.vessel.commands
+        low, high = self._dials.limits.get(key, (min(ends), max(ends)))
+        return {
+            "key": key,
+            "low": low,
+            "high": high,
+            "unit": unit_of(key),
+            "channel": channel,
+            "turning": follows == HEADING,
+            "sticks": sorted({d.stick for d in mine}),
+        }
+
+    def frame(
+        self,
+        rows: Recording,
+        norms: Mapping[str, float],
+        clock: Clock,
+        hands: Hands,
+        latency: float | None,
+    ) -> dict[str, object]:
+        """The state at the end of these rows."""
+        now = {name: float(values[-1]) for name, values in rows.signals.items()}
+        return {
+            "t": round(float(rows.t[-1]), 3),
+            **{name.partition("_")[0]: now.get(name, 0.0) for name in MOTION},
+            "goals": [self._goal(key, now) for key in self._dials.keys],
+            "thrusts": [
+                [now.get(t.thrust, 0.0), now.get(t.steer, 0.0)] for t in self._scene.thrusters
+            ],
+            "wind": [now["wind_X_N"], now.get("wind_Y_N", 0.0)] if "wind_X_N" in now else None,
+            "contacts": now.get("contacts", 0.0),
+            "norms": {name: float(f"{value:.4g}") for name, value in norms.items()},
+            "late": clock.late,
+            "worst": round(1e3 * clock.worst, 1),  # [ms]
+            "latency": None if latency is None else round(1e3 * latency, 1),  # [ms]
+            "away": hands.away,
+            "moved": hands.moved,
+        }
+
+    def _goal(self, key: str, now: Mapping[str, float]) -> list[float | None]:
+        """What is asked for, and what is reached: of a channel the command that is sent, and the one that acts."""
+        channel = key in self._scenario.vessel.commands
+        asked = now.get(f"sent_{key}" if channel else f"goal_{key}")
+        reached = now.get(key) if channel else now.get(follower(key) or "")
+        if reached is not None and follower(key) == HEADING:
+            reached = wrap(reached)
+        return [x if x is not None and isfinite(x) else None for x in (asked, reached)]

@@ -1,0 +1,47 @@
+"""Crash stop: how far and how long a ship runs on after her engines went astern."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.physics.base import param
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metric import Measure, at, track
+
+
+@dataclass(frozen=True)
+class CrashStop(Measure):
+    """Until the ship has no way on; distances in lengths."""
+
+    words: ClassVar[str] = "track, head and side reach and time of a crash stop"
+    units: ClassVar = {
+        "track_reach": "L",
+        "head_reach": "L",
+        "side_reach": "L",
+        "time_to_stop": "s",
+    }
+
+    execute: float = param(0.0, low=0.0, high=1e6, unit="s", words="when the engines went astern")
+    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How fast she still was."""
+        return f"never stopped: still {log['u_mps'][log.t > self.execute].min(initial=log['u_mps'][-1]):.4g} m/s ahead"
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """None if she never stopped."""
+        stopped = np.flatnonzero((log.t > self.execute) & (log["u_mps"] <= 0.0))
+        if not len(stopped):
+            return {}
+        rows = [int(stopped[0]), int(stopped[0]) - 1]
+        end = float(np.interp(0.0, log["u_mps"][rows], log.t[rows]))
+        psi0 = at(log, self.execute, "psi_rad")
+        dx, dy = (at(log, end, name) - at(log, self.execute, name) for name in ("x_m", "y_m"))
+        travelled = np.interp([self.execute, end], log.t, track(log))
+        return {
+            "track_reach": float(travelled[1] - travelled[0]) / self.length,
+            "head_reach": float(np.cos(psi0) * dx + np.sin(psi0) * dy) / self.length,
+            "side_reach": float(np.cos(psi0) * dy - np.sin(psi0) * dx) / self.length,
+            "time_to_stop": end - self.execute,
+        }

@@ -1,0 +1,41 @@
+"""Crossing: when a signal passes a level."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.physics.base import param
+from boatsim.recordings.notes import unit_of
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metric import Measure, never
+
+
+@dataclass(frozen=True)
+class Crossing(Measure):
+    """The first time after `since`, either way, counted from there."""
+
+    words: ClassVar[str] = "time until a signal first passes a level"
+    units: ClassVar = {"time": "s"}
+
+    signal: str = "u_mps"
+    level: float = param(0.0, low=-1e9, high=1e9, unit="", words="in the signal's unit")
+    since: float = param(
+        0.0, low=0.0, high=1e6, unit="s", words="time from which it is looked for and counted"
+    )
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How near it came."""
+        return never(log[self.signal][log.t >= self.since - 1e-9], self.level, unit_of(self.signal))
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Interpolated between rows; nothing if the signal stays on one side."""
+        seen = log.t >= self.since - 1e-9
+        t, above = log.t[seen] - self.since, log[self.signal][seen] - self.level
+        passed = np.nonzero(above[:-1] * above[1:] <= 0.0)[0]
+        if len(passed) == 0:
+            return {}
+        i = int(passed[0])
+        return {
+            "time": float(t[i] + (t[i + 1] - t[i]) * above[i] / (above[i] - above[i + 1] or 1.0))
+        }

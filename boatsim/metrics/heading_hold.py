@@ -1,0 +1,47 @@
+"""Holding a heading: how far the boat swings, how hard its steering works."""
+
+from dataclasses import dataclass
+from math import degrees
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.physics.base import param
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metric import Measure, seen
+
+
+@dataclass(frozen=True)
+class HeadingHold(Measure):
+    """Over the rows from `since` on, the heading against `target`, the steering about its own mean."""
+
+    words: ClassVar[str] = (
+        "mean, rms and largest heading error, rms of steering angle and of its rate"
+    )
+    units: ClassVar = {
+        "psi_mean": "deg",
+        "psi_rms": "deg",
+        "psi_max": "deg",
+        "steering_mean": "deg",
+        "steering_rms": "deg",
+        "steering_rate_rms": "deg/s",
+    }
+
+    steering: str = "delta_rad"  # command channel
+    target: float = param(0.0, low=-100.0, high=100.0, unit="rad", words="heading to hold")
+    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Each rms is about the mean; rates are central differences between rows of the log."""
+        rows = seen(log, self.since, least=2)
+        off, angle = log["psi_rad"][rows] - self.target, log[self.steering][rows]
+        rate = np.gradient(angle, log.t[rows])
+        found = (
+            off.mean(),
+            off.std(),
+            abs(off).max(),
+            angle.mean(),
+            angle.std(),
+            np.sqrt(np.mean(rate**2)),
+        )
+        return {name: degrees(x) for name, x in zip(type(self).units, found, strict=True)}

@@ -1,0 +1,59 @@
+"""Spiral: rates of turn at each helm angle on the way out and back; a ship that is not course-stable has two."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metric import Measure, seen
+
+SAME = 1e-6  # [rad] between two helm angles that are one
+
+
+@dataclass(frozen=True)
+class Spiral(Measure):
+    """The loop of the curve rate over helm angle."""
+
+    words: ClassVar[str] = (
+        "height and width of the loop in the curve of rate of turn over helm angle"
+    )
+    units: ClassVar = {
+        "loop_height": "deg/s",
+        "loop_width": "deg",
+        "rate_at_largest": "deg/s",
+        "rate_midships": "deg/s",
+    }
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How far the helm got."""
+        last = np.degrees(log["reference_helm_rad"][-1])
+        return f"the helm did not come back to its first angle: it ends at {last:.3g} deg"
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Loop height at midships, width over all angles at which the two rates have opposite signs, two rates.
+
+        None unless the helm came back to its first angle.
+        """
+        seen(log)
+        helm = log["reference_helm_rad"]
+        begin = int(np.argmax(helm != 0.0))
+        ends = np.array(
+            [*(begin + np.flatnonzero(np.abs(np.diff(helm[begin:])) > SAME)), len(helm) - 1]
+        )
+        angles, rates = helm[ends], np.degrees(log["r_radps"][ends])
+        if len(ends) < 3 or abs(angles[-1] - angles[0]) > SAME:
+            return {}
+        turn = int(np.argmax(np.abs(angles - angles[0])))  # where the helm lies over the other way
+        out, back = slice(0, turn + 1), slice(turn, len(ends))
+        both = sorted(a for a in angles[out] if np.abs(angles[back] - a).min() < SAME)
+        there = np.array([rates[out][np.argmin(np.abs(angles[out] - a))] for a in both])
+        again = np.array([rates[back][np.argmin(np.abs(angles[back] - a))] for a in both])
+        middle = int(np.argmin(np.abs(both)))
+        loop = [a for a, x, y in zip(both, there, again, strict=True) if x * y < 0.0]
+        return {
+            "loop_height": float(abs(there[middle] - again[middle])),
+            "loop_width": float(np.degrees(max(loop) - min(loop))) if loop else 0.0,
+            "rate_at_largest": float(rates[0]),
+            "rate_midships": float(there[middle]),
+        }

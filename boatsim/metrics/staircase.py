@@ -1,0 +1,79 @@
+"""Staircase: the responses to equal steps that follow each other, one norm for each."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.metrics.step_response import first
+from boatsim.physics.base import param
+from boatsim.recordings.notes import unit_of
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metric import Measure, TooShort, seen
+
+MOST = 8  # steps of a staircase
+
+
+@dataclass(frozen=True)
+class Staircase(Measure):
+    """Steps of `height` every `every` s from `bottom`, the first at `since`; a later one starts where it should."""
+
+    words: ClassVar[str] = (
+        "time to 95 % and from 10 to 90 % of each step of a staircase; worst overshoot and end error"
+    )
+    units: ClassVar = {
+        f"{what}_{i}": "s" for what in ("time_95", "rise") for i in range(1, MOST + 1)
+    } | {
+        "overshoot": "",
+        "end_error": "",
+    }
+
+    signal: str = "u_mps"
+    bottom: float = param(
+        0.0, low=-1e9, high=1e9, unit="", words="value before the first step, in the signal's unit"
+    )
+    height: float = param(
+        1.0, low=-1e9, high=1e9, unit="", words="of each step, in the signal's unit"
+    )
+    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="time of the first step")
+    every: float = param(10.0, low=1e-3, high=1e6, unit="s", words="time between two steps")
+
+    def unit(self, norm: str) -> str:
+        """Times in s, errors in the signal's unit."""
+        return self.units[norm] or unit_of(self.signal)
+
+    def why(self, norm: str, log: Recording) -> str:
+        """Whether there was such a step, and how much of it was made."""
+        number = int(norm.rpartition("_")[2]) if norm[-1].isdigit() else 1
+        begin = self.since + (number - 1) * self.every
+        rows = (log.t >= begin - 1e-9) & (log.t < begin + self.every - 1e-9)
+        if log.t[-1] + 1e-6 * self.every < begin + self.every:
+            return f"the run ends at {log.t[-1]:.4g} s, before step {number} is over"
+        done = (log[self.signal][rows] - self.bottom) / self.height - (number - 1)
+        if not np.isfinite(done).any():
+            return f"nothing was recorded of step {number}"
+        done = done[np.isfinite(done)]
+        return f"made at most {100.0 * done.max():.3g} % of step {number}"
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Of as many whole steps as the log has; a time that is not reached is left out."""
+        seen(log, self.since)
+        count = min(MOST, int((log.t[-1] - self.since) / self.every + 1e-6))
+        if count < 1:
+            return {}
+        found: dict[str, float | None] = {}
+        worst = {"overshoot": 0.0, "end_error": 0.0}
+        for i in range(count):
+            begin = self.since + i * self.every
+            rows = (log.t >= begin - 1e-9) & (log.t < begin + self.every - 1e-9)
+            if not rows.any():
+                raise TooShort(f"{log.name}: no rows from {begin:g} s on")
+            t, done = log.t[rows] - begin, (log[self.signal][rows] - self.bottom) / self.height - i
+            tenth, most = first(t, done, 0.1), first(t, done, 0.9)
+            found[f"time_95_{i + 1}"] = first(t, done, 0.95)
+            found[f"rise_{i + 1}"] = (
+                most - tenth if most is not None and tenth is not None else None
+            )
+            worst["overshoot"] = max(worst["overshoot"], float(done.max() - 1.0) * abs(self.height))
+            worst["end_error"] = max(worst["end_error"], abs(float(done[-1] - 1.0) * self.height))
+        return {name: value for name, value in (found | worst).items() if value is not None}

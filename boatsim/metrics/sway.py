@@ -1,0 +1,76 @@
+"""Sway: how much a boat turns while it is to move sideways, from camera frames."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.physics.base import Array, param
+from boatsim.recordings.table import Recording
+from boatsim.simulate.camera import Camera
+from boatsim.simulate.camera_log import Film, FilmMeasure, first, noise
+from boatsim.simulate.metric import never
+
+REMAIN = 3  # averages there are at least
+
+
+@dataclass(frozen=True)
+class Sway(FilmMeasure):
+    """From the start to the first frame `distance` to starboard; the wanted yaw rate is none."""
+
+    words: ClassVar[str] = (
+        "yaw rate, heading and surge while a boat moves sideways, from camera frames"
+    )
+    units: ClassVar = {
+        "yaw_rate_inf": "deg/s",
+        "yaw_rate_l2": "deg/s",
+        "yaw_rate_rms": "deg/s",
+        "yaw_rate_l1": "deg/s",
+        "heading_at_end": "deg",
+        "surge_offset": "m",
+        "time_to_end": "s",
+    }
+
+    distance: float = param(
+        1.0, low=0.0, high=1e5, unit="m", words="way to starboard at which it ends"
+    )
+    averaged: float = param(
+        10.0, low=1.0, high=1000.0, unit="", words="yaw rates in the moving average"
+    )
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How far to starboard it came."""
+        psi, dx, dy = log["psi_rad"][0], log["x_m"] - log["x_m"][0], log["y_m"] - log["y_m"][0]
+        return f"{never(np.cos(psi) * dy - np.sin(psi) * dx, self.distance, 'm')} to starboard"
+
+    def of_film(self, film: Film) -> dict[str, float]:
+        """Yaw rates and heading as the camera has them, the rest as it was."""
+        frame = first(film.place[:, 1] >= self.distance, least=round(self.averaged) + REMAIN)
+        if frame is None:
+            return {}
+        part = film.until(frame)
+        found = self.yaw_rates(np.unwrap(part.heading), part.t[1] - part.t[0])
+        return {name: float(value) for name, value in found.items()} | {
+            "surge_offset": float(part.place[-1, 0] - part.place[0, 0]),  # x_i - x_0
+            "time_to_end": float(part.t[-1]),
+            "frames": float(len(part.t)),
+        }
+
+    def of_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
+        """A heading that never changes."""
+        still = np.zeros(frames)
+        return self.yaw_rates(
+            camera.pose(camera.seen(still, still, noise(frames, camera)))[1], 1.0 / self.scored
+        )
+
+    def yaw_rates(self, psi: Array, dt: float) -> dict[str, Array]:
+        """Norms of the smoothed yaw rate e of headings psi (..., n) [rad] every dt [s]."""
+        rate = np.degrees(np.diff(psi)) / dt
+        e = np.lib.stride_tricks.sliding_window_view(rate, round(self.averaged), axis=-1).mean(-1)
+        return {
+            "yaw_rate_inf": np.abs(e).max(-1),  # max |e|
+            "yaw_rate_l2": np.sqrt((e**2).sum(-1)),  # sqrt(sum e^2)
+            "yaw_rate_rms": np.sqrt((e**2).mean(-1)),  # sqrt(mean e^2)
+            "yaw_rate_l1": np.abs(e).sum(-1),  # sum |e|
+            "heading_at_end": np.degrees(psi[..., -1] - psi[..., 0]),  # psi_i - psi_0
+        }

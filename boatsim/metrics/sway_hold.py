@@ -1,0 +1,39 @@
+"""How still a boat keeps its heading while it sways, and the steering angle at which it settles."""
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metric import Measure, seen
+
+
+@dataclass(frozen=True)
+class SwayHold(Measure):
+    """For a boat that is to move sideways without turning; the last half of the run counts as settled."""
+
+    words: ClassVar[str] = (
+        "yaw rate and heading during a sway, and the neutral steering angle found"
+    )
+    units: ClassVar = {
+        "peak_yaw_rate": "deg/s",
+        "rest_yaw_rate": "deg/s",
+        "heading": "deg",
+        "steering": "deg",
+    }
+
+    angle: str = "steer_port_rad"
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Largest yaw rate, its rms in the last half, largest heading change, mean angle in the last half."""
+        seen(log)
+        last = log.t >= 0.5 * (log.t[0] + log.t[-1])
+        r, psi = np.degrees(log["r_radps"]), np.degrees(log["psi_rad"] - log["psi_rad"][0])
+        return {
+            "peak_yaw_rate": float(np.abs(r).max()),
+            "rest_yaw_rate": sqrt(float(np.mean(r[last] ** 2))),
+            "heading": float(np.abs(psi).max()),
+            "steering": float(np.degrees(log[self.angle][last]).mean()),
+        }

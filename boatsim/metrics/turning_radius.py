@@ -1,0 +1,35 @@
+"""Radius of a turn while the thrust is on: from speed and yaw rate, and from the width of the track."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metric import Measure
+
+
+@dataclass(frozen=True)
+class TurningRadius(Measure):
+    """For a boat that turns as tightly as it can."""
+
+    words: ClassVar[str] = "radius of the tightest turn"
+    units: ClassVar = {"radius": "m", "half_width": "m", "time": "s"}
+
+    while_on: str = "thrust_N"  # signal that is not zero during the turn
+
+    def why(self, norm: str, log: Recording) -> str:
+        """It is looked at while something is on."""
+        return f"{self.while_on} is zero, or the boat does not turn, throughout"
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Median of speed over yaw rate, half the extent of the track in y, and how long the turn took."""
+        on = (log[self.while_on] != 0.0) & (log["r_radps"] != 0.0)
+        if not on.any():
+            return {}
+        speed, y = np.hypot(log["u_mps"][on], log["v_mps"][on]), log["y_m"][on]
+        return {
+            "radius": float(np.median(speed / np.abs(log["r_radps"][on]))),
+            "half_width": float(0.5 * np.ptp(y)),
+            "time": float(log.t[on][-1]),
+        }

@@ -1,0 +1,89 @@
+"""Yaw: how true to its circle a mark stays while a boat turns once round on the spot, from camera frames."""
+
+from dataclasses import dataclass
+from math import pi
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.errors import BadInput, unknown_name
+from boatsim.physics.base import Array, param
+from boatsim.recordings.table import Recording
+from boatsim.simulate.camera import Camera
+from boatsim.simulate.camera_log import Film, FilmMeasure, first, noise
+
+
+@dataclass(frozen=True)
+class Yaw(FilmMeasure):
+    """From the start to the first frame after a full turn either way."""
+
+    words: ClassVar[str] = (
+        "how far a mark strays from its circle in a full turn on the spot, from camera frames"
+    )
+    units: ClassVar = {
+        "position_inf": "m",
+        "position_rms": "m",
+        "position_l1": "m",
+        "moved": "m",
+        "turn_time": "s",
+        "excursion": "m",
+    }
+
+    mark: str = "bow"  # of the vessel or of [camera]
+    radius: float = param(
+        1.0, low=0.0, high=1e4, unit="m", words="circle that the mark is to stay on"
+    )
+
+    def check(self, camera: Camera) -> None:
+        """And its mark is one that the camera follows."""
+        super().check(camera)
+        if self.mark not in camera.marks:
+            raise BadInput(unknown_name("yaw: mark", self.mark, camera.marks))
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How far it turned."""
+        turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
+        return f"never turned 360 deg: at most {turned:.3g}"
+
+    def of_film(self, film: Film) -> dict[str, float]:
+        """Distances of the mark as the camera has them, the rest as it was."""
+        if not len(film.t):
+            return {}
+        frame = first(np.abs(film.psi - film.psi[0]) >= 2.0 * pi)
+        if frame is None:
+            return {}
+        part = film.until(frame)
+        turn = np.sign(part.psi[-1] - part.psi[0])
+        away = np.hypot(*(part.place - part.place[0]).T)
+        found = self.distances(part.marks[self.mark], float(turn))
+        return {name: float(value) for name, value in found.items()} | {
+            "turn_time": float(part.t[-1] - part.t[0]),  # T
+            "excursion": float(away.max()),  # largest distance of the CG from its start
+            "frames": float(len(part.t)),
+        }
+
+    def of_noise(self, frames: int, camera: Camera) -> dict[str, Array]:
+        """A mark that goes once round its circle."""
+        angle, at = np.linspace(0.0, 2.0 * pi, frames), 2 * list(camera.marks).index(self.mark)
+        shaken = camera.mark_sd * noise(frames, camera)[..., at : at + 2]
+        return self.distances(
+            self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1) + shaken, 1.0
+        )
+
+    def distances(self, mark: Array, turn: float) -> dict[str, Array]:
+        """Norms of the distance e of a mark (..., n, 2) [m] to one on the ideal circle.
+
+        The circle has the first place of the mark straight ahead of its middle; the ideal mark goes once round it at a
+        constant rate in the sense of `turn`, +1 or -1.
+        """
+        angle = turn * np.linspace(0.0, 2.0 * pi, mark.shape[-2])
+        ideal = self.radius * np.stack([np.cos(angle) - 1.0, np.sin(angle)], axis=-1)
+        e = np.linalg.norm(mark - mark[..., :1, :] - ideal, axis=-1)
+        return {
+            "position_inf": e.max(-1),  # max e
+            "position_rms": np.sqrt((e**2).mean(-1)),  # sqrt(mean e^2)
+            "position_l1": e.sum(-1),  # sum e
+            "moved": np.linalg.norm(
+                mark[..., -1, :] - mark[..., 0, :], axis=-1
+            ),  # |last place - first place|
+        }

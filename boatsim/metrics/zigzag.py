@@ -1,0 +1,62 @@
+"""Zig-zag: overshoots, when they come, and the track to the first reversal of the helm (ITTC 7.5-04-02-01)."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.physics.base import param
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metric import Measure, seen, track
+
+COUNT = ("first", "second", "third")
+
+
+@dataclass(frozen=True)
+class Zigzag(Measure):
+    """An overshoot is the largest heading after a reversal, less the heading at which the helm is reversed."""
+
+    words: ClassVar[str] = "overshoots of a zig-zag and the track to the first reversal"
+    units: ClassVar = {
+        **{f"{n}_overshoot": "deg" for n in COUNT},
+        **{f"{n}_overshoot_at": "s" for n in COUNT},
+        "time_to_reversal": "s",
+        "track_to_reversal": "L",
+    }
+
+    execute: float = param(
+        0.0, low=0.0, high=1e6, unit="s", words="when the helm was first put over"
+    )
+    heading: float = param(
+        0.175, low=0.001, high=3.0, unit="rad", words="heading change at which it is reversed"
+    )
+    length: float = param(1.0, low=0.001, high=1e3, unit="m", words="of the ship")
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How often the helm was reversed, or how far she turned."""
+        count = int((np.diff(np.sign(log["reference_helm_rad"])) != 0.0).sum()) - 1
+        turned = np.degrees(np.abs(log["psi_rad"] - log["psi_rad"][0]).max())
+        return f"{max(count, 0)} reversals of the helm; the heading changed by at most {turned:.3g} deg"
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Of as many reversals as there were."""
+        seen(log)
+        helm, psi = log["reference_helm_rad"], log["psi_rad"] - log["psi_rad"][0]
+        reversals = 1 + np.flatnonzero(np.sign(helm[1:]) * np.sign(helm[:-1]) < 0.0)
+        if not len(reversals):
+            return {}
+        last = slice(
+            reversals[0] - 1, reversals[0] + 1
+        )  # rows between which the heading was reached
+        reached = float(np.interp(self.heading, np.sign(helm[last][0]) * psi[last], log.t[last]))
+        travelled = np.interp([self.execute, reached], log.t, track(log))
+        found = {
+            "time_to_reversal": reached - self.execute,
+            "track_to_reversal": float(travelled[1] - travelled[0]) / self.length,
+        }
+        for name, start, end in zip(COUNT, reversals, reversals[1:], strict=False):
+            part = float(np.sign(helm[start - 1])) * psi[start : end + 1]
+            row = int(np.argmax(part))
+            found[f"{name}_overshoot"] = float(np.degrees(part[row] - self.heading))
+            found[f"{name}_overshoot_at"] = float(log.t[start + row] - self.execute)
+        return found

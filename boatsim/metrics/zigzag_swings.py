@@ -1,0 +1,62 @@
+"""Swings of a zig-zag with large headings: when the helm is reversed, and how far the craft turns, drifts and rolls."""
+
+from dataclasses import dataclass
+from math import degrees
+from typing import ClassVar
+
+import numpy as np
+
+from boatsim.physics.base import param
+from boatsim.recordings.table import Recording
+from boatsim.simulate.metric import Measure, seen
+
+REVERSALS = 4
+
+
+@dataclass(frozen=True)
+class ZigzagSwings(Measure):
+    """The helm is the command channel `signal`; a craft that does not roll has no roll."""
+
+    words: ClassVar[str] = (
+        "times of helm reversals and largest heading, yaw rate, roll, sway and speed of a zig-zag"
+    )
+    units: ClassVar = {f"reversal_{i}": "s" for i in range(1, REVERSALS + 1)} | {
+        "period": "s",
+        "heading": "deg",
+        "yaw_rate": "deg/s",
+        "roll": "deg",
+        "sway": "m/s",
+        "speed": "m/s",
+        "slowest": "m/s",
+    }
+
+    signal: str = "jet_rad"
+    since: float = param(0.0, low=0.0, high=1e6, unit="s", words="beginning of what is looked at")
+
+    def why(self, norm: str, log: Recording) -> str:
+        """How often the helm was reversed."""
+        if norm in ("roll", "heading", "yaw_rate"):
+            return "this craft has no such motion"
+        count = int((np.diff(np.sign(log[self.signal][seen(log, self.since)])) != 0).sum())
+        return f"{count} reversals of {self.signal}"
+
+    def values(self, log: Recording) -> dict[str, float]:
+        """Reversals the run gets as far as; the period is the mean of two half swings that follow the first."""
+        rows = seen(log, self.since)
+        t, helm = log.t[rows], log[self.signal][rows]
+        at = t[1:][np.diff(np.sign(helm)) != 0] - self.since
+        found = {f"reversal_{i}": float(time) for i, time in enumerate(at[:REVERSALS], 1)}
+        if len(at) > 2:
+            found["period"] = float(at[-1] - at[0]) / (len(at) - 1) * 2.0
+        angles = {"heading": "psi_rad", "yaw_rate": "r_radps", "roll": "phi_rad"}
+        found |= {
+            n: degrees(float(np.abs(log[s][rows]).max()))
+            for n, s in angles.items()
+            if s in log.signals
+        }
+        u = log["u_mps"][rows]
+        return found | {
+            "sway": float(np.abs(log["v_mps"][rows]).max()),
+            "speed": float(u.max()),
+            "slowest": float(u.min()),
+        }

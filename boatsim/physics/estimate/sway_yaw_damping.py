@@ -1,0 +1,87 @@
+"""What resists a hull in sway and yaw: lift that goes with the speed ahead, what is left at rest, drag."""
+
+from math import pi, sqrt
+from typing import NamedTuple
+
+from boatsim.physics.estimate import added_mass, inertia, resistance
+from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
+
+SECOND = 2.0  # [m] length of the boat whose sway and yaw die out in 1 s, the Otter (MSS otter.m)
+LIFT_AT = -0.3  # [lengths] ahead of the middle: that of a slender body is -0.5, at its stern; a real one leaves earlier
+SLOW = 0.1  # of a slender hull's lift at an easy speed, at rest: friction and keel, as in surge
+SECTION = 0.8  # drag coefficient of a section across the flow: Otter 0.85, S. F. Hoerner 1965
+
+
+class Derivatives(NamedTuple):
+    """Clarke's derivatives in sway and yaw per speed ahead, positive where they resist; they hold the Munk moment."""
+
+    sway: float  # [N s^2/m^2] -Y_uv
+    yaw: float  # [N s^2] -N_ur
+    sway_by_yaw: float  # [N s^2/m] -Y_ur
+    yaw_by_sway: float  # [N s^2/m] -N_uv
+
+
+class Lift(NamedTuple):
+    """A side force that goes with the speed ahead and the drift where it acts, and what else resists turning."""
+
+    sway: Estimate  # [N s^2/m^2]
+    at: Estimate  # [m] ahead of the middle
+    yaw: Estimate  # [N s^2]
+
+
+def clarke(hull: Hull) -> Derivatives:
+    """Of all hulls, without the Coriolis force of the rigid body."""
+    L, T = hull.length, hull.draught
+    wide, deep = hull.breadth / L, hull.breadth / T
+    scale = hull.hulls * pi * (T / L) ** 2 * 0.5 * DENSITY * L**2
+    return Derivatives(
+        scale * (1.0 + 0.4 * hull.block * deep),
+        scale * L * L * max(0.25 + 0.039 * deep - 0.56 * wide, 0.05),
+        scale * L * (-0.5 + 2.2 * wide - 0.08 * deep),
+        scale * L * (0.5 + 2.4 * T / L),
+    )
+
+
+def lift(hull: Hull) -> Lift:
+    """Clarke's derivatives of a slender hull less the Munk moment of its added mass, else a wing of low aspect."""
+    if not hull.slender:
+        force = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2
+        return Lift(
+            Estimate(force, "0.5 pi rho T^2, R. T. Jones 1946: a wing of low aspect"),
+            Estimate(LIFT_AT * hull.length, f"{LIFT_AT:g} lengths; -0.5 of a slender body"),
+            Estimate(0.0, "that at its place resists turning"),
+        )
+    whole, rule = clarke(hull), added_mass.CLARKE
+    munk = added_mass.sway(hull).value - added_mass.surge(hull).value
+    at = (whole.yaw_by_sway - munk) / whole.sway
+    return Lift(
+        Estimate(whole.sway, rule),
+        Estimate(at, f"{rule}, less the Munk moment"),
+        Estimate(
+            max(whole.yaw - whole.sway * at * at, 0.0),
+            f"{rule}, less that of the force at its place",
+        ),
+    )
+
+
+def at_rest(hull: Hull) -> tuple[Estimate, Estimate]:
+    """Linear damping in sway [N s/m] and yaw [N m s] of a hull that makes no way.
+
+    Sway and yaw die out in 1 s on a boat of 2 m, by Froude's law on others, but on slender ones far later.
+    """
+    if hull.slender:
+        speed, own = resistance.service_speed(hull), lift(hull)
+        turning = own.yaw.value + own.sway.value * own.at.value**2
+        rule = f"{SLOW:g} of the lift at an easy {speed:.3g} m/s"
+        return Estimate(SLOW * speed * own.sway.value, rule), Estimate(SLOW * speed * turning, rule)
+    time = sqrt(hull.length / SECOND)
+    rule = f"mass with that of the water / {time:.3g} s, which is 1 s on a boat of {SECOND:g} m (MSS otter.m)"
+    return (
+        Estimate((hull.mass + added_mass.sway(hull).value) / time, rule),
+        Estimate((inertia.yaw(hull).value + added_mass.yaw(hull).value) / time, rule),
+    )
+
+
+def section_drag() -> Estimate:
+    """Drag coefficient of the sections in cross flow."""
+    return Estimate(SECTION, "Otter 0.85 (MSS otter.m); S. F. Hoerner, Fluid-Dynamic Drag, 1965")

@@ -1,0 +1,194 @@
+"""The ways in which the boats of a fleet are steered: goals passed on, a compiled law, a function over all of them."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import groupby
+from typing import Any, TypeAlias
+
+import numba
+import numpy as np
+from numba import types
+from numpy.typing import ArrayLike
+
+from boatsim.control.compiled import SENSE, CompiledController, Records, as_table, columns
+from boatsim.errors import BadInput
+from boatsim.physics.commands import SLACK, sent_row
+from boatsim.physics.signals import Array
+from boatsim.simulate import compiled_loop
+from boatsim.simulate.batch import Batch, Boats
+from boatsim.simulate.sensing import NOISES, Sensors
+
+Vectorised: TypeAlias = Callable[[Records, Mapping[str, float]], Mapping[str, ArrayLike]]
+
+
+@dataclass
+class Aboard:
+    """What all ways share: boats, sensors, steps of a control period, steps in which more was sent than taken."""
+
+    batch: Batch
+    sensors: Sensors
+    steps: int
+    saturated: Array  # (n, inputs)
+    random: Sequence[np.random.Generator] = ()  # of each boat's sensors
+    total: Array = field(
+        init=False
+    )  # (n, inputs) sum over time [s] of the commands of compiled laws
+
+    def __post_init__(self) -> None:
+        self.total = np.zeros_like(self.saturated)
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """(inputs,) lowest and highest of each."""
+        low, high = (
+            np.array(list(self.batch.vessels[0].limits().values()), dtype=float).reshape(-1, 2).T
+        )
+        return np.ascontiguousarray(low), np.ascontiguousarray(high)
+
+    def noise(self, boats: Boats, periods: int) -> Array:
+        """(boats, periods, 7) further numbers of each boat's own noise."""
+        drawn = np.zeros((len(boats), periods, NOISES))
+        if not self.sensors.ideal:
+            for row, b in zip(drawn, boats, strict=True):
+                self.random[b].standard_normal(out=row)
+        return drawn
+
+    def send(self, orders: Array, steps: int) -> None:
+        """Advance all under orders (n, inputs) or (inputs,), and count where more is sent than is taken."""
+        low, high = self.limits
+        self.batch.advance(orders, steps)
+        self.saturated += steps * (np.abs(orders - self.batch.commands) > SLACK * (high - low))
+
+
+class PassedOn:
+    """Goals are the commands of their channels; nothing is sensed."""
+
+    def __init__(self, aboard: Aboard) -> None:
+        self.aboard = aboard
+
+    def reset(self) -> None:
+        """Nothing is remembered."""
+
+    def sail(self, goals: Sequence[Mapping[str, float]]) -> None:
+        """A period for each goal."""
+        for goal, same in groupby(goals):
+            steps = len(list(same)) * self.aboard.steps
+            self.aboard.send(sent_row(self.aboard.batch.vessels[0], goal), steps)
+
+
+class ByFunction:
+    """A function of the records of what all sense (n,) and of the goal gives the commands of all, by name."""
+
+    def __init__(self, aboard: Aboard, function: Vectorised) -> None:
+        self.aboard, self.function = aboard, function
+        self._sense = np.zeros(len(aboard.batch), SENSE)
+
+    def reset(self) -> None:
+        """The function remembers what it likes."""
+
+    def sail(self, goals: Sequence[Mapping[str, float]]) -> None:
+        """A period for each goal. Raises BadInput for a channel that is not there."""
+        batch, numbers = self.aboard.batch, self.aboard.sensors.numbers
+        everyone, boat = np.arange(len(batch)), batch.vessels[0]
+        noise = self.aboard.noise(everyone, len(goals))
+        for i, goal in enumerate(goals):
+            batch.feel(as_table(self._sense))
+            compiled_loop.disturb_boats(everyone, as_table(self._sense), numbers, noise, i)
+            orders = np.tile(sent_row(boat, {}), (len(batch), 1))
+            for name, values in self.function(self._sense, goal).items():
+                if name not in boat.commands:
+                    raise BadInput(boat.no_command(name))
+                orders[:, boat.inputs.index(name)] = values
+            self.aboard.send(orders, self.aboard.steps)
+
+
+class ByLaw:
+    """A compiled law, each boat with the settings of its controller and a memory of its own."""
+
+    def __init__(
+        self,
+        aboard: Aboard,
+        controllers: Sequence[CompiledController],
+        memory: Records | None = None,
+    ) -> None:
+        """Boat i has the controller i modulo their number, and remembers in `memory`, or anew.
+
+        Raises BadInput where they are not of one kind.
+        """
+        kind = type(controllers[0])
+        if any(type(c) is not kind or c.period != controllers[0].period for c in controllers):
+            raise BadInput(
+                "controllers of a fleet of several kinds or periods; allowed are other settings"
+            )
+        self.aboard, self.kind = aboard, kind
+        n, boat = len(aboard.batch), aboard.batch.vessels[0]
+        rows = np.concatenate([c.settings() for c in controllers])
+        self._settings = rows[np.arange(n) % len(rows)]
+        self._memory = np.zeros(n, kind.remembers) if memory is None else memory
+        self._sense = np.zeros(n, SENSE)
+        self._goal, self._sent = (np.zeros(n, t) for t in kind.asked_and_sent())
+        self._felt, self._wanted, self.orders = (
+            as_table(r) for r in (self._sense, self._goal, self._sent)
+        )
+        self.places = columns(kind.commands, boat.inputs)
+        self._low, self._high = aboard.limits
+        self._loop = self._compiled()
+
+    def reset(self) -> None:
+        """Nothing learnt."""
+        self._memory[:] = np.zeros(1, self.kind.remembers)
+
+    def sail(self, goals: Sequence[Mapping[str, float]], begins: bool = True) -> None:
+        """A period for each goal, each boat's on one thread; it begins with the law, or ends with it."""
+        table = np.array([self.kind.asked(goal) for goal in goals], dtype=float)
+        self.aboard.batch.shared(lambda boats: self._sailed(boats, table, begins))
+
+    def _sailed(self, boats: Boats, goals: Array, begins: bool) -> None:
+        a, b, periods = self.aboard, self.aboard.batch, len(goals)
+        self._loop(
+            *self._pointers,
+            boats,
+            begins,
+            periods,
+            a.steps,
+            b.step,
+            b.t,
+            b._y,
+            b._commands,
+            b._memory,
+            b._act,
+            b._p,
+            b._on,
+            b._k,
+            b._none,
+            self._settings,
+            self._memory,
+            self._sense,
+            self._felt,
+            a.sensors.numbers,
+            a.noise(boats, periods),
+            self._goal,
+            self._wanted,
+            goals,
+            self._sent,
+            self.orders,
+            self.places,
+            self._low,
+            self._high,
+            a.saturated,
+            a.total,
+        )
+
+    def _compiled(self) -> Any:
+        """The loop, law and program being pointers to functions: so it is kept on disk, whatever boat it steers."""
+        code, typeof = self.aboard.batch.code, numba.typeof
+        records = tuple(
+            typeof(r) for r in (self._settings, self._memory, self._sense, self._goal, self._sent)
+        )
+        law = types.void(compiled_loop.Boats, *records)
+        self._pointers = (
+            compiled_loop.Pointer(self.kind.law, law),
+            compiled_loop.Pointer(code.feel_boats, compiled_loop.FEEL),
+            compiled_loop.Pointer(code.advance_boats, compiled_loop.ADVANCE),
+        )
+        return compiled_loop.sailing(tuple(p._numba_type_ for p in self._pointers), records)
