@@ -66,7 +66,8 @@ OURS = {  # "physics.effects.fan_wind" -> its file; "physics.effects" is the pac
     for path in sorted((HOME / "boatsim").rglob("*.py"))
 }
 
-# What modules import ------------------------------------------------------------------------------------------------
+# What modules import
+# ------------------------------------------------------------------------------------------------
 
 
 @cache
@@ -135,7 +136,8 @@ def counts() -> Counter[tuple[str, str]]:
     return Counter((a, b) for a, b in pairs if a != b)
 
 
-# The picture --------------------------------------------------------------------------------------------------------
+# The picture
+# --------------------------------------------------------------------------------------------------------
 
 WIDE, HIGH, GAP, EDGE = 132, 46, 14, 12  # [px] a box, between two, around all
 LANE, FIRST = 27, 40  # [px] from lane to lane, from the boxes to the first

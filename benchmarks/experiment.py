@@ -64,7 +64,8 @@ class Outcome:
     same: float
     manoeuvre: str
     expected: float  # [nats]
-    gained: float  # [nats] evidence of the truth over its best rival, after the suggested run less before
+    # [nats] evidence of the truth over its best rival, after the suggested run less before
+    gained: float
 
 
 @cache

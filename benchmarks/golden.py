@@ -24,7 +24,8 @@ from boatsim.simulate.run import run
 HOME = Path(__file__).parents[1]
 HEADING = "## Norms"
 NEW = "is new"
-# Loops that run away, as published controllers may, forget how they began: what such a start moves there is kept.
+# Loops that run away, as published controllers may, forget how they began: what such a start moves
+# there is kept.
 NUDGE, NUDGES = 1e-12, 6  # SI units off in every freedom; so many ways of it
 REACH = 3.0  # of what the nudges moved, within which another machine's arithmetic may end
 FIELDS = {

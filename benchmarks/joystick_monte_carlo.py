@@ -42,7 +42,8 @@ DRAWN = {
     "pwm_thrust.exponent": "uniform(1.0, 1.6)",
     "cross_flow_drag.section_drag_coefficient": "uniform(0.7, 2.5)",
     "weak_reverse.astern_factor": "uniform(0.55, 0.85)",
-    "port.x,starboard.x+": "uniform(-0.08, 0.08)",  # [m] both motors ahead or astern of where they are drawn
+    # [m] both motors ahead or astern of where they are drawn
+    "port.x,starboard.x+": "uniform(-0.08, 0.08)",
     "steering_offset.port": f"uniform({-SERVO:.5f}, {SERVO:.5f})",  # [rad]
     "steering_offset.starboard": f"uniform({-SERVO:.5f}, {SERVO:.5f})",
     "body.yaw_inertia": "uniform(0.5, 2.0)",  # [kg m^2]
@@ -136,7 +137,8 @@ def _p95(columns: Mapping[str, Array], scenario: str, controller: str, name: str
     )
 
 
-# The picture ----------------------------------------------------------------------------------------------------------
+# The picture
+# ----------------------------------------------------------------------------------------------------------
 
 DRAWN_NORMS = {
     "sway": ("heading_at_end", "surge_offset", "yaw_rate_l2"),

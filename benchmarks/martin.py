@@ -43,7 +43,8 @@ SEAS = ("seas_90", "seas_45", "seas_60", "seas_30")
 PUBLISHED = tomllib.loads(
     Path(__file__).with_name("martin_published.toml").read_text(encoding="utf-8")
 )
-TUNING = {  # what the thesis sets by vessel, section 3.2; Eastward Ho's are the controllers' defaults
+# what the thesis sets by vessel, section 3.2; Eastward Ho's are the controllers' defaults
+TUNING = {
     "eastward_ho": {},
     "kynoc": {
         "pid_course": {"derivative": 0.5, "integral": 30.0},
@@ -93,7 +94,8 @@ def autopilot(vessel: str, kind: str, rate: float = 5.0) -> dict[str, Any]:
     return table
 
 
-# A run on the twin ----------------------------------------------------------------------------------------------------
+# A run on the twin
+# ----------------------------------------------------------------------------------------------------
 
 
 def sailed(test: Scenario, seed: int = 0) -> Recording:
@@ -149,7 +151,8 @@ def apart() -> float:
     return float(max(np.degrees(np.abs(one[n] - other[n])).max() for n in ("psi_rad", "phi_rad")))
 
 
-# The table ------------------------------------------------------------------------------------------------------------
+# The table
+# ------------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -280,7 +283,8 @@ def agreements(done: Sequence[Entry]) -> str:
     )
 
 
-# The puzzles ----------------------------------------------------------------------------------------------------------
+# The puzzles
+# ----------------------------------------------------------------------------------------------------------
 
 
 def mean_over(

@@ -21,7 +21,8 @@ from boatsim.simulate.engine import Engine, State
 
 PERIOD = 0.5  # [s] of the autopilots
 REALISATIONS = 2000
-SEAS = (  # condition, angle of encounter [deg], significant height [m] (0: by resonance), modal period [s]
+# condition, angle of encounter [deg], significant height [m] (0: by resonance), modal period [s]
+SEAS = (
     (4, 90, 0.0, 0.0), (3, 45, 0.88, 7.5), (1, 60, 0.88, 7.5), (2, 30, 1.88, 8.8),
 )  # fmt: skip
 WAVES = ("yaw", "sway", "roll")  # freedoms they push

@@ -28,7 +28,9 @@ UNITS = {
     "position_rms_m": ("position [m]", np.sqrt(2.0)),
     "heading_rms_rad": ("heading [deg]", 57.29578),
 }
-THRUST_COEFFICIENT = 0.2  # K_T of a propeller of P/D 0.7 under way: M. M. Bernitsas et al. 1981, Wageningen B-series at J = 0.35
+# K_T of a propeller of P/D 0.7 under way: M. M. Bernitsas et al. 1981, Wageningen B-series at J =
+# 0.35
+THRUST_COEFFICIENT = 0.2
 LONGEST = 150.0  # [s] of a run of the tanker, for the time it takes
 MOST = 17.0  # [1/s] the fastest shaft of the manoeuvres that are fitted and judged
 
@@ -41,9 +43,8 @@ class Case:
     logs: Mapping[str, Mapping[str, Array]]  # columns
     unseen: Sequence[str]
     hand_made: Callable[[Path], Path]  # its file, written into a folder if it has to be
-    its_logs: Callable[[Mapping[str, Array]], Mapping[str, Array]] = (
-        dict  # columns as the hand-made vessel has them
-    )
+    # columns as the hand-made vessel has them
+    its_logs: Callable[[Mapping[str, Array]], Mapping[str, Array]] = dict
 
 
 def three_metre(folder: Path) -> Case:

@@ -50,9 +50,8 @@ KINDS = {  # cause outside the library -> axis and factors of a described law th
     "shifting_cargo": "^roll.*(swinging|, from)",
 }
 SLACK = 1.05  # of the recalibrated error on run_3: a description must not do worse
-WORTH = (
-    0.15  # share of the recalibrated error that the true structure must save for a skill to be told
-)
+# share of the recalibrated error that the true structure must save for a skill to be told
+WORTH = 0.15
 
 
 def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[str, Any]:

@@ -65,46 +65,34 @@ class L1JoystickAsPublished(Controller):
     r_2: float = param(0.07, low=-1.0, high=1.0, unit="m/s", words="sway command of the program")
     r_3: float = param(0.0, low=-5.0, high=5.0, unit="rad/s", words="yaw command of the program")
     h0: float = param(0.159, low=0.0, high=2 * pi, unit="rad", words="compass bearing at the start")
-    seeded: bool = (
-        False  # item 24: heading[0] is 0 at the first sample; True: it is the first reading
-    )
-    integer_division: bool = (
-        True  # item 16: 5/7 is 0, 99/70 is 1; mended: 5.0/7.0 (felt only if not seeded)
-    )
-    surge_history: bool = (
-        True  # item 17: U_1[0] = U_1[1]; U_1[1] = U_1[0]; mended: shifted like U_2 and U_3
-    )
+    # item 24: heading[0] is 0 at the first sample; True: it is the first reading
+    seeded: bool = False
+    # item 16: 5/7 is 0, 99/70 is 1; mended: 5.0/7.0 (felt only if not seeded)
+    integer_division: bool = True
+    # item 17: U_1[0] = U_1[1]; U_1[1] = U_1[0]; mended: shifted like U_2 and U_3
+    surge_history: bool = True
     sigma_sign: bool = True  # item 18: sigma adapts along +error; mended: along -error
-    unscaled_disturbance: bool = (
-        True  # item 18: theta x + sigma beside the sampled input; mended: inside it
-    )
-    start_values: bool = (
-        True  # item 19: sigma 0.9, theta_1, omega_1, sigma_1 0 at the start; mended: clipped
-    )
-    sway_coefficient: bool = (
-        True  # item 20: -0.9324 U_3[2] in the sway row; mended: -0.001193 U_3[2]
-    )
-    misplaced_parenthesis: bool = (
-        True  # item 21: -yaw (a - sway b); mended: yaw a - sway b = -(xt' P b) x
-    )
+    # item 18: theta x + sigma beside the sampled input; mended: inside it
+    unscaled_disturbance: bool = True
+    # item 19: sigma 0.9, theta_1, omega_1, sigma_1 0 at the start; mended: clipped
+    start_values: bool = True
+    # item 20: -0.9324 U_3[2] in the sway row; mended: -0.001193 U_3[2]
+    sway_coefficient: bool = True
+    # item 21: -yaw (a - sway b); mended: yaw a - sway b = -(xt' P b) x
+    misplaced_parenthesis: bool = True
     divide_by_four: bool = True  # item 22: five readings over four; mended: over five
-    acceleration_as_velocity: bool = (
-        True  # item 23: surge[0] = surge_a; mended: surge[0] = surge[1] + T_s surge_a
-    )
-    unused_gyro: bool = (
-        True  # item 23: yaw rate from two compass headings; mended: yaw[0] = yaw_a, the gyro
-    )
+    # item 23: surge[0] = surge_a; mended: surge[0] = surge[1] + T_s surge_a
+    acceleration_as_velocity: bool = True
+    # item 23: yaw rate from two compass headings; mended: yaw[0] = yaw_a, the gyro
+    unused_gyro: bool = True
     reversed_difference: bool = True  # item 23: old minus new heading; mended: new minus old
-    heading_wrap: bool = (
-        False  # item 23: bearings in 0 to 2 pi, jumps left in; False: continuous bearing
-    )
+    # item 23: bearings in 0 to 2 pi, jumps left in; False: continuous bearing
+    heading_wrap: bool = False
     parked_inward: bool = True  # item 25: servos wait at 30 deg; mended: at 0
-    surge_feed_forward: bool = (
-        True  # item 26: kg_1 = 0.8; mended: 2, the pole of the coded surge model
-    )
-    longer_period: bool = (
-        False  # item 27: the loop's own work takes longer than T_s; False: exactly T_s
-    )
+    # item 26: kg_1 = 0.8; mended: 2, the pole of the coded surge model
+    surge_feed_forward: bool = True
+    # item 27: the loop's own work takes longer than T_s; False: exactly T_s
+    longer_period: bool = False
 
     estimate: dict[str, float] = field(init=False, repr=False)
 

@@ -146,7 +146,8 @@ class L1JoystickBlind(AdaptiveJoystick):
     def _take_over(self, check: MotorCheck, compass: float) -> None:
         """Note what the check found and what it left of motion."""
         d = ANGLE_MAX
-        # a pulse of thrust F turns by F (lever(d) - B), of which an angle e more takes F e (B sin d + L cos d + L)
+        # a pulse of thrust F turns by F (lever(d) - B), of which an angle e more takes F e (B sin d
+        # + L cos d + L)
         reach = self.half_spacing * sin(d) + self.arm * (cos(d) + 1.0)
         self._astern = check.astern
         self._angle = check.unevenness * (self.half_spacing - self.lever(d)) / reach

@@ -95,7 +95,8 @@ class L1Thesis(CompiledController):
         "steer_starboard_rad",
     )
     law: ClassVar = law
-    # predicted states; both poles of the low-pass [rad/s^2]; angle commanded, and where the servo is taken to be
+    # predicted states; both poles of the low-pass [rad/s^2]; angle commanded, and where the servo
+    # is taken to be
     remembers: ClassVar = record(
         "started", "vh", "rh", "slow", "fast", "angle", "reached", sway=ROW, yaw=ROW
     )
@@ -106,9 +107,8 @@ class L1Thesis(CompiledController):
     power: float = param(
         0.5, low=0.01, high=8.0, unit="N", words="nominal power F0: both thrusts together"
     )
-    modulated: bool = (
-        False  # F = F0 sin d / sin 23.6 deg instead of F0, d the angle the motors have reached
-    )
+    # F = F0 sin d / sin 23.6 deg instead of F0, d the angle the motors have reached
+    modulated: bool = False
     servo_lag: float = param(0.15, low=0.0, high=60.0, unit="s", words="assumed, of the steering")
     adaptation: float = param(1e4, low=0.0, high=1e6, unit="", words="gain of the gradient laws")
     mass: float = param(10.4, low=0.1, high=1e3, unit="kg", words="assumed, sway")

@@ -27,9 +27,8 @@ class PidCourse(Helm):
     def reset(self) -> None:
         """On the course, nothing wished for."""
         super().reset()
-        self._wish = self._once = self._twice = (
-            0.0  # [rad] wish; heading errors one period ago and two
-        )
+        # [rad] wish; heading errors one period ago and two
+        self._wish = self._once = self._twice = 0.0
 
     def demand(self) -> float:
         """q0 y + q1 y(k-1) + q2 y(k-2) beside the last wish; before its first sight the ship was on her course."""

@@ -70,9 +70,8 @@ class Sliding(Helm):
     design_rate: float = param(
         radians(5.0), low=1e-3, high=1.0, unit="rad/s", words="rudder rate of the surface"
     )
-    printed: bool = (
-        True  # the surface as printed; False: computed from the nominal ship for the design rate
-    )
+    # the surface as printed; False: computed from the nominal ship for the design rate
+    printed: bool = True
     in_degrees: bool = False  # angles in S in degrees, as the thesis states angles elsewhere
 
     def reset(self) -> None:

@@ -15,7 +15,8 @@ HULL = """<mujoco model="{name}">
 </mujoco>
 """
 
-# The boat of the reference cases; outboards half a metre to the side of the origin give any surge force, sway force and
+# The boat of the reference cases; outboards half a metre to the side of the origin give any surge
+# force, sway force and
 # yaw moment.
 PLANAR = """
 about = "rectangular boat for tests"

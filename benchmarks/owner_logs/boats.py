@@ -18,7 +18,8 @@ class Boat:
     name: str
     plant: Plant
     helm_most: float  # [rad] of rudder or outboards; 0: it is steered by its thrusters
-    curve: float  # revolutions are this power of the command: 0.5 where the controller is linear in thrust
+    # revolutions are this power of the command: 0.5 where the controller is linear in thrust
+    curve: float
     lag: float  # [s] of the drives
     helm_rate: float  # [rad/s]
     top_rpm: float

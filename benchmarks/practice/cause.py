@@ -21,9 +21,8 @@ class Cause:
     name: str  # as the library calls it, or outside_library:what
     parameters: Mapping[str, float] = field(default_factory=dict)  # those the library's law has too
     boat: Callable[[Boat], Boat] | None = None
-    drive: Callable[[Boat, float], Given] | None = (
-        None  # of the step [s]; the closure keeps what it remembers
-    )
+    # of the step [s]; the closure keeps what it remembers
+    drive: Callable[[Boat, float], Given] | None = None
     force: Callable[[Boat, Motion], Array] | None = None
     water: Callable[[Array, Array, Whole], Flow] | None = None
     show: Shown | None = None

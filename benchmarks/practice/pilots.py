@@ -84,9 +84,8 @@ class Keeper:
     boat: Boat
     grid: Grid
     rng: Rng
-    legs: Array = field(
-        init=False
-    )  # (J, 2, RUNS) corners [m], or for the ship (J, 1, RUNS) courses [rad]
+    # (J, 2, RUNS) corners [m], or for the ship (J, 1, RUNS) courses [rad]
+    legs: Array = field(init=False)
     speeds: Array = field(init=False)  # (J, RUNS) m/s
 
     def __post_init__(self) -> None:

@@ -16,9 +16,8 @@ from benchmarks.real.common import OUT, RECORDINGS
 NAME = "esso_osaka"
 BLANKS = Path(__file__).parent / NAME
 SOURCE = RECORDINGS / NAME / "vessel.json"
-WATERS_SHARE = (
-    0.36  # of I_zz + J_zz, about as of KVLCC2 (6075 of 16089 kg m^2); the sum alone moves the ship
-)
+# of I_zz + J_zz, about as of KVLCC2 (6075 of 16089 kg m^2); the sum alone moves the ship
+WATERS_SHARE = 0.36
 
 
 def written(folder: Path = OUT / NAME / "vessel" / NAME, wind_known: bool = False) -> Path:

@@ -31,9 +31,8 @@ from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.recordings.table import Recording
 
 CALLED = f"{NAME}_wind"
-STEADY = (
-    0.5  # [s] of readings taken together: the vessel's rate, in less a hull of 3 m does nothing
-)
+# [s] of readings taken together: the vessel's rate, in less a hull of 3 m does nothing
+STEADY = 0.5
 
 
 def with_wind(name: str, recording: Recording) -> Recording:

@@ -31,12 +31,15 @@ from boatsim.recordings.table import Recording
 NAME = "kvlcc2_mmg"
 VESSELS = {"hsva": "kvlcc2_mmg", "marin": "kvlcc2_mmg_full_scale"}
 FACTS = {"steering_measured": True}  # both tanks measured the rudder's angle
-RATE = 3.0  # [Hz] of rows at most, for the time it takes: the 7 m model needs half a minute for a swing
+# [Hz] of rows at most, for the time it takes: the 7 m model needs half a minute for a swing
+RATE = 3.0
 GOAL = 0.5  # of the recalibrated model's error
 COUNT = ("first", "second")  # overshoots that are looked at
-HELD = 0.97  # of the rudder angle of one side of a zig-zag: below it the rudder is on its way to the other side
+# of the rudder angle of one side of a zig-zag: below it the rudder is on its way to the other side
+HELD = 0.97
 DRAWS = 50  # of coefficients from what the fitted runs leave open
-TOLD = 0.5  # share of its prior sd below which the sd of a coefficient says that the recordings know it
+# share of its prior sd below which the sd of a coefficient says that the recordings know it
+TOLD = 0.5
 
 
 # ---- overshoots

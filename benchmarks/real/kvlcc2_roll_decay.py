@@ -91,7 +91,8 @@ def ratio(found: Diagnosis) -> float:
     return rms["patched"] / rms["recalibrated"]
 
 
-# Envelope and phase -----------------------------------------------------------------------------------------------
+# Envelope and phase
+# -----------------------------------------------------------------------------------------------
 
 
 def with_effects(problem: Problem, base: Fit, names: Sequence[str]) -> Fit:
@@ -191,7 +192,8 @@ def window_rows(
     return dampings, periods
 
 
-# Speed ------------------------------------------------------------------------------------------------------------
+# Speed
+# ------------------------------------------------------------------------------------------------------------
 
 
 def coefficients(problem: Problem, fitted: Fit) -> dict[str, tuple[float, float]]:
@@ -265,7 +267,8 @@ def carried_over(at_rest: Diagnosis, whole: Recording) -> Rows:
     ]
 
 
-# Tables -----------------------------------------------------------------------------------------------------------
+# Tables
+# -----------------------------------------------------------------------------------------------------------
 
 
 def last_third(found: Diagnosis, whole: Recording) -> tuple[Rows, Ranking]:

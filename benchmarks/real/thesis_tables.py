@@ -39,9 +39,8 @@ from boatsim.diagnosis.search.pruning import ALIKE
 from boatsim.physics.base import Array
 
 ENOUGH = 4.0  # [nats] an effect must gain to be named
-SPREAD = (
-    0.3  # of a residual: camera marks, rounding of the tables, and how far runs of one test differ
-)
+# of a residual: camera marks, rounding of the tables, and how far runs of one test differ
+SPREAD = 0.3
 INDEPENDENT = 2.0  # numbers that the norms of one test are worth
 ROOM, TIMES = 0.15, (13.0, 18.0)  # [m] ahead of the bow in the tank; [s] of a sway test
 STEP = 0.15  # of a finite difference, in prior sds: the loop's relays make the norms rough below it
@@ -191,7 +190,8 @@ def soft(x: float) -> float:
     return CLIP * asinh(x / CLIP)
 
 
-# Fit --------------------------------------------------------------------------------------------------------------
+# Fit
+# --------------------------------------------------------------------------------------------------------------
 
 
 def knobs_of(names: Sequence[str]) -> tuple[Knob, ...]:
@@ -323,7 +323,8 @@ def pruned(tables: Tables, best: Fit) -> Fit:
     return best
 
 
-# What is printed --------------------------------------------------------------------------------------------------
+# What is printed
+# --------------------------------------------------------------------------------------------------
 
 
 def left_out(tables: Tables, fitted: Fit, test: str) -> Fit:

@@ -39,9 +39,8 @@ class Linear:
     triangles: tuple[Array, ...]  # (2 NQ, 2 NQ): derivatives by the start = basis @ triangle
     errors: Array  # (R,)
     raw: Array = field(default_factory=nothing)  # (R, F) by the parameters, starts held
-    rest: Array = field(
-        default_factory=nothing
-    )  # (R + N,) errors without what starts can do, then those of the prior
+    # (R + N,) errors without what starts can do, then those of the prior
+    rest: Array = field(default_factory=nothing)
     columns: Array = field(default_factory=nothing)  # (R + N, F) the same of derivatives
 
     @classmethod

@@ -38,9 +38,8 @@ class Question:
         str, Effect
     ]  # of the library, those that are tried on this vessel and have a course to be fitted
     noise: dict[str, float]  # by family, as found in the recordings [m, rad]
-    known: dict[tuple[str, ...], tuple[Free, ...]] = field(
-        default_factory=dict
-    )  # what hypotheses fit, once asked
+    # what hypotheses fit, once asked
+    known: dict[tuple[str, ...], tuple[Free, ...]] = field(default_factory=dict)
 
     def start(self) -> Array:
         """The vessel's own coefficients as written."""

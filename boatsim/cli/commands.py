@@ -713,7 +713,8 @@ def main() -> None:
         leave_quietly()
         if not struck():
             raise
-        # Python takes a Ctrl-C that passed through code of its own making for one that nobody handled
+        # Python takes a Ctrl-C that passed through code of its own making for one that nobody
+        # handled
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
         os._exit(int(leaving.code or 0))

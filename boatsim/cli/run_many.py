@@ -219,7 +219,8 @@ def _in_turn(
     return outcomes
 
 
-# Several processes: a signal is heeded by this one only, which asks the others to stop; they end with it -------------
+# Several processes: a signal is heeded by this one only, which asks the others to stop; they end
+# with it -------------
 
 
 def _in_processes(tasks: Sequence[Task], jobs: int, report: progress.Reached) -> list[Outcome]:

@@ -13,9 +13,8 @@ from boatsim.control.adaptive import lyapunov
 from boatsim.control.compiled import Records, lean, merged
 from boatsim.physics.base import Array
 
-TOLERANCE = (
-    0.1  # of the projection: it begins to brake at 1 / sqrt(1 + tolerance) of the way to a bound
-)
+# of the projection: it begins to brake at 1 / sqrt(1 + tolerance) of the way to a bound
+TOLERANCE = 0.1
 
 
 @lean

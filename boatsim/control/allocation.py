@@ -25,7 +25,8 @@ PWM_MAX = 255.0  # eight bits
 ANGLE_MAX = radians(45.0)  # [rad] inward range of the steering (Bayless 2017, Fig. 8)
 HOLD_SHARE = 0.45  # surge correction over differential thrust while the motors give sway
 TURN_SHARE = 0.8  # the same while they only turn the boat
-SURGE_RESERVE = 0.3  # part of that share which a turn at the motors' limits leaves to surge, or the boat drifts ahead
+# part of that share which a turn at the motors' limits leaves to surge, or the boat drifts ahead
+SURGE_RESERVE = 0.3
 
 
 class Stick(NamedTuple):

@@ -26,9 +26,8 @@ class Sense:
     y: float  # [m]
     phi: float = nan  # [rad] roll
     p: float = nan  # [rad/s] roll rate
-    more: Mapping[str, float] = field(
-        default_factory=dict
-    )  # what further sensors of the boat read, by name
+    # what further sensors of the boat read, by name
+    more: Mapping[str, float] = field(default_factory=dict)
 
 
 class Estimate(NamedTuple):

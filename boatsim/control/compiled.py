@@ -31,7 +31,8 @@ __all__ = [
     "with_parts",
 ]
 
-# A controller built on another has its settings and more: to numba that is a subtype, with fields where they were.
+# A controller built on another has its settings and more: to numba that is a subtype, with fields
+# where they were.
 warnings.filterwarnings(
     "ignore", ".*has been considered a subtype of.*", NumbaExperimentalFeatureWarning
 )

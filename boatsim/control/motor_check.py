@@ -59,9 +59,8 @@ class Train:
 
     pulse: int  # [periods]
     rest: int  # [periods] before, between and behind
-    rates: list[float] = field(
-        default_factory=list
-    )  # [rad/s] one a period, the first before the train
+    # [rad/s] one a period, the first before the train
+    rates: list[float] = field(default_factory=list)
     felt: list[float] = field(default_factory=list)  # [m/s^2] ahead, at the same times
 
     def __post_init__(self) -> None:

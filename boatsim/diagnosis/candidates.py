@@ -22,9 +22,8 @@ SLOTS = {
     "described_force": ("described_", 5),
     "described_thrust": ("described_thrust_", 2),
 }  # names, how many
-REORDERED = (
-    "reordered_"  # of one that acts on the other side of an actuator's own lag than it usually does
-)
+# of one that acts on the other side of an actuator's own lag than it usually does
+REORDERED = "reordered_"
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,9 @@ from boatsim.physics.base import Array
 
 EXACT = 1e-12  # [m, rad] an error of a free run is at least: of a log that never moves it is none
 STEPS = 2  # halvings or doublings at most
-SURE = 2.0  # standard errors over the free runs by which errors must fall: where they swing as much, it says nothing
+# standard errors over the free runs by which errors must fall: where they swing as much, it says
+# nothing
+SURE = 2.0
 
 
 def timed(problem: Problem, found: Fit) -> Problem:

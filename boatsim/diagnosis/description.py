@@ -26,7 +26,8 @@ class Written:
     term: Described  # with its coefficient
     sd: float  # of the coefficient
     gain: float  # [nats] on top of the other terms and entries
-    carries: bool  # free runs over unseen recordings get better by it; an event of a run acts in no other
+    # free runs over unseen recordings get better by it; an event of a run acts in no other
+    carries: bool
     curve: Curve | None = None
 
 

@@ -20,30 +20,31 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
 
 FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into thirds
-MAX_STEP = 0.02  # [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
+# [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
+MAX_STEP = 0.02
 FIT_STEP = 0.17  # [s] the same in the filter of a boat of 1.2 m, which is corrected at every sample
-START = 3.0  # tolerated forces by which actuators on their way, or a hand's push, may act when a recording begins
-LATE = (
-    0.007  # [rad] of phase by which Runge-Kutta is off when an oscillation of the hull has died out
-)
-RINGING = (
-    0.01  # of critical damping: an oscillation that dies out more slowly is corrected before it has
-)
+# tolerated forces by which actuators on their way, or a hand's push, may act when a recording
+# begins
+START = 3.0
+# [rad] of phase by which Runge-Kutta is off when an oscillation of the hull has died out
+LATE = 0.007
+# of critical damping: an oscillation that dies out more slowly is corrected before it has
+RINGING = 0.01
 ROUNDS, NEAR = (
     4,
     0.1,
 )  # times that a recording is smoothed, until the rates it begins with move by less of their sd
-AT_REST = 0.7  # a step of the filter in time constants of the hull's quickest motion there: less than Runge-Kutta's 2.8
+# a step of the filter in time constants of the hull's quickest motion there: less than
+# Runge-Kutta's 2.8
+AT_REST = 0.7
 GRAVITY = 9.81  # [m/s^2]
 FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
 # [kg], [m], [kg m^2] numbers of the body at the end of a track's values, as in `Program.body`
 BODY = ("mass", "centre_ahead", "centre_below", "roll_inertia", "pitch_inertia", "yaw_inertia")
-UNLIKE = (
-    3.0  # times as noisy: recordings are of instruments unlike each other, not of one by chance
-)
-MASS_ENTRIES = (
-    12  # of `Mass`, the last of a pass' constants: its diagonal, axis by axis, comes first
-)
+# times as noisy: recordings are of instruments unlike each other, not of one by chance
+UNLIKE = 3.0
+# of `Mass`, the last of a pass' constants: its diagonal, axis by axis, comes first
+MASS_ENTRIES = 12
 NOTHING = (
     np.zeros((1, 1)),
     np.zeros((1, 1, 1)),
@@ -59,9 +60,8 @@ class Levels:
     force: Array  # (NQ,) rms of the latent force [N, N m]
     time_constant: float  # [s] of the latent force
     sensors: Mapping[str, float]  # standard deviation by noise family
-    begins: Array = field(
-        default_factory=lambda: np.zeros(1)
-    )  # (NQ,) least rms of the force when a recording begins
+    # (NQ,) least rms of the force when a recording begins
+    begins: Array = field(default_factory=lambda: np.zeros(1))
 
     def lasting(self, seconds: float) -> "Levels":
         """The same slow force with another correlation time: what it does to the motion over long times stays."""
@@ -84,23 +84,18 @@ class Track:
     commands: Array  # (N, K) mean until the next row
     values: Array  # nominal parameters of this run, then the body's `BODY`
     noise_scale: Mapping[str, float]  # this recording's sensor noise per common one, by family
-    facts: Mapping[str, Any] = field(
-        default_factory=dict
-    )  # what the recording's notes state besides
-    given: Array = field(
-        default_factory=lambda: np.zeros(0)
-    )  # (M,) s, when commands change; empty: at its rows
-    orders: Array = field(
-        default_factory=lambda: np.zeros((0, 0))
-    )  # (M, K) what they are from then on
-    inertia: Array = field(
-        init=False
-    )  # (NQ,) of the hull as written, with its water, axis by axis [kg, kg m^2]
+    # what the recording's notes state besides
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    # (M,) s, when commands change; empty: at its rows
+    given: Array = field(default_factory=lambda: np.zeros(0))
+    # (M, K) what they are from then on
+    orders: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    # (NQ,) of the hull as written, with its water, axis by axis [kg, kg m^2]
+    inertia: Array = field(init=False)
     start: Array = field(init=False)  # (n,) first state
     spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
-    rates: Array = field(
-        init=False
-    )  # (NQ,) it begins at, of earth axes: the filter is linearised about them first
+    # (NQ,) it begins at, of earth axes: the filter is linearised about them first
+    rates: Array = field(init=False)
 
     def __post_init__(self) -> None:
         if not len(self.given):

@@ -12,10 +12,10 @@ from boatsim.physics.base import Array
 
 SETTLED = 0.3  # [nats] a refit that gains less changes nothing
 HALVINGS = 6  # of the way from a start at which the boat runs away to the boat with nothing missing
-TRUSTED = (
-    0.5  # share of what a step promised that it must gain for derivatives to be learnt from it
-)
-SHORT = 0.1  # a step damped this much goes but part of the way, so that it does as promised says nothing
+# share of what a step promised that it must gain for derivatives to be learnt from it
+TRUSTED = 0.5
+# a step damped this much goes but part of the way, so that it does as promised says nothing
+SHORT = 0.1
 TINY = 1e-300  # variance of what is known exactly
 
 

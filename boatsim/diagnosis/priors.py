@@ -15,7 +15,8 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 SMALL_BOAT = 1.2  # [m] length for which the times below are stated
-CALM = 2.2e-4  # of the weight: a force that nobody calls missing physics, rms; 10 mN on a boat of 4.6 kg in a tank
+# of the weight: a force that nobody calls missing physics, rms; 10 mN on a boat of 4.6 kg in a tank
+CALM = 2.2e-4
 YAW_ARM, PITCH_ARM = 0.25, 0.25  # [lengths] at which that force turns and trims the hull
 ROLL_ARM = 1.0  # [draughts] at which it heels her
 CORRELATED = 1.0  # [s] over which what the water does is alike
@@ -25,9 +26,8 @@ PLENTY, COARSEST = (
     12_000,
     0.25,
 )  # rows that tell enough: where there are more, fewer a second, down to this share
-FINEST = (
-    1e-4  # of length, of a radian, of the speed that belongs to the length: no instrument is better
-)
+# of length, of a radian, of the speed that belongs to the length: no instrument is better
+FINEST = 1e-4
 ORDERS = range(
     2, 7
 )  # of the differences in which noise is looked for: the motion is smoother than that

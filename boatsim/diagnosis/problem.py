@@ -33,9 +33,8 @@ class Free:
     low: float
     high: float
     relative: bool = False
-    searched: bool = (
-        False  # moves the spectrum of a random force, not the expected motion: no gradient there
-    )
+    # moves the spectrum of a random force, not the expected motion: no gradient there
+    searched: bool = False
     how: str = "sets"  # or "scales" or "shifts"
     weights: tuple[float, ...] = (1.0,)  # of a shift, one for each position
 

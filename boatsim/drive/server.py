@@ -93,7 +93,8 @@ class Server:
         self._last = json.dumps({"over": last})
         self._wake()
 
-    # In the server's thread -----------------------------------------------------------------------------------------
+    # In the server's thread
+    # -----------------------------------------------------------------------------------------
 
     def _wake(self) -> None:
         with suppress(RuntimeError):  # a loop that is closed

@@ -40,7 +40,8 @@ class Session:
         self.again = True  # whether its file holds all goals
         self.latencies: list[float] = []  # [s] from a stick to the log
 
-    # What a run asks of it ------------------------------------------------------------------------------------------
+    # What a run asks of it
+    # ------------------------------------------------------------------------------------------
 
     def take(self, runner: Runner, stop: Callable[[], bool]) -> None:
         """Take the run over, once somebody has taken the sticks."""

@@ -26,7 +26,9 @@ class Told(TypedDict, total=False):
     scenario: str  # in its place: vessel, load, set values and effects are this one's
     load: Sequence[str]
     effects: Sequence[Mapping[str, object]]  # on top of the vessel's own, as [[effect]] tables
-    vary: Vary  # "effect.number" -> "uniform(low, high)", ...; "load" -> a list; "spread" -> factor of a diagnosis'
+    # "effect.number" -> "uniform(low, high)", ...; "load" -> a list; "spread" -> factor of a
+    # diagnosis'
+    vary: Vary
     settings: Mapping[str, object]  # of the task: its tolerances
     period: float  # [s] of a control step
     step: float  # [s] of the integration

@@ -43,9 +43,8 @@ OF_BOAT = (
 OF_DAY = ("current",)  # what the water did while the log was taken
 GAIN = 3.0  # [nats] that makes one worth its parameters
 FITTED_PART = 2 / 3  # of each log
-LEAST = (
-    0.05  # relative sd that is left to a fitted coefficient: another day is never quite the same
-)
+# relative sd that is left to a fitted coefficient: another day is never quite the same
+LEAST = 0.05
 LONG = re.compile(
     r"(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?$|(?<== )-?\d+\.\d{5,}(?:e[+-]?\d+)?(?= #)", re.MULTILINE
 )

@@ -57,7 +57,8 @@ class Composition:
             *(f"recalled by {self.effects[i].name}" for i in looking),
         )
 
-    # What kinds may ask -----------------------------------------------------------------------------------------------
+    # What kinds may ask
+    # -----------------------------------------------------------------------------------------------
 
     def sites(self, number: int) -> Sequence[Site]:
         """The calls of an effect's laws: one, or one for each instance that it rides on."""
@@ -155,7 +156,8 @@ class Composition:
             raise BadInput(f"{self.vessel.name}: a signal is bound to no channel")
         return repr(float(bound))
 
-    # The text ---------------------------------------------------------------------------------------------------------
+    # The text
+    # ---------------------------------------------------------------------------------------------------------
 
     def source_text(self) -> str:
         """`laws.py`."""
@@ -183,7 +185,8 @@ class Composition:
 
     def _head(self, used: set[str]) -> Iterator[str]:
         """Imports, and the compiled functions and types that the text below calls by number."""
-        # without the vessel's name: one that is patched, or another with the same effects, is not compiled anew
+        # without the vessel's name: one that is patched, or another with the same effects, is not
+        # compiled anew
         yield '"""Effects of a vessel, composed by boatsim; not meant to be edited."""'
         yield ""
         yield "import numpy as np"

@@ -11,7 +11,8 @@ from boatsim.physics.param import code
 from boatsim.physics.particulars import GRAVITY
 
 EVER = 1e12  # [s] beyond any clock, one that counts from 1970 too
-LITTLE = 0.01  # of the speed, or rate, that belongs to the length by Froude: within so much a sense turns
+# of the speed, or rate, that belongs to the length by Froude: within so much a sense turns
+LITTLE = 0.01
 
 
 @dataclass(frozen=True)
@@ -23,16 +24,14 @@ class Described(Force, Recall):
     recall: ClassVar = terms.recall
     reach: ClassVar = terms.reach
 
-    of: Sequence[str] = field(
-        default=(), hash=False
-    )  # the factors it goes with; none: it is constant
+    # the factors it goes with; none: it is constant
+    of: Sequence[str] = field(default=(), hash=False)
     acts: str = "always"  # which of `terms.COURSES`
     coefficient: float = param(
         0.0, low=-1e15, high=1e15, unit="", words="per product of its factors", fit=True, spread=1.0
     )
-    run: str = field(
-        default="", metadata={"ours": True}
-    )  # the recording of which it is an event; "": of none
+    # the recording of which it is an event; "": of none
+    run: str = field(default="", metadata={"ours": True})
     begin: float = param(
         -EVER, low=-EVER, high=EVER, unit="s", words="it begins, on the clock of the recording"
     )

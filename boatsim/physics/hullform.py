@@ -27,13 +27,13 @@ class DeepV:
     draught: float = 0.06  # [m] same
     deadrise: float = math.radians(25.0)  # [rad] same, section II
     parallel: float = 0.55  # [-] part of the length with straight keel and constant deadrise
-    freeboard: float = (
-        0.075  # [m] amidships, by eye; the remaining numbers shape what the particulars leave open
-    )
+    # [m] amidships, by eye; the remaining numbers shape what the particulars leave open
+    freeboard: float = 0.075
     stem_height: float = 0.125  # [m] tip of the bow above the waterline
     chine_beam: float = 0.25  # [m]
     rocker: float = 0.037  # [m] rise of the keel from amidships to the transom
-    fullness: float = 2.4  # [-] exponent of the keel's rise to the stem; with rocker: displaces 4.6 kg, about the CG
+    # [-] exponent of the keel's rise to the stem; with rocker: displaces 4.6 kg, about the CG
+    fullness: float = 2.4
     chine_end: float = 0.95  # [-] where the chine runs into the stem
 
     def ahead(self, s: Array) -> Array:

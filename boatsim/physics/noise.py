@@ -5,9 +5,8 @@ from math import cos, pi, sqrt, tan
 import numpy as np
 from numba import njit
 
-MOST = (
-    1_000_000_000  # courses there are; all of them are whole numbers that a parameter holds exactly
-)
+# courses there are; all of them are whole numbers that a parameter holds exactly
+MOST = 1_000_000_000
 
 
 def course(realisation: float, seed: int) -> float:

@@ -21,15 +21,15 @@ class Param(NamedTuple):
     unit: str
     words: str
     fit: bool = False
-    spread: float = (
-        0.0  # prior sd when fitted, in the unit, for a 1.2 m boat of 4.6 kg; scaled by Froude's law
-    )
+    # prior sd when fitted, in the unit, for a 1.2 m boat of 4.6 kg; scaled by Froude's law
+    spread: float = 0.0
     axis: str = ""  # freedom it belongs to ("roll", ...); fitted only on vessels that have it
     absent: float = 0.0  # value at which the effect is not there
-    calibrates: str = (
-        ""  # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
-    )
-    follows: str = ""  # left unset: the vessel's "linear_damping.surge" or "vessel.body.mass"; "?" ends an optional one
+    # "damping", "thrust", ...: a coefficient of the nominal that is never known exactly
+    calibrates: str = ""
+    # left unset: the vessel's "linear_damping.surge" or "vessel.body.mass"; "?" ends an optional
+    # one
+    follows: str = ""
     releases: tuple[
         str, ...
     ] = ()  # "linear_damping.surge", "body.mass": numbers of the vessel that may be off,

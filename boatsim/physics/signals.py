@@ -30,7 +30,8 @@ class Signal:
     axis: str  # freedom it belongs to
     rate: bool  # a body-axes rate, else a coordinate
     noise: str  # family of the instruments that measure it
-    noise_sd: float  # [unit of the column] where neither recording nor vessel states one: fitted from here, widely
+    # [unit of the column] where neither recording nor vessel states one: fitted from here, widely
+    noise_sd: float
 
 
 STATE = (
@@ -240,7 +241,8 @@ def course(begin: float, mean: float, end: float) -> Course:
     return Course(begin, mean + 0.25 * ((mean - begin) + (mean - end)), end)
 
 
-BRIEF = 0.02  # [s] the shortest step that a lag asks for: in so short a one its mean counts, not its course
+# [s] the shortest step that a lag asks for: in so short a one its mean counts, not its course
+BRIEF = 0.02
 
 
 @njit(inline="always")

@@ -18,9 +18,8 @@ class Trust:
 
     content: tuple[Path, ...] = ()
     allowed: tuple[Path, ...] = ()
-    ask: Callable[[Path], bool] | None = (
-        None  # whether the Python files of a folder may run; None: nobody is there
-    )
+    # whether the Python files of a folder may run; None: nobody is there
+    ask: Callable[[Path], bool] | None = None
     answers: dict[Path, bool] = field(default_factory=dict)  # each folder is asked for once
 
     def holds(self, path: Path) -> bool:

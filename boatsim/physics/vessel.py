@@ -53,12 +53,10 @@ class CommandChannel(Table):
 
     low: float
     high: float
-    neutral: float = (
-        0.0  # in force where nothing is sent; a channel that can not be 0 must say its own
-    )
-    turns: Literal["", "starboard", "port"] = (
-        ""  # what a positive rudder does; recordings that differ are turned
-    )
+    # in force where nothing is sent; a channel that can not be 0 must say its own
+    neutral: float = 0.0
+    # what a positive rudder does; recordings that differ are turned
+    turns: Literal["", "starboard", "port"] = ""
     about: str = ""
 
 
@@ -188,23 +186,18 @@ class Vessel:
     loads: tuple[str, ...]  # names of all loads there are
     diagnosis: DiagnosisTable
     scale: float | None = None  # full scale length / this length
-    scales: Mapping[str, float] = field(
-        default_factory=dict
-    )  # vessels that are the same hull at another scale
-    columns: Mapping[str, str] = field(
-        default_factory=dict
-    )  # our name -> column of its recordings, "-" flips the sign
+    # vessels that are the same hull at another scale
+    scales: Mapping[str, float] = field(default_factory=dict)
+    # our name -> column of its recordings, "-" flips the sign
+    columns: Mapping[str, str] = field(default_factory=dict)
     manoeuvring: ManoeuvringTable = ManoeuvringTable()
-    marks: Mapping[str, tuple[float, float]] = field(
-        default_factory=dict
-    )  # [m] ahead and to starboard of the CG
+    # [m] ahead and to starboard of the CG
+    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     found: tuple[str, ...] = ()  # names of those effects that a diagnosis found
-    measured: Mapping[str, MeasuredChannel] = field(
-        default_factory=dict
-    )  # of the surroundings: taken, not commanded
-    spread: Spread | None = field(
-        default=None, compare=False
-    )  # how far off what was fitted may be, where one was
+    # of the surroundings: taken, not commanded
+    measured: Mapping[str, MeasuredChannel] = field(default_factory=dict)
+    # how far off what was fitted may be, where one was
+    spread: Spread | None = field(default=None, compare=False)
 
     @property
     def inputs(self) -> tuple[str, ...]:

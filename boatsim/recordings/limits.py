@@ -13,10 +13,11 @@ MOST_COLUMNS = 2000
 MOST_CELLS = 100_000_000  # 0.8 GB as floats
 LARGEST_FILE = 4 << 30  # bytes
 LONGEST_HEADER = 1 << 20  # bytes of the first line of a text
-GROWS = 12  # memory that a text takes while it is read, by its size: a cell of 8 characters is an object of 57 bytes
-BYTES_PER_CELL = (
-    24  # of memory that a binary table takes: as it is read, as floats, and what is asked of them
-)
+# memory that a text takes while it is read, by its size: a cell of 8 characters is an object of 57
+# bytes
+GROWS = 12
+# of memory that a binary table takes: as it is read, as floats, and what is asked of them
+BYTES_PER_CELL = 24
 GROUPS = (
     "/sys/fs/cgroup/memory.max",
     "/sys/fs/cgroup/memory/memory.limit_in_bytes",

@@ -74,19 +74,16 @@ class Notes:
 
     vessel: str | None = None
     load: tuple[str, ...] = ()
-    settings: Mapping[str, Mapping[str, object]] = field(
-        default_factory=dict
-    )  # [set.<effect>]: the vessel's own, this run
+    # [set.<effect>]: the vessel's own, this run
+    settings: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     use: tuple[float, float] | None = None  # [s] the part of the recording that counts
     scale: float | None = None  # full scale length / model length
     noise: dict[str, float] = field(default_factory=dict)  # names in NOISE, one standard deviation
     ambient: Ambient = field(default_factory=Ambient)
-    coefficient_uncertainty: dict[str, float] = field(
-        default_factory=dict
-    )  # relative, one standard deviation
-    facts: Mapping[str, Value] = field(
-        default_factory=dict
-    )  # forward_speed_mps, walls_m, fan position, free text
+    # relative, one standard deviation
+    coefficient_uncertainty: dict[str, float] = field(default_factory=dict)
+    # forward_speed_mps, walls_m, fan position, free text
+    facts: Mapping[str, Value] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -94,9 +91,8 @@ class NotesFile:
     """A `recording.toml` as it applies to one run: the notes, the names of columns, and what was not understood."""
 
     notes: Notes = field(default_factory=Notes)
-    columns: dict[str, str] = field(
-        default_factory=dict
-    )  # our name -> expression of their column: "-delta", "heading_deg * deg"
+    # our name -> expression of their column: "-delta", "heading_deg * deg"
+    columns: dict[str, str] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     folder: Path | None = None  # in which it lies, and where its own paths start
 
@@ -260,7 +256,8 @@ class _Reader:
     def notes(self) -> NotesFile:
         """All of it. Raises one BadInput that says everything that is wrong."""
         known = [key for key in self.content if key in KEYS]
-        # a key that carries a unit, such as a run's own `forward_speed_mps`, is a fact about the run
+        # a key that carries a unit, such as a run's own `forward_speed_mps`, is a fact about the
+        # run
         facts = {key: self.content[key] for key in self.content if key not in KEYS and unit_of(key)}
         wrong: list[str] = []
         notes = Notes(

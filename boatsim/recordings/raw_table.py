@@ -18,9 +18,8 @@ class Raw:
     path: Path
     columns: dict[str, Array]  # each (N,)
     rows: Sequence[int]  # line of the file (CSV) or number of the row (Parquet), counted from 1
-    text: dict[str, tuple[int, str]] = field(
-        default_factory=dict
-    )  # column -> row and content of its first bad cell
+    # column -> row and content of its first bad cell
+    text: dict[str, tuple[int, str]] = field(default_factory=dict)
 
 
 def refuse(path: Path, message: str, row: int | None = None, column: str | None = None) -> BadInput:

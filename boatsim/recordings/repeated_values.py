@@ -4,9 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 FEWEST = 10  # fixes from which a rhythm is told from chance
-REGULAR = (
-    0.8  # share of the gaps between fixes that are as long as the usual one, to a row or a tenth
-)
+# share of the gaps between fixes that are as long as the usual one, to a row or a tenth
+REGULAR = 0.8
 
 
 def repeats(fixes: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -30,10 +30,11 @@ COMMAND = re.compile(
 HUGE = 1e12  # no time, place, speed or command here is anywhere near
 GAP = 60.0  # [s] between two rows; over a longer one no boat here can be followed
 NEAR = 0.8  # likeness from which a name that is not there is a misspelt one
-SLOW = 0.1  # share of empty rows from which a pose or rate is one that is measured less often than rows are written
-ROUNDING = (
-    1e-3  # share of a channel's range by which a command rounded for the file may pass its limit
-)
+# share of empty rows from which a pose or rate is one that is measured less often than rows are
+# written
+SLOW = 0.1
+# share of a channel's range by which a command rounded for the file may pass its limit
+ROUNDING = 1e-3
 
 
 class NoSignal(BadInput):

@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 from boatsim.physics.base import Array
 
 DEGREES = 180.0 / math.pi
-NEAR = (
-    1.5  # factor by which a ratio may miss what it is taken for: sensors lag, drift and are scaled
-)
-FASTEST = 4.0  # [rad/s] sustained turning no vessel here reaches; 4 deg/s is a gentle turn of a small boat
-NOISIEST = 0.15  # [rad] 8.6 degrees: compasses and cameras are ten times better; 0.15 degrees is a good one
-STEEPEST = (
-    1.0  # [rad] hulls here stay below 57 degrees of roll; any roll worth recording passes 1 degree
-)
+# factor by which a ratio may miss what it is taken for: sensors lag, drift and are scaled
+NEAR = 1.5
+# [rad/s] sustained turning no vessel here reaches; 4 deg/s is a gentle turn of a small boat
+FASTEST = 4.0
+# [rad] 8.6 degrees: compasses and cameras are ten times better; 0.15 degrees is a good one
+NOISIEST = 0.15
+# [rad] hulls here stay below 57 degrees of roll; any roll worth recording passes 1 degree
+STEEPEST = 1.0
 FEWEST = 4  # rows that time runs through
 ALIKE = 0.8  # correlation from which two series are taken to show the same motion
 

@@ -14,8 +14,10 @@ from boatsim.files import Table, checked, read_toml
 from boatsim.simulate.evaluation import Norm
 
 FILE = "pins.toml"
-# Arithmetic of other machines differs in the 16th digit. Start conditions off by 1e-12 move the norms of nearly every
-# scenario by less than 1e-7 of themselves, relays in a controller included; so 1e-6 is a change of the code.
+# Arithmetic of other machines differs in the 16th digit. Start conditions off by 1e-12 move the
+# norms of nearly every
+# scenario by less than 1e-7 of themselves, relays in a controller included; so 1e-6 is a change of
+# the code.
 TOLERANCE = 1e-6
 NOTHING = 1e-9  # absolute, for norms that are zero
 

@@ -36,9 +36,8 @@ class Camera(Checked):
     mark_sd: float = param(
         0.002, low=0.0, high=0.1, unit="m", words="marking noise per coordinate and mark"
     )
-    marks: Mapping[str, tuple[float, float]] = field(
-        default_factory=dict
-    )  # [m] ahead and to starboard of the CG
+    # [m] ahead and to starboard of the CG
+    marks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -61,20 +61,16 @@ class Norm:
     unit: str
     published: float | None = None
     tolerance: float | None = None  # of what is published, where its document states one
-    guard: tuple[float, float] | None = (
-        None  # low, high: no promise, only that a change does not go unseen
-    )
+    # low, high: no promise, only that a change does not go unseen
+    guard: tuple[float, float] | None = None
     ok: bool | None = None  # whether the value lies within the guard; None: there is none
-    at_reported: float | None = (
-        None  # of measures on camera frames: at the rate reported beside the one scored
-    )
-    noise_floor: float | None = (
-        None  # what the camera's noise alone would give, error-free motion, as many frames
-    )
+    # of measures on camera frames: at the rate reported beside the one scored
+    at_reported: float | None = None
+    # what the camera's noise alone would give, error-free motion, as many frames
+    noise_floor: float | None = None
     lacking: str | None = None  # why there is no value
-    kind: str = (
-        ""  # which value of a signal it is: largest, rms, mean, time integral, sum over frames
-    )
+    # which value of a signal it is: largest, rms, mean, time integral, sum over frames
+    kind: str = ""
 
     @property
     def verdict(self) -> str | None:

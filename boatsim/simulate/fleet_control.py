@@ -30,9 +30,8 @@ class Aboard:
     steps: int
     saturated: Array  # (n, inputs)
     random: Sequence[np.random.Generator] = ()  # of each boat's sensors
-    total: Array = field(
-        init=False
-    )  # (n, inputs) sum over time [s] of the commands of compiled laws
+    # (n, inputs) sum over time [s] of the commands of compiled laws
+    total: Array = field(init=False)
 
     def __post_init__(self) -> None:
         self.total = np.zeros_like(self.saturated)

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from boatsim.errors import BadInput
 
-# comments, instructions, tags with their attributes; every `<` begins one, closed or not: none is looked at twice
+# comments, instructions, tags with their attributes; every `<` begins one, closed or not: none is
+# looked at twice
 PARTS = re.compile(
     r"""<!--.*?(?:-->|\Z)|<\?.*?(?:\?>|\Z)|<(?:"[^"]*(?:"|\Z)|'[^']*(?:'|\Z)|[^"'>])*+(?:>|\Z)""",
     re.DOTALL,

@@ -59,7 +59,8 @@ def layout() -> dict[str, int]:
         probes = [mujoco.MjData(mujoco.MjModel.from_xml_string(xml)) for xml in _PROBES]
         found = {}
         for name in FIELDS:
-            # fields of size zero share their neighbour's address; the last candidate common to both probes is right
+            # fields of size zero share their neighbour's address; the last candidate common to both
+            # probes is right
             hits = set.intersection(
                 *(_scan(d._address, getattr(d, name).ctypes.data) for d in probes)
             )

@@ -3,7 +3,8 @@
 import time
 from collections.abc import Callable
 
-BEHIND = 0.25  # [s] by which a run may be late and still catch up; one that is later goes on from where it is
+# [s] by which a run may be late and still catch up; one that is later goes on from where it is
+BEHIND = 0.25
 NAP = 0.05  # [s] at most between two questions whether to stop
 
 

@@ -51,9 +51,8 @@ class Run:
     camera: Recording
     complete: bool
     steps: int = 0  # of physics
-    saturated: Mapping[str, int] = field(
-        default_factory=dict
-    )  # channel -> steps in which more was sent than it takes
+    # channel -> steps in which more was sent than it takes
+    saturated: Mapping[str, int] = field(default_factory=dict)
 
 
 class Runner:
@@ -75,9 +74,8 @@ class Runner:
         self.goal_at: Callable[[float], Mapping[str, float]] = (
             scenario.goal_at
         )  # or what somebody's hands ask for
-        self.enough: Callable[[], bool] = (
-            bool  # whether they have had enough: the run is over, and whole
-        )
+        # whether they have had enough: the run is over, and whole
+        self.enough: Callable[[], bool] = bool
         self.seed = file.seed if seed is None else seed
         vessel = replace(
             scenario.vessel, effects=tuple(e.seeded(self.seed) for e in scenario.vessel.effects)

@@ -26,7 +26,9 @@ from boatsim.simulate.sensing import Sensor, Sensors
 
 T = TypeVar("T")
 M = TypeVar("M", Controller, Measure, Sensor)
-OFF = "off"  # key of a goal while which nothing is steered: commands are neutral, the controller begins anew after it
+# key of a goal while which nothing is steered: commands are neutral, the controller begins anew
+# after it
+OFF = "off"
 BESIDE = ("from", OFF)  # keys of a goal that name no goal
 End = Annotated[float, Field(allow_inf_nan=True)]  # of a band; it may be open
 
@@ -122,9 +124,8 @@ class ScenarioFile(Table):
     duration: float = Field(gt=0, le=86400)  # [s]
     step: float = Field(default=0.02, gt=1e-4, le=1.0)  # [s]
     seed: int = Field(default=0, ge=0)
-    engine: Literal["mujoco", "twin"] = (
-        "mujoco"  # twin: compiled code alone, in open water; the same to rounding
-    )
+    # twin: compiled code alone, in open water; the same to rounding
+    engine: Literal["mujoco", "twin"] = "mujoco"
     tank: TankTable | None = None
     start: StartTable = StartTable()
     until: UntilTable = UntilTable()

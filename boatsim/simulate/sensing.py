@@ -71,9 +71,8 @@ class Sensors(Checked):
     position_sd: float = param(
         -1.0, low=-1.0, high=10.0, unit="m", words="position fix noise; below 0: none"
     )
-    ideal: bool = (
-        False  # all of the motion is known as it is, roll too, whatever the noise stated above
-    )
+    # all of the motion is known as it is, roll too, whatever the noise stated above
+    ideal: bool = False
 
     def feel(
         self,

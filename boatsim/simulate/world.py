@@ -20,10 +20,12 @@ SMALLEST, LARGEST = 1e-3, 1e6  # [m] of a tank
 WALL = 0.02  # [m] half of a wall's thickness
 RIM = 0.08  # [m] wall above the water
 DRAWN = math.hypot(0.75, 1.5)  # [m] from the middle to a corner of the tank in tank.xml
-# solref: time constant [s] (two steps of 20 ms), critically damped. A wall only pushes, so the hull leaves it with e^-2
+# solref: time constant [s] (two steps of 20 ms), critically damped. A wall only pushes, so the hull
+# leaves it with e^-2
 # of the speed it came with, 0.14; steps as coarse as the time constant make it 0.10 to 0.18
 SOFT_WALL = (0.04, 1.0)
-JOINTS = {  # freedom -> joint name, kind, axis; each axis turns with the angles before it: yaw, pitch, roll
+# freedom -> joint name, kind, axis; each axis turns with the angles before it: yaw, pitch, roll
+JOINTS = {
     "surge": ("x", mujoco.mjtJoint.mjJNT_SLIDE, (1, 0, 0)),
     "sway": ("y", mujoco.mjtJoint.mjJNT_SLIDE, (0, 1, 0)),
     "heave": ("z", mujoco.mjtJoint.mjJNT_SLIDE, (0, 0, 1)),

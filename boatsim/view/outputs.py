@@ -134,7 +134,8 @@ class NormsSoFar:
         if (begun := monotonic()) < self._due:
             return
         run = self._runner.so_far()
-        # a log that is cut short gives a measure reason to warn; what it can not judge at all is told at the end
+        # a log that is cut short gives a measure reason to warn; what it can not judge at all is
+        # told at the end
         with suppress(BadInput), np.errstate(all="ignore"), catch_warnings():
             simplefilter("ignore")
             write_norms(self._path, judged.to_json(run, judged.all_norms(run)))

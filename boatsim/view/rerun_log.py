@@ -25,8 +25,11 @@ from boatsim.view.blueprint import WORLD
 from boatsim.view.scene import OUTBOARD, Scene, Solid
 from boatsim.view.stream import Stream
 
-BUFFER = 1000  # rows kept back before they are written, unless somebody watches: small chunks make large files
-OFTEN = 0.5  # [s] after which they are written all the same: a process that is killed loses no more than a second
+# rows kept back before they are written, unless somebody watches: small chunks make large files
+BUFFER = 1000
+# [s] after which they are written all the same: a process that is killed loses no more than a
+# second
+OFTEN = 0.5
 TRAIL_STEP = 0.1  # [s] between points of the path drawn
 ABOVE = 0.02  # [m] arrows and paths lie this far above the water
 COLOURS = {
@@ -39,16 +42,16 @@ COLOURS = {
     "water": (150, 190, 215),
     "flagged": (230, 0, 40),
 }
-BOATS = {  # as in the report; told apart by colour-blind readers too, on dark plots and on the light scene
+# as in the report; told apart by colour-blind readers too, on dark plots and on the light scene
+BOATS = {
     "recording": (165, 173, 180),
     "nominal": (230, 105, 25),
     "recalibrated": (45, 140, 225),
     "patched": (0, 165, 120),
 }
 VERDICTS = {REPRODUCED: "(the same)", MISSED: "(differs)", UNSTATED: ""}
-PARTING = (
-    1e-9  # [s] between the end of one stretch, a gap, and the begin of the next at the same time
-)
+# [s] between the end of one stretch, a gap, and the begin of the next at the same time
+PARTING = 1e-9
 
 
 class Flagged(TypedDict):
@@ -70,9 +73,8 @@ class RunLog:
         self.scene, self.live = scene, viewer is not None
         self._waiting: list[Recording] = []
         self._written = monotonic()  # when something last was
-        self._trail: tuple[float, Array] | None = (
-            None  # time and place of the last point of the path
-        )
+        # time and place of the last point of the path
+        self._trail: tuple[float, Array] | None = None
         self._known: set[str] = set()
         self.stream = Stream("boatsim", path, viewer)
         if self.stream.heard:
@@ -197,7 +199,8 @@ class Boat(NamedTuple):
 
     recording: Recording
     scene: Scene
-    goals: str  # what its goals are called; "": they are not drawn, as those of a boat with the same ones are
+    # what its goals are called; "": they are not drawn, as those of a boat with the same ones are
+    goals: str
 
 
 def log_side_by_side(path: Path | str, boats: Mapping[str, Boat], norms: str) -> None:

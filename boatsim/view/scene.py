@@ -29,7 +29,8 @@ ROUND, PILL, BALL, BARREL, BRICK, MESH = (
     7,
 )  # mjtGeom: sphere, capsule, ellipsoid, cylinder, box, mesh
 REACH = 0.6  # a full-thrust arrow is this part of the boat's length
-PUSH = 0.05  # share of the weight that a force as long as REACH has on a boat whose thrust is not a command
+# share of the weight that a force as long as REACH has on a boat whose thrust is not a command
+PUSH = 0.05
 GRAVITY = 9.81  # [m/s^2]
 
 

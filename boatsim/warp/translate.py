@@ -135,7 +135,8 @@ class Body:
             ast.unparse(ast.parse("\n".join(whole))) + "\n"
         )  # without the brackets that nobody needs
 
-    # Statements -------------------------------------------------------------------------------------------------------
+    # Statements
+    # -------------------------------------------------------------------------------------------------------
 
     def say(self, line: str) -> None:
         """One line at the present depth."""
@@ -282,7 +283,8 @@ class Body:
         self.temporaries += 1
         return named(kind, f"_{self.temporaries}")
 
-    # Expressions ------------------------------------------------------------------------------------------------------
+    # Expressions
+    # ------------------------------------------------------------------------------------------------------
 
     def value(self, node: ast.expr, store: bool = False) -> Value:
         """An expression; what must come before it is said first."""
@@ -450,7 +452,8 @@ class Body:
             raise self.refuse(op, type(op).__name__)
         return OPERATORS[type(op)]
 
-    # Calls ------------------------------------------------------------------------------------------------------------
+    # Calls
+    # ------------------------------------------------------------------------------------------------------------
 
     def of_Call(self, node: ast.Call) -> Value:
         """A function of ours, of mathematics, a named tuple or a cast."""

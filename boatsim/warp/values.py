@@ -16,9 +16,8 @@ class Record:
     fields: tuple[str, ...]
 
 
-Kind: TypeAlias = (
-    "str | Record | tuple[Kind, ...]"  # a tuple is no value of Warp's: its parts go their own ways
-)
+# a tuple is no value of Warp's: its parts go their own ways
+Kind: TypeAlias = "str | Record | tuple[Kind, ...]"
 
 
 @dataclass(frozen=True)

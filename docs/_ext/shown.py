@@ -13,9 +13,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-MARK = "<!-- run when built -->"  # in a page all of whose commands are run, one after the other, in an empty home
+# in a page all of whose commands are run, one after the other, in an empty home
+MARK = "<!-- run when built -->"
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?")
-BLOCK = re.compile(  # commands, after them what they print; before them the exit code, where it is not 0
+# commands, after them what they print; before them the exit code, where it is not 0
+BLOCK = re.compile(
     r"(?:<!-- exit (?P<code>\d+) -->\n\n?)?```sh\n(?P<commands>(?:(?!```).)*)\n```"
     r"(?:\n\n```(?:text)?\n(?P<shown>(?:(?!```).)*)\n```)?",
     re.DOTALL,

@@ -26,7 +26,8 @@ class Case:
     truth: tuple[Cause, ...] = ()  # nothing: what no recording can tell
     alter: Alteration = a.unaltered
     without: str = ""
-    plain: bool = False  # with the vessel as published, which lacks all that was found of the unaltered ones besides
+    # with the vessel as published, which lacks all that was found of the unaltered ones besides
+    plain: bool = False
 
 
 @dataclass(frozen=True)

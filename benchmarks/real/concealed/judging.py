@@ -24,9 +24,8 @@ class Cause:
     """What is concealed, in the library's words; `alike` is what says the same of this recording."""
 
     name: str
-    values: Mapping[str, float] = field(
-        default_factory=dict
-    )  # by parameter with unit, as an answer has them
+    # by parameter with unit, as an answer has them
+    values: Mapping[str, float] = field(default_factory=dict)
     alike: tuple["Cause", ...] = ()
 
     @property
@@ -59,7 +58,8 @@ class Verdict:
     gain: (
         float | None
     )  # [nats] of the true structure; None where nothing was concealed, or no entry can say it
-    own: str = ""  # what the unaltered recordings have of the same causes, too little to be named or known already
+    # what the unaltered recordings have of the same causes, too little to be named or known already
+    own: str = ""
 
 
 RIGHT, SIZE, WRONG, MISSED, ALONE, FAINT = (

@@ -17,7 +17,8 @@ from boatsim.recordings.table import Recording
 STRAIGHT = 0.2  # [rad] by which the heading may change over a stretch, and over the one before it
 FAST = 0.5  # of the speed that only a tenth of the stretches pass
 FEWEST = 8  # stretches
-SEEN = 0.03  # of the squared way that other headings must add, so that a current is told from a compass
+# of the squared way that other headings must add, so that a current is told from a compass
+SEEN = 0.03
 LEFT = 0.1  # of that, at most, may be left unexplained by an angle and a current
 
 

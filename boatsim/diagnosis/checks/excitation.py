@@ -9,9 +9,8 @@ from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-HEADINGS = (
-    1.0  # [rad] that the heading must pass for a current or wind to be told from a steady push
-)
+# [rad] that the heading must pass for a current or wind to be told from a steady push
+HEADINGS = 1.0
 VARIES = 0.2  # of its size, by which a speed must vary for the shape of the damping to be told
 MOVES = 0.02  # of its range, from which a command is moved
 

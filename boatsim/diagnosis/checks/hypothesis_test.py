@@ -27,10 +27,11 @@ from boatsim.recordings.table import Recording
 UNEXPLAINED = 0.6  # of what the drives push with, from which meanings are tried
 FLOOR = 0.02  # of the largest push, times the length for a moment: drives that do not turn the hull
 NATS, SHARE = 60.0, 0.05  # that a meaning must gain, at least; of the rows
-CLEAR = (
-    25.0  # nats by which it must be ahead of what the log as written, or another meaning, would be
-)
-TIED = 3.0  # nats within which meanings are one: a boat alike on both sides can not tell a mirror from exchanged drives
+# nats by which it must be ahead of what the log as written, or another meaning, would be
+CLEAR = 25.0
+# nats within which meanings are one: a boat alike on both sides can not tell a mirror from
+# exchanged drives
+TIED = 3.0
 MOST_ROWS, MOST_RUNS = 1200, 3  # that are laid on
 CROWDED = 1.5  # times the usual rows a second, from which each instrument has its own
 REFITTED = 6  # meanings, of all that are tried roughly

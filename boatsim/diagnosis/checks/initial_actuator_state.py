@@ -11,11 +11,11 @@ import numpy as np
 from boatsim.diagnosis.filter import Levels, Track
 from boatsim.physics.commands import sent_row, taken
 
-BEFORE = (
-    1.0  # [s] ahead of the first row: actuators settle to what was in force then, however long ago
-)
+# [s] ahead of the first row: actuators settle to what was in force then, however long ago
+BEFORE = 1.0
 TOLD = 6.0  # [nats] by which the recording must be likelier with actuators that begin at rest
-SLOW = 0.2  # of the largest speed recorded, which a boat that lies still is below when the recording begins
+# of the largest speed recorded, which a boat that lies still is below when the recording begins
+SLOW = 0.2
 
 
 def begun(track: Track, levels: Levels) -> Track:

@@ -9,7 +9,8 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 POSE = ("x_m", "y_m", "psi_rad")
-ROUNDED = 2.1  # of the last digit, by which the difference of two equal steps is off when three places are rounded
+# of the last digit, by which the difference of two equal steps is off when three places are rounded
+ROUNDED = 2.1
 TURNS = -0.5  # of white noise, fourth differences are alike by -0.8 from row to row
 LEAST = 5.0  # digits, by which fourth differences are more than those of rounding, 1.6
 CHANCE = 1e-4  # of one such run among all rows, at most

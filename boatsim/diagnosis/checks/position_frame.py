@@ -13,7 +13,9 @@ from boatsim.recordings.table import Recording
 
 NEEDED = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps")
 SURE = 10.0  # standard deviations by which the turned share must differ from none
-WHOLE = 0.5  # by which it may miss 1: honest positions give a share near 0, noise of the heading lowers the other
+# by which it may miss 1: honest positions give a share near 0, noise of the heading lowers the
+# other
+WHOLE = 0.5
 
 
 def in_one_frame(recording: Recording) -> Recording:

@@ -13,9 +13,8 @@ from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-LONGEST = (
-    1.5  # [s] of fixes that are away, on a boat of 1.2 m: longer ones may be where the boat is
-)
+# [s] of fixes that are away, on a boat of 1.2 m: longer ones may be where the boat is
+LONGEST = 1.5
 SURE = 10.0  # sds of a step's prediction error by which a fix leaps,
 QUICK = 1.5  # and usual accelerations that the boat may have had meanwhile
 BEFORE = 6  # fixes from which the speed is told,
@@ -27,7 +26,8 @@ STAYS, LOOKED = (
 BEHIND = 8  # fixes by whose course one is judged with which a recording begins,
 ASTRAY, FEW = 6.0, 3  # sds by which it is off; such rows at most
 NOTHING = np.zeros(0)
-MOST = 0.95  # share of the prediction errors that are no leaps; of a normal variable it lies within two sds
+# share of the prediction errors that are no leaps; of a normal variable it lies within two sds
+MOST = 0.95
 
 
 def without_outliers(recording: Recording, vessel: Vessel) -> Recording:

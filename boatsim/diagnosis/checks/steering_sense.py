@@ -8,9 +8,8 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 GRAVITY = 9.81  # [m/s^2]
-RESPONSE = (
-    3.5  # sqrt(length / g): the time in which a hull at Froude number 0.14 sails half its length
-)
+# sqrt(length / g): the time in which a hull at Froude number 0.14 sails half its length
+RESPONSE = 3.5
 SURE = 0.3  # correlation of rudder and turning beyond which there is no doubt
 
 

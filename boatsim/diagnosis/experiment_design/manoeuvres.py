@@ -28,7 +28,8 @@ class Manoeuvre:
     times: tuple[float, ...] = (0.0,)  # [s]
     levels: tuple[dict[str, float], ...] = ({},)  # command -> value
     duration: float = LONG  # [s]
-    heading: float = 0.0  # [rad] off the first course at which a zig-zag changes over; 0: levels change by the clock
+    # [rad] off the first course at which a zig-zag changes over; 0: levels change by the clock
+    heading: float = 0.0
     under_way: bool = False  # begins at the speed of the recordings, not at rest
     to_wall: bool = False  # is laid so that it reaches a wall
     heel: float = 0.0  # [rad] roll angle it is released at
@@ -73,7 +74,8 @@ TO_WALL: tuple[Step, ...] = (
     (8, 0.4, 0.4, 0, 0), (6, 0, 0, 0, 0), (6, -0.5, -0.5, 0, 0), (8, 0.4, 0.4, 0, 0), (6, 0, 0, 0, 0),
     (6, -0.5, -0.5, 0, 0),
 )  # fmt: skip
-DIFFERENCE = 0.5  # share of the drive's limit on each side for a full steering angle, where no thruster turns
+# share of the drive's limit on each side for a full steering angle, where no thruster turns
+DIFFERENCE = 0.5
 RANDOM = {"quick": (1.0, 3.0), "slow": (4.0, 8.0)}  # [s] shortest and longest hold
 SHIP: dict[
     str, tuple[Step, ...]

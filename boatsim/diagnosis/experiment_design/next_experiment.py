@@ -172,7 +172,8 @@ def expected(
         best, V = _refitted(problem, track, winner, rival, ROUNDS)
         A, B = V.T @ V, V.T @ U
         M = np.eye(len(A)) + A
-        # the winner's parameters are not known exactly either: what the rival can not follow of their spread
+        # the winner's parameters are not known exactly either: what the rival can not follow of
+        # their spread
         spread = np.trace(own) - np.trace(np.linalg.solve(M, A + B @ B.T))
         volume = np.linalg.slogdet(M)[1] - np.linalg.slogdet(np.eye(len(own)) + own)[1]
         gains[name] = _tempered(float(score - best + 0.5 * (volume + spread)), track, winner)

@@ -12,7 +12,9 @@ from boatsim.physics.base import Array
 from boatsim.physics.effects.wall_effect import REACH
 
 THRUST = "thrust"  # role of actuators whose value is a force
-PLAY = 0.1  # [rad] between a steering command and the angle it stands for; the force hardly depends on it beyond scale
+# [rad] between a steering command and the angle it stands for; the force hardly depends on it
+# beyond scale
+PLAY = 0.1
 NEAR = 2.0  # [reaches] beyond which a wall is taken to do nothing
 TURNING = ("roll", "pitch", "yaw")
 SPEED = "forward_speed_mps"  # fact of a recording in which the hull only rolls

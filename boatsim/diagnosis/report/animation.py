@@ -34,7 +34,8 @@ class Film(TypedDict):
     t: list[float]  # [s] a time twice is where the boats start anew
     start: int  # frame it begins with
     rate: int  # times real time
-    plan: bool  # seen from above, in metres: the distance from the recording is told, otherwise the value
+    # seen from above, in metres: the distance from the recording is told, otherwise the value
+    plan: bool
     unit: str
     outline: Outline  # to the right and down, in units of the picture's height axis
     boats: list[Boat]

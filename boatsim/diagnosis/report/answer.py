@@ -30,7 +30,9 @@ from boatsim.physics.vessel import Vessel
 from boatsim.version import version
 
 ONE_SIDED_95 = 1.645  # [sd]
-SHAPE = 0.05  # nature's law is never quite the entry's: an sd holds this share of what was found [rad for directions]
+# nature's law is never quite the entry's: an sd holds this share of what was found [rad for
+# directions]
+SHAPE = 0.05
 AT_BOUND = 1e-3  # of a bound: a value this near to it is at it
 TOLD = 0.5  # a fitted sd above this share of the prior one means that the data say nothing
 

@@ -35,13 +35,11 @@ class Findings:
     remarks: tuple[
         str, ...
     ] = ()  # what the data can not tell, and anything else a reader must know
-    coefficients: dict[str, tuple[float, float]] = field(
-        default_factory=dict
-    )  # recalibrated coefficient -> factor, sd
+    # recalibrated coefficient -> factor, sd
+    coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)
     extra_tables: tuple[tuple[str, list[str], list[list[str]]], ...] = ()  # title, header, rows
-    words: dict[str, str] = field(
-        default_factory=dict
-    )  # what a library entry says, by name; also "entry.parameter"
+    # what a library entry says, by name; also "entry.parameter"
+    words: dict[str, str] = field(default_factory=dict)
     described: tuple[Written, ...] = ()  # terms of described laws, with their curves
     steps: tuple[
         tuple[float, Mapping[str, float]], ...

@@ -40,7 +40,8 @@ class TermEntry(TypedDict):
     of: str  # what it goes with, in words
     value: float
     sd: float
-    unit: str  # of the value: force or moment per product of what it goes with; "" for a share of the thrust
+    # of the value: force or moment per product of what it goes with; "" for a share of the thrust
+    unit: str
     gain_nats: float
     run: NotRequired[str]  # the recording of which it is an event
 

@@ -56,9 +56,8 @@ FAMILIES: dict[
     "roll_rms_rad": ("roll", "rad", "phi_rad"),
 }
 MODELS = ("nominal", "recalibrated", "patched")
-HELPS = (
-    1.1  # times that an error on unseen data must get smaller for a finding to be more than a hint
-)
+# times that an error on unseen data must get smaller for a finding to be more than a hint
+HELPS = 1.1
 GLOSSARY = (
     (
         "nominal, recalibrated, patched",

@@ -13,7 +13,8 @@ from boatsim.diagnosis.search.evidence import UNKNOWN, front, left_over, price, 
 from boatsim.diagnosis.search.screening import FURTHER, checked, handed_over, joined, screen, starts
 from boatsim.physics.base import Unsteady
 
-ASTRAY = 8.0  # [nats] that a look lies below the set it is on top of, from which it went wrong: numbers cost less
+# [nats] that a look lies below the set it is on top of, from which it went wrong: numbers cost less
+ASTRAY = 8.0
 SCREENING = (0.2, 0.5)  # of a ranking, by experience, is the first look at all
 MANY = 6  # suspects on top of a set that are fitted in full at most
 

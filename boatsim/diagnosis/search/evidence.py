@@ -8,7 +8,9 @@ import numpy as np
 from boatsim.diagnosis.locate.residual_structure import FACTOR
 from boatsim.diagnosis.problem import Fit, Problem
 
-ODDS = 2.0  # log of the odds, seven to one, at which an effect is named, where each of those tried is as likely before
+# log of the odds, seven to one, at which an effect is named, where each of those tried is as likely
+# before
+ODDS = 2.0
 CLOSE = 5.0  # candidates this near to the first [nats] are fitted in full,
 HALF = 0.5  # and those with this share of its gain
 UNKNOWN = 6.0  # [nats] it must gain for the cause to lie outside the library,

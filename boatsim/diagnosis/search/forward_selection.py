@@ -16,10 +16,11 @@ SELECTING, SLOWER = (
     0.7,
 )  # of a ranking, by experience; what is left to select after each further member
 LAWFUL = 0.5  # share of the gain of a random force from which a law is taken in its place
-CLEAR = 40.0  # prices that an effect is worth by the curvature at a fit, from where it stays without a fit without it
-SLIGHT = (
-    0.025  # of what the others explain, below which an effect may be what their laws are off by
-)
+# prices that an effect is worth by the curvature at a fit, from where it stays without a fit
+# without it
+CLEAR = 40.0
+# of what the others explain, below which an effect may be what their laws are off by
+SLIGHT = 0.025
 
 
 def selected(sets: Sets, best: Fit) -> Fit:

@@ -17,9 +17,8 @@ RIVALS = 3  # fitted in the place of what was named
 TOLD = 0.1  # of what was allowed before the data, within which they tell a parameter
 SURE, SURE_RANDOM = 1.0, 2.0  # sds from not acting at which an effect acts
 WORTH = 4.0  # [nats] that an effect must gain by itself
-ALIKE_SHARE = (
-    0.5  # of what two explain together, which each explains alone where they are much alike
-)
+# of what two explain together, which each explains alone where they are much alike
+ALIKE_SHARE = 0.5
 
 
 @dataclass(frozen=True)

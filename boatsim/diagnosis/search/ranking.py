@@ -20,7 +20,8 @@ from boatsim.physics.described_laws import Described
 from boatsim.progress import Report, silent
 
 JUDGING = 0.8  # of a ranking is done when it begins, by experience
-LEFT_OF_IT = 0.25  # of what a random force gains, from which it but stands for a law that is left over beside it
+# of what a random force gains, from which it but stands for a law that is left over beside it
+LEFT_OF_IT = 0.25
 ALONG = 0.02  # of what was explained: that much less is told of a force that goes with something
 
 

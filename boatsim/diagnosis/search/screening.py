@@ -23,7 +23,8 @@ TRIED = 2  # starts of a suspect from which a step is taken
 LITTLE = 0.3  # [nats] promised at most, a suspect is not followed further
 HALVINGS, TOO_STRONG = 8, 30.0  # of a start that lies this far below nothing missing [nats]
 SMALL = 0.1  # where a suspect without starts of its own begins, in prior sds
-SWELL_SHARE = 0.7  # of the fitted latent force that a random force is tried with; the latent force keeps as much
+# of the fitted latent force that a random force is tried with; the latent force keeps as much
+SWELL_SHARE = 0.7
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,11 @@ from boatsim.diagnosis.search.forward_selection import SLIGHT
 from boatsim.diagnosis.search.pruning import ALIKE, Named, beside
 
 SURE = 2.0  # standard errors by which unseen errors must grow,
-SURE_BETWEEN = 1.65  # and where it is but between look-alikes, or one is a random force, which foretells nothing
-DWARFED = 0.9  # where something is left over: an effect with which this share of the force is left is not stood for
+# and where it is but between look-alikes, or one is a random force, which foretells nothing
+SURE_BETWEEN = 1.65
+# where something is left over: an effect with which this share of the force is left is not stood
+# for
+DWARFED = 0.9
 
 
 def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:

@@ -39,7 +39,8 @@ MEMORIES, SHORTEST_MEMORY, LONGEST_MEMORY = (
 )  # time constants from so many rows to a share of a recording
 LEVEL = (SPEEDS[0], SPEEDS[1], SPEEDS[5])  # speeds of a hull on level water
 PUSHES = ("thrust", "shaft")  # roles of actuators that drive
-# How near neighbours of a term lie: of a part, a span, the step between periods or wavelengths, a threshold, a memory
+# How near neighbours of a term lie: of a part, a span, the step between periods or wavelengths, a
+# threshold, a memory
 FINER, FINEST = (0.5, 0.25), (0.12, 0.06, 0.03, 0.015)
 
 

@@ -15,7 +15,8 @@ from boatsim.diagnosis.symbolic.term_forces import ways
 from boatsim.diagnosis.symbolic.term_selection import Chosen, chosen, less
 from boatsim.progress import Report, silent
 
-BETTER = 0.98  # of the mean square errors: free runs must get that much better for one more term to carry over
+# of the mean square errors: free runs must get that much better for one more term to carry over
+BETTER = 0.98
 
 
 def described(

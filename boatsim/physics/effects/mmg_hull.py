@@ -8,8 +8,12 @@ from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
-BOW_ON = 2.0  # R_0 is taken whole where u / U is above its inverse, up to 60 deg of drift; the model is for much less
-FASTEST = 3.0  # [-] r L / U up to which the polynomials are taken; the tightest turns of a ship under way are below 1.5
+# R_0 is taken whole where u / U is above its inverse, up to 60 deg of drift; the model is for much
+# less
+BOW_ON = 2.0
+# [-] r L / U up to which the polynomials are taken; the tightest turns of a ship under way are
+# below 1.5
+FASTEST = 3.0
 
 
 @njit(inline="always")

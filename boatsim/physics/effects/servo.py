@@ -33,9 +33,8 @@ def towards(goal: float, memory: Array, at: int, dt: float, rate: float, lag: fl
         area += rest * (left - lag * (1.0 - decay))
         rest *= decay
     elif needed <= dt:
-        rest = (
-            0.0  # there, to the last bit: a ramp that is left over would ask for a step of its own
-        )
+        # there, to the last bit: a ramp that is left over would ask for a step of its own
+        rest = 0.0
     memory[at] = goal - rest
     return course(y, y + area / dt, memory[at])
 

@@ -8,7 +8,8 @@ from numba import njit
 
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
-SOFT = 0.02  # [m] over which the line goes from slack to taut; a wider one can not follow a short stiff line
+# [m] over which the line goes from slack to taut; a wider one can not follow a short stiff line
+SOFT = 0.02
 NEAR = 0.05  # [m] keeps the direction of the pull defined at the anchor
 
 
@@ -49,7 +50,8 @@ class Tether(Force):
             {"tension": 0.05, "stiffness": 0.03, "length": 1.5, "north": north, "east": east}
             for north, east in ((3.0, 0.0), (-3.0, 0.0), (0.0, 2.5), (0.0, -2.5))
         ),
-        *(  # a short stiff line: nothing of it shows in the slope of the evidence of a long soft one
+        # a short stiff line: nothing of it shows in the slope of the evidence of a long soft one
+        *(
             {"tension": 0.0, "stiffness": 1.0, "length": 0.3, "north": north, "east": east}
             for north, east in ((0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5))
         ),

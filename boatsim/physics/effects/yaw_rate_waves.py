@@ -10,7 +10,8 @@ from boatsim.physics.base import UNSET, Boat, Swell, Unsteady, Wrench, param, wr
 from boatsim.physics.noise import course, drawn, line
 
 WAVES = 64  # components of the realisation
-FIRST = 20_000  # of the numbers drawn: beyond those of other effects, which may have the same realisation
+# of the numbers drawn: beyond those of other effects, which may have the same realisation
+FIRST = 20_000
 
 
 @njit(inline="always")

@@ -3,9 +3,8 @@
 from boatsim.errors import BadInput
 from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
 
-BLOCK = (
-    0.4  # displaced water per length x beam x draught; C_b of a pontoon of the Otter, MSS otter.m
-)
+# displaced water per length x beam x draught; C_b of a pontoon of the Otter, MSS otter.m
+BLOCK = 0.4
 PONTOON = 0.25  # beam of one of two hulls per beam overall; Otter 0.25 m of 1.08 m, MSS otter.m
 FULLEST = 1.0  # a box
 

@@ -8,7 +8,8 @@ from boatsim.physics.particulars import GRAVITY
 
 SERVICE = 0.3  # Froude number of an easy speed: waves begin to cost
 FORM = 0.2  # friction of a hull's shape beside that of a plate, 1 + k of the ITTC 1978 method
-WAVES = 4e-3  # residuary resistance coefficient at that speed: M. Insel, A. F. Molland 1992, slender hulls
+# residuary resistance coefficient at that speed: M. Insel, A. F. Molland 1992, slender hulls
+WAVES = 4e-3
 LINEAR, LINEAR_SLENDER = (
     0.5,
     0.1,

@@ -6,7 +6,9 @@ from boatsim.physics import particulars
 from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
 
 ASPECT = 1.5  # span per chord, usual on ships: Mariner 1.6, Esso Osaka 1.5
-REACHES = 0.5  # kappa, share of the race's gain in speed that reaches the blade: KVLCC2 by Yasukawa, Yoshimura 2015
+# kappa, share of the race's gain in speed that reaches the blade: KVLCC2 by Yasukawa, Yoshimura
+# 2015
+REACHES = 0.5
 
 
 def area(hull: Hull) -> Estimate:

@@ -7,7 +7,9 @@ from boatsim.physics.estimate import added_mass, inertia, resistance
 from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
 
 SECOND = 2.0  # [m] length of the boat whose sway and yaw die out in 1 s, the Otter (MSS otter.m)
-LIFT_AT = -0.3  # [lengths] ahead of the middle: that of a slender body is -0.5, at its stern; a real one leaves earlier
+# [lengths] ahead of the middle: that of a slender body is -0.5, at its stern; a real one leaves
+# earlier
+LIFT_AT = -0.3
 SLOW = 0.1  # of a slender hull's lift at an easy speed, at rest: friction and keel, as in surge
 SECTION = 0.8  # drag coefficient of a section across the flow: Otter 0.85, S. F. Hoerner 1965
 

@@ -5,7 +5,9 @@ from math import sqrt
 from boatsim.physics.estimate.base import Estimate, Hull
 from boatsim.physics.particulars import GRAVITY
 
-LEFT = 0.5  # of the thrust at rest, at top speed: K_T of a Wageningen B-screw of P/D 0.7 at J 0.4 by that at J 0
+# of the thrust at rest, at top speed: K_T of a Wageningen B-screw of P/D 0.7 at J 0.4 by that at J
+# 0
+LEFT = 0.5
 FAST = 0.4  # Froude number of a top speed that nobody states: a hull begins to climb its own wave
 OF_WEIGHT = 0.4  # Otter: 24.4 kgf of 55 kg, MSS otter.m
 

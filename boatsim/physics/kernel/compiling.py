@@ -72,16 +72,19 @@ def kept(**options: Any) -> Callable[[Any], Any]:
 
 # Called by people or from several functions, kept on disk.
 compiled = kept()
-# The same for what allocates no arrays, nor do the laws in it: numba counts no references then, which it does with
+# The same for what allocates no arrays, nor do the laws in it: numba counts no references then,
+# which it does with
 # locked instructions at every assignment of an array, for longer than the laws themselves take.
 lean = kept(_nrt=False)
 # The same, and other threads may run beside it.
 unlocked = kept(_nrt=False, nogil=True)
-# A part that few boats ever call: called as it stands, so that it lengthens none of the programs it is in.
+# A part that few boats ever call: called as it stands, so that it lengthens none of the programs it
+# is in.
 apart: Any = njit(error_model="numpy", _nrt=False)
 # A small part of another function, or a part of one or two: numba analyses it anew in each of them.
 inlined = njit(error_model="numpy", inline="always")
-# A large part of many functions: analysed once, and inlined by LLVM, which takes out of loops what does not change.
+# A large part of many functions: analysed once, and inlined by LLVM, which takes out of loops what
+# does not change.
 merged = njit(error_model="numpy", forceinline=True, _nrt=False)
 
 

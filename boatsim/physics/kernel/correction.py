@@ -5,12 +5,12 @@ from math import log, sqrt
 from boatsim.physics.kernel.compiling import lean
 from boatsim.physics.signals import Array
 
-# [sd] a measurement further off is taken for an outlier: its pull falls with its distance, its penalty grows with the
+# [sd] a measurement further off is taken for an outlier: its pull falls with its distance, its
+# penalty grows with the
 # logarithm (as of a Cauchy distribution), neither with a jump at which a fit would get stuck
 GATE = 5.0
-IN_A_ROW = (
-    2  # outliers of one channel; a further one means that the filter has lost track and must follow
-)
+# outliers of one channel; a further one means that the filter has lost track and must follow
+IN_A_ROW = 2
 
 
 @lean

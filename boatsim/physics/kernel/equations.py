@@ -84,7 +84,8 @@ class Writer:
         self.tilts, self.closed, self.centred = tilts(self.set), closed(self.set), centred
         self.n = len(self.free)
 
-    # Kinematics -------------------------------------------------------------------------------------------------------
+    # Kinematics
+    # -------------------------------------------------------------------------------------------------------
 
     def coordinate(self, i: int) -> Sum:
         """A joint coordinate's name, zero if it is held."""
@@ -158,7 +159,8 @@ class Writer:
         assert len(values) + 1 == len(Motion._fields)
         return f"Motion(t, {', '.join(values)})"
 
-    # Forces -----------------------------------------------------------------------------------------------------------
+    # Forces
+    # -----------------------------------------------------------------------------------------------------------
 
     def carried(self, frame: Frame, axis: int) -> Sum:
         """Force on a turning hull of the water that moves with it: its share of a uniform current turns away below."""
@@ -202,7 +204,8 @@ class Writer:
             names = ", ".join(COORDINATES[i] + more for i in self.free)
             lines.say(f"{names} = {', '.join(f's[{first + j}]' for j in range(self.n))}")
 
-    # Accelerations ----------------------------------------------------------------------------------------------------
+    # Accelerations
+    # ----------------------------------------------------------------------------------------------------
 
     def accelerations(self) -> list[str]:
         """Body of `accelerations`."""
@@ -302,7 +305,8 @@ class Writer:
                 lines.say(f"A[row + {a}, column + {b}] = {text}")
         return lines.text
 
-    # Beside the motion ------------------------------------------------------------------------------------------------
+    # Beside the motion
+    # ------------------------------------------------------------------------------------------------
 
     def forces(self) -> list[str]:
         """Body of `forces`."""

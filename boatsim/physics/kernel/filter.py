@@ -33,14 +33,14 @@ from .motion import (
 )
 from .run import SHORTEST, actuate_in_place, least_after, settle, until_bend
 
-# not plain integers: those count as types, and what is called with several would be compiled for each
+# not plain integers: those count as types, and what is called with several would be compiled for
+# each
 NY, CALM = np.int64(2 * NQ), np.int64(3 * NQ)
 NZ = np.int64(CALM + (2 * NQ if HAS_SWELL else 0) + (NQ if HAS_WANDER else 0))
 STEADY = 1.4  # a step in time constants of the quickest motion: half of what Runge-Kutta bears
 LEAST = 0.01  # of an interval, which a step is at least: a boat quicker than that has run away
-INVERT = (
-    10  # rounds of the inversion of what the instruments show, which is never far from the truth
-)
+# rounds of the inversion of what the instruments show, which is never far from the truth
+INVERT = 10
 
 
 @lean

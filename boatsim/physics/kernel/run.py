@@ -12,7 +12,9 @@ from .laws import HAS_PAUSE, HELD, actuate, pause
 from .motion import NQ, K, step_in_place
 
 SHORTEST = 1e-6  # [s] of a step; within one, a signal that jumps counts with its mean
-GROWS = 8.0  # by which parts of a step that only ever shrink may be shorter less: a ramp behind a lag ends without end
+# by which parts of a step that only ever shrink may be shorter less: a ramp behind a lag ends
+# without end
+GROWS = 8.0
 LONG = 1e4  # [s] longer than any actuator takes
 ENOUGH = 1e-9  # [s] a step is done
 

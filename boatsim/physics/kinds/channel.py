@@ -45,7 +45,8 @@ def pausing(program: Composed) -> Sequence[Station]:
     return [*(Station(begin, (), name) for name, begin in begins.items()), Station(channel=WHOLE)]
 
 
-# Stages: what is wrong with a command comes before the actuator that follows it, what is wrong with its deed after it
+# Stages: what is wrong with a command comes before the actuator that follows it, what is wrong with
+# its deed after it
 MAPS = -3  # what makes a signal out of a raw command, at once
 DELAYS = (
     -2
@@ -75,23 +76,19 @@ class Channel(Kind):
 
     parts: ClassVar = (ACTUATE, PAUSE)
     laws: ClassVar[tuple[str, ...]] = ("channel", "pause", "passes")
-    acts_on: ClassVar[str] = (
-        "thrust"  # roles (a|b) of the signals it acts on where `on` names none; "": all
-    )
+    # roles (a|b) of the signals it acts on where `on` names none; "": all
+    acts_on: ClassVar[str] = "thrust"
     slots: ClassVar[int] = 0
-    either_side: ClassVar[bool] = (
-        False  # of the actuator that follows: some have it in the command, some in the deed
-    )
+    # of the actuator that follows: some have it in the command, some in the deed
+    either_side: ClassVar[bool] = False
     pause: ClassVar[Callable[..., float] | None] = None
     passes: ClassVar[Callable[..., float] | None] = None
     channel: ClassVar[Callable[..., Course]]
 
-    fed_by: Sequence[str] = field(
-        default=(), kw_only=True
-    )  # commands that feed the channels in `on`, one for each
-    other_side: bool = field(
-        default=False, kw_only=True
-    )  # of the actuator than is usual, for what may be on either
+    # commands that feed the channels in `on`, one for each
+    fed_by: Sequence[str] = field(default=(), kw_only=True)
+    # of the actuator than is usual, for what may be on either
+    other_side: bool = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()

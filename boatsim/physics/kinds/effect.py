@@ -25,18 +25,16 @@ class Role:
 
     unit: str
     words: str
-    fixed: float | None = (
-        None  # what it is where nothing is bound to it; None: a channel must be named
-    )
+    # what it is where nothing is bound to it; None: a channel must be named
+    fixed: float | None = None
 
 
 @dataclass(frozen=True)
 class Effect(Checked):
     """One instance of an idea on a vessel. Subclasses are of one or several of the kinds in this folder."""
 
-    words: ClassVar[str] = (
-        ""  # the sentence a report prints: "a steady wind pushes the hull downwind ..."
-    )
+    # the sentence a report prints: "a steady wind pushes the hull downwind ..."
+    words: ClassVar[str] = ""
     words_above: ClassVar[str] = ""  # the same where the factor by which it weakens is above one
     shown_by: ClassVar[str] = ""  # the manoeuvre that shows it best
     kind: ClassVar[str] = "physics"  # or "measurement"
@@ -56,9 +54,8 @@ class Effect(Checked):
     roles: ClassVar[
         Mapping[str, Role]
     ] = {}  # signals its law takes as its third argument, each with a channel
-    stage: ClassVar[int] = (
-        0  # those of a lower one come first in the program; else the order is that of the files
-    )
+    # those of a lower one come first in the program; else the order is that of the files
+    stage: ClassVar[int] = 0
     needs: ClassVar[
         tuple[str, ...]
     ] = ()  # freedoms without which it can not act, besides those of its parameters
@@ -68,27 +65,23 @@ class Effect(Checked):
     told_by: ClassVar[
         tuple[str, ...]
     ] = ()  # entries that show the same: it is tried only where somebody asks for it
-    random: ClassVar[bool] = (
-        False  # only its spectrum can be fitted: the filter follows its course, a free run can not
-    )
+    # only its spectrum can be fitted: the filter follows its course, a free run can not
+    random: ClassVar[bool] = False
     alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
-    described: ClassVar[bool] = (
-        False  # a law that the diagnosis writes itself, of terms: no entry of the library
-    )
-    sees_held: ClassVar[bool] = (
-        False  # its law takes all actuators besides: `act`, `at`, the place of what it recalls
-    )
-    rides: ClassVar[str] = (
-        ""  # idea whose every instance it acts at: its law takes their signals and their values
-    )
+    # a law that the diagnosis writes itself, of terms: no entry of the library
+    described: ClassVar[bool] = False
+    # its law takes all actuators besides: `act`, `at`, the place of what it recalls
+    sees_held: ClassVar[bool] = False
+    # idea whose every instance it acts at: its law takes their signals and their values
+    rides: ClassVar[str] = ""
 
     filled: frozenset[str] = field(  # parameters by `completed`, which nobody stated
         default=frozenset(), kw_only=True, repr=False, compare=False, metadata={"ours": True}
     )
-    name: str = field(
-        default="", kw_only=True
-    )  # of this instance; that of the idea where there is one only
-    # role -> channel or a number that is held; or the channels, or the instances it rides on, that it acts on
+    # of this instance; that of the idea where there is one only
+    name: str = field(default="", kw_only=True)
+    # role -> channel or a number that is held; or the channels, or the instances it rides on, that
+    # it acts on
     on: Mapping[str, str | float] | Sequence[str] = field(default=(), kw_only=True, hash=False)
 
     def __post_init__(self) -> None:

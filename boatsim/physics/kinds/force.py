@@ -30,9 +30,8 @@ class Force(Kind):
     parts: ClassVar = (WRENCH,)
     laws: ClassVar[tuple[str, ...]] = ("law", "as_thruster")
     of_air: ClassVar[bool] = False  # a force of the air, which a run logs apart
-    anchored: ClassVar[str] = (
-        ""  # what it holds on to beside the water: "the air", "walls"; empty: nothing
-    )
+    # what it holds on to beside the water: "the air", "walls"; empty: nothing
+    anchored: ClassVar[str] = ""
     law: ClassVar[Callable[..., Wrench]]
 
     @classmethod

@@ -15,9 +15,8 @@ from boatsim.physics.content import module_of, names
 from boatsim.recordings.raw_table import refuse
 
 MOST_BYTES = 2_000_000_000  # of a file
-MOST_TEXT = (
-    50_000_000  # [bytes] of a text that is read line by line, which takes 20 times as much memory
-)
+# [bytes] of a text that is read line by line, which takes 20 times as much memory
+MOST_TEXT = 50_000_000
 MOST_VALUES = 25_000_000  # of all signals together; 200 MB
 MOST_SIGNALS = 5_000
 HUGE = 1e20  # times in ns since 1970 are 2e18; nothing that is measured is so large
@@ -32,9 +31,8 @@ class Signal:
     values: Array  # (N,)
     unit: str = ""  # as the format says; "" where it says nothing
     about: str = ""  # what the format says of it: "throttle left"
-    pulse: tuple[float, float, float] | None = (
-        None  # low, neutral, high of an output, in the signal's unit
-    )
+    # low, neutral, high of an output, in the signal's unit
+    pulse: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -43,7 +41,8 @@ class Log:
 
     path: Path
     signals: Mapping[str, Signal]
-    frame: str = ""  # axes of the format's own conventions: "NED", or "ENU" with the hull's x forward, y port, z up
+    # axes of the format's own conventions: "NED", or "ENU" with the hull's x forward, y port, z up
+    frame: str = ""
     remarks: tuple[str, ...] = ()
 
 

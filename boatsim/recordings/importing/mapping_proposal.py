@@ -27,7 +27,8 @@ USUAL_PULSE = (
 )  # [us] low, neutral, high of most motor controllers of small boats
 QUICKEST = 50.0  # [Hz] beyond it rows are proposed at a stated rate: no boat moves so fast
 MOST_LISTED = 400
-# from z up, as ROS has it (REP 103: x east, y north, z up; x forward, y port), to ours: column -> signal's column, sign
+# from z up, as ROS has it (REP 103: x east, y north, z up; x forward, y port), to ours: column ->
+# signal's column, sign
 FROM_ENU = {
     "x_m": ("y_m", ""),
     "y_m": ("x_m", ""),

@@ -27,9 +27,8 @@ BUILT_IN = {  # which definitions of ROS 2 do not always bring along
 FIELD = re.compile(r"^\s*([\w/]+)(?:<=\d+)?(\[(?:<=)?(\d*)\])?\s+([A-Za-z]\w*)\s*(.*)$")
 SECTION = re.compile(r"^=+\s*$\s*^MSG:\s*(\S+)\s*$", re.MULTILINE)
 DEEPEST = 20  # messages in messages
-MOST_ELEMENTS = (
-    16  # of a list of numbers that are kept; covariances and pictures have more, or are called so
-)
+# of a list of numbers that are kept; covariances and pictures have more, or are called so
+MOST_ELEMENTS = 16
 MOST_PARTS = 4  # of a list of messages
 MOST_EMPTY = 1000  # messages of no size in a message
 MOST_SIZE = 1_000_000  # [bytes] of a message that is read; only pictures and clouds are larger

@@ -11,7 +11,9 @@ from boatsim.physics.base import Array
 from boatsim.recordings.importing.signal_classification import Guess
 
 SURE = 0.3  # correlation with the turning from which a signal steers
-AHEAD = 0.2  # by which that of the one that steers, less its correlation with the speed, is ahead of every other's
+# by which that of the one that steers, less its correlation with the speed, is ahead of every
+# other's
+AHEAD = 0.2
 LAGS = (0.0, 0.3, 0.6, 1.0, 1.5, 2.5, 4.0)  # [s] by which boats follow their helms
 STRETCH = 1.0  # [s] over which a speed is taken
 LONGEST = 400.0  # [s] of rows that are compared

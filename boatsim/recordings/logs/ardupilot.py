@@ -22,7 +22,8 @@ from boatsim.recordings.importing.log import (
 from boatsim.recordings.raw_table import refuse
 
 SUFFIXES = (".bin",)
-# letter of a FMT message -> numpy type and factor (libraries/AP_Logger/LogStructure.h); arrays and texts have none
+# letter of a FMT message -> numpy type and factor (libraries/AP_Logger/LogStructure.h); arrays and
+# texts have none
 LETTERS: dict[str, tuple[str, float | None]] = {
     "a": ("V64", None), "b": ("i1", 1.0), "B": ("u1", 1.0), "g": ("f2", 1.0), "h": ("i2", 1.0), "H": ("u2", 1.0),
     "i": ("i4", 1.0), "I": ("u4", 1.0), "f": ("f4", 1.0), "d": ("f8", 1.0), "n": ("V4", None), "N": ("V16", None),

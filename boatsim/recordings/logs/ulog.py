@@ -20,7 +20,9 @@ from boatsim.recordings.importing.log import (
 )
 
 SUFFIXES = (".ulg", ".ulog")
-SCALED = {  # fields whose integers are not in the unit of their name (msg/SensorGps.msg, msg/VehicleGpsPosition.msg)
+# fields whose integers are not in the unit of their name (msg/SensorGps.msg,
+# msg/VehicleGpsPosition.msg)
+SCALED = {
     ("vehicle_gps_position", "lat"): (1e-7, "deg"),
     ("vehicle_gps_position", "lon"): (1e-7, "deg"),
     ("sensor_gps", "lat"): (1e-7, "deg"),
@@ -41,7 +43,8 @@ TOPICS = {
     "vehicle_angular_velocity": {f"xyz[{i}]": "rad/s" for i in range(3)},
     "vehicle_global_position": {"lat": "deg", "lon": "deg"},
 }
-MOST_IN_VAIN = 500_000  # reads that reach no further; a search byte by byte takes two for each of the 2^16 of a message
+# reads that reach no further; a search byte by byte takes two for each of the 2^16 of a message
+MOST_IN_VAIN = 500_000
 PULSES = re.compile(r"actuator_outputs|input_rc")  # channels are pulses [us] there
 
 
