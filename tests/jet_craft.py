@@ -39,8 +39,10 @@ class Craft:
     bias: float = 0.0  # [rad] of the jet
     starboard: float = 1.0  # jet angle that is effective to starboard, per commanded one
     q2: float = 154.9
-    cube: float = 0.0  # [s/m^2] of drag per mass and cube of the speed, as of a craft dragged down by the stern
-    blunt: bool = False  # in its own way: it planes by and by, is uneven by and by, and loses speed as it skids
+    # [s/m^2] of drag per mass and cube of the speed, as of a craft dragged down by the stern
+    cube: float = 0.0
+    # in its own way: it planes by and by, is uneven by and by, and loses speed as it skids
+    blunt: bool = False
 
 
 def power(h: float, q2: float = 154.9) -> float:

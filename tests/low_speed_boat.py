@@ -18,9 +18,8 @@ BUCKETS = (0.0, 15.0, 30.0, 40.0, 50.0, 55.0)  # [deg]
 class Real:
     """What the craft really has, in the words of this file."""
 
-    leak: float = (
-        0.0  # share of the jet that passes a lowered bucket; a raised one has nothing to leak
-    )
+    # share of the jet that passes a lowered bucket; a raised one has nothing to leak
+    leak: float = 0.0
     late: float = 0.0  # [s] commands, up to a tenth more or less each
     astern_time: float = 1.67  # [s] T_n while it goes astern
     sea: float = 0.0  # [rad/s] rms of waves in the yaw rate

@@ -118,7 +118,8 @@ def streams(
     )
 
 
-# ArduPilot -----------------------------------------------------------------------------------------------------------
+# ArduPilot
+# -----------------------------------------------------------------------------------------------------------
 
 MESSAGES = {  # name -> number, format, columns, units, multipliers
     "FMT": (128, "BBnNZ", "Type,Length,Name,Format,Columns", "-b---", "-----"),
@@ -203,7 +204,8 @@ def ardupilot(run: dict[str, np.ndarray], path: Path) -> None:
     path.write_bytes(b"".join(out))
 
 
-# PX4 -----------------------------------------------------------------------------------------------------------------
+# PX4
+# -----------------------------------------------------------------------------------------------------------------
 
 TOPICS = {
     "vehicle_attitude": ("uint64_t timestamp;float[4] q;", "<Q4f"),
@@ -244,7 +246,8 @@ def ulog(run: dict[str, np.ndarray], path: Path) -> None:
     path.write_bytes(b"".join(out))
 
 
-# ROS: x east, y north, z up; hull x forward, y port, z up ------------------------------------------------------------
+# ROS: x east, y north, z up; hull x forward, y port, z up
+# ------------------------------------------------------------
 
 
 def messages(run: dict[str, np.ndarray], store: object) -> list[tuple[str, str, int, object]]:
@@ -347,7 +350,8 @@ def bag2(run: dict[str, np.ndarray], path: Path) -> None:
             writer.write(known[topic], ns, store.serialize_cdr(message, kind))  # type: ignore[arg-type]
 
 
-# NMEA 0183 -----------------------------------------------------------------------------------------------------------
+# NMEA 0183
+# -----------------------------------------------------------------------------------------------------------
 
 
 def sentence(body: str) -> str:
@@ -384,7 +388,8 @@ def nmea(run: dict[str, np.ndarray], path: Path) -> None:
     path.write_bytes("".join(out).encode("ascii"))
 
 
-# tables --------------------------------------------------------------------------------------------------------------
+# tables
+# --------------------------------------------------------------------------------------------------------------
 
 
 def table(run: dict[str, np.ndarray], path: Path) -> None:

@@ -48,9 +48,8 @@ class Real:
         0.0,
         0.0,
     )  # [rad] by which port and starboard thruster point further to starboard
-    lag: float = (
-        0.0  # [s] until thrust is at 63 % of a step: a quarter more from rest, less of a small one
-    )
+    # [s] until thrust is at 63 % of a step: a quarter more from rest, less of a small one
+    lag: float = 0.0
     dead: float = 0.0  # [N] of command that friction takes
     power: tuple[float, float] = (1.0, 1.0)  # thrust per stated thrust, port and starboard
     walk: float = 0.0  # side force per thrust astern

@@ -230,7 +230,8 @@ def test_margins_of_sampled_loops(
     assert found.delay == pytest.approx(delay, abs=6e-3)
 
 
-# Examples A and B: state = plant (2), predictor (2), reference system (2), ideal model (2), u, reference u, estimates
+# Examples A and B: state = plant (2), predictor (2), reference system (2), ideal model (2), u,
+# reference u, estimates
 
 
 def compiled(block: Any, **replaced: Any) -> Any:

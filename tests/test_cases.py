@@ -19,7 +19,8 @@ def write(path: Path, text: str) -> Path:
     return path
 
 
-# The rule -------------------------------------------------------------------------------------------------------------
+# The rule
+# -------------------------------------------------------------------------------------------------------------
 
 
 def test_tables_are_merged_key_by_key_and_all_else_takes_the_place() -> None:
@@ -85,7 +86,8 @@ def test_paths_start_at_the_file_they_stand_in(tmp_path: Path) -> None:
     assert scenario.load(str(mine)).vessel.file == tmp_path / "common" / "boat" / "vessel.toml"
 
 
-# Names ----------------------------------------------------------------------------------------------------------------
+# Names
+# ----------------------------------------------------------------------------------------------------------------
 
 
 def test_every_name_of_a_shipped_scenario_is_a_case_or_a_file_of_its_folder() -> None:
@@ -122,7 +124,8 @@ def test_cases_run_into_folders_of_their_own_names(tmp_path: Path) -> None:
     ]
 
 
-# Mistakes -------------------------------------------------------------------------------------------------------------
+# Mistakes
+# -------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -435,7 +435,8 @@ def test_honest_positions_stay(trial: int) -> None:
     rows = Real(gust=(steady, 5.0, toward)).run(navigation(20.0, 0.0), 12.0, held=0.05)
     honest = recording("honest", rows, seed=trial)
     assert in_one_frame(honest) is honest and abs(turned_share(honest)[0]) < 0.05
-    # a fast velocity log, an antenna off the mass centre, a turned compass and a current are other errors than this
+    # a fast velocity log, an antenna off the mass centre, a turned compass and a current are other
+    # errors than this
     x, y, psi, u = (honest[n] for n in ("x_m", "y_m", "psi_rad", "u_mps"))
     wrong = {
         "x_m": x + 0.3 * np.cos(psi) + 0.1 * honest.t,

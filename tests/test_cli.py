@@ -339,12 +339,14 @@ def test_options_of_a_diagnosis_reach_it(monkeypatch: pytest.MonkeyPatch) -> Non
     ]
 
 
-# Processes of their own ----------------------------------------------------------------------------------------------
+# Processes of their own
+# ----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.slow
 def test_a_shipped_scenario_is_a_script(tmp_path: Path) -> None:
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"  # where the installed `boatsim` lies
+    # where the installed `boatsim` lies
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     script = content.root() / "scenarios" / "joystick_boat" / "berth.toml"
     done = subprocess.run(
         [script], cwd=tmp_path, env=os.environ | {"PATH": path}, capture_output=True, text=True

@@ -69,9 +69,8 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
         laid = track(run, program)
         laid.step *= share
         values = laid.values.copy()
-        values[program.index("cubic_damping", "surge")] = (
-            90.0  # 15 /s at 5 m/s; at rest the craft has less than 1 /s
-        )
+        # 15 /s at 5 m/s; at rest the craft has less than 1 /s
+        values[program.index("cubic_damping", "surge")] = 90.0
         levels = nominal_levels(boat, [run])
         said.append(laid.likelihood(values, program.switches(("cubic_damping",)), levels))
     assert np.isfinite(said).all() and said[0] == pytest.approx(said[1], abs=3.0)

@@ -96,7 +96,8 @@ def inward(commands: Mapping[str, float]) -> float:
     return degrees(commands["steer_port_rad"])
 
 
-# The thesis' program ----------------------------------------------------------------------------------------------
+# The thesis' program
+# ----------------------------------------------------------------------------------------------
 
 
 def test_surge_loop_as_published_has_no_authority() -> None:
@@ -254,7 +255,8 @@ def test_yaw_program_straightens_the_motors() -> None:
     assert {inward(c) for c in played(controller, [STILL] * 60)[30:]} == {0.0}
 
 
-# Joystick and its rival -------------------------------------------------------------------------------------------
+# Joystick and its rival
+# -------------------------------------------------------------------------------------------
 
 
 @RIVALS

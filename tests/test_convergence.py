@@ -14,8 +14,10 @@ STEPS = (0.04, 0.02, 0.01, 0.005)  # [s]
 FINE = 0.00125  # [s] taken for the truth
 HELD = 0.4  # [s] that each command is held: a multiple of every step
 ROWS = 50  # 20 s of commands drawn by lot
-# A law that bends (a power curve in branches, a wake that depends on the side the water comes from) has no fourth order
-# across its bend; these vessels are held to the error alone, the jet-ski on one branch of its power curve.
+# A law that bends (a power curve in branches, a wake that depends on the side the water comes from)
+# has no fourth order
+# across its bend; these vessels are held to the error alone, the jet-ski on one branch of its power
+# curve.
 SIDED = "the wake and the flow at the rudder differ by the side the water comes from"
 BENDS = {"kvlcc2_mmg": SIDED, "kvlcc2_mmg_full_scale": SIDED}
 START = {"jet_ski": 15.0}  # [m/s] planing; others as their [manoeuvring] table says, or from rest

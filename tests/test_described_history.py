@@ -27,7 +27,9 @@ from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine
 
 MEMORY = 0.7  # [s]
-SIGNALS = {  # factor -> of which signal of the commands (port, starboard, steer port, steer starboard), and what of it
+# factor -> of which signal of the commands (port, starboard, steer port, steer starboard), and what
+# of it
+SIGNALS = {
     "recent_thrust_port_N": (lambda c: c[0], False),
     "recent_abs_thrust_starboard_N": (lambda c: abs(c[1]), False),
     "recent_thrust": (lambda c: c[0] + c[1], False),

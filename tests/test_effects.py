@@ -78,8 +78,10 @@ SUSPECTS = [
     n for n, e in SHELF.items() if n not in DESCRIBED and any(p.fit for p in e.params().values())
 ]
 
-# What a mirror at the boat's plane of symmetry does. A parameter that points to starboard or clockwise changes its
-# sign: name it here when an effect brings a new one, with its effect where others mean something else by it. Pairs
+# What a mirror at the boat's plane of symmetry does. A parameter that points to starboard or
+# clockwise changes its
+# sign: name it here when an effect brings a new one, with its effect where others mean something
+# else by it. Pairs
 # named port and starboard change places.
 TO_STARBOARD = {
     "thruster.y",

@@ -86,7 +86,8 @@ def test_code_in_an_expression_is_a_name_that_does_not_exist():
     assert parse("__import__('os').system('true')").signal == "__import__('os').system('true')"
 
 
-# [columns] of recording.toml ----------------------------------------------------------------------------------------
+# [columns] of recording.toml
+# ----------------------------------------------------------------------------------------
 
 
 def folder(path: Path, columns: str, header: str = "t_s,x_m,y_m,heading_deg,delta") -> Path:

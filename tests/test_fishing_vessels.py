@@ -27,7 +27,8 @@ from boatsim.simulate.compiled_engine import Twin
 
 TONNE = 1000.0  # [kg]; the thesis counts in tonnes and kilonewtons
 
-# The worked example, Appendix IV: Eastward Ho, full load, 13 knots, dimensions from feet, added mass from a chart.
+# The worked example, Appendix IV: Eastward Ho, full load, 13 knots, dimensions from feet, added
+# mass from a chart.
 FOOT = 0.3048  # [m]
 LONG_TON = 1016.047  # [kg]
 EXAMPLE: dict[str, Any] = {
@@ -81,7 +82,8 @@ K_D = np.array(
     ]
 )
 
-# Vessel, condition: V; -a_rr, -a_rv, -a_rphi, -a_vr, -a_vv, a_pr, a_pv, -a_pphi, b_r, b_v, b_p; T_phi, zeta
+# Vessel, condition: V; -a_rr, -a_rv, -a_rphi, -a_vr, -a_vv, a_pr, a_pv, -a_pphi, b_r, b_v, b_p;
+# T_phi, zeta
 TABLE = {
     (
         "kynoc",

@@ -21,9 +21,8 @@ class Case:
     entry: str
     real: Real
     true: Mapping[str, float]
-    hold: int = (
-        5  # rows of a random step: long ones reach the speeds at which damping is not linear
-    )
+    # rows of a random step: long ones reach the speeds at which damping is not linear
+    hold: int = 5
     start: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m], [m], [rad]
     more: bool = False  # the boat's law differs from the entry's by more than the tolerated force
 
@@ -77,7 +76,8 @@ CASES = (
         {"damping_rise": 1.5, "pull_N": 0.1},
         start=(-3.0, -2.0, 0.0),
     ),
-    # a short stiff line; it is as long as stated to within the 2 cm over which the entry's law becomes taut
+    # a short stiff line; it is as long as stated to within the 2 cm over which the entry's law
+    # becomes taut
     Case(
         "tether",
         Real(line=(2.0, 0.3, 0.5, 0.5)),

@@ -226,7 +226,8 @@ def test_kvlcc2_mmg_gives_the_published_manoeuvres(name: str) -> None:
         assert last == pytest.approx([0.427100, -0.146748, 0.055538], rel=1e-4)
 
 
-# Mariner (Chislett and Stroem-Tejsen 1965), as the open toolbox has it: derivatives x 1e5 of Chislett's tables
+# Mariner (Chislett and Stroem-Tejsen 1965), as the open toolbox has it: derivatives x 1e5 of
+# Chislett's tables
 
 MARINER_U0, MARINER_L = 7.7175, 160.93  # [m/s], [m]
 

@@ -104,7 +104,8 @@ def endless(tmp_path: Path) -> Path:
     return tmp_path / "endless.toml"
 
 
-# A run that somebody ends ------------------------------------------------------------------------------------------
+# A run that somebody ends
+# ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -232,7 +233,8 @@ def test_signals_wait_while_files_are_moved_and_count_afterwards(tmp_path: Path)
         os.kill(os.getpid(), signal.SIGINT)
 
 
-# Workers -------------------------------------------------------------------------------------------------------------
+# Workers
+# -------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.slow
@@ -269,7 +271,8 @@ def _two(endless: Path, tmp_path: Path) -> tuple["subprocess.Popen[str]", Path]:
     return running, out
 
 
-# A disk that is full: here a limit on the size of a file, at which writing fails in the same place ------------------
+# A disk that is full: here a limit on the size of a file, at which writing fails in the same place
+# ------------------
 
 
 def _small(most: int) -> None:
@@ -342,7 +345,8 @@ def test_of_a_piece_that_does_not_fit_nothing_stays(tmp_path: Path) -> None:
     assert full.content == b"sevenbytwo"
 
 
-# Files that appear together ------------------------------------------------------------------------------------------
+# Files that appear together
+# ------------------------------------------------------------------------------------------
 
 
 def test_a_temporary_name_is_visible_says_what_it_is_and_goes(tmp_path: Path) -> None:
@@ -362,7 +366,8 @@ def test_a_folder_where_a_file_should_be_costs_nothing_that_is_there(tmp_path: P
     assert (tmp_path / "out" / "a").read_text() == "earlier" and len(list(tmp_path.iterdir())) == 1
 
 
-# Logs in a file, and short ones --------------------------------------------------------------------------------------
+# Logs in a file, and short ones
+# --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("count", [0, 1, PIECE - 1, PIECE, PIECE + 1, 3 * PIECE + 7])

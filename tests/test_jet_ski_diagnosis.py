@@ -104,7 +104,8 @@ def test_speed_loss_in_turns_left_out_is_named_with_alpha_3(tmp_path: Path) -> N
     found = answer(steered, Craft(blunt=True), tmp_path, str(boat))
     assert [e["name"] for e in found["effects"]] == ["speed_loss_in_turn"]
     mass, sd = values(found)["speed_loss_in_turn.mass_kg"]
-    # the rigid body has 1 of it itself; the prior of a hull's added mass, 0.87 of its own, draws the rest towards 0
+    # the rigid body has 1 of it itself; the prior of a hull's added mass, 0.87 of its own, draws
+    # the rest towards 0
     assert 1.0 + mass / 450.0 == pytest.approx(A3, rel=0.15)
     assert abs(mass - 450.0 * (A3 - 1.0)) < 4.0 * sd
     rms = found["fit"]["position_rms_m"]

@@ -254,7 +254,8 @@ def test_inertia_and_coriolis_force_are_newtons_law_of_each_part(
     assert applied == pytest.approx(two_bodies(more, nu, rates) - two_bodies(less, nu, rates))
 
 
-# ---- diagnoses of data from an integrator that shares no code with the tool; all on one composition
+# ---- diagnoses of data from an integrator that shares no code with the tool; all on one
+# composition
 
 
 @pytest.mark.parametrize(

@@ -34,10 +34,10 @@ FULL = 104.0
 CHANNELS = {"n_port_radps": (-FULL, FULL), "n_starboard_radps": (-FULL, FULL)}
 DRIVES = [Drive(name, *ends) for name, ends in CHANNELS.items()]
 FREEDOMS = ("surge", "sway", "yaw")
-ATT_CLOCK = (
-    0.0013  # [s] by which rows of the .BIN are off: its gyro comes so much behind the attitude
-)
-# log -> most by which x and y [m], psi [rad], r [rad/s], commands [rad/s] may be off: the resolution of the format
+# [s] by which rows of the .BIN are off: its gyro comes so much behind the attitude
+ATT_CLOCK = 0.0013
+# log -> most by which x and y [m], psi [rad], r [rad/s], commands [rad/s] may be off: the
+# resolution of the format
 RESOLUTION = {
     "rover.BIN": (0.012, 4e-4, 1e-4, 1e-9),  # 1e-7 deg of latitude; times of the streams by 2 ms
     "px4.ulg": (2e-3, 1e-6, 1e-7, 1e-5),  # single precision; positions 1.1 ms late
@@ -186,7 +186,8 @@ def test_a_recording_of_ours_is_proposed_as_it_is():
     assert all(table["columns"][n] == n for n in ("x_m", "y_m", "psi_rad", "r_radps", *CHANNELS))
 
 
-# the command --------------------------------------------------------------------------------------------------------
+# the command
+# --------------------------------------------------------------------------------------------------------
 
 
 def ran(*given: object) -> tuple[str, str]:
@@ -229,7 +230,8 @@ def test_the_log_itself_is_never_written_over(tmp_path):
 ENDS = {"signal": "RCOU.C1", "low": 1, "neutral": 2, "high": 3}
 PLACE = {"latitude": "GPS.Lat * deg", "longitude": "GPS.Lng * deg"}
 
-# what is wrong ------------------------------------------------------------------------------------------------------
+# what is wrong
+# ------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

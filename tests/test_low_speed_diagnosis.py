@@ -61,7 +61,8 @@ def test_leak_and_delay_are_named_together_and_recovered(tmp_path: Path) -> None
         "jet_leak",
         "command_delay",
     }
-    # a raised bucket leaks nothing, so that less of the whole jet is left for the steering; a lowered one leaks 0.25
+    # a raised bucket leaks nothing, so that less of the whole jet is left for the steering; a
+    # lowered one leaks 0.25
     best = found.ranking.best
     (jet,) = (
         x

@@ -140,7 +140,8 @@ def test_helm_never_used_or_not_brought_back_measures_nothing() -> None:
     assert PullOut().values(still) == Spiral().values(still) == Spiral().values(cut) == {}
 
 
-# A first-order ship (Nomoto): T r' + r = K delta, at constant speed without drift, its helm over at once
+# A first-order ship (Nomoto): T r' + r = K delta, at constant speed without drift, its helm over at
+# once
 
 
 class Nomoto:

@@ -38,7 +38,8 @@ predictions = sys.modules[Predictive.__module__].predictions
 ackermann = sys.modules[PolePlacement.__module__].ackermann
 T = 0.5  # [s] control period
 
-# Ships: -a_rr -a_rv -a_rphi -a_vr -a_vv a_pr a_pv -a_pphi b_r b_v b_p zeta (the review's section 2.4)
+# Ships: -a_rr -a_rv -a_rphi -a_vr -a_vv a_pr a_pv -a_pphi b_r b_v b_p zeta (the review's section
+# 2.4)
 SHIPS = {
     "K1": (0.8135, 0.1550, 0.0283, 0.1237, 0.5305, -0.6516, 0.0625, 0.8888, 0.3344, -0.6948, 0.2814, 0.090),
     "K3": (0.6875, 0.1710, 0.0270, 0.0354, 0.5464, -0.4991, 0.0485, 0.6603, 0.2765, -0.5903, 0.2392, 0.090),
@@ -116,7 +117,8 @@ def fed(
     ]
 
 
-# Printed responses: settling, rise [s]; appendix VI ---------------------------------------------------------------
+# Printed responses: settling, rise [s]; appendix VI
+# ---------------------------------------------------------------
 
 TESTS = ("E1 offset", "E1 impulse", "E2 impulse", "E3 impulse", "E4 impulse")
 PRINTED = {
@@ -176,7 +178,8 @@ def test_predictive_control_swings_for_ever_at_half_speed(
     assert min(-found["lowest"], found["highest"]) > 10
 
 
-# Steering machine -------------------------------------------------------------------------------------------------
+# Steering machine
+# -------------------------------------------------------------------------------------------------
 
 ALL = [
     PidCourse,
@@ -237,7 +240,8 @@ def test_roll_reduction_without_a_roll_sensor_is_refused(kind: Any) -> None:
         fed(kind(roll_reduction=True), lambda k: 0.1, lambda k: nan, 1)
 
 
-# PID --------------------------------------------------------------------------------------------------------------
+# PID
+# --------------------------------------------------------------------------------------------------------------
 
 
 def test_pid_answers_a_lasting_offset_with_kick_and_ramp() -> None:
@@ -251,7 +255,8 @@ def test_pid_that_forgets_its_wish_never_crosses_the_course() -> None:
     assert "rise" not in calm(PidCourse(forgets_wish=True), "E1 offset").table()
 
 
-# Sliding ----------------------------------------------------------------------------------------------------------
+# Sliding
+# ----------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -303,7 +308,8 @@ def test_angles_are_radians_because_printed_runs_rest_where_degrees_could_not() 
         assert np.diff(late[True]).all()  # degrees: the rudder moves at every single step
 
 
-# Identification ---------------------------------------------------------------------------------------------------
+# Identification
+# ---------------------------------------------------------------------------------------------------
 
 PLAIN = {"alpha": 1.0, "forgetting": 1.0, "beta": 0.0, "delta": 0.0}
 
@@ -379,7 +385,8 @@ def test_a_ship_of_the_assumed_form_is_identified_from_her_motion() -> None:
     assert ship.roll == pytest.approx(roll, abs=1e-3)
 
 
-# Adaptive laws ----------------------------------------------------------------------------------------------------
+# Adaptive laws
+# ----------------------------------------------------------------------------------------------------
 
 YAW, ROLL = (0.7, 0.05, -0.01), (-1.7, 0.9, 0.02, -0.25)
 
@@ -488,7 +495,8 @@ def test_a_rudder_without_effect_has_no_gains() -> None:
     assert ackermann(np.eye(2), np.zeros(2), np.array([1.0, -1.8, 0.81])) is None
 
 
-# Measure ----------------------------------------------------------------------------------------------------------
+# Measure
+# ----------------------------------------------------------------------------------------------------------
 
 
 def test_settling_of_a_damped_swing() -> None:
@@ -508,7 +516,8 @@ def test_what_never_crosses_has_no_rise_and_what_ends_early_nothing() -> None:
     assert Settling().values(Recording("short", t[:100], {"psi_rad": t[:100]})) == {}
 
 
-# Seas, on the shipped vessels ---------------------------------------------------------------------------------------
+# Seas, on the shipped vessels
+# ---------------------------------------------------------------------------------------
 
 
 @cache

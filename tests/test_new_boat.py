@@ -63,7 +63,8 @@ def test_clarkes_regression_is_near_what_was_measured_on_the_mariner() -> None:
     """L 160.93 m, B 23.17 m, T 8.23 m, C_b 0.59; Clarke's own figures scatter by a third about his lines."""
     ship = hull(160.93, 23.17, 0.59 * 1000 * 160.93 * 23.17 * 8.23, 1, 8.23)
     unit = 0.5 * 1000 * 160.93**3
-    # measured on a planar motion mechanism: M. S. Chislett, J. Stroem-Tejsen 1965, Y'_vdot = -748e-5, N'_r = -166e-5
+    # measured on a planar motion mechanism: M. S. Chislett, J. Stroem-Tejsen 1965, Y'_vdot =
+    # -748e-5, N'_r = -166e-5
     assert added_mass.sway(ship).value / unit == pytest.approx(748e-5, rel=0.4)
     damping = sway_yaw_damping.clarke(ship)
     assert damping.yaw / (0.5 * 1000 * 160.93**4) == pytest.approx(166e-5, rel=0.4)

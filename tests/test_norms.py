@@ -117,7 +117,8 @@ def values(run: Run) -> dict[str, float]:
     return {name: norm.value for name, norm in norms(run).items() if norm.value is not None}
 
 
-# Sway -------------------------------------------------------------------------------------------------------------
+# Sway
+# -------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("rate", [0.5, -2.0])
@@ -171,7 +172,8 @@ def test_what_was_never_reached_has_no_value_and_fails_its_bar() -> None:
     assert found["yaw_rate_rms"].ok is None
 
 
-# Yaw --------------------------------------------------------------------------------------------------------------
+# Yaw
+# --------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
@@ -207,7 +209,8 @@ def test_less_than_a_turn_has_no_value() -> None:
     assert not values(filmed("yaw", turning(45.0, 0.1), 44.0))
 
 
-# Camera noise -----------------------------------------------------------------------------------------------------
+# Camera noise
+# -----------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -256,7 +259,8 @@ def test_what_is_taken_from_the_truth_has_no_noise_floor() -> None:
             assert found[name].value is not None and found[name].noise_floor is None
 
 
-# Bars -------------------------------------------------------------------------------------------------------------
+# Bars
+# -------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("rate", "ok"), [(0.1, False), (0.5, True), (-0.5, False), (0.9, False)])
@@ -314,7 +318,8 @@ def test_a_camera_that_misses_the_frames_of_a_norm_is_refused() -> None:
         scenario("yaw", camera={"rate": 10.0})
 
 
-# Berth and checks -------------------------------------------------------------------------------------------------
+# Berth and checks
+# -------------------------------------------------------------------------------------------------
 
 
 def berthed(x: float, y: float, psi: float, contacts: list[float]) -> Run:
@@ -379,7 +384,8 @@ def test_checks_stand_among_the_norms() -> None:
         )
 
 
-# norms.json -------------------------------------------------------------------------------------------------------
+# norms.json
+# -------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -416,7 +422,8 @@ def test_json_has_the_fields_and_names_that_were_agreed(
         assert norm["guard"] is None or len(norm["guard"]) == 2
 
 
-# J ----------------------------------------------------------------------------------------------------------------
+# J
+# ----------------------------------------------------------------------------------------------------------------
 
 
 def named(names: tuple[str, ...], row: tuple[float | None, ...]) -> dict[str, float]:

@@ -39,7 +39,8 @@ def test_all_that_is_logged_is_as_on_mujoco(case: str) -> None:
         assert mine.signals.keys() == other.signals.keys()
         for name, values in mine.signals.items():
             size = np.nanmax(np.abs(other.signals[name]), initial=1e-3)
-            # MuJoCo's acceleration is that of the last stage of a step, and of none before the first
+            # MuJoCo's acceleration is that of the last stage of a step, and of none before the
+            # first
             near, first = (0.05, 1) if name.startswith("sensed_a") else (1e-6, 0)
             np.testing.assert_allclose(
                 values[first:], other.signals[name][first:], atol=near * size, err_msg=name

@@ -49,7 +49,9 @@ P2 = Case((0, 0, 0, 0, 0, 0), (2.0, 0.0, 0.1), AHEAD, (0.10, -0.05), True)
 P3 = Case((0, 0, 0, 1.0, 0.1, 0.2), (0.0, 0.0, 0.0), {}, (0.0, 0.0), False)
 P4 = Case((0, 0, 0, 0.5, 0, 0), (0.0, 5.0, 0.0), SIDEWAYS, (0.0, 0.0), True)
 
-PUBLISHED = [  # case, t [s], (x, y, psi, u, v, r) as computed by an eighth-order method at relative tolerance 1e-10
+# case, t [s], (x, y, psi, u, v, r) as computed by an eighth-order method at relative tolerance
+# 1e-10
+PUBLISHED = [
     (P1, 5, (1.36802276, 0.26871470, 0.50017718, 0.34251017, -0.02591332, 0.12860991)),
     (P1, 20, (2.09216194, 4.56990722, 2.47066042, 0.34267416, -0.02749835, 0.13161558)),
     (P1, 60, (2.87035734, 2.14477887, 7.73528423, 0.34267416, -0.02749836, 0.13161560)),
@@ -242,5 +244,6 @@ def test_cross_flow_in_sway_and_yaw_together(v: float, r: float, centre: float) 
 @pytest.mark.parametrize(("v", "r"), [(0.3, 0.2), (-0.1, 0.4), (0.2, -0.5), (0.2, 0.0)])
 def test_cross_flow_by_many_stations_comes_to_the_integral(v: float, r: float) -> None:
     force = replace(HULL, stations=1000.0).wrench(motion(v=v, r=r))
-    # the law bends where the flow turns, inside a station: a few squares of a station's share of the length
+    # the law bends where the flow turns, inside a station: a few squares of a station's share of
+    # the length
     assert (force.Y, force.N) == pytest.approx(strips(v, r), rel=5e-6, abs=1e-12)

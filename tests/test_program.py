@@ -241,7 +241,8 @@ from boatsim.physics.program import Program
 cache._imported = lambda path, name: name  # the name alone: nothing is compiled
 print(*(Program(vessel.load(place)).module for place in sys.argv[1:]))
 """
-EDITS = [  # a file, what of it is changed into what, whether a spring in roll, and waves, can feel it
+# a file, what of it is changed into what, whether a spring in roll, and waves, can feel it
+EDITS = [
     ("particulars.py", ("GRAVITY = 9.81", "GRAVITY = 19.62"), (True, True)),
     ("chance.py", ("9007199254740992.0", "9007199254740993.0"), (False, True)),
     ("kernel/run.py", ("LONG = 1e4", "LONG = 2e4"), (True, True)),

@@ -36,7 +36,8 @@ quick, few = settings(max_examples=60, **COMMON), settings(max_examples=25, **CO
 Table = tuple[list[str], list[list[str]]]  # header, rows
 
 
-# A decay in roll and a boat on the water: small files that are right ------------------------------------------------
+# A decay in roll and a boat on the water: small files that are right
+# ------------------------------------------------
 
 
 def decay(rows: int = 75) -> Table:
@@ -117,7 +118,8 @@ below = 1.0
 """
 
 
-# What may be wrong with them ----------------------------------------------------------------------------------------
+# What may be wrong with them
+# ----------------------------------------------------------------------------------------
 
 CELLS = [
     "",
@@ -328,7 +330,8 @@ def tomls(draw: Any, right: str, end: str = "\0", kept: tuple[str, ...] = ()) ->
     return "\n".join(lines).encode()
 
 
-# The law -------------------------------------------------------------------------------------------------------------
+# The law
+# -------------------------------------------------------------------------------------------------------------
 
 
 def obeys(out: Path, files: tuple[str, ...], command: str, *arguments: object) -> Any:

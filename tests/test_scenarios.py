@@ -82,7 +82,8 @@ def over(norms: dict[str, float], bars: dict[str, float]) -> dict[str, float]:
     return {name: norms[name] for name, bar in bars.items() if not abs(norms[name]) < bar}
 
 
-# The thesis' program ----------------------------------------------------------------------------------------------
+# The thesis' program
+# ----------------------------------------------------------------------------------------------
 
 
 @EACH_TEST
@@ -130,7 +131,8 @@ def test_weak_reverse_at_least_halves_the_distance_to_the_thesis(score: dict[str
     assert score == pytest.approx({"set B": 0.41, "ideal": 1.33}, rel=0.15)
 
 
-# The corrected controller -----------------------------------------------------------------------------------------
+# The corrected controller
+# -----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("mode", ["", "gyro"], ids=["speed sensor", "gyro only"])
@@ -181,7 +183,8 @@ def test_boat_returns_to_its_berth_the_other_way_round(seed: int) -> None:
     assert touched == 0
 
 
-# Every scenario ---------------------------------------------------------------------------------------------------
+# Every scenario
+# ---------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -271,7 +274,8 @@ def test_a_further_sensor_changes_nothing_of_what_the_others_read() -> None:
     assert "sensed_phi_rad" in more.signals and "sensed_phi_rad" not in plain.signals
 
 
-# Mistakes in files ------------------------------------------------------------------------------------------------
+# Mistakes in files
+# ------------------------------------------------------------------------------------------------
 
 MISTAKES = [
     ({"vessle": "joystick_boat"}, r"key 'vessle' .*did you mean 'vessel'"),

@@ -84,7 +84,8 @@ def refused(done: Any) -> str:
     return str(done.stderr)
 
 
-# No code from data ------------------------------------------------------------------------------------------------
+# No code from data
+# ------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("kind", ["effect", "controller", "measure", "sensor", "vessel's effect"])
@@ -309,7 +310,8 @@ def test_10_trust_in_python_ends_with_its_block(tmp_path: Path) -> None:
     assert not trust.content()
 
 
-# Compiled programs ------------------------------------------------------------------------------------------------
+# Compiled programs
+# ------------------------------------------------------------------------------------------------
 
 
 def test_11_the_cache_is_private(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -378,7 +380,8 @@ def test_13_a_damaged_cache_is_built_again(
     assert moment() == before == moment()
 
 
-# What is shown ----------------------------------------------------------------------------------------------------
+# What is shown
+# ----------------------------------------------------------------------------------------------------
 
 
 def test_14_what_steers_a_terminal_is_shown_as_an_escape(
@@ -449,7 +452,8 @@ def test_3_a_check_and_an_import_run_what_is_trusted(tmp_path: Path) -> None:
     assert "is not run" not in boatsim("check", run, "--vessel", boat, "--trust").stderr
 
 
-# Limits -----------------------------------------------------------------------------------------------------------
+# Limits
+# -----------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -522,7 +526,8 @@ def test_19_what_does_not_fit_the_memory_is_refused(
     assert len(read(TRIAL))
 
 
-# What listens while a boat is driven --------------------------------------------------------------------------------
+# What listens while a boat is driven
+# --------------------------------------------------------------------------------
 
 
 @pytest.fixture

@@ -32,7 +32,9 @@ for (i, j), value in {
 OTTER_ADDED = np.diag([5.28152101, 82.5, 55.0, 2.052864, 11.0, 23.375])
 OTTER_DAMPING = np.array([77.55443235, 137.5, 546.48048913, 50.02366181, 218.18785613, 39.325])
 OTTER_DRAUGHT = 0.134146341463  # [m]
-TURN = (  # x y z phi theta psi, u v w p q r after 20 s, port 80, starboard 60 rad/s: printed to eight decimals
+# x y z phi theta psi, u v w p q r after 20 s, port 80, starboard 60 rad/s: printed to eight
+# decimals
+TURN = (
     0.23809611, 16.65627828, -0.00001107, -0.00244617, 0.00007436, 3.24853616,
     1.40535943, -0.09073613, -0.00011745, -0.00001268, -0.00041727, 0.17057993,
 )  # fmt: skip
@@ -247,7 +249,8 @@ def test_a_point_mass_is_the_body_that_has_it_in_its_inertia() -> None:
     assert np.abs(gained[0]).max() > 0.5  # [m/s^2], [rad/s^2]
 
 
-# ---- any set of freedoms: Lagrange's equations of the kinetic energy of hull and water, slopes by complex steps
+# ---- any set of freedoms: Lagrange's equations of the kinetic energy of hull and water, slopes by
+# complex steps
 
 HULL = """
 about = "a hull for tests, free as they need it"

@@ -67,7 +67,8 @@ def changed(scenario: str, key: str, value: bool | int | float | str) -> Scenari
     return from_table(laid(told, place, at, wanted.how, value), place)
 
 
-# Keys ---------------------------------------------------------------------------------------------------------------
+# Keys
+# ---------------------------------------------------------------------------------------------------------------
 
 
 def value(scenario: Scenario, effect: str, name: str) -> float:
@@ -162,7 +163,8 @@ def test_a_key_or_value_that_can_not_be_is_one_line(
     assert "\n" not in str(told.value)
 
 
-# Axes and draws -----------------------------------------------------------------------------------------------------
+# Axes and draws
+# -----------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -253,7 +255,8 @@ def test_a_further_quantity_leaves_the_others_as_they_were(kind: Any) -> None:
     assert (shares(kind, ["b"], 20, 3)[:, 0] == shares(kind, ["a", "b"], 20, 3)[:, 1]).all()
 
 
-# Runs ---------------------------------------------------------------------------------------------------------------
+# Runs
+# ---------------------------------------------------------------------------------------------------------------
 
 
 def columns(folder: Path) -> dict[str, list[Any]]:
@@ -381,7 +384,8 @@ def test_the_page_shows_every_norm_against_what_varied_and_fetches_nothing(
     assert not re.search(r"(src|href)=\"(?!#)", page)
 
 
-# Cut off ------------------------------------------------------------------------------------------------------------
+# Cut off
+# ------------------------------------------------------------------------------------------------------------
 
 
 def heeding() -> None:
@@ -515,7 +519,8 @@ def test_a_task_that_kills_its_process_costs_nobody_else(tmp_path: Path) -> None
     }
 
 
-# Sensitivity --------------------------------------------------------------------------------------------------------
+# Sensitivity
+# --------------------------------------------------------------------------------------------------------
 
 
 def blocks(

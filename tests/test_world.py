@@ -71,7 +71,8 @@ def read_obj(path: Path) -> tuple[np.ndarray, np.ndarray]:
     return points, np.array([[int(i) - 1 for i in row[1:]] for row in rows if row[0] == "f"])
 
 
-# --- mass and freedoms ---------------------------------------------------------------------------------------------
+# --- mass and freedoms
+# ---------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", VESSELS)
@@ -156,7 +157,8 @@ def test_leaving_out_what_is_only_seen_changes_no_motion(boat: vessel.Vessel) ->
     assert model.ngeom == 5  # the hull's shape and four walls
 
 
-# --- walls ---------------------------------------------------------------------------------------------------------
+# --- walls
+# ---------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -281,7 +283,8 @@ def test_tank_without_size_and_hull_without_body_are_refused(
         world.build(replace(boat, path=tmp_path))
 
 
-# --- loads ---------------------------------------------------------------------------------------------------------
+# --- loads
+# ---------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -319,7 +322,8 @@ def test_hull_reaches_from_transom_to_bow_about_its_mass_centre(
     assert corners(model, data)[:, 2].min() == pytest.approx(-boat.draught, abs=1e-5)
 
 
-# --- lines of the hull ---------------------------------------------------------------------------------------------
+# --- lines of the hull
+# ---------------------------------------------------------------------------------------------
 
 
 def test_committed_meshes_are_the_ones_the_particulars_give(tmp_path: Path) -> None:
@@ -373,7 +377,8 @@ def test_surfaces_face_outwards(part: str) -> None:
     assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() > 0
 
 
-# --- pictures ------------------------------------------------------------------------------------------------------
+# --- pictures
+# ------------------------------------------------------------------------------------------------------
 
 DRAW = """
 import sys

@@ -35,7 +35,7 @@ SHARED = (
     "compiling.py",
     "correction.py",
     "matrices.py",
-    "turned.py",
+    "rotation.py",
 )  # imported by every program, and compiled once for all
 LEFT_OUT = ("algebra.py", "equations.py", "source.py", *SHARED)  # the first three write programs
 EXPORTS = '''"""A vessel's program, composed by boatsim; not meant to be edited."""

@@ -46,9 +46,8 @@ class Found:
     refused: int = 0
     slowest: float = 0.0  # [s]
     seconds: float = 0.0  # in all
-    memory: float = (
-        0.0  # [MB] by which the process grew at most beyond what it took for whole files
-    )
+    # [MB] by which the process grew at most beyond what it took for whole files
+    memory: float = 0.0
     broken: list[Broken] = field(default_factory=list)
 
     @property
