@@ -57,8 +57,8 @@ def nudged(name: str) -> list[dict[str, Norm]]:
     """The same, started a little beside, each time in another direction."""
     start = scenario.load(name)
     chance = np.random.default_rng(0)
-    off = NUDGE * chance.choice([-1.0, 1.0], (NUDGES, len(start.vessel.freedoms)))
-    rates = [s.symbol for s in STATE if s.rate and s.axis in start.vessel.freedoms]
+    off = NUDGE * chance.choice([-1.0, 1.0], (NUDGES, len(start.vessel.dof)))
+    rates = [s.symbol for s in STATE if s.rate and s.axis in start.vessel.dof]
     said = start.file.start.model_dump()
     return [
         norms(

@@ -39,7 +39,7 @@ def drawn(boat: Vessel, *shape: int) -> tuple[Array, Array]:
     """States (n, 2 NQ) about the origin, and commands (rows, n, C) anywhere in their ranges; `shape` is (rows, n)."""
     rng = np.random.default_rng(1)
     ranges = np.clip(np.array(list(boat.limits().values())).reshape(-1, 2), -WIDEST, WIDEST)
-    starts = rng.uniform(-0.3, 0.3, (shape[-1], 2 * len(boat.freedoms)))
+    starts = rng.uniform(-0.3, 0.3, (shape[-1], 2 * len(boat.dof)))
     return starts, rng.uniform(ranges[:, 0], ranges[:, 1], (*shape, len(ranges)))
 
 

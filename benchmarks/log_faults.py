@@ -51,9 +51,9 @@ def sailed(boat: Vessel, seed: int, lasts: float = LASTS) -> Columns:
         low, high = (max(c.low, -c.high) if c.low < 0.0 else c.low), c.high
         levels.append(rng.uniform(0.6 * low, 0.8 * high, -(-rows // held)))
     commands = np.repeat(np.column_stack(levels), held, axis=0)[:rows]
-    nq = len(boat.freedoms)
+    nq = len(boat.dof)
     states = twin.rollout(np.zeros(2 * nq), commands, slow / RATE)[:rows]
-    x, y, psi = (states[:, boat.freedoms.index(axis)] for axis in ("surge", "sway", "yaw"))
+    x, y, psi = (states[:, boat.dof.index(axis)] for axis in ("surge", "sway", "yaw"))
     noise = rng.standard_normal((3, rows)) * [
         [PLACE_SD * boat.length],
         [PLACE_SD * boat.length],

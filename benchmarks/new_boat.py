@@ -41,7 +41,7 @@ class Case:
 
     boat: Particulars
     logs: Mapping[str, Mapping[str, Array]]  # columns
-    unseen: Sequence[str]
+    held_out: Sequence[str]
     hand_made: Callable[[Path], Path]  # its file, written into a folder if it has to be
     # columns as the hand-made vessel has them
     its_logs: Callable[[Mapping[str, Array]], Mapping[str, Array]] = dict
@@ -85,8 +85,8 @@ def blueboat(_: Path) -> Case:
         logs[path.stem] = {"t_s": read["t_s"]} | {
             ours: read[theirs] for ours, theirs in names.items()
         }
-    unseen = sorted(logs)[2::4]
-    return Case(boat, logs, unseen, lambda _: find("vessel", "blueboat"))
+    held_out = sorted(logs)[2::4]
+    return Case(boat, logs, held_out, lambda _: find("vessel", "blueboat"))
 
 
 def esso_osaka(_: Path) -> Case:
@@ -173,8 +173,8 @@ def _fitted(
     folder.mkdir()
     for name, log in case.logs.items():
         _write(folder / f"{name}.csv", taken(log))
-    fit = [folder / f"{n}.csv" for n in case.logs if n not in case.unseen]
-    return fitted(file, fit, [folder / f"{n}.csv" for n in case.unseen])
+    fit = [folder / f"{n}.csv" for n in case.logs if n not in case.held_out]
+    return fitted(file, fit, [folder / f"{n}.csv" for n in case.held_out])
 
 
 def _write(file: Path, log: Mapping[str, Array]) -> None:

@@ -185,7 +185,7 @@ def run(
     told = steered(str(scenario), None if controller is None else str(controller))
     if out is None:
         done = simulate(told, seed)
-        filmed = done.camera if "yaw" in told.vessel.freedoms else None
+        filmed = done.camera if "yaw" in told.vessel.dof else None
         return Run(told.name, done.seed, done.complete, done.recording, filmed, all_norms(done))
     from boatsim.view.outputs import CAMERA, run_into  # rerun takes half a second
 

@@ -28,7 +28,7 @@ RANGE = {"throttle": (4.2, 7.0)}
 def paths(name: str) -> dict[float, Array]:
     """States by step, over the same commands."""
     boat = vessel.load(name)
-    twin, rng, n = Twin(boat), np.random.default_rng(0), len(boat.freedoms)
+    twin, rng, n = Twin(boat), np.random.default_rng(0), len(boat.dof)
     limits = [RANGE.get(c, limits) for c, limits in boat.limits().items()]
     rows = (
         np.column_stack([rng.uniform(*limit, ROWS) for limit in limits])
@@ -36,7 +36,7 @@ def paths(name: str) -> dict[float, Array]:
         else np.zeros((ROWS, 0))
     )
     start = np.zeros(2 * n)
-    if "surge" in boat.freedoms:
+    if "surge" in boat.dof:
         start[n] = START.get(name, boat.manoeuvring.speed or 0.0)
     else:
         start[0] = 0.1  # [rad] of heel, released
@@ -49,7 +49,7 @@ def paths(name: str) -> dict[float, Array]:
 
 def errors(name: str) -> Array:
     """Largest error of any coordinate [m, rad], by step."""
-    found, n = paths(name), len(vessel.load(name).freedoms)
+    found, n = paths(name), len(vessel.load(name).dof)
     return np.array([np.abs(found[step] - found[FINE])[:, :n].max() for step in STEPS])
 
 

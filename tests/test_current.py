@@ -20,7 +20,7 @@ CASES = [
     for name in content.names("vessel")
     for load in ([], *([one] for one in vessel.load(name).loads))
     if "surge"
-    in vessel.load(name).freedoms  # a hull that only rolls about a fixed axis is carried nowhere
+    in vessel.load(name).dof  # a hull that only rolls about a fixed axis is carried nowhere
 ]
 
 
@@ -46,7 +46,7 @@ def start_of(boat: Vessel) -> Array:
     """Under way, drifting, turning and heeled."""
     U = 0.15 * np.sqrt(9.81 * boat.length)
     state = {"psi": 0.4, "phi": 0.05, "u": U, "v": 0.1 * U, "r": 0.1 * U / boat.length, "p": 0.02}
-    return np.array([state.get(signal.symbol, 0.0) for signal in signals_of(boat.freedoms)])
+    return np.array([state.get(signal.symbol, 0.0) for signal in signals_of(boat.dof)])
 
 
 def carried(program: Program, states: Array, t: Array, by: float = 1.0) -> Array:

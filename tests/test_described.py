@@ -164,19 +164,19 @@ def halved(found: Diagnosis, signal: str) -> bool:
     return bool(rms["patched"] < 0.5 * rms["recalibrated"])
 
 
-def replays(found: Diagnosis, unseen: Recording, folder: Path) -> None:
+def replays(found: Diagnosis, held_out: Recording, folder: Path) -> None:
     """Whether the patched vessel does on an unseen recording what the fitted one does."""
     patched_vessel.write(
         found.problem, found.vessel, found.ranking.best, folder / "patched.toml", found.ranking.laws
     )
     program, on = composed(vessel.load(str(folder / "patched.toml")))
     fit, levels = found.ranking.best, found.ranking.best.levels
-    laid = track(unseen, found.problem.program)
+    laid = track(held_out, found.problem.program)
     for slot, term in found.ranking.laws.items():
         for key, x in term.completed(BOAT).by_name().items():
             laid.values[found.problem.program.index(slot, key)] = x
     here = found.problem.values(laid, fit.free, fit.theta)
-    again = track(unseen, program)
+    again = track(held_out, program)
     ours = laid.free_runs(
         here, found.problem.program.switches(tuple(found.ranking.laws)), levels, 6.0
     )

@@ -331,9 +331,9 @@ def test_practice_trials_are_named_exactly(name):
 
 def test_a_single_run_keeps_its_middle_third_unseen():
     rec = recorded("single", 5)
-    fitted, unseen, note = before_after.split([rec], [])
-    assert [len(r) for r in (*fitted, *unseen)] == pytest.approx([80, 80, 80], abs=2)
-    assert unseen[0].t[0] > fitted[0].t[-1] - 0.2 and fitted[1].t[0] > unseen[0].t[-1]
+    fitted, held_out, note = before_after.split([rec], [])
+    assert [len(r) for r in (*fitted, *held_out)] == pytest.approx([80, 80, 80], abs=2)
+    assert held_out[0].t[0] > fitted[0].t[-1] - 0.2 and fitted[1].t[0] > held_out[0].t[-1]
     assert "middle third" in note
 
 
@@ -375,8 +375,8 @@ def thesis(tmp_path_factory):
 @pytest.mark.slow
 def test_reverse_thrust_taken_for_ideal_is_found_in_the_thesis_own_tests(thesis):
     runs = [thesis / n / "camera.csv" for n in ("sway_1", "yaw_1")]
-    unseen = [thesis / n / "camera.csv" for n in ("sway_3", "yaw_3")]
-    answer = pipeline.diagnose(runs, unseen).findings.answer
+    held_out = [thesis / n / "camera.csv" for n in ("sway_3", "yaw_3")]
+    answer = pipeline.diagnose(runs, held_out).findings.answer
     assert [e["name"] for e in answer["effects"]] == ["weak_reverse"]
     assert answer["effects"][0]["parameters"]["astern_factor"]["value"] == pytest.approx(
         0.694, rel=0.05

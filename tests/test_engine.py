@@ -62,7 +62,7 @@ def held_commands(boat: Vessel, rows: int, seed: int) -> Array:
 
 def pose_and_rates(boat: Vessel, s: State) -> list[float]:
     """A state as the twin has it."""
-    return [getattr(s, signal.symbol) for signal in signals_of(boat.freedoms)]
+    return [getattr(s, signal.symbol) for signal in signals_of(boat.dof)]
 
 
 def sailed(engine: Engine, rows: Array, steps: int, start: State = START) -> Array:
@@ -100,7 +100,7 @@ def test_engine_and_twin_agree_over_20_s_of_random_commands(
     rows = held_commands(boat, 200, seed=2)
     engine = sailed(Engine(boat), rows, 5)
     twin = Twin(boat).rollout(pose_and_rates(boat, START), rows, 0.1)
-    assert engine.shape == twin.shape == (201, 2 * len(boat.freedoms))
+    assert engine.shape == twin.shape == (201, 2 * len(boat.dof))
     assert np.ptp(engine, axis=0).min() > 1e-3  # it did move, heave by some mm at least
     assert engine == pytest.approx(twin, rel=1e-10, abs=1e-10)
 

@@ -313,7 +313,7 @@ def test_sway_added_mass_heels_one_way_as_printed_or_both_ways_as_energy_demands
 
 def on_twin(boat: Vessel, rudder: Array, waves: Array) -> Array:
     """(N + 1, 5) states of the run in the twin."""
-    twin, symbols = Twin(boat, 0.02), [signal.symbol for signal in signals_of(boat.freedoms)]
+    twin, symbols = Twin(boat, 0.02), [signal.symbol for signal in signals_of(boat.dof)]
     y = np.array([speed_of(boat) if n == "u" else 0.0 for n in symbols])
     at, values, rows = [twin.program.index("push", n) for n in WAVES], twin.program.values(), [y]
     for i, (angle, wave) in enumerate(zip(rudder, waves, strict=True)):

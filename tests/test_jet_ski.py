@@ -177,7 +177,7 @@ def test_engine_and_twin_follow_an_integration_of_the_printed_equations(
     assert [getattr(s, n) for n in names] == pytest.approx(truth.tolist(), abs=1e-6)
     twin = Twin(CRAFT, 0.01)
     rows = np.tile(twin.program.command_array({"throttle": throttle, "jet_rad": jet}), (100, 1))
-    ours = [signal.symbol for signal in signals_of(CRAFT.freedoms)]
+    ours = [signal.symbol for signal in signals_of(CRAFT.dof)]
     end = twin.rollout([start[n] for n in ours], rows, 0.1)[-1]
     assert end == pytest.approx([getattr(s, n) for n in ours], abs=1e-8)
 

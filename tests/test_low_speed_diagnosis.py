@@ -25,10 +25,10 @@ YAW_RATE = 7  # of the channels of a free run: x, y, phi, psi, u, v, p, r
 
 
 def diagnosed(
-    folder: Path, real: Real, unseen: Real | None = None, without: tuple[str, ...] = ()
+    folder: Path, real: Real, held_out: Real | None = None, without: tuple[str, ...] = ()
 ) -> Diagnosis:
     """Two runs of the real craft fitted, a third held out."""
-    runs = [recorded(real, 1), recorded(real, 2), recorded(unseen or real, 3)]
+    runs = [recorded(real, 1), recorded(real, 2), recorded(held_out or real, 3)]
     files = [folder / f"{r.name}.csv" for r in runs]
     for file, r in zip(files, runs, strict=True):
         recording.write_csv(r, file)

@@ -310,7 +310,7 @@ def test_limits_stand_beside_the_manoeuvres_they_are_for(
 
 # Vessels
 
-STEERED = [name for name in content.names("vessel") if "yaw" in vessel.load(name).freedoms]
+STEERED = [name for name in content.names("vessel") if "yaw" in vessel.load(name).dof]
 
 
 @pytest.mark.parametrize("name", few(STEERED))

@@ -59,9 +59,9 @@ def drawn(folder: Path, number: int) -> list[str]:
 def test_twenty_entries_that_explain_nothing_change_no_verdict(tmp_path: Path) -> None:
     library = drawn(tmp_path, 20)
     for trial in sorted(p for p in TRIALS.iterdir() if p.is_dir()):
-        runs, unseen = [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"]
-        usual = pipeline.diagnose(runs, unseen).findings.answer
-        more = pipeline.diagnose(runs, unseen, library=library).findings.answer
+        runs, held_out = [trial / "run_1.csv", trial / "run_2.csv"], [trial / "run_3.csv"]
+        usual = pipeline.diagnose(runs, held_out).findings.answer
+        more = pipeline.diagnose(runs, held_out, library=library).findings.answer
         assert len(more["tried"]) == len(usual["tried"]) + 20
         assert more["rules"]["effect_gain_nats"] > usual["rules"]["effect_gain_nats"]
         assert more["verdict"] == usual["verdict"], trial.name

@@ -169,23 +169,21 @@ def test_commands_that_are_not_given_are_zero(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "freedoms", [("surge", "sway"), ("sway", "roll"), ("surge", "heave", "pitch"), ("yaw",)]
+    "dof", [("surge", "sway"), ("sway", "roll"), ("surge", "heave", "pitch"), ("yaw",)]
 )
-def test_any_freedoms_feel_their_part_of_the_same_law(
-    tmp_path: Path, freedoms: tuple[str, ...]
-) -> None:
-    text = boats.PLANAR.replace('["surge", "sway", "yaw"]', str(list(freedoms))).replace(
+def test_any_freedoms_feel_their_part_of_the_same_law(tmp_path: Path, dof: tuple[str, ...]) -> None:
+    text = boats.PLANAR.replace('["surge", "sway", "yaw"]', str(list(dof))).replace(
         "body = { ", f"body = {{ {PITCH}"
     )
     program = Program(vessel.load(str(boats.written(tmp_path, "test_boat", text))))
     rates = {"surge": 0.3, "sway": -0.2, "yaw": 0.1, "heave": 0.2, "roll": 0.4, "pitch": -0.3}
-    moving = {a: rates.get(a, 0.0) if a in freedoms else 0.0 for a in AXES}
+    moving = {a: rates.get(a, 0.0) if a in dof else 0.0 for a in AXES}
     m = motion(**{symbol: moving[a] for symbol, a in zip("uvwpqr", AXES, strict=True)})
     wanted = sum(
         np.array(e.wrench(m)) for e in program.effects if isinstance(e, AddedMass | LinearDamping)
     )
-    seen = forces(program, [*(0.0 for _ in freedoms), *(moving[a] for a in AXES if a in freedoms)])
-    assert seen == pytest.approx([wanted[AXES.index(a)] for a in AXES if a in freedoms])
+    seen = forces(program, [*(0.0 for _ in dof), *(moving[a] for a in AXES if a in dof)])
+    assert seen == pytest.approx([wanted[AXES.index(a)] for a in AXES if a in dof])
     assert np.any(seen)
 
 

@@ -40,8 +40,8 @@ def test_on_the_last_third_alone_a_constant_moment_alone_beats_the_linear_boat(
 
 def test_stiffening_explains_the_phase_and_damping_the_envelope(windows: Diagnosis) -> None:
     whole, _ = roll.opened(roll.AT_REST)
-    unseen = roll.laid_on(windows, roll.cut_windows(whole)[1::2])
-    off = roll.polar_errors(windows.problem, roll.one_at_a_time(windows), unseen)
+    held_out = roll.laid_on(windows, roll.cut_windows(whole)[1::2])
+    off = roll.polar_errors(windows.problem, roll.one_at_a_time(windows), held_out)
     envelope, phase = ({label: e[i] / off["linear"][i] for label, e in off.items()} for i in (0, 1))
     assert phase["+ righting_arm_stiffening"] < 0.4 < 0.9 < envelope["+ righting_arm_stiffening"]
     assert envelope["+ cubic_damping"] < 0.7 < 0.9 < phase["+ cubic_damping"]

@@ -60,7 +60,7 @@ def test_a_row_holds_the_mean_of_the_courses_until_the_next(tmp_path: Path) -> N
 def test_the_vessel_swings_as_the_circuit_on_a_slower_clock(tmp_path: Path) -> None:
     boat = silverbox.written(tmp_path)
     arm, thruster = boat.effect("righting_arm"), boat.effect("thruster")
-    assert arm is not None and thruster is not None and boat.freedoms == ("roll",)
+    assert arm is not None and thruster is not None and boat.dof == ("roll",)
     stiffness, lever = getattr(arm, "stiffness"), getattr(thruster, "z")  # noqa: B009
     pulsation = np.sqrt(stiffness / boat.body.roll_inertia)  # [rad/s]
     assert pulsation / (2.0 * np.pi) == pytest.approx(

@@ -255,7 +255,7 @@ def test_a_point_mass_is_the_body_that_has_it_in_its_inertia() -> None:
 HULL = """
 about = "a hull for tests, free as they need it"
 source = "none"
-freedoms = {freedoms}
+freedoms = {dof}
 length = 1.0
 beam = 0.4
 draught = 0.1
@@ -308,17 +308,17 @@ def sway_lever(below: float) -> Array:
     return 3.0 * np.outer(row, row) - np.diag([0, 3.0, 0, 0, 0, 0])
 
 
-def floating(folder: Path, freedoms: tuple[str, ...], damped: bool = True) -> tuple[Vessel, Array]:
+def floating(folder: Path, dof: tuple[str, ...], damped: bool = True) -> tuple[Vessel, Array]:
     """The hull with those freedoms, and its whole mass matrix (6, 6)."""
-    level = not tilts(frozenset(freedoms))
+    level = not tilts(frozenset(dof))
     centre, below = (
         (0.05, 0.0 if level else -0.08),
-        0.0 if level and "roll" not in freedoms else 0.04,
+        0.0 if level and "roll" not in dof else 0.04,
     )
     pitch = (
         0.8 if level else 0.7
     )  # a level hull rolls about an axis through its mass centre, pitch as yaw
-    text = HULL.format(freedoms=list(freedoms), centre=list(centre), pitch=pitch, below=below)
+    text = HULL.format(dof=list(dof), centre=list(centre), pitch=pitch, below=below)
     boat = vessel.load(str(boats.written(folder, "floating", text + (DAMPED if damped else ""))))
     c = skew(np.array([centre[0], 0.0, centre[1]]))
     inertia = np.diag([0.3, pitch, 0.8])
@@ -336,8 +336,8 @@ def jacobian(q: Array, free: list[int], tilting: bool) -> Array:
 
 def lagrange(boat: Vessel, M: Array, damped: bool) -> Callable[[float, Array], Array]:
     """Rates of (q, generalised momentum)."""
-    free = [AXES.index(a) for a in AXES if a in boat.freedoms]
-    tilting, n = tilts(frozenset(boat.freedoms)), len(free)
+    free = [AXES.index(a) for a in AXES if a in boat.dof]
+    tilting, n = tilts(frozenset(boat.dof)), len(free)
 
     def at(q: Array) -> Array:
         full = np.zeros(6, dtype=q.dtype)
@@ -378,27 +378,25 @@ MORE = [
 
 
 @pytest.mark.parametrize(
-    "freedoms",
+    "dof",
     [*SETS, *(pytest.param(s, marks=pytest.mark.slow) for s in MORE)],
     ids=lambda s: " ".join(s),
 )
 def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(
-    tmp_path: Path, freedoms: tuple[str, ...]
+    tmp_path: Path, dof: tuple[str, ...]
 ) -> None:
-    boat, M = floating(tmp_path, freedoms)
-    free = [AXES.index(a) for a in freedoms]
+    boat, M = floating(tmp_path, dof)
+    free = [AXES.index(a) for a in dof]
     pose = np.array([0.1, -0.2, 0.05, 0.3, -0.2, 0.7])
     rate = np.array([0.4, -0.3, 0.1, 0.5, -0.4, 0.6])
     engine, twin = Engine(boat, step=0.01), Twin(boat, step=0.01)
     start = np.concatenate([pose[free], rate[free]])  # joint coordinates and rates
-    tilting = tilts(frozenset(freedoms))
+    tilting = tilts(frozenset(dof))
     full = np.zeros(6)
     full[free] = pose[free]
     J = jacobian(full, free, tilting)
     nu = J @ rate[free]
-    moving = dict(
-        zip((s.symbol for s in signals_of(freedoms)), [*pose[free], *nu[free]], strict=True)
-    )
+    moving = dict(zip((s.symbol for s in signals_of(dof)), [*pose[free], *nu[free]], strict=True))
     engine.reset(State(**moving))
     engine.advance(300)
     found = solve_ivp(
@@ -412,7 +410,7 @@ def test_engine_and_twin_follow_lagrange_in_any_set_of_freedoms(
     full[free] = found[: len(free)]
     J = jacobian(full, free, tilting)
     wanted = [*found[: len(free)], *(J @ np.linalg.solve(J.T @ M @ J, found[len(free) :]))[free]]
-    at_end = [getattr(engine.state, s.symbol) for s in signals_of(freedoms)]
+    at_end = [getattr(engine.state, s.symbol) for s in signals_of(dof)]
     assert at_end == pytest.approx(wanted, rel=1e-6, abs=2e-6)
     rolled = twin.rollout(list(moving.values()), np.zeros((30, 0)), 0.1)[-1]
     assert at_end == pytest.approx(rolled, rel=1e-10, abs=1e-10)

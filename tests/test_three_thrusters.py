@@ -167,7 +167,7 @@ def test_a_fixed_thruster_does_not_turn_with_the_only_rudder(tmp_path: Path) -> 
 def test_engine_and_twin_sail_alike(place: Path) -> None:
     boat = vessel.load(str(place))
     rows, start = drawn(boat, 30, 3), State(psi=0.4, u=0.5, v=-0.2, r=0.1)
-    pose_and_rates = [signal.symbol for signal in signals_of(boat.freedoms)]
+    pose_and_rates = [signal.symbol for signal in signals_of(boat.dof)]
     wanted = Twin(boat).rollout([getattr(start, n) for n in pose_and_rates], rows, 1.0)
     engine = Engine(boat)
     engine.reset(start, dict(zip(COMMANDS, rows[0], strict=True)))

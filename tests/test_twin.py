@@ -32,19 +32,19 @@ def held(twin: Twin, rows: int, X: float, N: float) -> Array:
 FREEDOMS = [("surge", "sway", "yaw"), ("surge", "sway", "roll", "yaw"), AXES]
 
 
-def freed(folder: Path, freedoms: tuple[str, ...]) -> Program:
+def freed(folder: Path, dof: tuple[str, ...]) -> Program:
     """The boat of the reference cases with other freedoms."""
-    text = boats.PLANAR.replace('["surge", "sway", "yaw"]', f"{list(freedoms)}")
+    text = boats.PLANAR.replace('["surge", "sway", "yaw"]', f"{list(dof)}")
     text = text.replace("yaw_inertia = 0.5 }", "yaw_inertia = 0.5, pitch_inertia = 0.4 }", 1)
     return Program(vessel.load(str(boats.written(folder, "freed", text))))
 
 
-@pytest.mark.parametrize("freedoms", FREEDOMS, ids=["3", "4", "6"])
+@pytest.mark.parametrize("dof", FREEDOMS, ids=["3", "4", "6"])
 def test_body_and_joint_velocities_are_each_others_inverse(
-    freedoms: tuple[str, ...], tmp_path_factory: pytest.TempPathFactory
+    dof: tuple[str, ...], tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    program = freed(tmp_path_factory.mktemp("boat"), freedoms)
-    n, moves = program.module.NQ, sum(axis in ("surge", "sway", "heave") for axis in freedoms)
+    program = freed(tmp_path_factory.mktemp("boat"), dof)
+    n, moves = program.module.NQ, sum(axis in ("surge", "sway", "heave") for axis in dof)
 
     @given(st.lists(st.floats(-1.5, 1.5), min_size=2 * n, max_size=2 * n))
     def inverse(state: list[float]) -> None:

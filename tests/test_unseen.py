@@ -52,11 +52,11 @@ def as_likely(problem: Problem, base: Fit, found: Fit, name: str) -> Fit:
 def test_a_look_alike_by_which_unseen_runs_are_foreseen_worse_is_none(
     weak: Laid, name: str
 ) -> None:
-    problem, base, found, unseen = weak
+    problem, base, found, held_out = weak
     sets, rival = sets_of(problem, base, found), as_likely(problem, base, found, name)
     one = beside("weak_reverse", found, base, {name: rival})
     assert one.tied_with == (name,) and one.probability < 0.5
-    (sure,) = told(sets, found, [one], unseen)
+    (sure,) = told(sets, found, [one], held_out)
     assert not sure.tied_with and sure.probability > 0.99 and not sure.rivals
     (kept,) = told(sets, found, [one], [])
     assert kept.tied_with == (name,)  # nothing unseen, nothing told
@@ -65,33 +65,33 @@ def test_a_look_alike_by_which_unseen_runs_are_foreseen_worse_is_none(
 def test_a_law_by_which_unseen_runs_are_foreseen_better_takes_the_place_of_its_look_alike(
     weak: Laid,
 ) -> None:
-    problem, base, found, unseen = weak
+    problem, base, found, held_out = weak
     wrong = as_likely(problem, base, found, "steady_force")
     sets = sets_of(problem, base, found, wrong)
     one = beside("steady_force", wrong, base, {"weak_reverse": found})
-    assert lawful(sets, wrong, [one], unseen) is found and sets.banned == {"steady_force"}
+    assert lawful(sets, wrong, [one], held_out) is found and sets.banned == {"steady_force"}
 
 
 def test_a_look_alike_that_foresees_as_much_stays_one(weak: Laid) -> None:
-    problem, base, found, unseen = weak
+    problem, base, found, held_out = weak
     sets, twin = sets_of(problem, base, found), replace(found, evidence=found.evidence - 1.0)
     one = beside("weak_reverse", found, base, {"steady_force": twin})
-    (kept,) = told(sets, found, [one], unseen)
+    (kept,) = told(sets, found, [one], held_out)
     assert kept.tied_with == ("steady_force",)
-    assert lawful(sets, found, [one], unseen) is None and not sets.banned
+    assert lawful(sets, found, [one], held_out) is None and not sets.banned
 
 
 def test_beside_what_nothing_explains_only_what_unseen_runs_ask_for_is_stood_for(
     weak: Laid, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    problem, base, found, unseen = weak
+    problem, base, found, held_out = weak
     monkeypatch.setattr(asked, "left_over", lambda problem, best: 1000.0)
     levels = replace(
         found.levels, force=50.0 * problem.ambient.force
     )  # as if nothing took any of it away
     much, none = replace(found, levels=levels), replace(base, levels=levels)
     sets = sets_of(problem, none, much)
-    assert stood_for(sets, much, unseen) is much and not sets.banned
+    assert stood_for(sets, much, held_out) is much and not sets.banned
     assert stood_for(sets, much, []) is none and sets.banned == {"weak_reverse"}
 
 
@@ -113,48 +113,48 @@ def said(problem: Problem, found: Fit, factor: float) -> Fit:
 
 
 def test_an_effect_by_which_unseen_runs_become_unlikelier_does_not_carry_over(weak: Laid) -> None:
-    problem, base, found, unseen = weak
+    problem, base, found, held_out = weak
     sets = sets_of(problem, base, found)
     one = beside("weak_reverse", found, base, {})
-    assert refuted(sets, found, [one], unseen) == ""
+    assert refuted(sets, found, [one], held_out) == ""
     wrong = said(problem, found, 1.5)  # stronger astern, where it is weaker
     assert (
-        refuted(sets, wrong, [one], unseen) == "weak_reverse"
+        refuted(sets, wrong, [one], held_out) == "weak_reverse"
         and refuted(sets, wrong, [one], []) == ""
     )
 
 
 def test_what_all_recordings_together_hardly_ask_for_is_not_named(weak: Laid) -> None:
     """A factor next to one gains nothing on unseen runs: on the fitted ones it must then gain its whole price."""
-    problem, base, found, unseen = weak
+    problem, base, found, held_out = weak
     own = dict(zip(((f.effect, f.name) for f in base.free), base.theta, strict=True))
     theta = np.array([own.get((f.effect, f.name), 0.999) for f in found.free])
     little = replace(found, theta=theta, levels=base.levels, evidence=base.evidence + 2.5)
     sets = sets_of(problem, base, little)
     one = beside("weak_reverse", little, base, {})
-    assert sets.price > 2.6 and refuted(sets, little, [one], unseen) == "weak_reverse"
+    assert sets.price > 2.6 and refuted(sets, little, [one], held_out) == "weak_reverse"
     assert (
-        refuted(sets, little, [replace(one, shared=sets.price + 20.0)], unseen) == ""
+        refuted(sets, little, [replace(one, shared=sets.price + 20.0)], held_out) == ""
     )  # with its look-alikes
 
 
 def test_what_unseen_runs_say_of_a_law_hangs_little_on_how_rough_the_water_was_before(
     weak: Laid,
 ) -> None:
-    problem, base, found, unseen = weak
+    problem, base, found, held_out = weak
     sets, rough = (
         sets_of(problem, base),
         replace(found, levels=replace(found.levels, force=5.0 * found.levels.force)),
     )
-    by_law = foretold(sets, found, unseen) - foretold(sets, said(problem, found, 1.0), unseen)
-    assert abs(foretold(sets, rough, unseen) - foretold(sets, found, unseen)) < 0.2 * by_law
+    by_law = foretold(sets, found, held_out) - foretold(sets, said(problem, found, 1.0), held_out)
+    assert abs(foretold(sets, rough, held_out) - foretold(sets, found, held_out)) < 0.2 * by_law
 
 
 def test_a_rival_that_is_behind_on_the_fitted_runs_only_is_a_look_alike(weak: Laid) -> None:
-    problem, base, found, unseen = weak
+    problem, base, found, held_out = weak
     wrong = said(problem, found, 0.9)
-    gap = foretold(sets_of(problem, base), found, unseen) - foretold(
-        sets_of(problem, base), wrong, unseen
+    gap = foretold(sets_of(problem, base), found, held_out) - foretold(
+        sets_of(problem, base), wrong, held_out
     )
     assert gap > 6.0
     rival = replace(
@@ -162,5 +162,5 @@ def test_a_rival_that_is_behind_on_the_fitted_runs_only_is_a_look_alike(weak: La
     )  # as far behind there as it is ahead on the unseen run
     one = beside("weak_reverse", wrong, base, {"steady_force": rival})
     assert not one.tied_with
-    (all_told,) = told(sets_of(problem, base, wrong), wrong, [one], unseen)
+    (all_told,) = told(sets_of(problem, base, wrong), wrong, [one], held_out)
     assert all_told.tied_with == ("steady_force",)

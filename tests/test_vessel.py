@@ -37,8 +37,8 @@ def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str
     boat = vessel.load(name)
     library = library_for(boat)
     for entry in library.entries:
-        own = [p for p in type(entry).params().values() if p.fit and p.axis in ("", *boat.freedoms)]
-        assert own and set(type(entry).needs) <= set(boat.freedoms)
+        own = [p for p in type(entry).params().values() if p.fit and p.axis in ("", *boat.dof)]
+        assert own and set(type(entry).needs) <= set(boat.dof)
         vessel.check_bindings(vessel.added(boat, entry), name)
     there = {called(e.name) for e in library.entries}
     of_shelf = {n for n in content.names("effect") if fittable(content.load_class("effect", n))}

@@ -57,7 +57,7 @@ def drawn_commands(boat: Vessel, shape: tuple[int, ...], seed: int = 1) -> Array
 
 def drawn_starts(boat: Vessel, n: int) -> Array:
     """(n, 2 NQ) near the origin, moving."""
-    return np.random.default_rng(2).uniform(-0.3, 0.3, (n, 2 * len(boat.freedoms)))
+    return np.random.default_rng(2).uniform(-0.3, 0.3, (n, 2 * len(boat.dof)))
 
 
 def sailed(batch: Batch, starts: Array, commands: Array) -> Array:

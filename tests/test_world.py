@@ -87,16 +87,16 @@ def test_joints_follow_the_freedoms_in_order(name: str) -> None:
     "show", [True, False]
 )  # a hull without child bodies is what MuJoCo calls simple
 @pytest.mark.parametrize(
-    "freedoms", [("surge", "sway", "yaw"), ("roll",), ("surge", "sway", "roll", "yaw")]
+    "dof", [("surge", "sway", "yaw"), ("roll",), ("surge", "sway", "roll", "yaw")]
 )
 def test_mass_matrix_stores_its_whole_lower_triangle(
-    boat: vessel.Vessel, freedoms: tuple[str, ...], show: bool
+    boat: vessel.Vessel, dof: tuple[str, ...], show: bool
 ) -> None:
     level = boat.geometry | {
         "cg_above_keel": boat.draught
     }  # mass centre in the waterline: nothing offset
-    model = world.build(replace(boat, freedoms=freedoms, geometry=level), WALLED, show=show)
-    n = len(freedoms)
+    model = world.build(replace(boat, dof=dof, geometry=level), WALLED, show=show)
+    n = len(dof)
     assert model.M_rownnz.tolist() == list(range(1, n + 1))
     assert mujoco.MjData(model).M.shape == (n * (n + 1) // 2,)
 
@@ -114,7 +114,7 @@ def test_a_model_that_would_lose_added_mass_is_refused(boat: vessel.Vessel) -> N
 def test_mass_and_inertia_are_those_of_the_vessel_about_its_mass_centre(
     loads: tuple[str, ...],
 ) -> None:
-    boat = replace(vessel.load("joystick_boat", loads), freedoms=("surge", "sway", "roll", "yaw"))
+    boat = replace(vessel.load("joystick_boat", loads), dof=("surge", "sway", "roll", "yaw"))
     body = boat.body
     expected = np.diag([body.mass, body.mass, body.yaw_inertia, body.roll_inertia])
     assert mass_matrix(world.build(boat, WALLED)) == pytest.approx(expected, abs=1e-12)

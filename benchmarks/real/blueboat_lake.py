@@ -111,22 +111,22 @@ def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
     return sorted(out, key=lambda one: one.run)
 
 
-def without(problem: Problem, tracks: Sequence[Track], unseen: Sequence[Track]) -> Problem:
+def without(problem: Problem, tracks: Sequence[Track], held_out: Sequence[Track]) -> Problem:
     """The same question about all runs but some."""
-    kept = [t for t in tracks if all(t is not u for u in unseen)]
+    kept = [t for t in tracks if all(t is not u for u in held_out)]
     return Problem(kept, problem.ambient, problem.uncertainty)
 
 
-def _judged(rest: Problem, chosen: tuple[Fit, Fit], unseen: Track, run: Recording) -> LeftOut:
+def _judged(rest: Problem, chosen: tuple[Fit, Fit], held_out: Track, run: Recording) -> LeftOut:
     """Coefficients of the recalibrated and the patched boat fitted on `rest`, both judged on the run left out."""
     fits = {
         name: converge(rest, fit(rest, f))
         for name, f in zip(("recalibrated", "patched"), chosen, strict=True)
     }
-    stretches = free_runs(rest, fits, [unseen], HORIZON)
+    stretches = free_runs(rest, fits, [held_out], HORIZON)
     heading = corrected(run["psi_rad"], instruments(rest, fits["patched"]))
     reckoned = dead_reckoning(run, run["psi_rad"]), dead_reckoning(run, heading)
-    return LeftOut(unseen.name, chosen[1].suspects, stretches, *reckoned)
+    return LeftOut(held_out.name, chosen[1].suspects, stretches, *reckoned)
 
 
 def print_left_out(folds: Sequence[LeftOut]) -> None:

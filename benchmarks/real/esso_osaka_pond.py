@@ -444,10 +444,10 @@ def diagnosed(recordings: Mapping[str, Opened], boat: Vessel) -> Diagnosis:
     """What is missing, by a stretch of each random and zig-zag run."""
     some = {n: one for n, one in recordings.items() if n.startswith(FITTED)}
     fitted = [one.longest for n, one in some.items() if n not in UNSEEN]
-    unseen = [some[n].whole for n in UNSEEN]
-    boats = {r.path: boat for r in (*fitted, *unseen)}
+    held_out = [some[n].whole for n in UNSEEN]
+    boats = {r.path: boat for r in (*fitted, *held_out)}
     note = f"kept unseen: {', '.join(UNSEEN)}; of the others the longest stretch without a leap, {WINDOW:g} s at most"
-    return pipeline.diagnose_recordings(fitted, unseen, boats, note, horizon=HORIZON)
+    return pipeline.diagnose_recordings(fitted, held_out, boats, note, horizon=HORIZON)
 
 
 def print_named(found: Diagnosis) -> None:

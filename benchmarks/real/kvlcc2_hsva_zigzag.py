@@ -34,11 +34,11 @@ def cells(found: dict[str, dict[str, float]]) -> list[str]:
 
 def print_unseen(found: Diagnosis, goals: Mapping[str, float] = GOALS) -> None:
     """The two runs kept unseen, against the goals."""
-    unseen = errors(found.findings.free_runs)
+    held_out = errors(found.findings.free_runs)
     rows = []
     for family, goal in goals.items():
         what, factor = UNITS[family]
-        nominal, before, after = (unseen[family][m] * factor for m in before_after.MODELS)
+        nominal, before, after = (held_out[family][m] * factor for m in before_after.MODELS)
         rows.append(
             [
                 what,
@@ -93,14 +93,14 @@ def print_left_out(found: Diagnosis, tracks: list[Track]) -> None:
             converge(problem, descend(problem, f, 4, 0.1))
             for f in (found.ranking.recalibrated, found.ranking.best)
         )
-        unseen = errors(
+        held_out = errors(
             free_runs(problem, dict(zip(MODELS, (before, after), strict=True)), [out], HORIZON)
         )
         ahead = [
-            n + (unseen[f]["patched"] < unseen[f]["recalibrated"])
+            n + (held_out[f]["patched"] < held_out[f]["recalibrated"])
             for n, f in zip(ahead, UNITS, strict=True)
         ]
-        rows.append([out.name, *cells(unseen)])
+        rows.append([out.name, *cells(held_out)])
     header = [
         "left out",
         *(c for what, _ in UNITS.values() for c in (f"recalibrated {what}", "patched", "ratio")),

@@ -162,13 +162,13 @@ def opened(runs: dict[str, Path], vessel: str) -> dict[str, Recording]:
 
 
 def diagnosed(
-    runs: dict[str, Recording], unseen: Sequence[str], vessel: str, horizon: float
+    runs: dict[str, Recording], held_out: Sequence[str], vessel: str, horizon: float
 ) -> Diagnosis:
     """What the model leaves out of the recordings that are not kept unseen."""
     boats = {r.path: pipeline.vessel_for(r.path, vessel, ()) for r in runs.values() if r.path}
-    fitted, kept = [r for n, r in runs.items() if n not in unseen], [runs[n] for n in unseen]
+    fitted, kept = [r for n, r in runs.items() if n not in held_out], [runs[n] for n in held_out]
     return pipeline.diagnose_recordings(
-        fitted, kept, boats, f"kept unseen: {', '.join(unseen)}", horizon=horizon
+        fitted, kept, boats, f"kept unseen: {', '.join(held_out)}", horizon=horizon
     )
 
 
@@ -186,14 +186,16 @@ def likely(problem: Problem, found: Fit) -> float:
     )
 
 
-def print_room(found: Diagnosis, unseen: Sequence[Track], judged: Callable[[Fit], Errors]) -> None:
+def print_room(
+    found: Diagnosis, held_out: Sequence[Track], judged: Callable[[Fit], Errors]
+) -> None:
     """How far the recalibrated model is off on unseen runs for its structure, how far for what it was not told.
 
     The same coefficients refitted with the unseen runs among the fitted ones show what the structure can do; those
     drawn from what the fitted runs leave open show what errors they let one expect.
     """
     before = found.ranking.recalibrated
-    everything = found.problem.on([*found.problem.tracks, *unseen])
+    everything = found.problem.on([*found.problem.tracks, *held_out])
     whole = converge(everything, descend(everything, before, 6, 0.1))
     taught = judged(whole)
     rng = np.random.default_rng(0)
@@ -217,15 +219,15 @@ def print_room(found: Diagnosis, unseen: Sequence[Track], judged: Callable[[Fit]
 
 def of_hsva(found: Diagnosis, runs: dict[str, Recording]) -> None:
     """All runs are zig-zags."""
-    unseen = [found.laid(runs[n]) for n in hsva.UNSEEN]
+    held_out = [found.laid(runs[n]) for n in hsva.UNSEEN]
 
     def judged(fit: Fit) -> Errors:
-        off = errors(free_runs(found.problem, {"": fit}, unseen, hsva.HORIZON))
+        off = errors(free_runs(found.problem, {"": fit}, held_out, hsva.HORIZON))
         return {what: off[family][""] * factor for family, (what, factor) in hsva.UNITS.items()}
 
     print_overshoots(found, runs)
     hsva.print_unseen(found, dict.fromkeys(hsva.UNITS, GOAL))
-    print_room(found, unseen, judged)
+    print_room(found, held_out, judged)
 
 
 def of_marin(found: Diagnosis, runs: dict[str, Recording]) -> None:
@@ -253,10 +255,10 @@ def main(tanks: Sequence[str] = ()) -> None:
     for tank in tanks or TANKS:
         if tank not in TANKS:
             raise BadInput(unknown_name("tank", tank, TANKS))
-        name, unseen, horizon, judge = TANKS[tank]
+        name, held_out, horizon, judge = TANKS[tank]
         runs = runs_of(name)
         read = opened(runs, VESSELS[tank])
-        found = diagnosed(read, unseen, VESSELS[tank], horizon)
+        found = diagnosed(read, held_out, VESSELS[tank], horizon)
         print(f"\n{name}, {VESSELS[tank]}")
         report(found, f"{NAME}_{tank}")
         print_verdict(found)

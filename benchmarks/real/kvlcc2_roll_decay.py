@@ -67,10 +67,10 @@ def by_windows(whole: Recording, vessel: Vessel) -> Diagnosis:
     )
 
 
-def by_thirds(whole: Recording, vessel: Vessel, unseen: int = 1) -> Diagnosis:
+def by_thirds(whole: Recording, vessel: Vessel, held_out: int = 1) -> Diagnosis:
     """One third unseen, the middle one unless told."""
     parts = thirds(whole)
-    kept = parts.pop(unseen)
+    kept = parts.pop(held_out)
     note = f"{kept.name} was kept unseen"
     return pipeline.diagnose_recordings(parts, [kept], {whole.path: vessel}, note, horizon=HORIZON)
 
@@ -362,7 +362,7 @@ def main() -> None:
     splits = {
         "windows": by_windows(whole, vessel),
         "middle third": by_thirds(whole, vessel),
-        "last third": by_thirds(whole, vessel, unseen=2),
+        "last third": by_thirds(whole, vessel, held_out=2),
     }
     at_speed = by_thirds(moving, vessel)
     splits["15.5 kn by itself, middle third"] = at_speed

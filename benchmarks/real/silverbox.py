@@ -177,9 +177,9 @@ def part(whole: Recording, begin: int, end: int) -> Recording:
 
 def diagnosed(whole: Recording, boat: Vessel) -> Diagnosis:
     """What the linear oscillator lacks, by stretches of the training data."""
-    fitted, unseen = ([part(whole, *rows) for rows in parts] for parts in (FITTED, UNSEEN))
-    note = f"{', '.join(r.name for r in unseen)} were kept unseen"
-    return pipeline.diagnose_recordings(fitted, unseen, {whole.path: boat}, note)
+    fitted, held_out = ([part(whole, *rows) for rows in parts] for parts in (FITTED, UNSEEN))
+    note = f"{', '.join(r.name for r in held_out)} were kept unseen"
+    return pipeline.diagnose_recordings(fitted, held_out, {whole.path: boat}, note)
 
 
 # ---- the exam
@@ -256,8 +256,8 @@ def input_rows(whole: Path, boat: Vessel, found: Diagnosis) -> list[list[str]]:
         problem = Problem([track(r, old.program) for r in fitted], old.ambient, old.uncertainty)
         _, base = baseline(problem)
         models = {"linear": base, "found": with_effects(problem, base, NAMED)}
-        unseen = part(recording, *UNSEEN[0])
-        off = {name: rms(e) for name, e in missed(found, unseen, models).items()}
+        held_out = part(recording, *UNSEEN[0])
+        off = {name: rms(e) for name, e in missed(found, held_out, models).items()}
         rows.append([words, *(f"{off[m]:.3f}" for m in models), f"{models['found'].evidence:.0f}"])
     return rows
 

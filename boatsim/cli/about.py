@@ -51,7 +51,7 @@ def _class(kind: str, name: str) -> list[str]:
 def _vessel(name: str) -> list[str]:
     """A vessel, of the library or of a user's folder."""
     boat = vessel.load(name)
-    b, free = boat.body, ", ".join(boat.freedoms)
+    b, free = boat.body, ", ".join(boat.dof)
     lines = [
         f"{boat.name}: vessel",
         f"  {boat.about}",

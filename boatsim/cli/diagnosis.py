@@ -191,7 +191,7 @@ def _as_it_was(recording: Recording, boat: Vessel) -> Vessel:
     except BadInput as error:
         remark(f"compared with the vessel alone; its scenario {name} can not be used: {error}")
         return boat
-    if (found.file, found.freedoms) != (boat.file, boat.freedoms):
+    if (found.file, found.dof) != (boat.file, boat.dof):
         remark(
             f"compared with the vessel alone; its scenario {name} is of another one, {found.name}"
         )

@@ -54,9 +54,7 @@ def _show(
         if boat
         else []
     )
-    text = proposal(
-        log, vessel, drives, boat.freedoms if boat else (), boat.columns if boat else None
-    )
+    text = proposal(log, vessel, drives, boat.dof if boat else (), boat.columns if boat else None)
     _say(log.remarks)
     say(listing(log))
     if propose:

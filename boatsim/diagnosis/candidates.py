@@ -161,10 +161,10 @@ def lacking(
     kind: type[Effect], vessel: Vessel, facts: Mapping[str, object], table: Mapping[str, object]
 ) -> str:
     """What a vessel lacks for an entry to act, in words; "" where nothing is lacking."""
-    if missing := [n for n in kind.needs if n not in vessel.freedoms]:
+    if missing := [n for n in kind.needs if n not in vessel.dof]:
         return f"no freedom in {' and '.join(missing)}"
     axes = {p.axis for p in kind.params().values() if p.fit}
-    if "" not in axes and not axes & set(vessel.freedoms):
+    if "" not in axes and not axes & set(vessel.dof):
         return f"no freedom in {' or '.join(sorted(axes))}"
     if fact := next((f for f in kind.facts if f not in facts), ""):
         return f"nobody states {in_words(fact)}"
@@ -248,7 +248,7 @@ def without_ruled_out(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
 def with_stated_errors(vessel: Vessel, facts: Mapping[str, object]) -> Vessel:
     """The vessel with the wandering error of its fixes that facts state: the filter then knows it from the start."""
     known = {**vessel.diagnosis.facts, **facts}
-    if not all(f in known for f in WANDER) or not {"surge", "sway"} <= set(vessel.freedoms):
+    if not all(f in known for f in WANDER) or not {"surge", "sway"} <= set(vessel.dof):
         return vessel
     sd, time = (float(str(known[f])) for f in WANDER)
     error = load_class("effect", "position_wander").from_settings({"position": sd, "time": time})

@@ -97,8 +97,8 @@ def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
     first, second = halves(problem.tracks)
     horizon = min(problem.horizon, *(float(np.ptp(t.times)) for t in (*first, *second)))
     stretches = []
-    for fitted, unseen in ((first, second), (second, first)):
+    for fitted, held_out in ((first, second), (second, first)):
         rest = Problem(fitted, ambient, problem.uncertainty, horizon)
-        stretches += free_runs(rest, {"": fit(rest, begin)}, unseen, horizon)
+        stretches += free_runs(rest, {"": fit(rest, begin)}, held_out, horizon)
     found = [np.maximum([f[""] for f in errors([s]).values()], EXACT) for s in stretches]
     return np.array([np.exp(np.mean(np.log(each))) for each in found])

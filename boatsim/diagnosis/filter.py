@@ -352,7 +352,7 @@ def segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
 
 def axes_of(vessel: Vessel) -> tuple[str, ...]:
     """Names of the freedoms in the filter's order."""
-    return tuple(a for a in AXES if a in vessel.freedoms)
+    return tuple(a for a in AXES if a in vessel.dof)
 
 
 def track(
@@ -369,11 +369,11 @@ def track(
     vessel = program.vessel
     axes = axes_of(vessel)
     where = _called(recording)
-    found = [s for s in signals_of(vessel.freedoms) if s.column in recording.signals]
+    found = [s for s in signals_of(vessel.dof) if s.column in recording.signals]
     needed = ["psi_rad"] if "yaw" in axes else []
     missing = [n for n in needed if n not in recording.signals] or _unfed(recording, vessel)
     if missing or all(s.rate for s in found):
-        column = (missing or [signals_of(vessel.freedoms)[0].column])[0]
+        column = (missing or [signals_of(vessel.dof)[0].column])[0]
         raise BadInput(
             f"{where}: column {column} is missing, without which {vessel.name} can not be followed"
         )

@@ -145,7 +145,7 @@ def diagnose(
     stated = [replace(r.notes, facts={**(facts or {}), **r.notes.facts}) for r, _ in opened]
     opened = [(replace(r, notes=notes), b) for (r, b), notes in zip(opened, stated, strict=True)]
     boats = [boat for _, boat in opened]
-    if len({(b.file, b.freedoms) for b in boats}) > 1:
+    if len({(b.file, b.dof) for b in boats}) > 1:
         raise BadInput(
             f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}"
         )
@@ -157,18 +157,18 @@ def diagnose(
         for f in run_checks.at_the_recording(r, t, b)
     ]
     named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
-    fitted, unseen, note = before_after.split(named[: len(runs)], named[len(runs) :])
+    fitted, held_out, note = before_after.split(named[: len(runs)], named[len(runs) :])
     remarks = tuple(dict.fromkeys(m for r in thin for m in r.remarks))
     vessels_of = {r.path: b for r, b in opened}
     rest = part(report, READ, 1.0)
     return diagnose_recordings(
-        fitted, unseen, vessels_of, note, library, without, remarks, horizon, seen, rest
+        fitted, held_out, vessels_of, note, library, without, remarks, horizon, seen, rest
     )
 
 
 def pose(
     fitted: Sequence[Recording],
-    unseen: Sequence[Recording],
+    held_out: Sequence[Recording],
     boats: Mapping[Path | None, Vessel],
     library: Sequence[str] = (),
     horizon: float | None = None,
@@ -189,11 +189,11 @@ def pose(
     laid = [lay(r) for r in fitted]
     laid += [
         begun(track(r, programs[r.path], stated, noise_beside(boat, fitted, r)), levels)
-        for r in unseen
+        for r in held_out
     ]
     uncertainty = priors.uncertainty(boat)
     check_taken_up(boat, uncertainty, f"{boat.file.parent.name}/{boat.file.name}: diagnosis")
-    for r in (*fitted, *unseen):
+    for r in (*fitted, *held_out):
         check_taken_up(
             boats[r.path],
             r.notes.coefficient_uncertainty,
@@ -212,7 +212,7 @@ def check(
     A file whose table is at fault is not laid on its vessel. Raises BadInput where no vessel is named, or several.
     """
     boats = {path: vessel_for(path, vessel, load) for path in runs}
-    if len({(b.file, b.freedoms) for b in boats.values()}) > 1:
+    if len({(b.file, b.dof) for b in boats.values()}) > 1:
         raise BadInput(
             f"recordings of different vessels: {', '.join(sorted({b.name for b in boats.values()}))}"
         )
@@ -265,7 +265,7 @@ def hint(
 
 def diagnose_recordings(
     fitted: Sequence[Recording],
-    unseen: Sequence[Recording],
+    held_out: Sequence[Recording],
     boats: Mapping[Path | None, Vessel],
     note: str,
     library: Sequence[str] = (),
@@ -280,7 +280,7 @@ def diagnose_recordings(
     `note` says in words what was kept unseen, `seen` is what is wrong with the files. Raises BadInput.
     """
     boat = boats[fitted[0].path]
-    problem, unseen_tracks, lay, there = pose(fitted, unseen, boats, library, horizon)
+    problem, held_out_tracks, lay, there = pose(fitted, held_out, boats, library, horizon)
     candidates = less(there, without)
     report("compiling, or loading what was compiled before")
     _compile(problem)
@@ -291,22 +291,22 @@ def diagnose_recordings(
         ):  # matrices are small: threads cost more, on a busy machine twentyfold
             report("laying the log on the vessel, as it may have been meant", RANKING[0] / 2)
             seen = [*seen, *tried(fitted, lay, problem)]
-            ranking = rank(problem, candidates, unseen_tracks, report=part(report, *RANKING))
+            ranking = rank(problem, candidates, held_out_tracks, report=part(report, *RANKING))
             a_fact = "time_constant_s" in fitted[0].notes.ambient
             report("choosing the correlation time of the water", RANKING[1])
             if not a_fact and (again := timed(problem, ranking.best)) is not problem:
                 report("selecting once more, with that time", RANKING[1])
-                problem, ranking = again, rank(again, candidates, unseen_tracks, ranking.best)
+                problem, ranking = again, rank(again, candidates, held_out_tracks, ranking.best)
             before, ranking = (
                 ranking,
-                _described(problem, ranking, unseen_tracks, part(report, *DESCRIBING)),
+                _described(problem, ranking, held_out_tracks, part(report, *DESCRIBING)),
             )
             report("planning what to record next", DESCRIBING[1])
             plan = next_experiment.next_experiment(
                 problem, *next_experiment.question(replace(before, named=ranking.named))
             )
             report("free runs", SHOWING)
-            findings = _findings(problem, ranking, unseen_tracks, boat, note, plan)
+            findings = _findings(problem, ranking, held_out_tracks, boat, note, plan)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         where = fitted[0].path or fitted[0].name
         raise BadInput(
@@ -367,11 +367,11 @@ def _compile(problem: Problem) -> None:
 
 
 def _described(
-    problem: Problem, ranking: Ranking, unseen: Sequence[Track], report: Report
+    problem: Problem, ranking: Ranking, held_out: Sequence[Track], report: Report
 ) -> Ranking:
     """The same with a law written down for what nothing explains, and without entries that but stood for it."""
     found = (
-        described(problem, ranking.best, ranking.recalibrated, unseen, report)
+        described(problem, ranking.best, ranking.recalibrated, held_out, report)
         if ranking.unknown
         else None
     )
@@ -389,19 +389,19 @@ def _described(
 def _findings(
     problem: Problem,
     ranking: Ranking,
-    unseen: Sequence[Track],
+    held_out: Sequence[Track],
     vessel: Vessel,
     note: str,
     plan: next_experiment.Plan | None,
 ) -> Findings:
     """Locate and show, then the answer."""
-    longest = max(float(np.ptp(t.times)) for t in unseen)
+    longest = max(float(np.ptp(t.times)) for t in held_out)
     horizon = min(problem.horizon, float(f"{longest:.3g}") if longest < problem.horizon else np.inf)
     fits = before_after.fits_of(problem, ranking)
-    everything = before_after.in_time([*problem.tracks, *unseen])
+    everything = before_after.in_time([*problem.tracks, *held_out])
     forces = locate.missing_force(problem, ranking.recalibrated, everything)
     left = locate.force_left(problem, ranking.best, everything)
-    stretches = free_runs(problem, fits, unseen, horizon)
+    stretches = free_runs(problem, fits, held_out, horizon)
     parts = before_after.by_part(problem, fits, everything, horizon) if ranking.adds else []
     table = before_after.table_of(parts, problem.tracks, horizon)
     axes = axes_of(vessel)
@@ -426,14 +426,14 @@ def _findings(
         f"{f.effect}.{f.name}": (float(x), float(s))
         for f, x, s in zip(recalibrated.free, recalibrated.theta, sd, strict=True)
     }
-    held_out = tuple(t.name for t in unseen)
+    held_out_names = tuple(t.name for t in held_out)
     answer = compose(
         problem,
         ranking,
         forces,
         left,
         stretches,
-        held_out,
+        held_out_names,
         horizon,
         next_experiment.entry(plan, NEXT),
     )
@@ -442,7 +442,7 @@ def _findings(
         answer,
         vessel.name,
         tuple(t.name for t in problem.tracks),
-        held_out,
+        held_out_names,
         note,
         missing,
         tuple(stretches),

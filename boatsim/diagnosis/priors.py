@@ -50,7 +50,7 @@ def tolerated_force(vessel: Vessel) -> dict[str, float]:
         "pitch": PITCH_ARM * vessel.length,
         "yaw": YAW_ARM * vessel.length,
     }
-    by_rule = {axis: force * arms.get(axis, 1.0) for axis in vessel.freedoms}
+    by_rule = {axis: force * arms.get(axis, 1.0) for axis in vessel.dof}
     return by_rule | {str(axis): rms for axis, rms in vessel.diagnosis.ambient.items()}
 
 
@@ -78,10 +78,7 @@ def rate(vessel: Vessel, lasts: float = 0.0) -> float:
 def uncertainty(vessel: Vessel) -> dict[str, float]:
     """Relative sd of the vessel's own coefficients, by kind: as stated, else 5 % of those that it has."""
     params = [
-        p
-        for e in vessel.effects
-        for p in type(e).params().values()
-        if p.axis in ("", *vessel.freedoms)
+        p for e in vessel.effects for p in type(e).params().values() if p.axis in ("", *vessel.dof)
     ]
     there = {p.calibrates for p in params} - {""}
     stated: Mapping[str, float] = {
@@ -95,7 +92,7 @@ def sensed_noise(vessel: Vessel, recordings: Sequence[Recording], family: str) -
 
     Differences of high order leave little of the motion; that of the order which leaves least is the noise.
     """
-    there = [s for s in STATE if s.noise == family and s.axis in vessel.freedoms]
+    there = [s for s in STATE if s.noise == family and s.axis in vessel.dof]
     signals = [r.signals[s.column] for r in recordings for s in there if s.column in r.signals]
     signals = [y[np.isfinite(y)] for y in signals]
     found = []

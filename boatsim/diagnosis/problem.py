@@ -103,10 +103,7 @@ def scale_of(unit: str, vessel: Vessel) -> float:
 def check_taken_up(vessel: Vessel, stated: Mapping[str, float], where: str) -> None:
     """Every stated uncertainty is one of coefficients that the vessel has. Raises BadInput."""
     params = [
-        p
-        for e in vessel.effects
-        for p in type(e).params().values()
-        if p.axis in ("", *vessel.freedoms)
+        p for e in vessel.effects for p in type(e).params().values() if p.axis in ("", *vessel.dof)
     ]
     kinds = sorted({p.calibrates for p in params} - {""})
     for kind, sd in stated.items():
@@ -158,7 +155,7 @@ class Problem:
         effects = {e.name: e for e in self.program.suspects}
         for effect in (effects[n] for n in suspects):
             for name, about in type(effect).params().items():
-                axis_is_free = not about.axis or about.axis in self.program.vessel.freedoms
+                axis_is_free = not about.axis or about.axis in self.program.vessel.dof
                 if (
                     about.fit
                     and axis_is_free
@@ -278,7 +275,7 @@ class Problem:
                 sd = self.uncertainty.get(about.calibrates, 0.0)
                 at = self.program.index(effect.name, name)
                 used = self.tracks[0].values[at] != 0.0 and (
-                    not about.axis or about.axis in vessel.freedoms
+                    not about.axis or about.axis in vessel.dof
                 )
                 if about.calibrates and sd > 0 and used:
                     shared[type(effect).idea(), name, sd].append((effect.name, at))

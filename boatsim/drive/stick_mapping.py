@@ -116,7 +116,7 @@ def _of_motion(
     found = []
     for key in goals:
         axis = axes.get(follower(key) or "")
-        if axis is None or axis not in vessel.freedoms:
+        if axis is None or axis not in vessel.dof:
             continue
         full = stated[key] if key in stated else _full(replace(vessel, manoeuvring=table))[axis]
         forward_only = axis == "surge" and not table.astern and key not in stated

@@ -59,12 +59,12 @@ class Scale:
 
 def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
     """Scale of a vessel; `full_ahead` (C,) are its commands. Raises BadInput for one that does not get ahead."""
-    if not {"surge", "sway", "yaw"} <= set(vessel.freedoms):
+    if not {"surge", "sway", "yaw"} <= set(vessel.dof):
         raise BadInput(f"{vessel.name} is not free in surge, sway and yaw, as a task must have it")
     row = ROW * sqrt(vessel.length / GRAVITY)
     place = columns(vessel)
     rows = Twin(vessel, row / 10.0).rollout(
-        [0.0] * (2 * len(vessel.freedoms)), np.tile(full_ahead, (LONGEST, 1)), row
+        [0.0] * (2 * len(vessel.dof)), np.tile(full_ahead, (LONGEST, 1)), row
     )[:, place]
     gone = np.flatnonzero(np.hypot(rows[:, 0], rows[:, 1]) >= vessel.length)
     if not len(gone):
@@ -74,6 +74,6 @@ def scale_of(vessel: Vessel, full_ahead: Array) -> Scale:
 
 def columns(vessel: Vessel) -> list[int]:
     """Where x, y, psi, u, v, r lie in a state of the vessel."""
-    free = [axis for axis in AXES if axis in vessel.freedoms]
+    free = [axis for axis in AXES if axis in vessel.dof]
     plane = [free.index(axis) for axis in ("surge", "sway", "yaw")]
     return [*plane, *(len(free) + i for i in plane)]

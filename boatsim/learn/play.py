@@ -107,7 +107,7 @@ class Play:
         lots = episode_random.shares(seeds, size + type(task).shares)
         which = self.variation.begin(self.world, lots[:, :size], boats)
         starts, goals = task.begin(lots[:, size:], self.scale)
-        states = np.zeros((len(boats), 2 * len(self.vessel.freedoms)))
+        states = np.zeros((len(boats), 2 * len(self.vessel.dof)))
         states[:, self._columns] = starts
         self.world.reset(states, None, boats)
         hulls = self._hulls_of.at(which)

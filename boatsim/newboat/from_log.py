@@ -70,21 +70,21 @@ class Fitted:
 
 
 def fitted(
-    vessel_file: Path, logs: Sequence[Path], unseen: Sequence[Path] = (), report: Report = silent
+    vessel_file: Path, logs: Sequence[Path], held_out: Sequence[Path] = (), report: Report = silent
 ) -> Fitted:
     """The vessel of a file with its coefficients fitted to logs.
 
     Judged on the last third of each, or on the logs `unseen`, and then the others are fitted whole and what belongs to
     their day is left out. Raises BadInput.
     """
-    report(f"reading {len(logs) + len(unseen)} logs")
-    opened = [open_recording(path, str(vessel_file), ()) for path in (*logs, *unseen)]
+    report(f"reading {len(logs) + len(held_out)} logs")
+    opened = [open_recording(path, str(vessel_file), ()) for path in (*logs, *held_out)]
     boat = opened[0][1]
     lasts = lasting([r for r, _ in opened])
     whole = [thinned(r, boat, lasts) for r, _ in opened]
     parts = [_parted(r) for r in whole[: len(logs)]]
-    first = whole[: len(logs)] if unseen else [a for a, _ in parts]
-    last = whole[len(logs) :] if unseen else [b for _, b in parts]
+    first = whole[: len(logs)] if held_out else [a for a, _ in parts]
+    last = whole[len(logs) :] if held_out else [b for _, b in parts]
     report("compiling, or loading what was compiled before", 0.05)
     problem, judge = _problems(boat, first, last)
     try:
@@ -93,7 +93,7 @@ def fitted(
             nominal, best = baseline(problem)
             best = _with_more(problem, best, part(report, 0.3, 0.9))
             report("judging on what was not fitted", 0.9)
-            before, after = _errors(judge, nominal, _without(best, OF_DAY) if unseen else best)
+            before, after = _errors(judge, nominal, _without(best, OF_DAY) if held_out else best)
     except (np.linalg.LinAlgError, FloatingPointError) as error:
         raise BadInput(
             f"{logs[0]}: {boat.name} can not follow this recording ({error}); are its units right?"

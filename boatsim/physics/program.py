@@ -117,9 +117,7 @@ class Program:
         """The compiled program, from the cache if the same one was composed before."""
         text = {
             "laws.py": self.composition.source_text(),
-            "motion.py": written(
-                self.vessel.freedoms, centred=self.vessel.body.centre == (0.0, 0.0)
-            ),
+            "motion.py": written(self.vessel.dof, centred=self.vessel.body.centre == (0.0, 0.0)),
         }
         return cache.module(text, {type(e) for e in self.effects})
 

@@ -53,9 +53,9 @@ RATES = tuple(s.column for s in STATE if s.rate)
 NOISE = {s.noise: s.noise_sd for s in STATE}
 
 
-def signals_of(freedoms: tuple[str, ...]) -> tuple[Signal, ...]:
+def signals_of(dof: tuple[str, ...]) -> tuple[Signal, ...]:
     """Coordinates, then rates, of a vessel with these freedoms, in the order of `AXES`."""
-    return tuple(s for s in STATE if s.axis in freedoms)
+    return tuple(s for s in STATE if s.axis in dof)
 
 
 def follower(goal: str) -> str | None:

@@ -174,7 +174,7 @@ class Vessel:
     about: str
     source: str
     hull: str  # file name of the MJCF beside vessel.toml
-    freedoms: tuple[str, ...]
+    dof: tuple[str, ...]
     length: float  # [m]
     beam: float  # [m]
     draught: float  # [m]
@@ -429,9 +429,9 @@ def load(
     )
     whole = with_effects(with_effects(vessel, file.effect, folder, label), extra, beside or folder)
     check_bindings(whole, label)
-    if "pitch" in whole.freedoms and whole.body.pitch_inertia is None:
+    if "pitch" in whole.dof and whole.body.pitch_inertia is None:
         raise BadInput(f"{label}: body.pitch_inertia is missing; {called} pitches")
-    if whole.body.centre[1] and "roll" in whole.freedoms and not tilts(frozenset(whole.freedoms)):
+    if whole.body.centre[1] and "roll" in whole.dof and not tilts(frozenset(whole.dof)):
         raise BadInput(
             f"{label}: body.centre = {whole.body.centre}; allowed is a height of 0 where pitch is held"
         )

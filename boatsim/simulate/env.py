@@ -186,9 +186,7 @@ class BoatTask(control.Task):
     def get_observation(self, physics: BoatPhysics) -> OrderedDict[str, np.float64]:
         """True pose in start axes and velocities in body axes, actual actuators, goal; units are in the names."""
         state, actual, goal = physics.engine.state, physics.engine.actuators, self._goal(physics)
-        values = {
-            s.column: getattr(state, s.symbol) for s in signals_of(self.scenario.vessel.freedoms)
-        }
+        values = {s.column: getattr(state, s.symbol) for s in signals_of(self.scenario.vessel.dof)}
         values |= {f"actual_{name}": value for name, value in actual.items()}
         values |= {f"goal_{name}": value for name, value in zip(STICK, goal, strict=True)}
         return OrderedDict((name, np.float64(value)) for name, value in values.items())
@@ -218,7 +216,7 @@ def load(
     """
     one = scenarios.load(scenario) if isinstance(scenario, str) else scenario
     file, period = one.file, one.controller.period
-    if not {"surge", "sway", "yaw"} <= set(one.vessel.freedoms):
+    if not {"surge", "sway", "yaw"} <= set(one.vessel.dof):
         raise BadInput(
             f"{one.name}: {one.vessel.name} is not free in surge, sway and yaw, as an environment must be"
         )

@@ -95,7 +95,7 @@ class Fleet:
         """Back to the scenario's start, or to states (2 NQ,) or (n, 2 NQ), all noise from its beginning."""
         start, symbols = (
             self.scenario.file.start,
-            [s.symbol for s in signals_of(self.batch.vessels[0].freedoms)],
+            [s.symbol for s in signals_of(self.batch.vessels[0].dof)],
         )
         moving = start.motion()
         first = self._each[0].initial_commands() if isinstance(self._each[0], Controller) else {}
@@ -129,7 +129,7 @@ class Fleet:
                 self.batch.states,
                 self.batch._commands,
             )
-        named = tuple(s.column for s in signals_of(boat.freedoms))
+        named = tuple(s.column for s in signals_of(boat.dof))
         return Voyages(t, named, states, boat.inputs, commands)
 
     def _sail(self, periods: int) -> None:

@@ -75,7 +75,7 @@ def scenario_of(
     }
     if manoeuvre == "roll_decay":
         return scenario.from_table(raw | _released(vessel, usual), Place(Path(f"{manoeuvre}.toml")))
-    if "yaw" not in vessel.freedoms:
+    if "yaw" not in vessel.dof:
         raise BadInput(
             f"{vessel.name} is not free to turn; of the manoeuvres it can only do roll_decay"
         )
@@ -213,7 +213,7 @@ def _usual_speed(vessel: Vessel) -> float:
 
 
 def _half(vessel: Vessel) -> int:
-    return len(vessel.freedoms)
+    return len(vessel.dof)
 
 
 def _state(vessel: Vessel, speed: float, commands: Mapping[str, float], lengths: float) -> Array:
@@ -283,10 +283,8 @@ def _under_way(
 
 def _released(vessel: Vessel, angle: float) -> dict[str, Value]:
     """Tables of a roll decay from a heel [deg]."""
-    if "roll" not in vessel.freedoms:
-        raise BadInput(
-            f"{vessel.name} does not roll; its freedoms are {', '.join(vessel.freedoms)}"
-        )
+    if "roll" not in vessel.dof:
+        raise BadInput(f"{vessel.name} does not roll; its freedoms are {', '.join(vessel.dof)}")
     period = _roll_period(vessel)
     step = _rounded(period / 200)
     return {
@@ -305,7 +303,7 @@ def _roll_period(vessel: Vessel) -> float:
     )  # [s] of a ship of usual stability, GM a twentieth of the beam
     twin = Twin(vessel, guess / 400)
     start = [0.0] * (2 * _half(vessel))
-    roll = [signal.symbol for signal in signals_of(vessel.freedoms)].index("phi")
+    roll = [signal.symbol for signal in signals_of(vessel.dof)].index("phi")
     start[roll] = radians(1.0)
     rows = np.tile(twin.program.command_array({}), (8000, 1))
     phi = twin.rollout(start, rows, guess / 400)[:, roll]

@@ -84,8 +84,8 @@ class Runner:
         self._marks = [f"camera_{mark}_{axis}_m" for mark in scenario.camera.marks for axis in "xy"]
         seeds = np.random.SeedSequence(self.seed).spawn(2 + len(scenario.aboard))
         self._imu, self._shaking, *self._noise = (np.random.default_rng(s) for s in seeds)
-        self._signals = signals_of(vessel.freedoms)
-        self._axes = [axis in vessel.freedoms for axis in AXES]
+        self._signals = signals_of(vessel.dof)
+        self._axes = [axis in vessel.dof for axis in AXES]
         self._motion_of = attrgetter(*(signal.symbol for signal in self._signals))
         self._read = {
             name: column
@@ -232,7 +232,7 @@ class Runner:
 
     def _components(self) -> list[str]:
         """Force components of the vessel's freedoms."""
-        return [COMPONENTS[axis] for axis in AXES if axis in self.scenario.vessel.freedoms]
+        return [COMPONENTS[axis] for axis in AXES if axis in self.scenario.vessel.dof]
 
     def _adaptive(self) -> list[str]:
         return [n for n in self._estimates if not n.startswith("reference_")]

@@ -268,7 +268,7 @@ def origin_height(vessel: Vessel) -> float:
 def add_joints(hull: mujoco.MjsBody, vessel: Vessel) -> None:
     """One joint for each freedom; the axes of roll and pitch run through the origin of motion."""
     for freedom, (name, kind, axis) in JOINTS.items():
-        if freedom in vessel.freedoms:
+        if freedom in vessel.dof:
             pos = (0, 0, origin_height(vessel)) if freedom in ("roll", "pitch") else (0, 0, 0)
             hull.add_joint(name=name, type=kind, axis=axis, pos=pos)
 

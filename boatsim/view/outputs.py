@@ -92,7 +92,7 @@ def run_into(
                     so_far.look()
 
             if (
-                "yaw" in scenario.vessel.freedoms
+                "yaw" in scenario.vessel.dof
             ):  # the camera looks from above: it does not see a hull roll
                 runner.watch = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv")).add
             with steering.beside(listen) if steering else nullcontext(listen) as runner.listen:

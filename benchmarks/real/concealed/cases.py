@@ -35,7 +35,7 @@ class Laid:
     """Recordings of a set, altered, thinned and split, with their vessel."""
 
     fitted: Sequence[Recording]
-    unseen: Sequence[Recording]
+    held_out: Sequence[Recording]
     vessel: Vessel
 
 
@@ -58,7 +58,7 @@ class Study:
 def planar(
     name: str,
     fitted: Mapping[str, float],
-    unseen: Mapping[str, float],
+    held_out: Mapping[str, float],
     vessel: str | None,
     hertz: float = 0.0,
 ) -> Callable[[str | None, Alteration], Laid]:
@@ -66,7 +66,7 @@ def planar(
 
     def laid(patched: str | None, alter: Alteration) -> Laid:
         runs, boats = [], []
-        for run, seconds in (*fitted.items(), *unseen.items()):
+        for run, seconds in (*fitted.items(), *held_out.items()):
             path = RECORDINGS / name / "runs" / f"{run}.csv"
             whole, boat = pipeline.open_recording(path, patched or vessel, ())
             altered = alter(whole.between(whole.t[0], whole.t[0] + seconds))
@@ -98,11 +98,11 @@ def _release(
     patched: str | None,
     alter: Alteration,
     cut: Callable[[Recording], list[Recording]],
-    unseen: slice,
+    held_out: slice,
 ) -> Laid:
     whole, boat = pipeline.open_recording(kvlcc2_roll_decay.DATA / f"{name}.csv", patched, ())
     parts = cut(replace(alter(whole).thinned(priors.rate(boat)), name=name))
-    apart = parts[unseen]
+    apart = parts[held_out]
     return Laid([p for p in parts if all(p is not q for q in apart)], apart, boat)
 
 

@@ -12,9 +12,7 @@ PLACE = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw"}
 
 def look(recording: Recording, vessel: Vessel) -> list[Finding]:
     """What is missing and can be made of a column that is not ours; nothing where two might be it."""
-    missing = [
-        n for n, axis in PLACE.items() if axis in vessel.freedoms and n not in recording.signals
-    ]
+    missing = [n for n, axis in PLACE.items() if axis in vessel.dof and n not in recording.signals]
     if {"u_mps", "v_mps"} & recording.signals.keys():
         missing = [n for n in missing if n == "psi_rad"]
     orders = [n for n in vessel.actuators if n not in recording.signals]

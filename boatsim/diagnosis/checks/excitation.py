@@ -40,7 +40,7 @@ def _untold(recording: Recording, vessel: Vessel) -> Iterator[tuple[str, str, st
             f"{doing} never move",
             f"what {doing} do, and how late, can not be told; move them",
         )
-    if "psi_rad" in recording.signals and "yaw" in vessel.freedoms:
+    if "psi_rad" in recording.signals and "yaw" in vessel.dof:
         passed = float(np.nanmax(recording["psi_rad"]) - np.nanmin(recording["psi_rad"]))
         if passed < HEADINGS:
             evidence = f"the heading stays within {np.degrees(passed):.0f} deg"

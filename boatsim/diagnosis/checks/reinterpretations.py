@@ -53,7 +53,7 @@ def meanings(recordings: Sequence[Recording], vessel: Vessel) -> list[Meaning]:
 
 
 def _axes(recordings: Sequence[Recording], vessel: Vessel) -> Iterator[Meaning]:
-    if not {"surge", "sway", "yaw"} <= set(vessel.freedoms):
+    if not {"surge", "sway", "yaw"} <= set(vessel.dof):
         return
     if any(n not in r.signals for r in recordings for n in ("x_m", "y_m", "psi_rad")):
         return
@@ -81,7 +81,7 @@ def turned_by(angle: float) -> Meaning:
 
 def points_aside(recordings: Sequence[Recording], vessel: Vessel) -> bool:
     """Whether boats go all along where their bows do not point, or where these would point if counted the other way."""
-    if not {"surge", "sway", "yaw"} <= set(vessel.freedoms):
+    if not {"surge", "sway", "yaw"} <= set(vessel.dof):
         return False
     if any(n not in r.signals for r in recordings for n in ("x_m", "y_m", "psi_rad")):
         return False

@@ -151,7 +151,7 @@ def _ship(vessel: Vessel, in_use: dict[str, float]) -> tuple[Manoeuvre, ...]:
             (t, 1, 1, a, a) for t, _, _, a, _ in _random(words, 4.0, 12.0, LONG_SHIP)
         )
         found.append(_from_script(vessel, words, script, in_use))
-    for degrees in ZIGZAGS if "yaw" in vessel.freedoms else ():
+    for degrees in ZIGZAGS if "yaw" in vessel.dof else ():
         angle = radians(degrees)
         both = tuple(
             {

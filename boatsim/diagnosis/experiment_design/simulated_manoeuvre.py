@@ -55,7 +55,7 @@ def laid(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Course | None:
 def walls(problem: Problem) -> Array | None:
     """Where walls stand, plus and minus (x, y) [m], if the library that is tried knows of any."""
     program = problem.program
-    if "surge" not in program.vessel.freedoms or "walls_m" not in problem.tracks[0].facts:
+    if "surge" not in program.vessel.dof or "walls_m" not in problem.tracks[0].facts:
         return None
     x_low, x_high, y_low, y_high = problem.tracks[0].facts["walls_m"]
     return np.array([min(-x_low, x_high), min(-y_low, y_high)])

@@ -50,7 +50,7 @@ def full_thrust(track: Track) -> float:
     """Surge force [N] of the vessel as written at rest, every drive at its limit and straight ahead, over neutral."""
     program, vessel = track.program, track.program.vessel
     drives = [n for n in commanded(vessel) if n not in vessel.angles]
-    if "surge" not in vessel.freedoms or not drives:
+    if "surge" not in vessel.dof or not drives:
         return 0.0
     neutral = {n: c.neutral for n, c in vessel.commands.items()}
     found = []

@@ -90,7 +90,7 @@ def _selected(
 
 def _rhythm(problem: Problem, found: Fit, tests: int) -> list[Region]:
     """Whether what the filter did not expect has a period that neither the hull nor its commands have."""
-    if "roll" in problem.program.vessel.freedoms:
+    if "roll" in problem.program.vessel.dof:
         # a hull that rolls has a period of its own, and so has whatever depends on its roll
         return []
     found_in = rhythm([(t.times, _unexpected(problem, found, t)) for t in problem.tracks])

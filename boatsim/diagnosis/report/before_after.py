@@ -117,13 +117,13 @@ def table_of(
 def remarks(
     parts: Sequence[tuple[Track, str, dict[str, float]]],
     fitted: Sequence[Track],
-    unseen: Mapping[str, Mapping[str, float]],
+    held_out: Mapping[str, Mapping[str, float]],
     ranking: Ranking,
 ) -> list[str]:
     """What the data can not tell: parts without the effect, no gain on unseen data, force that stays unexplained."""
     out = []
     if ranking.adds:
-        for family, found in unseen.items():
+        for family, found in held_out.items():
             if found["patched"] > found["recalibrated"]:
                 what, unit, scale = _readable(family)
                 out.append(

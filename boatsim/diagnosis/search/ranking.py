@@ -73,7 +73,7 @@ class Ranking:
 def rank(
     problem: Problem,
     candidates: tuple[str, ...],
-    unseen: Sequence[Track] = (),
+    held_out: Sequence[Track] = (),
     begin: Fit | None = None,
     report: Report = silent,
 ) -> Ranking:
@@ -87,18 +87,18 @@ def rank(
     nominal, recalibrated = baseline(problem)
     sets = Sets(problem, candidates, recalibrated, report)
     best, named = settled(sets, selected(sets, begun(sets, begin) if begin else recalibrated))
-    while (stood := stood_for(sets, best, unseen)) is not best:
+    while (stood := stood_for(sets, best, held_out)) is not best:
         best, named = settled(sets, stood)
     report("judging what is left over", JUDGING)
-    best, named = _judged(sets, best, named, unseen)
+    best, named = _judged(sets, best, named, held_out)
     left, goes = left_over(problem, best), structure(problem, best)
     while (waves := waves_of(sets, best)) and _stands_for_a_law(sets, best, waves, goes):
         sets.banned.add(waves)
         best, named = _judged(
-            sets, *settled(sets, selected(sets, sets.without(best, waves))), unseen
+            sets, *settled(sets, selected(sets, sets.without(best, waves))), held_out
         )
         left, goes = left_over(problem, best), structure(problem, best)
-    named = told(sets, best, named, unseen)
+    named = told(sets, best, named, held_out)
     first = {n: f.evidence - sets.base.evidence for n, f in sets.looked(sets.base).items()}
     last = sets.looked(best)
     for name in sets.banned & last.keys():  # what was found to mislead is no hint
@@ -110,23 +110,23 @@ def rank(
 
 
 def _judged(
-    sets: Sets, best: Fit, named: tuple[Named, ...], unseen: Sequence[Track]
+    sets: Sets, best: Fit, named: tuple[Named, ...], held_out: Sequence[Track]
 ) -> tuple[Fit, tuple[Named, ...]]:
     """The set without what physics or unseen recordings speak against, laws in place of what but sways like them."""
-    while named and (worse := braking(sets, best) or misled(sets, best, unseen)):
+    while named and (worse := braking(sets, best) or misled(sets, best, held_out)):
         sets.banned.add(worse)
         best, named = settled(sets, selected(sets, sets.without(best, worse)))
-    while named and (worse := refuted(sets, best, named, unseen)):
+    while named and (worse := refuted(sets, best, named, held_out)):
         sets.banned.add(worse)
         without = settled(sets, selected(sets, sets.without(best, worse)))
         if missed(
-            sets, best, without[0], unseen
+            sets, best, without[0], held_out
         ):  # what came in its place carries over less than it did
             sets.banned.remove(worse)
             sets.vouched.add(worse)
             continue
-        return _judged(sets, *without, unseen)
-    while law := lawful(sets, best, named, unseen):
+        return _judged(sets, *without, held_out)
+    while law := lawful(sets, best, named, held_out):
         best, named = settled(sets, selected(sets, law))
     return best, named
 

@@ -23,32 +23,32 @@ SURE_BETWEEN = 1.65
 DWARFED = 0.9
 
 
-def misled(sets: Sets, best: Fit, unseen: Sequence[Track]) -> str:
+def misled(sets: Sets, best: Fit, held_out: Sequence[Track]) -> str:
     """The effect without which free runs over unseen recordings are best, if with all they are worse than with none."""
-    problem, horizon = sets.problem, _horizon(sets, unseen)
+    problem, horizon = sets.problem, _horizon(sets, held_out)
     fits = {"none": sets.base, "all": best} | {n: sets.without(best, n) for n in best.suspects}
-    first = free_runs(problem, {n: fits[n] for n in ("none", "all")}, unseen, horizon)
+    first = free_runs(problem, {n: fits[n] for n in ("none", "all")}, held_out, horizon)
     none = generalization.squares(first, "none")
     sure = SURE_BETWEEN if sets.random & set(best.suspects) else SURE
     if not none or not generalization.grew(none, generalization.squares(first, "all"), sure):
         return ""
-    rest = free_runs(problem, {n: fits[n] for n in best.suspects}, unseen, horizon)
+    rest = free_runs(problem, {n: fits[n] for n in best.suspects}, held_out, horizon)
     return min(
         best.suspects, key=lambda n: generalization.misfit(generalization.squares(rest, n), none)
     )
 
 
-def refuted(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> str:
+def refuted(sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[Track]) -> str:
     """The effect by which unseen recordings become unlikelier than without it, if clearly so: it does not carry over.
 
     Or by which all recordings together gain less, its look-alikes counted in, than its price and what the laws of the
     others may be off by. That asks of each row what the rows before foretell. Free runs over them must not ask for it
     all the same, as they may where unseen recordings go beyond the fitted ones.
     """
-    if not unseen:
+    if not held_out:
         return ""
-    whole, rest = foretold(sets, best, unseen), {n: sets.without(best, n) for n in best.suspects}
-    gains = {n: whole - foretold(sets, f, unseen) for n, f in rest.items()}
+    whole, rest = foretold(sets, best, held_out), {n: sets.without(best, n) for n in best.suspects}
+    gains = {n: whole - foretold(sets, f, held_out) for n, f in rest.items()}
     unlikelier = {n for n in gains if gains[n] < -told_from(sets.explained(best))}
     others = {n.name: SLIGHT * max(sets.explained(best) - n.gain, 0.0) for n in named}
     little = {n.name for n in named if n.shared + gains[n.name] < sets.price + others[n.name]}
@@ -56,7 +56,7 @@ def refuted(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Trac
     if not unlikelier | little:
         return ""
     fits = {"": best, **{n: rest[n] for n in rest if n in unlikelier | little}}
-    stretches = free_runs(sets.problem, fits, unseen, _horizon(sets, unseen))
+    stretches = free_runs(sets.problem, fits, held_out, _horizon(sets, held_out))
     as_named = generalization.squares(stretches, "")
     if not as_named:
         return min(unlikelier, key=lambda n: gains[n], default="")
@@ -68,10 +68,10 @@ def refuted(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Trac
     return min(needless, key=lambda n: gains[n], default="")
 
 
-def missed(sets: Sets, before: Fit, after: Fit, unseen: Sequence[Track]) -> bool:
+def missed(sets: Sets, before: Fit, after: Fit, held_out: Sequence[Track]) -> bool:
     """Whether free runs over unseen recordings get worse by what became of a set without one of its members."""
     stretches = free_runs(
-        sets.problem, {"before": before, "after": after}, unseen, _horizon(sets, unseen)
+        sets.problem, {"before": before, "after": after}, held_out, _horizon(sets, held_out)
     )
     was, now = (
         generalization.squares(stretches, "before"),
@@ -80,9 +80,9 @@ def missed(sets: Sets, before: Fit, after: Fit, unseen: Sequence[Track]) -> bool
     return bool(was) and not generalization.misfit(now, was) < generalization.WORSE**2
 
 
-def foretold(sets: Sets, found: Fit, unseen: Sequence[Track]) -> float:
+def foretold(sets: Sets, found: Fit, held_out: Sequence[Track]) -> float:
     """Log likelihood [nats] of unseen recordings by a fit to others, the water as rough as it is there."""
-    problem = sets.problem.on(unseen)
+    problem = sets.problem.on(held_out)
     there = fit_force(problem, found)
     on = problem.program.switches(there.suspects)
     return problem.likelihood(there.free, there.theta, on, there.levels) + force_prior(
@@ -91,25 +91,25 @@ def foretold(sets: Sets, found: Fit, unseen: Sequence[Track]) -> float:
 
 
 def with_unseen(
-    sets: Sets, best: Fit, rivals: Mapping[str, Fit], unseen: Sequence[Track]
+    sets: Sets, best: Fit, rivals: Mapping[str, Fit], held_out: Sequence[Track]
 ) -> dict[str, Fit]:
     """Rivals of a member of a set with the evidence that they have beside it on all recordings, unseen ones too."""
-    own = foretold(sets, best, unseen)
+    own = foretold(sets, best, held_out)
     if not np.isfinite(own):  # the boat runs away
         return dict(rivals)
     return {
-        n: replace(f, evidence=f.evidence + foretold(sets, f, unseen) - own)
+        n: replace(f, evidence=f.evidence + foretold(sets, f, held_out) - own)
         for n, f in rivals.items()
     }
 
 
-def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]) -> Fit | None:
+def lawful(sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[Track]) -> Fit | None:
     """A set with a law in the place of a random force, or of a law much like it, if unseen recordings ask for it.
 
     Free runs over them must get clearly better by it, or all recordings together be clearly likelier. What makes way,
     such as a random force, which foretells nothing and fits whatever sways, is then found to mislead.
     """
-    horizon = _horizon(sets, unseen, generalization.FEWEST)
+    horizon = _horizon(sets, held_out, generalization.FEWEST)
     for one in named:
         least = best.evidence - ALIKE
         if one.name in sets.random:
@@ -117,11 +117,11 @@ def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track
         laws = {n: f for n, f in one.rivals.items() if n not in sets.random and f.evidence > least}
         if not laws:
             continue
-        stretches = free_runs(sets.problem, {"": best, **laws}, unseen, horizon)
+        stretches = free_runs(sets.problem, {"": best, **laws}, held_out, horizon)
         as_named = generalization.squares(stretches, "")
         ahead = {
             n
-            for n, f in with_unseen(sets, best, laws, unseen).items()
+            for n, f in with_unseen(sets, best, laws, held_out).items()
             if f.evidence > best.evidence + ALIKE
         }
         ahead |= {
@@ -137,15 +137,15 @@ def lawful(sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track
 
 
 def told(
-    sets: Sets, best: Fit, named: Sequence[Named], unseen: Sequence[Track]
+    sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[Track]
 ) -> tuple[Named, ...]:
     """What is named, told from its rivals by all recordings: by evidence, and by unseen free runs that get worse."""
-    horizon, found = _horizon(sets, unseen, generalization.FEWEST), []
+    horizon, found = _horizon(sets, held_out, generalization.FEWEST), []
     for one in named:
-        rivals = with_unseen(sets, best, one.rivals, unseen)
+        rivals = with_unseen(sets, best, one.rivals, held_out)
         least = best.evidence - ALIKE
         alike = {n: f for n, f in rivals.items() if max(f.evidence, one.rivals[n].evidence) > least}
-        stretches = free_runs(sets.problem, {"": best, **alike}, unseen, horizon) if alike else []
+        stretches = free_runs(sets.problem, {"": best, **alike}, held_out, horizon) if alike else []
         as_named = generalization.squares(stretches, "")
         worse = {
             n
@@ -157,7 +157,7 @@ def told(
     return tuple(found)
 
 
-def stood_for(sets: Sets, best: Fit, unseen: Sequence[Track]) -> Fit:
+def stood_for(sets: Sets, best: Fit, held_out: Sequence[Track]) -> Fit:
     """A set without those members, found to mislead, that may but stand for a part of what nothing explains.
 
     Much is left over, they take next to nothing of that force away, and unseen recordings do not ask for them either:
@@ -172,7 +172,7 @@ def stood_for(sets: Sets, best: Fit, unseen: Sequence[Track]) -> Fit:
         if little:
             fits = {n: rest[n] for n in little} | ({} if whole else {"": best})
             stretches = free_runs(
-                sets.problem, fits, unseen, _horizon(sets, unseen, generalization.FEWEST)
+                sets.problem, fits, held_out, _horizon(sets, held_out, generalization.FEWEST)
             )
             whole = whole or generalization.squares(stretches, "")
             little = [
@@ -188,7 +188,7 @@ def stood_for(sets: Sets, best: Fit, unseen: Sequence[Track]) -> Fit:
     return best
 
 
-def _horizon(sets: Sets, unseen: Sequence[Track], parts: int = 1) -> float:
+def _horizon(sets: Sets, held_out: Sequence[Track], parts: int = 1) -> float:
     """Length [s] of free runs: the usual one, unless the longest recording holds not so many of them."""
-    longest = max((float(np.ptp(t.times)) for t in unseen), default=0.0)
+    longest = max((float(np.ptp(t.times)) for t in held_out), default=0.0)
     return min(sets.problem.horizon, longest / parts)

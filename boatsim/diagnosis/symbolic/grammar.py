@@ -120,17 +120,17 @@ def _products(
             yield from ((c, s), (f"abs_{c}", s), (c, f"abs_{s}"))
     for a, b in combinations((c for c in given if c in vessel.actuators), 2):
         yield (a, b)
-    if "yaw" in vessel.freedoms:
+    if "yaw" in vessel.dof:
         for bearing in ("cos_heading", "sin_heading", "cos_twice_heading", "sin_twice_heading"):
             yield (bearing,)
             yield from ((bearing, s) for s in moves if s in LEVEL)
-    if "heave" in vessel.freedoms:
+    if "heave" in vessel.dof:
         yield ("depth",)
     for axis, angle in (("roll", "roll_angle"), ("pitch", "pitch_angle")):
-        if axis in vessel.freedoms:
+        if axis in vessel.dof:
             yield from ((angle,), (angle, angle), (angle, angle, angle))
             yield from ((angle, s) for s in moves)
-    if {"surge", "sway"} <= set(vessel.freedoms):
+    if {"surge", "sway"} <= set(vessel.dof):
         yield from ((place, s) for place in ("north", "east") for s in moves if s in LEVEL)
 
 
@@ -170,7 +170,7 @@ def _ripples(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, flo
     """Patterns that lie still on the water: factor, wavelength [m] up to what was sailed through, and crest [m]."""
     for axis, place, signal in (("surge", "north", "x_m"), ("sway", "east", "y_m")):
         columns = [t.measured[:, t.signals.index(signal)] for t in tracks if signal in t.signals]
-        if axis not in vessel.freedoms or not columns:
+        if axis not in vessel.dof or not columns:
             continue
         extent = float(np.nanmax(np.concatenate(columns)) - np.nanmin(np.concatenate(columns)))
         shortest = SHORTEST_WAVE * vessel.length

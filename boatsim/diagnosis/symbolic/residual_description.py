@@ -20,15 +20,19 @@ BETTER = 0.98
 
 
 def described(
-    problem: Problem, best: Fit, recalibrated: Fit, unseen: Sequence[Track], report: Report = silent
+    problem: Problem,
+    best: Fit,
+    recalibrated: Fit,
+    held_out: Sequence[Track],
+    report: Report = silent,
 ) -> Description | None:
     """What is left over beside a set, as terms; None where no term is worth its price."""
-    found = chosen(problem, best, unseen, report)
+    found = chosen(problem, best, held_out, report)
     if not found.terms:
         return None
     alone = {name: less(problem, found, name).fit for name in found.terms}
     gains = {name: found.fit.evidence - f.evidence for name, f in alone.items()}
-    kept = _carried(problem, found, Chosen(best, {}), gains, recalibrated, unseen)
+    kept = _carried(problem, found, Chosen(best, {}), gains, recalibrated, held_out)
     written, seen = [], ways(problem, found.fit)
     for name, term in sorted(found.terms.items(), key=lambda pair: -gains[pair[0]]):
         carries = name in kept.terms and not term.run
@@ -49,7 +53,7 @@ def _carried(
     begun: Chosen,
     gains: Mapping[str, float],
     recalibrated: Fit,
-    unseen: Sequence[Track],
+    held_out: Sequence[Track],
 ) -> Chosen:
     """As many of the terms that gain most as free runs over unseen recordings are best with, and all events.
 
@@ -62,8 +66,10 @@ def _carried(
     if not set(begun.fit.suspects) <= set(chain[-1].fit.suspects):
         chain.append(begun)
     fits = {"recalibrated": recalibrated} | {str(k): c.fit for k, c in enumerate(chain)}
-    longest = max((float(t.times[-1] - t.times[0]) for t in unseen), default=0.0)
-    stretches = free_runs(problem, fits, unseen, min(problem.horizon, longest)) if unseen else []
+    longest = max((float(t.times[-1] - t.times[0]) for t in held_out), default=0.0)
+    stretches = (
+        free_runs(problem, fits, held_out, min(problem.horizon, longest)) if held_out else []
+    )
     before = generalization.squares(stretches, "recalibrated")
     if not before:  # nobody has seen a law carry over
         return chain[len(lasting)]

@@ -33,11 +33,13 @@ class Chosen:
     terms: dict[str, Described]
 
 
-def chosen(problem: Problem, best: Fit, unseen: Sequence[Track], report: Report = silent) -> Chosen:
+def chosen(
+    problem: Problem, best: Fit, held_out: Sequence[Track], report: Report = silent
+) -> Chosen:
     """Terms added one by one to a set, each time the one by which the evidence rises most, while one is worth it."""
     report("describing what is left over")
     begun = so_far = Chosen(best, {})
-    everywhere, refused = [*problem.tracks, *unseen], set[Likeness]()
+    everywhere, refused = [*problem.tracks, *held_out], set[Likeness]()
     while len(so_far.terms) < MOST:
         seen = ways(problem, so_far.fit)
         ordered = weighed(seen, list(terms(problem.program.vessel, problem.tracks, *varying(seen))))

@@ -77,10 +77,10 @@ class Frame:
 class Writer:
     """The functions of one set of freedoms as text."""
 
-    def __init__(self, freedoms: tuple[str, ...], centred: bool) -> None:
+    def __init__(self, dof: tuple[str, ...], centred: bool) -> None:
         """`centred`: the mass centre is the origin of motion."""
-        self.free = [i for i, axis in enumerate(AXES) if axis in freedoms]
-        self.set = frozenset(freedoms)
+        self.free = [i for i, axis in enumerate(AXES) if axis in dof]
+        self.set = frozenset(dof)
         self.tilts, self.closed, self.centred = tilts(self.set), closed(self.set), centred
         self.n = len(self.free)
 

@@ -108,9 +108,9 @@ def head(w: Writer) -> list[str]:
     ]
 
 
-def written(freedoms: tuple[str, ...], centred: bool) -> str:
+def written(dof: tuple[str, ...], centred: bool) -> str:
     """`motion.py` of a program; `centred`: the mass centre is the origin of motion."""
-    w = Writer(freedoms, centred)
+    w = Writer(dof, centred)
     functions = [
         function(
             "accelerations(t, s, act, at, p, on, k, extra)",

@@ -114,7 +114,7 @@ def proposal(
     log: Log,
     vessel: str | None = None,
     drives: Sequence[Drive] = (),
-    freedoms: Sequence[str] = (),
+    dof: Sequence[str] = (),
     stated: Mapping[str, str] | None = None,
 ) -> str:
     """Text of a map: the likeliest signal of each column, the others beside it in comments.
@@ -136,7 +136,7 @@ def proposal(
         "# Proposed from the names, units and ranges of the signals in the log: check every line."
     ]
     lines += [f'vessel = "{vessel}"'] if vessel else ['# vessel = "NAME"']
-    body, used = _poses(log, best, freedoms, known)
+    body, used = _poses(log, best, dof, known)
     body += [f"{_key(n)} = {_text(e)}  # as the vessel's file says" for n, e in known.items()]
     open_drives = [d for d in drives if d.name not in known]
     turning = Turning(best, log.frame == "ENU")
@@ -165,7 +165,7 @@ def proposal(
 
 
 def _poses(
-    log: Log, best: Mapping[str, list[Guess]], freedoms: Sequence[str], known: Collection[str]
+    log: Log, best: Mapping[str, list[Guess]], dof: Sequence[str], known: Collection[str]
 ) -> tuple[list[str], list[Guess]]:
     """Lines of position and columns of motion, and the guesses in them."""
     lines, used = [], list[Guess]()
@@ -196,7 +196,7 @@ def _poses(
         if column in ("x_m", "y_m") and pair or source not in best:
             continue
         g = best[source][0]
-        held = column in LEANS and (LEANS[column] not in freedoms or _still(g))
+        held = column in LEANS and (LEANS[column] not in dof or _still(g))
         compass = (
             column == "psi_rad" and "yaw" not in g.tokens
         )  # which counts from north, clockwise
