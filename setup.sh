@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Sets up .venv with the locked versions of everything boatsim needs, its tests too. Run again, it only checks.
+# Creates .venv with the locked versions of everything that boatsim and its tests need. A second run only checks it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-fits() { "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 13))' 2>/dev/null; }
+fits() { "$1" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 15))' 2>/dev/null; }
 
 make_venv() {
-    for python in python3 python3.12 python3.11; do
+    for python in python3 python3.12 python3.11 python3.13 python3.14; do
         if fits "$python"; then
             "$python" -m venv --clear .venv
             return
@@ -16,7 +16,7 @@ make_venv() {
         uv venv --seed --clear --python 3.12 .venv
         return
     fi
-    echo "setup.sh: boatsim needs Python 3.11 or 3.12; found neither, nor uv, which could bring one" >&2
+    echo "setup.sh: boatsim needs Python 3.11, 3.12, 3.13 or 3.14. None of them was found, and uv is not installed either." >&2
     exit 2
 }
 

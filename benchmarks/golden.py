@@ -1,7 +1,7 @@
 """Today's norms of every measured scenario, kept so that no change goes unseen.
 
 python -m benchmarks.golden                           what has drifted; exit 1 if anything has
-python -m benchmarks.golden --update --reason "..."   take the new values; the reason goes into CHANGELOG.md
+python -m benchmarks.golden --update --reason "..."   store the new values; the reason goes into tests/golden/HISTORY.md
 """
 
 import argparse
@@ -22,7 +22,7 @@ from boatsim.simulate.evaluation import Norm, norms
 from boatsim.simulate.run import run
 
 HOME = Path(__file__).parents[1]
-HEADING = "## Norms"
+HISTORY_TITLE = "# History of the pinned metrics"
 NEW = "is new"
 # Loops that run away, as published controllers may, forget how they began: what such a start moves
 # there is kept.
@@ -130,32 +130,33 @@ def drifts(name: str, old: Values, new: Values) -> list[str]:
 
 
 def update(changed: Mapping[str, tuple[Values, list[str]]], reason: str, home: Path = HOME) -> None:
-    """Write the new values of the scenarios that drifted, and the reason with every drift into the changelog."""
+    """Write the new values of the scenarios that drifted, and add the reason with every drift to the history."""
     for path in {path_of(name, home) for name in changed}:
         new = {name: values for name, (values, _) in changed.items() if path_of(name, home) == path}
         path.parent.mkdir(parents=True, exist_ok=True)
         _write(path, text_of(table(path) | new))
-    changelog = home / "CHANGELOG.md"
-    text = changelog.read_text(encoding="utf-8") if changelog.is_file() else "# Changelog\n"
-    _write(
-        changelog,
-        with_reason(text, reason, [line for _, lines in changed.values() for line in lines]),
+    history = home / "tests" / "golden" / "HISTORY.md"
+    text = history.read_text(encoding="utf-8") if history.is_file() else f"{HISTORY_TITLE}\n"
+    lines = [line for _, changes in changed.values() for line in changes]
+    _write(history, with_reason(text, reason, lines))
+
+
+def with_reason(history: str, reason: str, lines: list[str]) -> str:
+    """Return the history with a new entry above the older ones; new metrics are counted, not listed."""
+    changes = [line for line in lines if not line.endswith(NEW)]
+    entry = [f"- {reason}"]
+    for line in changes:
+        entry.append(f"  - {line}")
+    if added := len(lines) - len(changes):
+        entry.append(f"  - {added} new metrics")
+    introduction, separator, older = history.partition("\n- ")
+    return (
+        introduction.rstrip("\n")
+        + "\n\n"
+        + "\n".join(entry)
+        + "\n"
+        + (separator + older).lstrip("\n")
     )
-
-
-def with_reason(changelog: str, reason: str, lines: list[str]) -> str:
-    """The changelog with one more entry at the top of its section on norms; new norms are counted, not listed."""
-    if HEADING not in changelog.splitlines():
-        changelog = f"{changelog.rstrip()}\n\n{HEADING}\n"
-    moved = [line for line in lines if not line.endswith(NEW)]
-    fresh = len(lines) - len(moved)
-    entry = [
-        f"- {reason}",
-        *(f"  - {line}" for line in moved),
-        *([f"  - {fresh} new norms"] if fresh else []),
-    ]
-    before, _, after = changelog.partition(f"{HEADING}\n")
-    return f"{before}{HEADING}\n\n" + "\n".join(entry) + "\n" + after.lstrip("\n")
 
 
 def _drift(
@@ -182,7 +183,9 @@ def main(arguments: list[str] | None = None) -> int:
         prog="python -m benchmarks.golden", description="Norms kept of every scenario."
     )
     parser.add_argument("--update", action="store_true", help="take today's values")
-    parser.add_argument("--reason", default="", help="why they changed; goes into CHANGELOG.md")
+    parser.add_argument(
+        "--reason", default="", help="why they changed; goes into tests/golden/HISTORY.md"
+    )
     given = parser.parse_args(arguments)
     reason = " ".join(given.reason.split())
     if given.update and not reason:
@@ -196,7 +199,7 @@ def main(arguments: list[str] | None = None) -> int:
             print("\n".join(lines), flush=True)
     if changed and given.update:
         update(changed, reason)
-        print(f"{len(changed)} scenarios written, reason in CHANGELOG.md")
+        print(f"{len(changed)} scenarios written, reason in tests/golden/HISTORY.md")
         return 0
     print("no norm has drifted" if not changed else f"{len(changed)} scenarios have drifted")
     return int(bool(changed))

@@ -14,6 +14,8 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+
+pytest.importorskip("dm_control", reason="dm_control does not support Python 3.13 and later")
 from dm_env import test_utils
 
 from boatsim.errors import BadInput, BadPhysics

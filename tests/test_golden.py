@@ -55,7 +55,7 @@ def test_norms_are_what_they_were_and_lie_within_their_bars(name: str) -> None:
 
 
 def test_nothing_is_kept_of_scenarios_that_are_gone() -> None:
-    files = sorted(path_of("joystick_boat/sway_1").parent.iterdir())
+    files = sorted(path_of("joystick_boat/sway_1").parent.glob("*.json"))
     stored = {name for file in files for name in golden.table(file)}
     assert stored == set(TRACKED) and len(stored) >= 29
     assert [
@@ -88,9 +88,9 @@ def test_an_update_without_a_reason_is_refused(
 
 
 def test_an_update_writes_the_values_and_the_reason(tmp_path: Path) -> None:
-    (tmp_path / "CHANGELOG.md").write_text(
-        "# Changelog\n\n## Norms\n\n- older reason\n\n## Other\n"
-    )
+    history = tmp_path / "tests" / "golden" / "HISTORY.md"
+    history.parent.mkdir(parents=True)
+    history.write_text("# History\n\nWhat it is.\n\n- older reason\n  - old line\n")
     new = with_today(0.7)
     update({"boat/one": (new, drifts("boat/one", OLD, new))}, "servo lag corrected", tmp_path)
     other = {"moved": OLD["yaw_rate_inf"]}
@@ -98,15 +98,15 @@ def test_an_update_writes_the_values_and_the_reason(tmp_path: Path) -> None:
     assert json.loads(path_of("boat/one", tmp_path).read_text())["seed"] == 0
     assert kept("boat/two", tmp_path) == other
     assert drifts("boat/one", kept("boat/one", tmp_path), new) == []
-    assert (tmp_path / "CHANGELOG.md").read_text() == (
-        "# Changelog\n\n## Norms\n\n- another\n  - 1 new norms\n- servo lag corrected\n"
-        "  - boat/one yaw_rate_inf: 0.5 -> 0.7 deg/s (paper: 2.8)\n- older reason\n\n## Other\n"
+    assert history.read_text() == (
+        "# History\n\nWhat it is.\n\n- another\n  - 1 new metrics\n- servo lag corrected\n"
+        "  - boat/one yaw_rate_inf: 0.5 -> 0.7 deg/s (paper: 2.8)\n- older reason\n  - old line\n"
     )
 
 
-def test_a_changelog_without_a_section_on_norms_gets_one() -> None:
-    assert with_reason("# Changelog\n", "first values", ["a b is new", "a c is new"]) == (
-        "# Changelog\n\n## Norms\n\n- first values\n  - 2 new norms\n"
+def test_an_empty_history_gets_its_first_entry() -> None:
+    assert with_reason("# History\n", "first values", ["a b is new", "a c is new"]) == (
+        "# History\n\n- first values\n  - 2 new metrics\n"
     )
 
 

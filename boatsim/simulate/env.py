@@ -8,6 +8,7 @@ import os
 from collections import OrderedDict
 from collections.abc import Callable
 from importlib import import_module
+from importlib.util import find_spec
 from math import cos, sin
 
 import mujoco
@@ -23,6 +24,11 @@ from boatsim.simulate import scenario as scenarios
 from boatsim.simulate.engine import Engine, State, installed
 from boatsim.simulate.scenario import Scenario
 from boatsim.simulate.world import Tank
+
+if find_spec("dm_control") is None:
+    raise ImportError(
+        "boatsim.simulate.env needs dm_control, which is not installed: it supports Python up to 3.12"
+    )
 
 
 def _choose_renderer() -> None:
