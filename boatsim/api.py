@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.config import Given, from_settings
 from boatsim.diagnosis.replay import joined, replayed
 from boatsim.diagnosis.report import output_files
 from boatsim.diagnosis.report.schema import Answer
@@ -236,11 +237,13 @@ def diagnose(
     library: Names = (),
     without: Names = (),
     horizon: float | None = None,
+    settings: Mapping[str, Given] | None = None,
 ) -> Diagnosis:
     """Say which physics a vessel leaves out of recordings: files that are fitted, and files to judge the result on.
 
     Without a `vessel` it is the one of the recordings' recording.toml. `library` and `without` are entries to try too
-    and not to try, `horizon` is the length [s] of the free runs by which it is judged. Raises BadInput.
+    and not to try, `horizon` is the length [s] of the free runs by which it is judged, `settings` change the
+    configuration (`boatsim.diagnosis.config`), such as {"select.odds": 3.0}. Raises BadInput.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1_as_published", out="out/published")
@@ -257,7 +260,15 @@ def diagnose(
     name = None if vessel is None else str(vessel)
     tried = _names(library), _names(without)
     return Diagnosis(
-        pipeline.diagnose(_paths(runs), _paths(hold_out), name, _names(load), *tried, horizon)
+        pipeline.diagnose(
+            _paths(runs),
+            _paths(hold_out),
+            name,
+            _names(load),
+            *tried,
+            horizon,
+            config=from_settings(settings or {}),
+        )
     )
 
 

@@ -561,6 +561,14 @@ def diagnose(
             min=0.1, metavar="S", help="Length of each free run [s], if not the usual one."
         ),
     ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Change a setting of the diagnosis, such as select.odds=3; may be repeated.",
+        ),
+    ] = None,
     each: Annotated[
         bool,
         typer.Option(
@@ -574,8 +582,11 @@ def diagnose(
 ) -> int:
     """Say which physics a vessel's model leaves out of recordings of the real one."""
     from boatsim.cli import diagnosis as commands
+    from boatsim.diagnosis.config import from_settings
 
     held, own, left_out = hold_out or [], library or [], without or []
+    changed = dict(map(_assignment, settings or []))
+    from_settings(changed)  # a mistake in a setting ends the command before anything is read
     if not each and (jobs is not None or ray is not None):
         raise BadInput(
             "--jobs and --ray are for many recordings, each diagnosed by itself; give --each too"
@@ -586,8 +597,12 @@ def diagnose(
             from boatsim.sweeps.diagnoses import Asked
 
             names = tuple(map(str, held)), vessel, tuple(_loads(load)), tuple(own), tuple(left_out)
-            return diagnose_each(runs, Asked(*names, horizon), out, jobs, ray)
-        return commands.diagnose(runs, held, vessel, _loads(load), out, own, left_out, horizon)
+            return diagnose_each(
+                runs, Asked(*names, horizon, tuple(changed.items())), out, jobs, ray
+            )
+        return commands.diagnose(
+            runs, held, vessel, _loads(load), out, own, left_out, horizon, changed
+        )
 
 
 @app.command()
@@ -698,6 +713,14 @@ def new(
         name, length, beam, mass, driven, turned, rudder, draught, hulls, speed, thrust
     )
     return new_boat(folder, boat, from_log or [], force)
+
+
+def _assignment(text: str) -> tuple[str, str]:
+    """Split "key=value". Raises BadInput."""
+    key, equals, value = text.partition("=")
+    if not equals:
+        raise BadInput(f"--set {text}: write KEY=VALUE, such as select.odds=3")
+    return key.strip(), value.strip()
 
 
 def _loads(given: list[str] | None) -> list[str]:

@@ -10,6 +10,7 @@ import numpy as np
 from boatsim.cli.exits import remark, say
 from boatsim.cli.progress import reporting
 from boatsim.diagnosis.checks.entry import in_words
+from boatsim.diagnosis.config import from_settings
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnosis.pipeline import NEXT, Diagnosis, hint, open_recording
 from boatsim.diagnosis.pipeline import diagnose as analyse
@@ -38,11 +39,23 @@ def diagnose(
     library: list[str],
     without: list[str],
     horizon: float | None = None,
+    settings: Mapping[str, str] | None = None,
 ) -> int:
     """Diagnose recordings and write diagnosis.json, report.html, report.md, patched.toml, diagnosis.rrd to `out`."""
+    config = from_settings(settings or {})
     with reporting() as told:
         try:
-            found = analyse(runs, hold_out, vessel, load, library, without, horizon, report=told)
+            found = analyse(
+                runs,
+                hold_out,
+                vessel,
+                load,
+                library,
+                without,
+                horizon,
+                report=told,
+                config=config,
+            )
         except BadInput as error:
             raise BadInput(f"{error}{hint(runs, hold_out, vessel, load)}") from None
         told("writing the report", WRITING)

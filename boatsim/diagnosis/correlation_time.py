@@ -32,7 +32,11 @@ def timed(problem: Problem, found: Fit) -> Problem:
     if seconds == problem.ambient.time_constant:
         return problem
     return Problem(
-        problem.tracks, problem.ambient.lasting(seconds), problem.uncertainty, problem.horizon
+        problem.tracks,
+        problem.ambient.lasting(seconds),
+        problem.uncertainty,
+        problem.horizon,
+        problem.config,
     )
 
 
@@ -98,7 +102,7 @@ def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
     horizon = min(problem.horizon, *(float(np.ptp(t.times)) for t in (*first, *second)))
     stretches = []
     for fitted, held_out in ((first, second), (second, first)):
-        rest = Problem(fitted, ambient, problem.uncertainty, horizon)
+        rest = Problem(fitted, ambient, problem.uncertainty, horizon, problem.config)
         stretches += free_runs(rest, {"": fit(rest, begin)}, held_out, horizon)
     found = [np.maximum([f[""] for f in errors([s]).values()], EXACT) for s in stretches]
     return np.array([np.exp(np.mean(np.log(each))) for each in found])

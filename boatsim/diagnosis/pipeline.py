@@ -22,6 +22,7 @@ from boatsim.diagnosis.checks.entry import entry, joined, sources_of
 from boatsim.diagnosis.checks.finding import PROBABLY, Finding
 from boatsim.diagnosis.checks.hypothesis_test import tried
 from boatsim.diagnosis.checks.initial_actuator_state import begun
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import timed
 from boatsim.diagnosis.covariance_inflation import widened
 from boatsim.diagnosis.experiment_design import next_experiment
@@ -127,6 +128,7 @@ def diagnose(
     horizon: float | None = None,
     facts: Mapping[str, Value] | None = None,
     report: Report = silent,
+    config: DiagnosisConfig = DEFAULT,
 ) -> Diagnosis:
     """Locate, name and model what the vessel leaves out of the recordings. Raises BadInput.
 
@@ -162,7 +164,7 @@ def diagnose(
     vessels_of = {r.path: b for r, b in opened}
     rest = part(report, READ, 1.0)
     return diagnose_recordings(
-        fitted, held_out, vessels_of, note, library, without, remarks, horizon, seen, rest
+        fitted, held_out, vessels_of, note, library, without, remarks, horizon, seen, rest, config
     )
 
 
@@ -172,6 +174,7 @@ def pose(
     boats: Mapping[Path | None, Vessel],
     library: Sequence[str] = (),
     horizon: float | None = None,
+    config: DiagnosisConfig = DEFAULT,
 ) -> tuple[Problem, list[Track], Callable[[Recording], Track], Library]:
     """The question that opened recordings put: them on one program, those unseen, how one is laid, what is tried."""
     boat, facts = boats[fitted[0].path], fitted[0].notes.facts
@@ -200,7 +203,7 @@ def pose(
             f"{r.path or r.name} by its recording.toml",
         )
     uncertainty |= fitted[0].notes.coefficient_uncertainty
-    problem = Problem(laid[: len(fitted)], levels, uncertainty, horizon)
+    problem = Problem(laid[: len(fitted)], levels, uncertainty, horizon, config)
     return problem, laid[len(fitted) :], lay, there[fitted[0].path]
 
 
@@ -274,13 +277,14 @@ def diagnose_recordings(
     horizon: float | None = None,
     seen: Sequence[Finding] = (),
     report: Report = silent,
+    config: DiagnosisConfig = DEFAULT,
 ) -> Diagnosis:
     """The same for recordings that are already opened, thinned and split: `boats` is the vessel of each file.
 
     `note` says in words what was kept unseen, `seen` is what is wrong with the files. Raises BadInput.
     """
     boat = boats[fitted[0].path]
-    problem, held_out_tracks, lay, there = pose(fitted, held_out, boats, library, horizon)
+    problem, held_out_tracks, lay, there = pose(fitted, held_out, boats, library, horizon, config)
     candidates = less(there, without)
     report("compiling, or loading what was compiled before")
     _compile(problem)

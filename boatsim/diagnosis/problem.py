@@ -11,6 +11,7 @@ import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.command_range import excursion
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.filter import BODY, Levels, Track
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Effect, Param, Release, Wandering
@@ -129,6 +130,7 @@ class Problem:
         ambient: Levels,
         uncertainty: dict[str, float],
         horizon: float | None = None,
+        config: DiagnosisConfig = DEFAULT,
     ) -> None:
         """`uncertainty` is the relative sd of coefficients by kind ("damping", "thrust", ...).
 
@@ -136,6 +138,7 @@ class Problem:
         """
         self.tracks, self.ambient, self.uncertainty = list(tracks), ambient, uncertainty
         self.program = tracks[0].program
+        self.config = config
         self.horizon = horizon or priors.horizon(self.program.vessel)
         self.nuisances = self._nuisances()
         self.links = self._links()

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from boatsim.diagnosis import pipeline
+from boatsim.diagnosis.config import from_settings
 from boatsim.diagnosis.report import output_files
 from boatsim.errors import BadInput, BoatsimError
 from boatsim.progress import Report, silent
@@ -36,6 +37,7 @@ class Asked:
     library: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
     horizon: float | None = None  # [s]
+    settings: tuple[tuple[str, str], ...] = ()  # changed, by dotted name
 
 
 class Told(NamedTuple):
@@ -120,6 +122,7 @@ def carried_out(told: Told) -> Entry:
             asked.library,
             asked.without,
             asked.horizon,
+            config=from_settings(dict(asked.settings)),
         )
         output_files.write(found, Path(told.folder))
     except BoatsimError as error:

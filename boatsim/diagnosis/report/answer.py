@@ -6,6 +6,7 @@ import numpy as np
 
 from boatsim.control.base import wrap
 from boatsim.diagnosis.candidates import called
+from boatsim.diagnosis.config import as_plain
 from boatsim.diagnosis.free_runs import FreeRun, errors
 from boatsim.diagnosis.locate import missing_force as locate
 from boatsim.diagnosis.locate.regions import regions
@@ -88,6 +89,7 @@ def compose(
         "fit": _fit(stretches, held_out, horizon),
         "next_experiment": wanted,
         "patch": "patched.toml",
+        "config": as_plain(problem.config),
     }
     if ranking.unknown:
         answer["unknown"]["rest"] = locate.strength(problem, left)

@@ -76,7 +76,7 @@ def by_part(
     """(part, family, rms by model) of every part; "alone" is the nominal structure refitted to that part only."""
     out = []
     for track in tracks:
-        own = Problem([track], problem.ambient, problem.uncertainty)
+        own = Problem([track], problem.ambient, problem.uncertainty, config=problem.config)
         alone = {"alone": descend(own, fits["recalibrated"], 6, 0.1)}
         for family, found in errors(
             free_runs(problem, {**fits, **alone}, [track], horizon)

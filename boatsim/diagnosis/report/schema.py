@@ -2,6 +2,8 @@
 
 from typing import Literal, NotRequired, TypedDict
 
+from boatsim.diagnosis.config import Plain
+
 Family = Literal[
     "position_rms_m", "heading_rms_rad", "roll_rms_rad"
 ]  # of signals whose error on unseen data is told
@@ -217,3 +219,5 @@ class Answer(TypedDict):
     fit: FitEntry
     next_experiment: NextEntry
     patch: str
+    # all settings of the diagnosis by dotted name, such as "select.odds"
+    config: NotRequired[dict[str, Plain]]

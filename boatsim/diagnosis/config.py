@@ -1,0 +1,707 @@
+"""The configuration of a diagnosis: all thresholds, priors, tolerances and limits of its stages.
+
+A `DiagnosisConfig` holds one frozen group of settings per stage. Each setting has a default, a unit
+and the reason for its value. Users change settings by their dotted names, such as `select.odds`:
+with `boatsim diagnose --set`, or with the argument `settings` of `boatsim.diagnose`. The values used
+are written into diagnosis.json.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import Field, dataclass, field, fields, replace
+from math import inf, isfinite
+from typing import Any, TypeAlias
+
+from boatsim.errors import BadInput, unknown_name
+
+Number: TypeAlias = int | float
+Plain: TypeAlias = Number | list[Number]  # a setting as JSON has it
+Given: TypeAlias = str | Number | Sequence[Number]  # a setting as a user may give it
+
+
+def setting(
+    default: Number | tuple[Number, ...],
+    unit: str,
+    reason: str,
+    low: float = 0.0,
+    high: float = inf,
+) -> Any:
+    """Declare a setting of a group.
+
+    Args:
+        default: Value used unless the user gives another; its type is the type of the setting.
+        unit: Unit of the value, "1" for a ratio, "count" for an integer.
+        reason: What the setting does, and why it has this value.
+        low: Smallest value allowed.
+        high: Largest value allowed.
+
+    Returns:
+        A dataclass field that carries the unit, the reason and the range as metadata.
+    """
+    about = {"unit": unit, "reason": reason, "low": low, "high": high}
+    return field(default=default, metadata=about)
+
+
+@dataclass(frozen=True)
+class LoadConfig:
+    """Opening recordings: rows used, prior noise and disturbance, default length of free runs."""
+
+    scale_tolerance: float = setting(
+        0.01, "1", "Two model scales within this relative difference are the same scale."
+    )
+    row_rate: float = setting(
+        20.0,
+        "Hz",
+        "Rows used per second on a hull of 1.2 m; errors of closer rows are not independent.",
+        low=0.01,
+    )
+    enough_rows: int = setting(
+        12_000,
+        "count",
+        "Longer recordings are thinned towards this number of rows, because the cost grows with "
+        "the rows and the evidence grows with the manoeuvres.",
+        low=10,
+    )
+    least_row_share: float = setting(
+        0.25,
+        "1",
+        "Thinning of long recordings keeps at least this share of the row rate.",
+        0.01,
+        1.0,
+    )
+    disturbance: float = setting(
+        2.2e-4,
+        "weight",
+        "Rms of the force that is attributed to moving water and never reported as missing: 10 mN "
+        "on a hull of 4.6 kg in a towing tank.",
+        low=1e-12,
+    )
+    yaw_arm: float = setting(
+        0.25, "length", "Lever by which the assumed disturbance turns the hull in yaw.", low=1e-6
+    )
+    pitch_arm: float = setting(
+        0.25, "length", "Lever by which the assumed disturbance trims the hull.", low=1e-6
+    )
+    roll_arm: float = setting(
+        1.0, "draught", "Lever by which the assumed disturbance heels the hull.", low=1e-6
+    )
+    correlation_time: float = setting(
+        1.0,
+        "s",
+        "Correlation time of the disturbance on a hull of 1.2 m, scaled by Froude's law.",
+        low=1e-3,
+    )
+    horizon: float = setting(
+        6.0,
+        "s",
+        "Length of a free run on a hull of 1.2 m: five lengths of travel at Froude number 0.3.",
+        low=0.1,
+    )
+    finest_noise: float = setting(
+        1e-4,
+        "1",
+        "Lower bound of sensor noise, relative to the length, to a radian and to the Froude speed: "
+        "no instrument is more exact.",
+        low=1e-12,
+    )
+    noise_orders: tuple[int, ...] = setting(
+        (2, 3, 4, 5, 6),
+        "count",
+        "Orders of the differences in which sensor noise is estimated; the motion is smoother than "
+        "noise at one of them.",
+        1,
+        20,
+    )
+    noise_ratio: float = setting(
+        3.0,
+        "1",
+        "Recordings whose estimated noise differs by more than this factor were made by different "
+        "instruments and get noise levels of their own.",
+        low=1.0,
+    )
+    coefficient_uncertainty: float = setting(
+        0.05,
+        "1",
+        "Relative prior sd of the vessel's coefficients of damping, thrust, restoring and wind "
+        "where neither the vessel nor the notes specify one.",
+        1e-6,
+        10.0,
+    )
+    fastest_froude: float = setting(
+        10.0,
+        "1",
+        "No boat reaches this Froude number; positions that move faster are in another unit.",
+        low=1.0,
+    )
+    command_percentile: float = setting(
+        98.0,
+        "%",
+        "Percentile of the size of a command that counts as the largest one recorded, so that a "
+        "single wrong row has no influence.",
+        1.0,
+        100.0,
+    )
+
+
+@dataclass(frozen=True)
+class FilterConfig:
+    """Integration steps and initial states of the Kalman filter, the smoother and free runs."""
+
+    free_run_step: float = setting(
+        0.02,
+        "s",
+        "Largest integration step of a free run: the step of the simulation, so that time lags are "
+        "averaged alike.",
+        low=1e-4,
+    )
+    filter_step: float = setting(
+        0.17,
+        "s",
+        "Largest integration step of the filter on a hull of 1.2 m; the filter is corrected at "
+        "every row and needs no finer one.",
+        low=1e-4,
+    )
+    decay_step: float = setting(
+        0.7,
+        "1",
+        "Largest integration step in time constants of the fastest hull motion at rest; Runge-Kutta "
+        "is stable up to 2.8.",
+        1e-3,
+        2.7,
+    )
+    phase_error: float = setting(
+        0.007,
+        "rad",
+        "Phase error that Runge-Kutta may accumulate until an oscillation of the hull has died out.",
+        low=1e-6,
+    )
+    least_damping_ratio: float = setting(
+        0.01,
+        "1",
+        "Damping ratio below which the phase error is judged as if it had this value; the filter "
+        "corrects a slower decay before it ends.",
+        1e-6,
+        1.0,
+    )
+    initial_force: float = setting(
+        3.0,
+        "1",
+        "Initial rms of the latent force in assumed disturbance levels: moving actuators or a push by "
+        "hand may act when a recording begins.",
+        low=1e-6,
+    )
+    smoother_passes: int = setting(
+        4, "count", "Largest number of smoothing passes about improved initial rates.", low=1
+    )
+    smoother_tolerance: float = setting(
+        0.1,
+        "sd",
+        "Smoothing is repeated until the initial rates change by less than this.",
+        low=0.0,
+    )
+
+
+@dataclass(frozen=True)
+class ChecksConfig:
+    """Log quality checks, and the test whether a column means something else than its name says."""
+
+
+@dataclass(frozen=True)
+class LocateConfig:
+    """Where, when and along which axes a force is missing."""
+
+
+@dataclass(frozen=True)
+class FitConfig:
+    """Fitting one hypothesis: parameters, noise levels, correlation time and posterior widths."""
+
+    refit_gain: float = setting(
+        0.3, "nats", "A refit that gains less evidence than this changes nothing.", low=1e-6
+    )
+    most_refits: int = setting(
+        8, "count", "Largest number of refits until parameters and noise levels agree.", low=1
+    )
+    first_steps: int = setting(
+        4, "count", "Gauss-Newton steps before the noise levels are fitted.", low=1
+    )
+    last_steps: int = setting(
+        3, "count", "Gauss-Newton steps after the noise levels are fitted.", low=1
+    )
+    step_gain: float = setting(
+        0.1, "nats", "Gauss-Newton steps end when a step gains less than this.", low=1e-6
+    )
+    part_steps: int = setting(
+        6, "count", "Gauss-Newton steps when one part of the data is fitted alone.", low=1
+    )
+    most_dampings: int = setting(
+        5, "count", "Attempts at one Gauss-Newton step, each with more damping.", low=1
+    )
+    halvings: int = setting(
+        6,
+        "count",
+        "A start at which the simulated boat diverges is moved halfway to zero effect, at most this "
+        "often.",
+        low=0,
+    )
+    derivative_step: float = setting(
+        0.01, "prior sd", "Step of forward differences by a parameter.", 1e-6, 1.0
+    )
+    curvature_step: float = setting(
+        0.5,
+        "prior sd",
+        "Step of second differences by a parameter without a gradient.",
+        1e-3,
+        2.0,
+    )
+    broyden_share: float = setting(
+        0.5,
+        "1",
+        "A step must gain this share of the predicted gain for the derivatives to be updated from it "
+        "(Broyden 1965).",
+        0.0,
+        1.0,
+    )
+    short_step_damping: float = setting(
+        0.1,
+        "1",
+        "With more damping than this a step is so short that its agreement with the prediction is no "
+        "sign of convergence.",
+    )
+    agreement: float = setting(
+        0.1,
+        "nats",
+        "A step whose gain differs from the prediction by less than this, plus a share of it, shows "
+        "that the quadratic model holds.",
+    )
+    agreement_share: float = setting(
+        0.02, "1", "The share of the predicted gain in the setting `agreement`.", 0.0, 1.0
+    )
+    coefficient_range: tuple[float, ...] = setting(
+        (0.05, 20.0),
+        "1",
+        "Lowest and highest factor by which a coefficient of the nominal model may be recalibrated.",
+        1e-6,
+        1e6,
+    )
+    force_sd_below: float = setting(
+        0.3,
+        "1",
+        "Prior sd of the log of the latent force below the assumed disturbance level; narrow, because "
+        "calm water is no merit of a model.",
+        low=1e-3,
+    )
+    force_sd_above: float = setting(
+        1.5, "1", "Prior sd of the log of the latent force above the assumed level.", low=1e-3
+    )
+    noise_sd: float = setting(
+        0.4, "1", "Prior sd of the log of sensor noise about the specified level.", low=1e-3
+    )
+    correlation_time_sd: float = setting(
+        0.7, "1", "Prior sd of the log of the correlation time of the latent force.", low=1e-3
+    )
+    least_force: float = setting(
+        0.1,
+        "1",
+        "Lower bound of the latent force in assumed disturbance levels: no model is more exact.",
+        1e-6,
+        1.0,
+    )
+    least_noise: float = setting(
+        0.1,
+        "1",
+        "Lower bound of fitted sensor noise in specified levels: no log is more exact.",
+        1e-6,
+        1.0,
+    )
+    rough_gain: float = setting(
+        2.0,
+        "nats",
+        "Accuracy of noise levels that are fitted again: a coordinate is revisited only after a "
+        "larger gain.",
+        low=1e-6,
+    )
+    fine_gain: float = setting(
+        0.3, "nats", "Accuracy of noise levels that are fitted for the first time.", low=1e-6
+    )
+    force_raises: int = setting(
+        10,
+        "count",
+        "The latent force is raised by a factor of e at most this often until the filter can follow a "
+        "recording.",
+        low=0,
+    )
+    search_rounds: int = setting(
+        8, "count", "Rounds over all coordinates of a search without gradient.", low=1
+    )
+    search_finest: float = setting(
+        0.3, "1", "Smallest step of such a search, relative to the first one.", 1e-3, 1.0
+    )
+    search_reach: float = setting(
+        2.0, "1", "Largest move of such a search along one coordinate, in steps.", low=1.0
+    )
+    correlation_time_steps: int = setting(
+        2, "count", "Halvings or doublings of the correlation time that are tested.", low=0
+    )
+    correlation_time_certainty: float = setting(
+        2.0,
+        "standard errors",
+        "Free-run errors must fall by more than this for another correlation time to be chosen.",
+    )
+    stretch: float = setting(
+        4.0,
+        "time constants",
+        "Length of the stretches whose errors count as independent of each other in the sandwich "
+        "covariance (White 1982).",
+        low=0.1,
+    )
+    fewest_stretches: int = setting(
+        10, "count", "Fewest stretches from which the sandwich covariance is estimated.", low=2
+    )
+
+
+@dataclass(frozen=True)
+class SelectConfig:
+    """Selection of effects: evidence required, screening, forward selection and pruning."""
+
+    odds: float = setting(
+        2.0,
+        "nats",
+        "Log of the odds, about seven to one, at which an effect is identified; each candidate has "
+        "the same prior probability.",
+        low=0.0,
+    )
+    most_effects: int = setting(
+        8,
+        "count",
+        "Largest number of effects in one answer; further ones would have almost no data of their own.",
+        low=1,
+    )
+    least_gain: float = setting(
+        4.0, "nats", "Evidence that an identified effect must gain by itself.", low=0.0
+    )
+    unknown_gain: float = setting(
+        6.0,
+        "nats",
+        "Evidence for a force beyond the assumed disturbance from which the cause is reported as "
+        "outside the candidates.",
+        low=0.0,
+    )
+    model_error: float = setting(
+        0.05,
+        "1",
+        "Share of the explained evidence added to `unknown_gain`: a law of nature is never exactly "
+        "that of a candidate.",
+        0.0,
+        1.0,
+    )
+    structure_error: float = setting(
+        0.02,
+        "1",
+        "The same share where the remaining force correlates with a motion, a command or a place.",
+        0.0,
+        1.0,
+    )
+    slight_share: float = setting(
+        0.025,
+        "1",
+        "An effect that gains less than this share of what the others explain may only correct the "
+        "shape of their laws.",
+        0.0,
+        1.0,
+    )
+    deterministic_share: float = setting(
+        0.5,
+        "1",
+        "A deterministic effect is preferred to a stochastic force from this share of its gain on.",
+        0.0,
+        1.0,
+    )
+    remaining_share: float = setting(
+        0.25,
+        "1",
+        "A stochastic force is withdrawn if what it leaves unexplained gains more than this share of "
+        "what it gains.",
+        0.0,
+        1.0,
+    )
+    braking_share: float = setting(
+        -0.3,
+        "1",
+        "Mean power of an oscillating force, relative to the largest possible, below which it acts as "
+        "friction and is withdrawn.",
+        -1.0,
+        0.0,
+    )
+    keep_factor: float = setting(
+        40.0,
+        "1",
+        "An effect whose gain by the curvature exceeds the required evidence by this factor is kept "
+        "without a fit that omits it.",
+        low=1.0,
+    )
+    alike: float = setting(
+        3.0, "nats", "Candidates within this of the best are reported as look-alikes.", low=0.0
+    )
+    alike_share: float = setting(
+        0.5,
+        "1",
+        "Two effects are alike if each alone explains more than this share of what both explain.",
+        0.0,
+        1.0,
+    )
+    most_rivals: int = setting(
+        3, "count", "Rivals that are fitted in the place of each identified effect.", low=0
+    )
+    certainty: float = setting(
+        1.0, "sd", "Distance from zero effect from which a deterministic effect acts.", low=0.0
+    )
+    certainty_stochastic: float = setting(
+        2.0,
+        "sd",
+        "The same for a stochastic force, whose size is positive and therefore never exactly zero.",
+        low=0.0,
+    )
+    determined_share: float = setting(
+        0.1,
+        "1",
+        "An effect acts, too, if the data narrow another of its parameters to this share of the prior.",
+        0.0,
+        1.0,
+    )
+    near_front: float = setting(
+        5.0, "nats", "Candidates this close to the best one of a screening are fitted in full."
+    )
+    front_share: float = setting(
+        0.5, "1", "Candidates with this share of the best gain are fitted in full.", 0.0, 1.0
+    )
+    most_full_fits: int = setting(
+        6, "count", "Candidates on top of one model that are fitted in full.", low=1
+    )
+    screening_failure: float = setting(
+        8.0,
+        "nats",
+        "A screening this far below the model without the candidate has failed: a parameter without "
+        "use costs less.",
+        low=0.0,
+    )
+    screening_steps: int = setting(
+        3, "count", "Gauss-Newton steps of a candidate with the gains of the filter held.", low=1
+    )
+    screening_starts: int = setting(
+        2, "count", "Starting points of a candidate from which a step is computed.", low=1
+    )
+    screening_dampings: int = setting(
+        3, "count", "Attempts at one such step, each with more damping.", low=1
+    )
+    screening_halvings: int = setting(
+        8, "count", "A starting point that is far too strong is halved at most this often.", low=0
+    )
+    screening_loss: float = setting(
+        30.0,
+        "nats",
+        "A starting point this far below zero effect is too strong and is halved.",
+        low=0.0,
+    )
+    screening_promise: float = setting(
+        0.3, "nats", "A candidate with a smaller predicted gain is not followed further.", low=0.0
+    )
+    screening_start: float = setting(
+        0.1, "prior sd", "Starting point of a candidate that specifies none.", 1e-6, 10.0
+    )
+    recheck_points: int = setting(
+        4,
+        "count",
+        "Points, each half as far from zero effect as the one before, at which a screening is "
+        "computed again with the full filter.",
+        low=1,
+    )
+    recheck_share: float = setting(
+        0.5,
+        "1",
+        "A screening is confirmed if the full filter gains more than this share of its gain.",
+        0.0,
+        1.0,
+    )
+    recheck_loss: float = setting(
+        3.0, "nats", "A screening is confirmed, too, if the full filter gains at most this less."
+    )
+    recheck_steps: int = setting(
+        2, "count", "Gauss-Newton steps from the best of these points.", low=1
+    )
+    swell_share: float = setting(
+        0.7,
+        "1",
+        "Share of the fitted latent force with which a stochastic force starts; the latent force "
+        "keeps as much.",
+        1e-3,
+        1.0,
+    )
+
+
+@dataclass(frozen=True)
+class ValidateConfig:
+    """Held-out recordings: when they refute an effect, and when they decide between effects."""
+
+    fewest_runs: int = setting(
+        3, "count", "Fewest free runs from which a standard error is estimated.", low=2
+    )
+    worse: float = setting(
+        1.05, "1", "Ratio of rms errors of free runs from which they have grown.", low=1.0
+    )
+    certainty: float = setting(
+        2.0, "standard errors", "Errors must grow by more than this to refute an effect.", low=0.0
+    )
+    certainty_alike: float = setting(
+        1.65,
+        "standard errors",
+        "The same between look-alikes, and for a stochastic force, which predicts nothing.",
+        low=0.0,
+    )
+    unexplained_share: float = setting(
+        0.9,
+        "1",
+        "An effect without which more than this share of the latent force remains explains almost "
+        "nothing of it.",
+        0.0,
+        1.0,
+    )
+    alone_share: float = setting(
+        0.95,
+        "1",
+        "A part of the data does not show what is missing if the nominal model fitted to it alone has "
+        "at most this share more error than the patched vessel.",
+        0.0,
+        1.0,
+    )
+
+
+@dataclass(frozen=True)
+class AnswerConfig:
+    """The answer: uncertainties and limits that are reported."""
+
+    law_error: float = setting(
+        0.05,
+        "1",
+        "Share of a fitted value (rad for directions) that is added to its sd in quadrature: a law of "
+        "nature is never exactly that of a candidate.",
+        0.0,
+        1.0,
+    )
+    limit_quantile: float = setting(
+        1.645, "sd", "One-sided quantile of upper limits: 95 %.", low=0.0
+    )
+    limit_share: float = setting(
+        0.5,
+        "1",
+        "An upper limit is reported only where the fitted sd is below this share of the prior sd; "
+        "otherwise it would only repeat the prior.",
+        0.0,
+        1.0,
+    )
+    at_bound: float = setting(
+        1e-3, "1", "A value within this relative distance of a bound is reported as at the bound."
+    )
+
+
+@dataclass(frozen=True)
+class DescribeConfig:
+    """Symbolic description of a force that no candidate explains."""
+
+
+@dataclass(frozen=True)
+class PlanConfig:
+    """Design of the next experiment."""
+
+
+@dataclass(frozen=True)
+class DiagnosisConfig:
+    """All settings of a diagnosis, one group per stage."""
+
+    load: LoadConfig = LoadConfig()
+    filter: FilterConfig = FilterConfig()
+    checks: ChecksConfig = ChecksConfig()
+    locate: LocateConfig = LocateConfig()
+    fit: FitConfig = FitConfig()
+    select: SelectConfig = SelectConfig()
+    validate: ValidateConfig = ValidateConfig()
+    answer: AnswerConfig = AnswerConfig()
+    describe: DescribeConfig = DescribeConfig()
+    plan: PlanConfig = PlanConfig()
+
+
+DEFAULT = DiagnosisConfig()
+
+
+def from_settings(settings: Mapping[str, Given]) -> DiagnosisConfig:
+    """Return the default configuration with some settings changed.
+
+    Args:
+        settings: Values by dotted name, such as {"select.odds": 3.0}; text is read as a number.
+
+    Raises:
+        BadInput: A name does not exist, or a value has the wrong type or is out of range.
+    """
+    declared = {f"{group}.{one.name}": (group, one) for group, one in _declared()}
+    config = DEFAULT
+    for name, given in settings.items():
+        if name not in declared:
+            raise BadInput(unknown_name("setting", name, declared))
+        group, one = declared[name]
+        changed = replace(getattr(config, group), **{one.name: _checked(name, one, given)})
+        config = replace(config, **{group: changed})
+    return config
+
+
+def as_plain(config: DiagnosisConfig) -> dict[str, Plain]:
+    """Return every setting of a configuration by its dotted name, with lists in the place of tuples."""
+    plain: dict[str, Plain] = {}
+    for group, one in _declared():
+        value = getattr(getattr(config, group), one.name)
+        if isinstance(value, tuple):
+            value = list(value)
+        plain[f"{group}.{one.name}"] = value
+    return plain
+
+
+def _declared() -> Iterator[tuple[str, "Field[Any]"]]:
+    """Yield the name of the group and the field of every setting."""
+    for group in fields(DiagnosisConfig):
+        for one in fields(getattr(DEFAULT, group.name)):
+            yield group.name, one
+
+
+def _checked(name: str, one: "Field[Any]", given: Given) -> Number | tuple[Number, ...]:
+    """Return a given value in the type of its setting. Raises BadInput."""
+    if not isinstance(one.default, tuple):
+        return _number(name, one, given)
+    values: Sequence[str | Number]
+    if isinstance(given, str):
+        values = given.strip("[]()").split(",")
+    elif isinstance(given, Sequence):
+        values = given
+    else:
+        values = [given]
+    if len(values) != len(one.default):
+        raise BadInput(f"setting {name} = {given}: {len(one.default)} numbers are needed")
+    return tuple(_number(name, one, value) for value in values)
+
+
+def _number(name: str, one: "Field[Any]", given: object) -> Number:
+    """Return a number of a setting in its type and range. Raises BadInput."""
+    first = one.default[0] if isinstance(one.default, tuple) else one.default
+    whole = isinstance(first, int)
+    about = one.metadata
+    allowed = f"{'an integer' if whole else 'a number'} from {about['low']:g} to {about['high']:g}"
+    refused = BadInput(f"setting {name} = {given}: allowed is {allowed} [{about['unit']}]")
+    if isinstance(given, bool) or not isinstance(given, str | int | float):
+        raise refused
+    try:
+        value = float(given)
+    except ValueError:
+        raise refused from None
+    if not isfinite(value) or not about["low"] <= value <= about["high"]:
+        raise refused
+    if not whole:
+        return value
+    if value != int(value):
+        raise refused
+    return int(value)
