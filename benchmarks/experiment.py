@@ -28,7 +28,7 @@ from boatsim.diagnosis.experiment_design.next_experiment import (
     plans,
     question,
 )
-from boatsim.diagnosis.filter import axes_of, nominal_levels, track
+from boatsim.diagnosis.filter import axes_of, map_recording, nominal_levels
 from boatsim.diagnosis.problem import Problem, scale_of
 from boatsim.diagnosis.search.ranking import Ranking, rank
 from boatsim.physics import vessel
@@ -82,7 +82,7 @@ def drawn(truth: str, rng: np.random.Generator) -> Boat:
         for name, about in type(effect).params().items():
             if about.calibrates:
                 values[program().index(effect.name, name)] *= 1.0 + ERROR * rng.standard_normal()
-    kind = next(type(e) for e in program().suspects if e.name == truth)
+    kind = next(type(e) for e in program().candidates if e.name == truth)
     for name, about in kind.params().items():
         if about.fit:
             spread = about.spread * scale_of(about.unit, boat)
@@ -167,9 +167,11 @@ def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
     boat = program().vessel
     uncertainty = priors.uncertainty(boat)
     problem = Problem(
-        [track(r, program()) for r in recordings], nominal_levels(boat, recordings), uncertainty
+        [map_recording(r, program()) for r in recordings],
+        nominal_levels(boat, recordings),
+        uncertainty,
     )
-    return problem, rank(problem, tuple(e.name for e in program().suspects))
+    return problem, rank(problem, tuple(e.name for e in program().candidates))
 
 
 def probability(ranking: Ranking, name: str) -> float:
@@ -237,7 +239,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--quick", action="store_true", help="one seed, every third entry")
     args = parser.parse_args()
-    names = [e.name for e in program().suspects if type(e).kind == "physics"]
+    names = [e.name for e in program().candidates if type(e).kind == "physics"]
     chosen = (
         [(n, 0) for n in names[::3]]
         if args.quick

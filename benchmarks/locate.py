@@ -33,7 +33,7 @@ from rich.table import Table
 from benchmarks.trials import SHARED
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import axes_of, noise_of, nominal_levels, track
+from boatsim.diagnosis.filter import axes_of, map_recording, noise_of, nominal_levels
 from boatsim.diagnosis.locate.missing_force import BAND, missing_force
 from boatsim.diagnosis.locate.regions import LIKELY, Region, regions
 from boatsim.diagnosis.pipeline import open_recording
@@ -68,7 +68,7 @@ def problem_of(trial: Path) -> Problem:
     opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
     recordings, boat = [r.thinned(priors.rate(b)) for r, b in opened], opened[0][1]
     program = Program(boat, library_for(boat).compiled)
-    tracks = [track(r, program, noise_of(boat, recordings)) for r in recordings]
+    tracks = [map_recording(r, program, noise_of(boat, recordings)) for r in recordings]
     uncertainty = priors.uncertainty(boat)
     return Problem(
         tracks,
@@ -87,7 +87,7 @@ def located(trial: Path) -> Located:
     problem = problem_of(trial)
     known = recalibrated(problem)
     begin = time.process_time()
-    forces = missing_force(problem, known, problem.tracks)
+    forces = missing_force(problem, known, problem.recordings)
     found_in = regions(problem, known)
     seconds = time.process_time() - begin
     samples = []

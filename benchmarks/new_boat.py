@@ -212,7 +212,7 @@ def rows(name: str) -> Iterator[list[str]]:
             verdict,
         ]
     print(
-        f"{name}: {', '.join(found['new'].best.suspects) or 'nothing'} found beside its coefficients",
+        f"{name}: {', '.join(found['new'].best.effects) or 'nothing'} found beside its coefficients",
         file=sys.stderr,
     )
 

@@ -95,7 +95,7 @@ def test_a_rate_limit_behind_a_lag_does_not_halt_the_run(monkeypatch: pytest.Mon
 @pytest.mark.parametrize("delay", [0.03, 0.105, 0.13, 0.17, 0.4301])
 def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: float) -> None:
     """A ramp and a delay in one channel, three channels that change at different times: no arrival is stepped over."""
-    program = Program(vessel.load("jet_ski", ["low_speed"]), suspects=(CommandDelay(),))
+    program = Program(vessel.load("jet_ski", ["low_speed"]), candidates=(CommandDelay(),))
     values, on = program.values(), program.switches(["command_delay"])
     values[program.index("command_delay", "delay")] = delay
     rng, rows = np.random.default_rng(5), 100

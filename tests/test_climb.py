@@ -6,7 +6,7 @@ from jet_craft import Craft, sailed
 
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.coordinate_search import climbed
-from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.filter import map_recording, nominal_levels
 from boatsim.diagnosis.fit import learnt
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -66,7 +66,7 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
     program = Program(boat, library_for(boat).entries)
     said = []
     for share in (1.0, 0.1):
-        laid = track(run, program)
+        laid = map_recording(run, program)
         laid.step *= share
         values = laid.values.copy()
         # 15 /s at 5 m/s; at rest the craft has less than 1 /s
@@ -82,7 +82,7 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     run = sailed(craft, np.full(100, 4.0), np.repeat([0.1, -0.1], 50), 24.0)
     del run.signals["u_mps"]
     program = Program(boat, library_for(boat).entries)
-    laid = track(run, program)
+    laid = map_recording(run, program)
     means, covariances = laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))
     assert laid.rates[0] == pytest.approx(24.0, abs=1.5)  # of noisy fixes a second apart
     speed, sd = (
@@ -103,7 +103,7 @@ def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> N
         del run.signals[name]
     run.signals["psi_rad"] = run.signals["psi_rad"] + 2.0
     program = Program(boat, library_for(boat).entries)
-    laid = track(run, program)
+    laid = map_recording(run, program)
     assert laid.rates[:2] == pytest.approx([24.0 * np.cos(2.0), 24.0 * np.sin(2.0)], abs=0.5)
     means, _ = laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))
     assert np.hypot(*means[0, 4:6]) == pytest.approx(24.0, abs=0.3)

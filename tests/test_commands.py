@@ -10,7 +10,7 @@ from boats import PLANAR, planar, written
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from boatsim.diagnosis.filter import track
+from boatsim.diagnosis.filter import map_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.commands import taken_row, taken_rows
@@ -125,7 +125,7 @@ def test_a_diagnosis_sees_the_commands_that_acted(boat: Vessel) -> None:
     t = np.arange(0.0, 10.0, 0.1)
     pose = {n: np.zeros(len(t)) for n in ("x_m", "y_m", "psi_rad")}
     sent = {n: np.zeros(len(t)) for n in boat.commands} | {"thrust_port_N": np.full(len(t), 100.05)}
-    laid = track(Recording("r", t, pose | sent), Program(boat))
+    laid = map_recording(Recording("r", t, pose | sent), Program(boat))
     assert laid.commands.max() == 100.0
 
 

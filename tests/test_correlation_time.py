@@ -10,7 +10,7 @@ import pytest
 from real_boat import Real, recorded
 
 from boatsim.diagnosis import correlation_time, pipeline, priors
-from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.filter import map_recording, nominal_levels
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.physics import vessel
@@ -56,9 +56,9 @@ def test_it_is_halved_or_doubled_as_long_as_that_predicts_clearly_better(
         lambda problem, found, seconds: np.full(9, errors[seconds]),
     )
     problem: Any = SimpleNamespace(ambient=SimpleNamespace(time_constant=1.0))
-    named: Any = SimpleNamespace(suspects=("wind",))
+    named: Any = SimpleNamespace(effects=("wind",))
     assert correlation_time.correlation_time(problem, named) == taken
-    assert correlation_time.correlation_time(problem, SimpleNamespace(suspects=())) == 1.0  # type: ignore[arg-type]
+    assert correlation_time.correlation_time(problem, SimpleNamespace(effects=())) == 1.0  # type: ignore[arg-type]
 
 
 def test_what_swings_from_run_to_run_is_not_clearly_less() -> None:
@@ -72,7 +72,7 @@ def test_what_swings_from_run_to_run_is_not_clearly_less() -> None:
 def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> None:
     boat = vessel.load("kvlcc2_roll")
     t = np.arange(0.0, 20.0, 0.2)
-    whole = track(
+    whole = map_recording(
         Recording("decay", t, {"phi_rad": 0.2 * np.cos(2.5 * t) * np.exp(-0.05 * t)}),
         Program(boat, ()),
     )

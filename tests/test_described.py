@@ -12,7 +12,7 @@ import pytest
 from pushed_boat import BOAT, Late, Missing, sail
 
 from boatsim.diagnosis.candidates import composed, library_for
-from boatsim.diagnosis.filter import track
+from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.pipeline import Diagnosis, diagnose_recordings
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.errors import BadInput
@@ -171,12 +171,12 @@ def replays(found: Diagnosis, held_out: Recording, folder: Path) -> None:
     )
     program, on = composed(vessel.load(str(folder / "patched.toml")))
     fit, levels = found.ranking.best, found.ranking.best.levels
-    laid = track(held_out, found.problem.program)
+    laid = map_recording(held_out, found.problem.program)
     for slot, term in found.ranking.laws.items():
         for key, x in term.completed(BOAT).by_name().items():
             laid.values[found.problem.program.index(slot, key)] = x
     here = found.problem.values(laid, fit.free, fit.theta)
-    again = track(held_out, program)
+    again = map_recording(held_out, program)
     ours = laid.free_runs(
         here, found.problem.program.switches(tuple(found.ranking.laws)), levels, 6.0
     )

@@ -206,13 +206,13 @@ def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
     problem, fit = laid(sail("run", 1, nothing)[0])
     (way,), program = ways(problem, fit), problem.program
     term = DescribedForce(axis="sway", of=("recent_abs_thrust_port_N",), memory=1.7)
-    write(problem, "described_1", term, problem.tracks)
+    write(problem, "described_1", term, problem.recordings)
     number = next(i for i, e in enumerate(program.effects) if e.name == "described_1")
-    acting = actuators(problem.tracks[0], ("described_1",), problem.tracks[0].values)
+    acting = actuators(problem.recordings[0], ("described_1",), problem.recordings[0].values)
     np.testing.assert_allclose(
         way.size(term), acting[:, program.composition.own(number)], atol=1e-9
     )
-    assert {t.memory for t in neighbours(term, problem.tracks, 0.5)} == {1.7 * 1.5, 1.7 / 1.5}
+    assert {t.memory for t in neighbours(term, problem.recordings, 0.5)} == {1.7 * 1.5, 1.7 / 1.5}
 
 
 @pytest.mark.parametrize(

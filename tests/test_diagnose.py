@@ -13,7 +13,7 @@ from scipy.stats import multivariate_normal
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import Levels, nominal_levels, segments, track
+from boatsim.diagnosis.filter import NoiseLevels, map_recording, nominal_levels, segments
 from boatsim.diagnosis.problem import scale_of
 from boatsim.diagnosis.report import before_after
 from boatsim.diagnosis.report.answer import key_of
@@ -45,8 +45,8 @@ def roll_recording(n: int = 40, dt: float = 0.2) -> Recording:
 def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model():
     boat = vessel.load("kvlcc2_roll")
     rec = roll_recording()
-    found = track(rec, Program(boat))
-    levels = Levels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
+    found = map_recording(rec, Program(boat))
+    levels = NoiseLevels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
     on = found.program.switches()
     values = found.values
     # the same model written down here: d/dt (phi, p, K) and its exact discretisation
@@ -91,23 +91,23 @@ def test_one_outlier_moves_neither_states_nor_evidence_much():
     clean = roll_recording()
     spoilt = replace(clean, signals={"phi_rad": clean["phi_rad"].copy()})
     spoilt["phi_rad"][20] += 0.5
-    levels = Levels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
+    levels = NoiseLevels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
     program = Program(boat)
-    laid = (track(r, program) for r in (clean, spoilt))
+    laid = (map_recording(r, program) for r in (clean, spoilt))
     first, second = (t.smoothed(t.values, program.switches(), levels)[0] for t in laid)
     assert np.abs(first[:, 0] - second[:, 0]).max() < 2e-3
 
 
 def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
     boat = vessel.load("kvlcc2_roll")
-    levels = Levels(np.array([0.2]), 1.5, {"roll_sd_rad": 1e-3})
+    levels = NoiseLevels(np.array([0.2]), 1.5, {"roll_sd_rad": 1e-3})
     program = Program(boat)
 
     def likelihood(off: float) -> float:
         spoilt = roll_recording()
         spoilt = replace(spoilt, signals={"phi_rad": spoilt["phi_rad"].copy()})
         spoilt["phi_rad"][20] += off
-        laid = track(spoilt, program)
+        laid = map_recording(spoilt, program)
         return laid.likelihood(laid.values, program.switches(), levels)
 
     off = np.linspace(0.004, 0.02, 161)  # through the gate, which is at 5 sd
@@ -152,7 +152,7 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
     joystick,
 ):
     recording = driven(joystick.vessel)
-    laid, levels = track(recording, joystick), nominal_levels(joystick.vessel, [recording])
+    laid, levels = map_recording(recording, joystick), nominal_levels(joystick.vessel, [recording])
     nothing, delayed = joystick.switches(), joystick.switches(["command_delay"])
     split = laid.values.copy()
     split[joystick.index("command_delay", "delay")] = 1e-5
@@ -303,11 +303,11 @@ def test_patched_file_gives_the_fitted_motion_back(folder):
     assert {e.name for e in again.effects} >= {"weak_reverse", "wind"}
     assert "# [kg]" in (folder / "patched.toml").read_text()  # comments are kept
     rec = recording.read(runs[1], again.limits())
-    fitted, own = track(rec, found.problem.program), track(rec, Program(again))
+    fitted, own = map_recording(rec, found.problem.program), map_recording(rec, Program(again))
     best = found.ranking.best
     first = fitted.free_runs(
         found.problem.values(fitted, best.free, best.theta),
-        fitted.program.switches(best.suspects),
+        fitted.program.switches(best.effects),
         best.levels,
         6.0,
     )

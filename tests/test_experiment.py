@@ -15,7 +15,7 @@ from boatsim.diagnosis.candidates import absent, library_for
 from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, menu
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import laid
-from boatsim.diagnosis.filter import Levels, nominal_levels, track
+from boatsim.diagnosis.filter import NoiseLevels, map_recording, nominal_levels
 from boatsim.diagnosis.fit import converge, descend, fit
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.screening import screen
@@ -94,7 +94,9 @@ def tie(case: str) -> tuple[Problem, Fit, Fit]:
     first = recorded(name, settings, script)
     boat = program().vessel
     problem = Problem(
-        [track(first, program())], nominal_levels(boat, [first]), {"damping": 0.05, "thrust": 0.05}
+        [map_recording(first, program())],
+        nominal_levels(boat, [first]),
+        {"damping": 0.05, "thrust": 0.05},
     )
     nominal = descend(problem, problem.nominal(), 4, 0.1)
     winner, other = (converge(problem, f) for f in screen(problem, nominal, [name, rival]).values())
@@ -131,7 +133,9 @@ def test_suggestion_tells_more_than_the_first_manoeuvre_once_more(case):
 def test_wind_is_told_from_current_by_turning():
     problem, winner, _ = tie("wind at constant heading")
     psi = course(problem, winner, suggested("wind at constant heading"))[:, 2]
-    assert np.ptp(problem.tracks[0].measured[:, 2]) < 0.6  # the first recording held its heading
+    assert (
+        np.ptp(problem.recordings[0].measured[:, 2]) < 0.6
+    )  # the first recording held its heading
     assert np.ptp(psi) > np.pi
 
 
@@ -155,8 +159,10 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
     boat = vessel.load("kvlcc2_roll")
     t = 0.2 * np.arange(150)
     first = Recording("first", t, {"phi_rad": 0.1 * np.cos(2.46 * t)})
-    levels = Levels(np.array([2.0]), 0.5, {"roll_sd_rad": 1e-3})
-    problem = Problem([track(first, Program(boat))], levels, {"damping": 0.3, "restoring": 0.01})
+    levels = NoiseLevels(np.array([2.0]), 0.5, {"roll_sd_rad": 1e-3})
+    problem = Problem(
+        [map_recording(first, Program(boat))], levels, {"damping": 0.3, "restoring": 0.01}
+    )
     free = problem.parameters(())
     assert [f.name for f in free] == ["roll", "stiffness"]
     winner, rival = (
@@ -263,7 +269,7 @@ def test_diagnose_leaves_the_scenario_beside_its_answer_and_takes_an_old_one_awa
     commands.write(found, tmp_path / "out")
     wanted = found.findings.answer["next_experiment"]
     assert wanted["scenario"] == "next.toml" and wanted["expected_gain_nats"] > 0.0
-    assert set(wanted["separates"]) <= {"nothing", *(e.name for e in program().suspects)}
+    assert set(wanted["separates"]) <= {"nothing", *(e.name for e in program().candidates)}
     assert scenario.load(str(tmp_path / "out" / "next.toml")).vessel.name == "trial_boat"
     assert "What to record next" in (tmp_path / "out" / "report.html").read_text()
     commands.write(replace(found, plan=None), tmp_path / "out")
@@ -307,8 +313,8 @@ def test_hull_without_commands_is_released_at_another_angle(tmp_path):
     first = Recording(
         "first", t, {"phi_rad": 0.1 * np.cos(2.0 * t)}
     )  # sqrt(stiffness 2 / inertia 0.5) = 2 rad/s
-    levels = Levels(np.array([1e-3]), 1.0, {"roll_sd_rad": 1e-3})
-    problem = Problem([track(first, Program(boat, suspects))], levels, {})
+    levels = NoiseLevels(np.array([1e-3]), 1.0, {"roll_sd_rad": 1e-3})
+    problem = Problem([map_recording(first, Program(boat, suspects))], levels, {})
     nominal = problem.nominal()
     winner, rival = (
         fit(problem, f) for f in screen(problem, nominal, [e.name for e in suspects]).values()
@@ -342,7 +348,9 @@ def test_zig_zag_of_a_ship_changes_over_where_its_heading_is_expected_to_be(tmp_
         **dict(zip(boat.commands, rows.T, strict=True)),
     }
     problem = Problem(
-        [track(Recording("first", t, signals), code)], Levels(np.full(3, 0.1), 1.0, NOISE), {}
+        [map_recording(Recording("first", t, signals), code)],
+        NoiseLevels(np.full(3, 0.1), 1.0, NOISE),
+        {},
     )
     zigzag = next(m for m in menu(boat, steady, 0.0, False) if m.words == "20/20 zig-zag")
     found = laid(problem, problem.nominal(), zigzag)

@@ -7,7 +7,7 @@ import pytest
 
 from boatsim.diagnosis.candidates import composed
 from boatsim.diagnosis.checks.initial_actuator_state import begun
-from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.filter import map_recording, nominal_levels
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.replay import as_written
 from boatsim.recordings.table import Recording
@@ -25,7 +25,7 @@ def log() -> Recording:
 
 def test_a_log_from_rest_is_replayed_as_it_was(log: Recording) -> None:
     problem, fitted = as_written(log, scenario.load("otter/turn").vessel)
-    off = errors(free_runs(problem, {"simulated": fitted}, problem.tracks, 6.0))
+    off = errors(free_runs(problem, {"simulated": fitted}, problem.recordings, 6.0))
     assert off["position_rms_m"]["simulated"] < 1e-4
     assert off["heading_rms_rad"]["simulated"] < 1e-4
 
@@ -36,12 +36,12 @@ def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recor
     levels = nominal_levels(boat, [log])
     late = log.between(3.0, 20.0)
     for recording, rows in ((log, 2), (late, 1)):  # of commands, which stay as they are
-        assert len(begun(track(recording, program), levels).orders) == rows
+        assert len(begun(map_recording(recording, program), levels).orders) == rows
 
 
 def test_where_nothing_tells_the_actuators_have_settled(log: Recording) -> None:
     boat = scenario.load("otter/turn").vessel
     program, _ = composed(boat)
     still = replace(log, signals=log.signals | {n: np.zeros(len(log)) for n in boat.commands})
-    laid = track(still, program)
+    laid = map_recording(still, program)
     assert begun(laid, nominal_levels(boat, [still])) is laid

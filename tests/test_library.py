@@ -90,7 +90,7 @@ def test_what_rides_on_thrusters_rides_on_propellers_by_their_rate() -> None:
     otter = vessel.load("otter")
     port, starboard = (e for e in otter.effects if isinstance(e, Propeller))
     walk = PropWalk(side_force_per_thrust=0.2, ahead_share=0.5).completed(otter)
-    program = Program(otter, suspects=(walk,))
+    program = Program(otter, candidates=(walk,))
     act, still = np.zeros(program.held_size), np.zeros(2 * program.module.NQ)
     sent = program.command_array({"n_port_radps": 50.0, "n_starboard_radps": -50.0})
     off, on = program.switches(), program.switches(["prop_walk"])

@@ -12,7 +12,7 @@ from scipy.linalg import expm
 from scipy.stats import kstest
 
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.filter import map_recording, nominal_levels
 from boatsim.diagnosis.locate.missing_force import BAND, force_left, intervals, missing_force
 from boatsim.diagnosis.locate.periodicity import rhythm
 from boatsim.diagnosis.locate.region_candidates import walls_of
@@ -205,7 +205,7 @@ def swelling(t: float, y: Array, command: Array) -> Array:
 def test_the_band_holds_a_force_that_was_put_there_and_flags_it_where_it_is() -> None:
     runs = [sail(f"swelling_{k}", 30 + k, swelling) for k in range(2)]
     problem, found = laid(*(r for r, _ in runs))
-    forces = missing_force(problem, found, problem.tracks)
+    forces = missing_force(problem, found, problem.recordings)
     true = np.concatenate([running_average(f, 6) for _, f in runs])
     mean, sd = np.concatenate([f.mean for f in forces]), np.concatenate([f.sd for f in forces])
     inside = np.abs(mean - true) < BAND * sd
@@ -222,7 +222,7 @@ def test_the_band_holds_a_force_that_was_put_there_and_flags_it_where_it_is() ->
     )
     # what the recalibrated vessel itself leaves over has no part of the thrust that is 6 % more
     thrust = np.concatenate([push_of(r) for r, _ in runs])
-    left = np.concatenate([f.mean for f in force_left(problem, found, problem.tracks)])
+    left = np.concatenate([f.mean for f in force_left(problem, found, problem.recordings)])
     of_true, of_mean, of_left = (
         np.sum(f[:, 0] * thrust) / np.sum(thrust**2) for f in (true, mean, left)
     )
@@ -325,7 +325,10 @@ def test_walls_stated_in_a_recording_are_those_of_the_library_entry_too() -> Non
         "stated", np.arange(30) / RATE, still, Notes(facts={"walls_m": [-1.0, 2.0, -3.0, 5.0]})
     )
     program = Program(BOAT, library_for(BOAT).entries)
-    own, other = track(replace(stated, notes=Notes()), program), track(stated, program)
+    own, other = (
+        map_recording(replace(stated, notes=Notes()), program),
+        map_recording(stated, program),
+    )
     at = [program.index("wall_effect", n) for n in ("x_low", "x_high", "y_low", "y_high")]
     assert other.values[at] == pytest.approx([-1.0, 2.0, -3.0, 5.0]) == walls_of(other)
     assert own.values[at] == pytest.approx([-4.0, 4.0, -3.0, 3.0]) == walls_of(own)
@@ -357,7 +360,9 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
     rec = Recording("decay", t, {"phi_rad": phi})
     program = Program(ship)
     problem = Problem(
-        [track(rec, program)], nominal_levels(ship, [rec]), {"damping": 0.05, "restoring": 0.02}
+        [map_recording(rec, program)],
+        nominal_levels(ship, [rec]),
+        {"damping": 0.05, "restoring": 0.02},
     )
     found = baseline(problem)[1]
     assert [r.variable for r in regions(problem, found)][: 1 if name else None] == (
@@ -402,7 +407,7 @@ def test_stretches_are_told_by_the_clock_of_the_recording() -> None:
     """A later part of a recording does not begin at 0 s."""
     recording, _ = sail("run_0", 80, nothing)
     problem, _ = laid(replace(recording, t=recording.t + 100.0))
-    (followed,) = problem.tracks
+    (followed,) = problem.recordings
     told = dict(features(followed, np.ones((ROWS, 6)), 1.0))
     assert (
         "time: it acts in 100 to 105 s of run_0" in told

@@ -8,7 +8,7 @@ import pytest
 from low_speed_boat import Real, recorded
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.filter import track
+from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.recordings import table as recording
 from boatsim.simulate import scenario
@@ -42,10 +42,10 @@ def named(found: Diagnosis) -> dict[str, Any]:
 
 def yaw_rate_error(found: Diagnosis, seed: int, real: Real, patched: bool) -> float:
     """Rms yaw rate error [deg/s] of one free run over a whole recording."""
-    laid = track(recorded(real, seed), found.problem.program)
+    laid = map_recording(recorded(real, seed), found.problem.program)
     fit = found.ranking.best if patched else found.ranking.nominal
     values = found.problem.values(laid, fit.free, fit.theta)
-    on = found.problem.program.switches(fit.suspects)
+    on = found.problem.program.switches(fit.effects)
     ((_, run),) = laid.free_runs(values, on, fit.levels, float(np.ptp(laid.times)))
     column = laid.signals.index("r_radps")
     return float(np.degrees(np.std(run[:, YAW_RATE] - laid.measured[: len(run), column])))

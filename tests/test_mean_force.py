@@ -17,7 +17,7 @@ def left(force: Callable[[float], tuple[float, float, float]]) -> dict[str, floa
     problem, best = laid(
         *(sail(f"run_{seed}", seed, lambda t, y, c: np.array(force(t)))[0] for seed in (1, 2))
     )
-    return mean_left(problem, best, problem.tracks)
+    return mean_left(problem, best, problem.recordings)
 
 
 @pytest.mark.parametrize("sway", [0.2, -0.2])

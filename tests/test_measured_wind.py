@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.experiment_design.manoeuvres import commanded, menu
-from boatsim.diagnosis.filter import track
+from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.pipeline import open_recording
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
@@ -193,7 +193,7 @@ def test_a_scenario_says_what_is_measured_and_the_log_has_it(tmp_path: Path) -> 
     file = tmp_path / "adrift.csv"
     write_csv(log, file)
     recording, boat = open_recording(file, str(tmp_path / "blown/"), ())
-    assert track(recording, Program(boat)).commands[0].tolist() == pytest.approx(
+    assert map_recording(recording, Program(boat)).commands[0].tolist() == pytest.approx(
         [0.0] * 4 + list(wind.values())
     )
 
@@ -232,7 +232,7 @@ def test_a_recording_without_the_anemometer_is_one_line(tmp_path: Path) -> None:
     with_anemometer(tmp_path)
     recording, boat = read_back(tmp_path, {"wind_mps": np.full(60, 2.0)})
     with pytest.raises(BadInput, match="log.csv.*column wind_from_rad is missing") as found:
-        track(recording, Program(boat))
+        map_recording(recording, Program(boat))
     assert "\n" not in str(found.value)
 
 

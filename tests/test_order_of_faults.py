@@ -48,7 +48,7 @@ def sent(rows: int, seed: int) -> dict[str, NDArray[np.float64]]:
 
 def sailed(boat: Vessel, fault: ThrustDeadband, seed: int) -> Recording:
     """A noisy recording of 40 s of the boat with a fault."""
-    program, rows = Program(boat, suspects=(fault,)), 400
+    program, rows = Program(boat, candidates=(fault,)), 400
     code, given, rng = program.module, sent(rows, seed), np.random.default_rng(100 + seed)
     commands = np.column_stack([given[c] for c in boat.commands])
     values, on, memory = (
@@ -83,7 +83,7 @@ def test_each_order_is_the_composition_that_it_says(tmp_path: Path) -> None:
         ThrustDeadband(width=WIDTH),
         ThrustDeadband(width=WIDTH, name="behind", other_side=True),
     )
-    program = Program(boat, suspects=(usual, other))
+    program = Program(boat, candidates=(usual, other))
     ends = {}
     for name in ("thrust_deadband", "behind"):
         memory, act, on = (
@@ -141,6 +141,6 @@ def test_a_diagnosis_tells_a_dead_band_of_the_shaft_from_one_of_the_command(
     assert effect["words"].endswith("in the actuator and not in its command") == behind
     width = effect["parameters"]["width_N"]
     assert abs(width["value"] - WIDTH) < 3.0 * width["sd"] < 0.5 * WIDTH
-    assert found.ranking.best.suspects == (
+    assert found.ranking.best.effects == (
         "reordered_thrust_deadband" if behind else "thrust_deadband",
     )

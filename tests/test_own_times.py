@@ -7,7 +7,7 @@ import numpy as np
 from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
-from boatsim.diagnosis.filter import MAX_STEP, body_of, noise_beside, track
+from boatsim.diagnosis.filter import MAX_STEP, body_of, map_recording, noise_beside
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -34,7 +34,7 @@ def quick() -> tuple[Recording, Array]:
 def test_thinned_rows_keep_every_command_at_its_own_time() -> None:
     run, states = quick()
     boat = vessel.load("trial_boat")
-    laid = track(run.thinned(5.0), Program(boat))
+    laid = map_recording(run.thinned(5.0), Program(boat))
     assert len(laid.times) == ROWS // 10 + 1 and len(laid.given) == ROWS // 2 + 1
     n, out = len(laid.times), np.full((1, len(laid.times), 6), np.nan)
     there = np.rint(laid.times / (EVERY / 2)).astype(int)

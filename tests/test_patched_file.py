@@ -9,7 +9,7 @@ import pytest
 from alike import few
 
 from boatsim.diagnosis.candidates import composed
-from boatsim.diagnosis.filter import MAX_STEP, Levels, Track, axes_of, body_of
+from boatsim.diagnosis.filter import MAX_STEP, MappedRecording, NoiseLevels, axes_of, body_of
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.errors import BadInput
@@ -26,7 +26,7 @@ OFF = 0.1  # relative, of every coefficient that a diagnosis recalibrates
 
 def problem_of(boat: Vessel) -> Problem:
     """A made-up run of a vessel, to fit nothing with: commands in steps, no measurements."""
-    releases = tuple(e for e in composed(boat)[0].suspects if isinstance(e, Release))
+    releases = tuple(e for e in composed(boat)[0].effects if isinstance(e, Release))
     program = Program(boat, releases)  # a law that does not act would only be compiled for nothing
     rng = np.random.default_rng(7)
     low, high = (np.array([getattr(c, a) for c in boat.commands.values()]) for a in ("low", "high"))
@@ -36,7 +36,7 @@ def problem_of(boat: Vessel) -> Problem:
         commands = np.repeat(low + steps * (high - low), 10, axis=0)[:ROWS]
     nq = len(axes_of(boat))
     measured, scale = np.full((ROWS, 1), np.nan), {"heading_sd_rad": 1.0}
-    track = Track(
+    track = MappedRecording(
         "made_up",
         program,
         ROW * np.arange(ROWS),
@@ -48,13 +48,13 @@ def problem_of(boat: Vessel) -> Problem:
         np.append(program.values(), program.body),
         scale,
     )
-    levels = Levels(np.ones(nq), 1.0, {"heading_sd_rad": 0.01})
+    levels = NoiseLevels(np.ones(nq), 1.0, {"heading_sd_rad": 0.01})
     return Problem([track], levels, {"damping": OFF, "thrust": OFF, "restoring": OFF})
 
 
 def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
     """Channels of a free run from a slow, turning, heeled start, (ROWS, 2 NQ)."""
-    track, nq = problem.tracks[0], problem.program.module.NQ
+    track, nq = problem.recordings[0], problem.program.module.NQ
     out, start = np.full((1, ROWS, 2 * nq), np.nan), np.zeros((1, 2 * nq))
     start[0, nq - 1 :] = 0.02
     start[0, nq] = getattr(problem.program.vessel.effect("speed_hold"), "speed", 0.5)
@@ -89,15 +89,15 @@ def test_replay_of_the_patched_file_is_the_free_run_in_memory(name: str, tmp_pat
     boat = vessel.load(name)
     problem = problem_of(boat)
     found = recalibrated(problem, OFF)
-    fitted = free_run(problem, problem.values(problem.tracks[0], found.free, found.theta), ())
+    fitted = free_run(problem, problem.values(problem.recordings[0], found.free, found.theta), ())
     patched_vessel.write(problem, boat, found, tmp_path / "patched.toml")
     again = problem_of(vessel.load(str(tmp_path / "patched.toml")))
-    replayed = free_run(again, again.tracks[0].values, ())
+    replayed = free_run(again, again.recordings[0].values, ())
     assert np.isfinite(fitted).all()
     np.testing.assert_allclose(replayed, fitted, rtol=1e-7, atol=1e-7)
     if found.free:
         assert (
-            np.abs(fitted - free_run(problem, problem.tracks[0].values, ())).max() > 1e-5
+            np.abs(fitted - free_run(problem, problem.recordings[0].values, ())).max() > 1e-5
         )  # something was patched
 
 
@@ -107,7 +107,7 @@ def test_a_patched_file_states_what_a_rule_would_fill_in_otherwise(tmp_path: Pat
     found = recalibrated(problem, OFF)
     patched_vessel.write(problem, boat, found, tmp_path / "patched.toml")
     again = vessel.load(str(tmp_path / "patched.toml"), ["condition_1"])
-    fitted = problem.values(problem.tracks[0], found.free, found.theta)
+    fitted = problem.values(problem.recordings[0], found.free, found.theta)
     np.testing.assert_allclose(
         Program(again).values(), fitted[: len(Program(again).values())], rtol=1e-9
     )
@@ -197,13 +197,15 @@ def test_a_release_is_written_as_the_coefficients_it_found_to_be_off(
         found.evidence,
     )
     assert len(free) == len(found.theta)
-    fitted = free_run(problem, problem.values(problem.tracks[0], free, found.theta), found.suspects)
+    fitted = free_run(
+        problem, problem.values(problem.recordings[0], free, found.theta), found.effects
+    )
     patched_vessel.write(problem, boat, found, tmp_path / "patched.toml")
     patched = vessel.load(str(tmp_path / "patched.toml"))
     assert [e.name for e in patched.effects] == [e.name for e in boat.effects]  # no further law
     again = problem_of(patched)
     np.testing.assert_allclose(
-        free_run(again, again.tracks[0].values, ()), fitted, rtol=1e-7, atol=1e-7
+        free_run(again, again.recordings[0].values, ()), fitted, rtol=1e-7, atol=1e-7
     )
     text = (tmp_path / "patched.toml").read_text()
     assert all(f"{entry}, " in text for entry in RELEASED[name])

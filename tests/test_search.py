@@ -95,6 +95,6 @@ def test_an_effect_acts_where_recordings_tell_a_number_of_it_whatever_they_leave
         least_sd,
     )
     found = replace(
-        base, suspects=("planing_lag",), free=free, theta=theta, covariance=np.diag(sd**2)
+        base, effects=("planing_lag",), free=free, theta=theta, covariance=np.diag(sd**2)
     )
     assert there(Sets(problem, ("planing_lag",), base), found, "planing_lag") is acts

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pushed_boat import laid, push, sail
 
-from boatsim.diagnosis.filter import Track, track
+from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
@@ -17,7 +17,7 @@ from boatsim.diagnosis.search.screening import screen
 from boatsim.diagnosis.search.validation import foretold, lawful, refuted, stood_for, told
 from boatsim.physics.base import Array
 
-Laid = tuple[Problem, Fit, Fit, list[Track]]
+Laid = tuple[Problem, Fit, Fit, list[MappedRecording]]
 
 
 def a_third_less_astern(t: float, y: Array, command: Array) -> Array:
@@ -33,13 +33,13 @@ def weak() -> Laid:
         problem,
         base,
         found,
-        [track(sail("unseen", 60, a_third_less_astern)[0], problem.program)],
+        [map_recording(sail("unseen", 60, a_third_less_astern)[0], problem.program)],
     )
 
 
 def sets_of(problem: Problem, base: Fit, *fits: Fit) -> Sets:
     sets = Sets(problem, ("weak_reverse", "steady_force", "wave_forcing"), base)
-    sets.fits |= {frozenset(f.suspects): f for f in fits}
+    sets.fits |= {frozenset(f.effects): f for f in fits}
     return sets
 
 

@@ -9,7 +9,7 @@ from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import Levels, Track, inertia_of, track
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, inertia_of, map_recording
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.facts import wrong
@@ -19,12 +19,12 @@ from boatsim.recordings.table import Recording
 NOISE, RMS, TIME = 0.01, 0.05, 4.0  # [m], [m], [s]
 
 
-def laid_at_rest(x: Array, every: float) -> tuple[Program, Track]:
+def laid_at_rest(x: Array, every: float) -> tuple[Program, MappedRecording]:
     boat = vessel.load("trial_boat")
     program = Program(boat, library_for(boat).entries)
     t = every * np.arange(len(x))
     still = {name: np.zeros(len(x)) for name in ("y_m", "psi_rad", *boat.commands)}
-    return program, track(Recording("still", t, {"x_m": x} | still), program)
+    return program, map_recording(Recording("still", t, {"x_m": x} | still), program)
 
 
 def likelihood(x: Array, every: float, rms: float) -> float:
@@ -37,7 +37,7 @@ def likelihood(x: Array, every: float, rms: float) -> float:
     for name, value in (("position", rms), ("time", TIME)):
         values[program.index("position_wander", name)] = value
     families = {"position_sd_m": NOISE, "heading_sd_rad": 0.01}
-    levels = Levels(np.full(3, 1e-9), 1.0, families)
+    levels = NoiseLevels(np.full(3, 1e-9), 1.0, families)
     laid.start[0] = x[0]
     return float(laid.likelihood(values, program.switches(["position_wander"]), levels))
 
@@ -73,7 +73,7 @@ def test_added_mass_does_not_calm_the_water() -> None:
     assert heavy[0] == pytest.approx(light[0] + boat.body.mass)
     x = np.random.default_rng(0).normal(0.0, 0.003, 200)
     _, laid = laid_at_rest(x, 0.2)
-    levels = Levels(np.full(3, 0.05), 1.0, {"position_sd_m": 0.003, "heading_sd_rad": 0.01})
+    levels = NoiseLevels(np.full(3, 0.05), 1.0, {"position_sd_m": 0.003, "heading_sd_rad": 0.01})
     on = program.switches(["extra_mass"])
     still, moved = (laid.likelihood(v, on, levels) for v in (values, heavier))
     assert (

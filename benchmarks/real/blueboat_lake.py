@@ -17,7 +17,7 @@ import numpy as np
 from benchmarks.real.common import print_verdict, report, runs_of, table
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.correlation_time import timed
-from boatsim.diagnosis.filter import Track, noise_of, segments, track
+from boatsim.diagnosis.filter import MappedRecording, map_recording, noise_of, segments
 from boatsim.diagnosis.fit import converge, fit
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
@@ -39,12 +39,12 @@ WINDOW, SHORTEST = (
 
 def instruments(problem: Problem, found: Fit) -> list[Measurement]:
     """The measurement effects of a fit, with their fitted values."""
-    kinds = {e.name: type(e) for e in problem.program.suspects if isinstance(e, Measurement)}
+    kinds = {e.name: type(e) for e in problem.program.candidates if isinstance(e, Measurement)}
     values = {
         n: {f.name: float(x) for f, x in zip(found.free, found.theta, strict=True) if f.effect == n}
         for n in kinds
     }
-    return [kinds[n](**values[n]) for n in found.suspects if n in kinds]
+    return [kinds[n](**values[n]) for n in found.effects if n in kinds]
 
 
 def corrected(heading: Array, effects: Sequence[Measurement]) -> Array:
@@ -84,7 +84,7 @@ class LeftOut:
     """What the fit of all other runs makes of one."""
 
     run: str
-    suspects: tuple[str, ...]  # chosen without it
+    effects: tuple[str, ...]  # chosen without it
     stretches: Sequence[FreeRun]
     as_recorded: Sequence[float]  # dead reckoning: error per path of each window
     corrected: Sequence[float]
@@ -94,7 +94,7 @@ def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
     """Each run judged by a model chosen without its group and fitted without it; one compiled program serves all."""
     whole = [pipeline.open_recording(path, VESSEL, ())[0] for path in runs.values()]
     stated, rate = noise_of(found.vessel, whole), priors.rate(found.vessel)
-    tracks = [track(run.thinned(rate), found.problem.program, stated) for run in whole]
+    tracks = [map_recording(run.thinned(rate), found.problem.program, stated) for run in whole]
     recorded = dict(zip((t.name for t in tracks), whole, strict=True))
     of_hull = replace(found.problem.ambient, time_constant=priors.time_constant(found.vessel))
     usual = Problem(
@@ -111,13 +111,17 @@ def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
     return sorted(out, key=lambda one: one.run)
 
 
-def without(problem: Problem, tracks: Sequence[Track], held_out: Sequence[Track]) -> Problem:
+def without(
+    problem: Problem, tracks: Sequence[MappedRecording], held_out: Sequence[MappedRecording]
+) -> Problem:
     """The same question about all runs but some."""
     kept = [t for t in tracks if all(t is not u for u in held_out)]
     return Problem(kept, problem.ambient, problem.uncertainty)
 
 
-def _judged(rest: Problem, chosen: tuple[Fit, Fit], held_out: Track, run: Recording) -> LeftOut:
+def _judged(
+    rest: Problem, chosen: tuple[Fit, Fit], held_out: MappedRecording, run: Recording
+) -> LeftOut:
     """Coefficients of the recalibrated and the patched boat fitted on `rest`, both judged on the run left out."""
     fits = {
         name: converge(rest, fit(rest, f))
@@ -126,7 +130,7 @@ def _judged(rest: Problem, chosen: tuple[Fit, Fit], held_out: Track, run: Record
     stretches = free_runs(rest, fits, [held_out], HORIZON)
     heading = corrected(run["psi_rad"], instruments(rest, fits["patched"]))
     reckoned = dead_reckoning(run, run["psi_rad"]), dead_reckoning(run, heading)
-    return LeftOut(held_out.name, chosen[1].suspects, stretches, *reckoned)
+    return LeftOut(held_out.name, chosen[1].effects, stretches, *reckoned)
 
 
 def print_left_out(folds: Sequence[LeftOut]) -> None:
@@ -155,7 +159,7 @@ def print_left_out(folds: Sequence[LeftOut]) -> None:
         header,
         rows,
     )
-    chosen = Counter(n for f in folds for n in f.suspects)
+    chosen = Counter(n for f in folds for n in f.effects)
     table(
         "chosen without the run, and for how many of them",
         ["effect", "runs"],

@@ -22,11 +22,11 @@ from benchmarks.real.esso_osaka_vessel import NAME, SOURCE, written
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import without_outliers
 from boatsim.diagnosis.coordinate_search import climbed
-from boatsim.diagnosis.filter import Track, noise_of, segments
+from boatsim.diagnosis.filter import MappedRecording, noise_of, segments
 from boatsim.diagnosis.fit import converge, fit
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
-from boatsim.diagnosis.problem import Fit, Free, Problem
+from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -217,12 +217,14 @@ def measured(name: str) -> Wind:
     return Wind(per_square() * float(np.hypot(north, east)), float(np.arctan2(east, north)))
 
 
-def of_weather(free: Free) -> bool:
+def of_weather(free: FreeParameter) -> bool:
     """Whether a parameter belongs to the day and not to the ship."""
     return free.effect == "wind" and free.name in WEATHER
 
 
-Laid = Callable[[Sequence[Recording]], list[Track]]  # recordings laid on the one compiled program
+Laid = Callable[
+    [Sequence[Recording]], list[MappedRecording]
+]  # recordings laid on the one compiled program
 
 
 class Weather:
@@ -230,7 +232,7 @@ class Weather:
 
     def __init__(self, problem: Problem, ship: Fit) -> None:
         """`ship` with or without a wind of all runs."""
-        names = ship.suspects if "wind" in ship.suspects else (*ship.suspects, "wind")
+        names = ship.effects if "wind" in ship.effects else (*ship.effects, "wind")
         free = problem.parameters(names)
         known = {(f.effect, f.name): x for f, x in zip(ship.free, ship.theta, strict=True)}
         theta = np.array([known.get((f.effect, f.name), f.mean) for f in free])
@@ -243,10 +245,10 @@ class Weather:
         free = tuple(self.ship.free[i] for i in at)
         x = self.ship.theta[at] if theta is None else theta
         return Fit(
-            self.ship.suspects, free, x, np.diag([f.sd**2 for f in free]), self.ship.levels, -np.inf
+            self.ship.effects, free, x, np.diag([f.sd**2 for f in free]), self.ship.levels, -np.inf
         )
 
-    def wind(self, tracks: Sequence[Track]) -> Wind:
+    def wind(self, tracks: Sequence[MappedRecording]) -> Wind:
         """The wind common to some tracks, with the ship as fitted.
 
         Sought as a push north and one east, each as likely either way: a force and its bearing would make calm likelier
@@ -254,7 +256,7 @@ class Weather:
         """
         part = self._part(self.rest)
         held = [replace(t, values=self.problem.values(t, part.free, part.theta)) for t in tracks]
-        on = self.problem.program.switches(self.ship.suspects)
+        on = self.problem.program.switches(self.ship.effects)
         usual = next(self.ship.free[i].sd for i in self.own if self.ship.free[i].name == "force")
 
         def score(x: Array) -> float:
@@ -267,14 +269,14 @@ class Weather:
             max((climbed(score, x, USUAL, NEARLY) for x in begun), key=lambda found: found[0])[1]
         )
 
-    def blown(self, one: Track, wind: Wind) -> Track:
+    def blown(self, one: MappedRecording, wind: Wind) -> MappedRecording:
         """A track with that wind among its own values."""
         values = one.values.copy()
         for name in WEATHER:
             values[self.problem.program.index("wind", name)] = getattr(wind, name)
         return replace(one, values=values)
 
-    def refit(self, runs: Sequence[Sequence[Track]]) -> None:
+    def refit(self, runs: Sequence[Sequence[MappedRecording]]) -> None:
         """The ship again, each run in its own wind, and the winds again."""
         for _ in range(ROUNDS):
             winds = [self.wind(tracks) for tracks in runs]
@@ -284,7 +286,7 @@ class Weather:
             self.ship.theta[self.rest] = found.theta
             self.ship = replace(self.ship, levels=found.levels)
 
-    def free_runs(self, one: Track, wind: Wind) -> list[FreeRun]:
+    def free_runs(self, one: MappedRecording, wind: Wind) -> list[FreeRun]:
         """Free runs of the ship over a run in that wind."""
         return free_runs(
             self.problem, {"patched": self._part(self.rest)}, [self.blown(one, wind)], HORIZON
@@ -395,7 +397,7 @@ def with_model(stretches: Sequence[FreeRun], patched: Sequence[FreeRun]) -> list
 
 
 def in_rests_wind(
-    weather: Weather, whole: Track, stretches: Sequence[Recording], laid: Laid
+    weather: Weather, whole: MappedRecording, stretches: Sequence[Recording], laid: Laid
 ) -> list[FreeRun]:
     """Free runs over each minute of a run, in the wind found in the rest of that run."""
     out = []
@@ -473,7 +475,7 @@ def main() -> None:
     print_named(found)
     stated = noise_of(boat, [r for one in recordings.values() for r in one.stretches])
 
-    def laid(some: Sequence[Recording]) -> list[Track]:
+    def laid(some: Sequence[Recording]) -> list[MappedRecording]:
         return [found.laid(r, stated) for r in some]
 
     tracks = {n: laid(one.stretches) for n, one in recordings.items()}

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 from benchmarks.real.common import report, runs_of, table
 from boatsim.diagnosis import pipeline, priors
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, descend
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
@@ -84,7 +84,7 @@ def print_couplings(found: Diagnosis) -> None:
     print(f"gains nothing beside what was named: {', '.join(idle) or 'none of the entries tried'}")
 
 
-def print_left_out(found: Diagnosis, tracks: list[Track]) -> None:
+def print_left_out(found: Diagnosis, tracks: list[MappedRecording]) -> None:
     """Each run left out once."""
     rows, ahead = [], [0, 0]
     for out in tracks:

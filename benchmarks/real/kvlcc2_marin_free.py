@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.real.common import report, runs_of, table
 from boatsim.diagnosis import pipeline, priors
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.report.before_after import fits_of
@@ -27,9 +27,9 @@ GOALS = {"speed [m/s]": 0.35, "yaw rate [deg/s]": 0.09}
 SHARE = 0.15  # of the linear model's error
 
 
-def turn(found: Diagnosis, model: Fit, circle: Track) -> Array:
+def turn(found: Diagnosis, model: Fit, circle: MappedRecording) -> Array:
     """Rms errors of speed [m/s] and yaw rate [deg/s] over one free run of the circle."""
-    on = found.problem.program.switches(model.suspects)
+    on = found.problem.program.switches(model.effects)
     values = found.problem.values(circle, model.free, model.theta)
     first, y = circle.free_runs(values, on, model.levels, DURATION)[0]
     recorded = circle.measured[first : first + len(y)]
@@ -43,7 +43,7 @@ def turn(found: Diagnosis, model: Fit, circle: Track) -> Array:
 
 
 def print_circle(
-    found: Diagnosis, circle: Track, goals: Mapping[str, float], header: str = "goal"
+    found: Diagnosis, circle: MappedRecording, goals: Mapping[str, float], header: str = "goal"
 ) -> None:
     """The turning circle kept unseen, against the goals for speed and yaw rate."""
     nominal, before, after = (

@@ -17,7 +17,7 @@ from benchmarks.real import kvlcc2_marin_free as marin
 from benchmarks.real.common import print_verdict, report, runs_of, table
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import without_outliers
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, descend
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.noise_levels import fit_force, force_prior
@@ -81,7 +81,7 @@ def swings(found: Diagnosis, run: Recording) -> dict[str, list[float]]:
     for name, fit in fits_of(found.problem, found.ranking).items():
         values, on = (
             found.problem.values(laid, fit.free, fit.theta),
-            found.problem.program.switches(fit.suspects),
+            found.problem.program.switches(fit.effects),
         )
         first, y = laid.free_runs(
             values, on, fit.levels, float(laid.times[rows - 1] - laid.times[0])
@@ -180,14 +180,14 @@ Errors = dict[str, float]
 def likely(problem: Problem, found: Fit) -> float:
     """Log likelihood [nats] of the recordings by these coefficients, the water as rough as it then must be."""
     there = fit_force(problem, found)
-    on = problem.program.switches(there.suspects)
+    on = problem.program.switches(there.effects)
     return problem.likelihood(there.free, there.theta, on, there.levels) + force_prior(
         problem, there.levels
     )
 
 
 def print_room(
-    found: Diagnosis, held_out: Sequence[Track], judged: Callable[[Fit], Errors]
+    found: Diagnosis, held_out: Sequence[MappedRecording], judged: Callable[[Fit], Errors]
 ) -> None:
     """How far the recalibrated model is off on unseen runs for its structure, how far for what it was not told.
 
@@ -195,7 +195,7 @@ def print_room(
     drawn from what the fitted runs leave open show what errors they let one expect.
     """
     before = found.ranking.recalibrated
-    everything = found.problem.on([*found.problem.tracks, *held_out])
+    everything = found.problem.on([*found.problem.recordings, *held_out])
     whole = converge(everything, descend(everything, before, 6, 0.1))
     taught = judged(whole)
     rng = np.random.default_rng(0)

@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmarks.real.common import report, table
 from boatsim.diagnosis import pipeline, priors
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
@@ -110,7 +110,7 @@ def one_at_a_time(found: Diagnosis) -> dict[str, Fit]:
     return {label: with_effects(problem, base, names) for label, names in sets.items()}
 
 
-def pulsation(laid: Track) -> float:
+def pulsation(laid: MappedRecording) -> float:
     """Of the vessel as written [rad/s]; the measure in which roll and its rate span one phase plane."""
     index, values = laid.program.index, laid.values
     inertia = laid.program.vessel.body.roll_inertia + values[index("added_mass", "roll")]
@@ -123,25 +123,27 @@ def polar(states: Array, omega: float) -> Array:
     return np.stack([np.hypot(phi, p), np.unwrap(-np.arctan2(p, phi))])
 
 
-def polar_runs(problem: Problem, fits: Mapping[str, Fit], laid: Track) -> dict[str, Array]:
+def polar_runs(
+    problem: Problem, fits: Mapping[str, Fit], laid: MappedRecording
+) -> dict[str, Array]:
     """Envelope and phase (2, N) of the recording, smoothed, and of each model's one free run from its first state."""
     omega, last = pulsation(laid), list(fits.values())[-1]
     whole = float(np.ptp(laid.times))
     on = problem.program.switches
     smooth = laid.smoothed(
-        problem.values(laid, last.free, last.theta), on(last.suspects), last.levels
+        problem.values(laid, last.free, last.theta), on(last.effects), last.levels
     )[0]
     found = {"recorded": polar(smooth, omega)}
     for label, f in fits.items():
         ((_, states),) = laid.free_runs(
-            problem.values(laid, f.free, f.theta), on(f.suspects), f.levels, whole
+            problem.values(laid, f.free, f.theta), on(f.effects), f.levels, whole
         )
         found[label] = polar(states, omega)
     return found
 
 
 def polar_errors(
-    problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Track]
+    problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[MappedRecording]
 ) -> dict[str, tuple[float, float]]:
     """Rms error of envelope and of phase [rad] of each model over free runs as long as the tracks."""
     runs = [polar_runs(problem, fits, laid) for laid in tracks]
@@ -154,13 +156,13 @@ def polar_errors(
     return found
 
 
-def laid_on(found: Diagnosis, parts: Sequence[Recording]) -> list[Track]:
+def laid_on(found: Diagnosis, parts: Sequence[Recording]) -> list[MappedRecording]:
     """Recordings on the program of a diagnosis."""
     return [found.laid(p) for p in parts]
 
 
 def error_rows(
-    found: Diagnosis, fits: Mapping[str, Fit], tracks: Sequence[Track], what: str
+    found: Diagnosis, fits: Mapping[str, Fit], tracks: Sequence[MappedRecording], what: str
 ) -> Rows:
     """Envelope and phase of what was unseen, and which of the two an effect mends."""
     off = polar_errors(found.problem, fits, tracks)
@@ -179,7 +181,7 @@ def decay_and_period(run: Array, t: Array, omega: float) -> tuple[float, float]:
 
 
 def window_rows(
-    found: Diagnosis, fits: Mapping[str, Fit], tracks: Sequence[Track]
+    found: Diagnosis, fits: Mapping[str, Fit], tracks: Sequence[MappedRecording]
 ) -> tuple[Rows, Rows]:
     """Damping and period of every window, recorded and as free runs have them."""
     dampings, periods = [], []
@@ -198,7 +200,7 @@ def window_rows(
 
 def coefficients(problem: Problem, fitted: Fit) -> dict[str, tuple[float, float]]:
     """What one release tells of the hull, each with one standard deviation."""
-    body, laid = problem.program.vessel.body, problem.tracks[0]
+    body, laid = problem.program.vessel.body, problem.recordings[0]
     value = {(f.effect, f.name): i for i, f in enumerate(fitted.free)}
 
     def of(effect: str, name: str) -> tuple[float, float]:
@@ -220,7 +222,7 @@ def coefficients(problem: Problem, fitted: Fit) -> dict[str, tuple[float, float]
         if not f.relative:
             unit = next(
                 type(e).params()[f.name].unit
-                for e in problem.program.suspects
+                for e in problem.program.candidates
                 if e.name == f.effect
             )
             found[f"{f.effect}, {f.name} [{unit}]"] = of(f.effect, f.name)

@@ -24,7 +24,7 @@ from scipy.signal import resample_poly
 from benchmarks.real.common import OUT, report, runs_of, table
 from benchmarks.real.kvlcc2_roll_decay import with_effects
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.filter import Track, track
+from boatsim.diagnosis.filter import MappedRecording, map_recording
 from boatsim.diagnosis.locate.residual_structure import structure
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
@@ -185,16 +185,16 @@ def diagnosed(whole: Recording, boat: Vessel) -> Diagnosis:
 # ---- the exam
 
 
-def laid_on(found: Diagnosis, test: Recording) -> Track:
+def laid_on(found: Diagnosis, test: Recording) -> MappedRecording:
     """A set on the program of a diagnosis: all of the input, and of the displacement the first rows alone."""
     shown = test["phi_rad"].copy()
     shown[START:] = np.nan
     return found.laid(replace(test, signals={**test.signals, "phi_rad": shown}))
 
 
-def simulated(problem: Problem, laid: Track, f: Fit) -> Array:
+def simulated(problem: Problem, laid: MappedRecording, f: Fit) -> Array:
     """Displacement (N,) [V] by one free run over a whole set, from the state that its first rows show."""
-    values, on = problem.values(laid, f.free, f.theta), problem.program.switches(f.suspects)
+    values, on = problem.values(laid, f.free, f.theta), problem.program.switches(f.effects)
     ((_, states),) = laid.free_runs(values, on, f.levels, float(np.ptp(laid.times)))
     return np.asarray(states[:, 0])
 
@@ -215,7 +215,7 @@ def ladder(found: Diagnosis) -> dict[str, Fit]:
     ranking = found.ranking
     models = {"linear, as written": ranking.nominal, "linear, recalibrated": ranking.recalibrated}
     named = [
-        n.name for n in sorted(ranking.named, key=lambda n: ranking.best.suspects.index(n.name))
+        n.name for n in sorted(ranking.named, key=lambda n: ranking.best.effects.index(n.name))
     ]
     for k in range(1, len(named) + 1):
         models[f"+ {named[k - 1]}"] = with_effects(found.problem, ranking.recalibrated, named[:k])
@@ -253,7 +253,9 @@ def input_rows(whole: Path, boat: Vessel, found: Diagnosis) -> list[list[str]]:
         recording = opened(whole, between)
         fitted = [part(recording, *ends) for ends in FITTED]
         old = found.problem
-        problem = Problem([track(r, old.program) for r in fitted], old.ambient, old.uncertainty)
+        problem = Problem(
+            [map_recording(r, old.program) for r in fitted], old.ambient, old.uncertainty
+        )
         _, base = baseline(problem)
         models = {"linear": base, "found": with_effects(problem, base, NAMED)}
         held_out = part(recording, *UNSEEN[0])

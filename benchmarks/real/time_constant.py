@@ -16,7 +16,7 @@ from benchmarks.real.common import runs_of, table
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.correlation_time import STEPS, correlation_time, halves_errors
-from boatsim.diagnosis.filter import noise_of, nominal_levels, track
+from boatsim.diagnosis.filter import map_recording, noise_of, nominal_levels
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.search.ranking import selection
 from boatsim.physics.program import Program
@@ -35,7 +35,7 @@ def problem_of(paths: list[Path], vessel: str | None) -> Problem:
     boat, first = opened[0][1], opened[0][0]
     program = Program(boat, library_for(boat).compiled)
     stated = noise_of(boat, [first])
-    tracks = [track(run.thinned(priors.rate(boat)), program, stated) for run, _ in opened]
+    tracks = [map_recording(run.thinned(priors.rate(boat)), program, stated) for run, _ in opened]
     uncertainty = priors.uncertainty(boat)
     return Problem(
         tracks, nominal_levels(boat, [first]), uncertainty | first.notes.coefficient_uncertainty
@@ -55,7 +55,7 @@ def main() -> None:
             [f"{x:.2g}", f"{e:.4g}", "*" if x == taken else ""]
             for x, e in zip(ladder, errors, strict=True)
         ]
-        title = f"{name}: with the usual {usual:.2g} s {problem.program.vessel.name} lacks {', '.join(chosen.suspects)}"
+        title = f"{name}: with the usual {usual:.2g} s {problem.program.vessel.name} lacks {', '.join(chosen.effects)}"
         table(title, ["time constant [s]", "error of the other half", "taken"], rows)
 
 

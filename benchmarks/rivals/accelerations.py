@@ -12,7 +12,7 @@ from math import sqrt
 import numpy as np
 from scipy.signal import savgol_coeffs
 
-from boatsim.diagnosis.filter import Levels, Track, body_of
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, body_of
 from boatsim.diagnosis.locate.nominal_forces import actuators
 from boatsim.physics.base import Array
 
@@ -27,12 +27,14 @@ SHORT = 1e-4  # [s] of a step whose change of speed is an acceleration
 class Smoother:
     """Windows (rows, odd) of one recording's freedoms."""
 
-    track: Track
+    track: MappedRecording
     windows: tuple[int, ...]  # in which accelerations are told
     narrow: tuple[int, ...]  # in which states are: what is blurred twice would seem damped
 
     @classmethod
-    def of(cls, track: Track, ambient: Levels, noise: Mapping[str, float]) -> "Smoother":
+    def of(
+        cls, track: MappedRecording, ambient: NoiseLevels, noise: Mapping[str, float]
+    ) -> "Smoother":
         """Windows in which noise [m, rad] moves accelerations less than the ambient force; x and y have the same.
 
         Those of states are as wide as leaves the errors of smoothed positions to noise, and at most half as wide.
@@ -79,7 +81,7 @@ class Smoother:
             ]
         )
 
-    def pushed(self, ambient: Levels, times: float) -> Array:
+    def pushed(self, ambient: NoiseLevels, times: float) -> Array:
         """(NQ,) variance of accelerations in water that pushes `times` as hard as is tolerated, as the windows see it.
 
         Along x and y it is the mean of all headings.
@@ -97,12 +99,12 @@ class Smoother:
         return sd * rng.standard_normal((len(self.track.times), len(sd)))
 
 
-def step(track: Track) -> float:
+def step(track: MappedRecording) -> float:
     """Seconds from row to row."""
     return float(np.median(np.diff(track.times)))
 
 
-def of_freedoms(track: Track) -> list[str]:
+def of_freedoms(track: MappedRecording) -> list[str]:
     """Noise family of each recorded position."""
     families = dict(zip(track.codes.tolist(), track.families, strict=True))
     return [families[j] for j in range(track.program.module.NQ)]
@@ -119,7 +121,7 @@ def loud(n: int, h: float) -> float:
     return float(np.sum(coefficients(n, 2) ** 2)) / h**4
 
 
-def calm(track: Track, ambient: float, lasts: float, noise: float) -> int:
+def calm(track: MappedRecording, ambient: float, lasts: float, noise: float) -> int:
     """Rows of the narrowest window in which noise moves accelerations less than the ambient one [m/s^2] does."""
     h, most = step(track), int(WIDEST * len(track.times))
     for n in range(NARROWEST, most, 2):
@@ -128,7 +130,7 @@ def calm(track: Track, ambient: float, lasts: float, noise: float) -> int:
     return most // 2 * 2 + 1
 
 
-def positions(track: Track) -> Array:
+def positions(track: MappedRecording) -> Array:
     """(N, NQ) recorded positions, gaps bridged by straight lines."""
     out = np.zeros((len(track.times), track.program.module.NQ))
     for c, code in enumerate(track.codes):
@@ -170,7 +172,7 @@ def kernel(n: int) -> Array:
     return np.append(0.0, twice[:-1])
 
 
-def shown_by(track: Track, recorded: Array, values: Array, on: Array) -> Array:
+def shown_by(track: MappedRecording, recorded: Array, values: Array, on: Array) -> Array:
     """Positions (N, NQ) of the boat behind what instruments showed."""
     nq, out = track.program.module.NQ, np.zeros((len(recorded), track.program.module.NZ))
     out[:, :nq] = recorded
@@ -179,14 +181,16 @@ def shown_by(track: Track, recorded: Array, values: Array, on: Array) -> Array:
     return out[:, :nq].copy()
 
 
-def held_by(track: Track, suspects: tuple[str, ...], values: Array) -> Array:
+def held_by(track: MappedRecording, effects: tuple[str, ...], values: Array) -> Array:
     """(N, HELD) mean actuators around each row."""
-    after = actuators(track, suspects, values)
+    after = actuators(track, effects, values)
     before = np.vstack([after[:1], after[:-1]])
     return np.asarray(0.5 * (before + after))
 
 
-def predicted(track: Track, states: Array, held: Array, values: Array, on: Array) -> Array:
+def predicted(
+    track: MappedRecording, states: Array, held: Array, values: Array, on: Array
+) -> Array:
     """(N, NQ) joint accelerations by the laws at states (N, 2 NQ) under actuators (N, HELD)."""
     code = track.program.module
     k, nothing, nq = np.zeros(code.K), np.zeros(code.NQ), code.NQ

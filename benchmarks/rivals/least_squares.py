@@ -32,7 +32,7 @@ FAR = 5.0  # rms of its channel from which an error is an outlier
 class State:
     """A hypothesis where its fit has come to."""
 
-    suspects: tuple[str, ...]
+    effects: tuple[str, ...]
     theta: Array  # (F,)
     starts: tuple[Array, ...]  # of the windows of each run, (W, 2 NQ)
     errors: tuple[Array, ...]  # (M, C) of each window, all runs
@@ -45,20 +45,20 @@ class LeastSquares:
 
     def __init__(self, question: Question, plain: bool) -> None:
         self.question, self.problem = question, question.problem
-        self.runs = [Windows.of(t, self.problem.horizon) for t in self.problem.tracks]
+        self.runs = [Windows.of(t, self.problem.horizon) for t in self.problem.recordings]
         self.judge = Judge(plain, len(question.entries))
 
     def answer(self) -> tuple[Fit, dict[str, float], bool]:
         """The effects found, what each gains [nats], whether the cause is unknown."""
         best = self.nominal()
         for _ in range(STEPS):
-            found = self.next(best) if len(best.suspects) < MOST else None
+            found = self.next(best) if len(best.effects) < MOST else None
             fewer = self.pruned(found) if found else best
-            if set(fewer.suspects) == set(best.suspects):  # nothing came in, or it went out again
+            if set(fewer.effects) == set(best.effects):  # nothing came in, or it went out again
                 break
             best = fewer
-        gains = {n: self.gain(self.without(best, n), best) for n in best.suspects}
-        return fit_of(self.question, best.suspects, best.theta, self.covariance(best)), gains, False
+        gains = {n: self.gain(self.without(best, n), best) for n in best.effects}
+        return fit_of(self.question, best.effects, best.theta, self.covariance(best)), gains, False
 
     def nominal(self) -> State:
         """The vessel recalibrated, outliers taken out."""
@@ -67,7 +67,9 @@ class LeastSquares:
         )
         found = self.settled(begun)
         masks = [np.abs(e) > FAR * sizes(found.errors) for e in found.errors]
-        for run, measured in zip(self.runs, (t.measured for t in self.problem.tracks), strict=True):
+        for run, measured in zip(
+            self.runs, (t.measured for t in self.problem.recordings), strict=True
+        ):
             for w in range(len(run.begins)):
                 measured[run.begins[w] : run.ends[w] + 1][masks.pop(0)] = np.nan
         return self.settled(self.at((), found.theta, found.starts, found.weights))
@@ -81,11 +83,11 @@ class LeastSquares:
     @property
     def channels(self) -> int:
         """How many are recorded."""
-        return self.problem.tracks[0].measured.shape[1]
+        return self.problem.recordings[0].measured.shape[1]
 
     def next(self, best: State) -> State | None:
         """The best of the entries on top of a set, or none if BIC would rise."""
-        there = {called(n) for n in best.suspects}
+        there = {called(n) for n in best.effects}
         base = self.linear(best)
         looks = [self.look(best, base, n) for n in self.question.entries if called(n) not in there]
         rows = float(sum(np.isfinite(e).sum() for e in best.errors))
@@ -99,9 +101,9 @@ class LeastSquares:
 
     def pruned(self, best: State) -> State:
         """Without entries that BIC is better off without since others came in."""
-        while len(best.suspects) > 1:
+        while len(best.effects) > 1:
             fewer = min(
-                (self.without(best, n) for n in best.suspects), key=lambda s: self.gain(s, best)
+                (self.without(best, n) for n in best.effects), key=lambda s: self.gain(s, best)
             )
             if self.gain(fewer, best) > 0.0:
                 break
@@ -110,8 +112,8 @@ class LeastSquares:
 
     def without(self, best: State, name: str) -> State:
         """A set without one of its entries, fitted again."""
-        left = tuple(n for n in best.suspects if n != name)
-        pairs = zip(free_of(self.question, best.suspects), best.theta, strict=True)
+        left = tuple(n for n in best.effects if n != name)
+        pairs = zip(free_of(self.question, best.effects), best.theta, strict=True)
         known = {(f.effect, f.name): x for f, x in pairs if f.relative or f.effect != name}
         theta = np.array([known[f.effect, f.name] for f in free_of(self.question, left)])
         return self.fitted(self.at(left, theta, best.starts, best.weights))
@@ -119,27 +121,27 @@ class LeastSquares:
     def gain(self, before: State, after: State) -> float:
         """What a set gains over one with an entry less [nats]."""
         more = len(after.theta) - len(before.theta)
-        prior = self.prior(before.suspects, before.theta) - self.prior(after.suspects, after.theta)
+        prior = self.prior(before.effects, before.theta) - self.prior(after.effects, after.theta)
         return self.judge.gain(before.errors, after.errors, more) + 0.5 * float(
             prior @ np.ones(len(prior))
         )
 
     # ---- one fit
 
-    def prior(self, suspects: tuple[str, ...], theta: Array) -> Array:
+    def prior(self, effects: tuple[str, ...], theta: Array) -> Array:
         """(N,) squares of how far the vessel's own coefficients are from what is stated, in stated sds."""
         own = [
             (f.mean, f.sd, x)
-            for f, x in zip(free_of(self.question, suspects), theta, strict=True)
+            for f, x in zip(free_of(self.question, effects), theta, strict=True)
             if f.relative
         ]
         return np.array([((x - mean) / sd) ** 2 for mean, sd, x in own])
 
     def at(
-        self, suspects: tuple[str, ...], theta: Array, begun: tuple[Array, ...], weights: Array
+        self, effects: tuple[str, ...], theta: Array, begun: tuple[Array, ...], weights: Array
     ) -> State:
         """A hypothesis simulated."""
-        free, on = free_of(self.question, suspects), self.problem.program.switches(suspects)
+        free, on = free_of(self.question, effects), self.problem.program.switches(effects)
         errors = tuple(
             e
             for run, s in zip(self.runs, begun, strict=True)
@@ -151,8 +153,8 @@ class LeastSquares:
             not np.isfinite(e[np.isfinite(m)]).all()
             for e, m in zip(errors, self.measured(), strict=True)
         )
-        square += float(self.prior(suspects, theta).sum())
-        return State(suspects, theta, begun, errors, weights, np.inf if gone else square)
+        square += float(self.prior(effects, theta).sum())
+        return State(effects, theta, begun, errors, weights, np.inf if gone else square)
 
     def measured(self) -> list[Array]:
         """What was recorded in each window."""
@@ -165,7 +167,7 @@ class LeastSquares:
     def weighed(self, state: State) -> State:
         """The same with each channel weighed by the rms of its errors, those alike counted as fewer."""
         weights = 1.0 / (sizes(state.errors) * np.sqrt(self.judge.alike(state.errors)))
-        return self.at(state.suspects, state.theta, state.starts, weights)
+        return self.at(state.effects, state.theta, state.starts, weights)
 
     def fitted(self, state: State) -> State:
         """Gauss-Newton steps until they gain next to nothing."""
@@ -173,7 +175,7 @@ class LeastSquares:
 
     def stepped(self, state: State, linear: Linear) -> State | None:
         """After a step, shortened until it is one for the better; None if none is."""
-        free = free_of(self.question, state.suspects)
+        free = free_of(self.question, state.effects)
         move = solved(
             linear.columns, linear.rest, [f.low for f in free], [f.high for f in free], state.theta
         )
@@ -184,7 +186,7 @@ class LeastSquares:
             theta = np.clip(
                 state.theta + share * move, [f.low for f in free], [f.high for f in free]
             )
-            step = self.at(state.suspects, theta, begun, state.weights)
+            step = self.at(state.effects, theta, begun, state.weights)
             if step.square < state.square:
                 return step
         return None
@@ -201,8 +203,8 @@ class LeastSquares:
     def linear(self, state: State) -> Linear:
         """A hypothesis linearised by all that it fits."""
         free, on = (
-            free_of(self.question, state.suspects),
-            self.problem.program.switches(state.suspects),
+            free_of(self.question, state.effects),
+            self.problem.program.switches(state.effects),
         )
         slopes = list[Array]()
         errors = iter(state.errors)
@@ -216,7 +218,7 @@ class LeastSquares:
 
     def prior_rows(self, state: State) -> tuple[Array, Array]:
         """Rows (N, F) and errors (N,) that hold the vessel's own coefficients near what is stated."""
-        free = free_of(self.question, state.suspects)
+        free = free_of(self.question, state.effects)
         own = [j for j, f in enumerate(free) if f.relative]
         slopes = np.zeros((len(own), len(free)))
         for i, j in enumerate(own):
@@ -225,16 +227,16 @@ class LeastSquares:
 
     def column(self, state: State, linear: Linear, j: int) -> Array:
         """Derivative of all errors by one parameter."""
-        f, moved = free_of(self.question, state.suspects)[j], state.theta.copy()
+        f, moved = free_of(self.question, state.effects)[j], state.theta.copy()
         h = STEP * f.sd if state.theta[j] + STEP * f.sd <= f.high else -STEP * f.sd
         moved[j] += h
-        beside = self.at(state.suspects, moved, state.starts, state.weights).errors
+        beside = self.at(state.effects, moved, state.starts, state.weights).errors
         return linear.flat([(a - b) / h for a, b in zip(beside, state.errors, strict=True)])
 
     def covariance(self, state: State) -> Array:
         """(F, F) of a fit; what nothing is known of keeps its prior spread."""
         J = self.linear(state).columns
-        sd = np.array([f.sd for f in free_of(self.question, state.suspects)])
+        sd = np.array([f.sd for f in free_of(self.question, state.effects)])
         return np.asarray(
             np.linalg.inv((J * sd).T @ (J * sd) + 1e-6 * np.eye(len(sd))) * np.outer(sd, sd)
         )
@@ -243,14 +245,14 @@ class LeastSquares:
 
     def look(self, best: State, base: Linear, entry: str) -> State | None:
         """An entry on top of a set: a few steps with the derivatives of all else held; None if nothing comes of it."""
-        suspects, found = (*best.suspects, entry), list[State]()
-        begun_at = fit_of(self.question, best.suspects, best.theta, np.zeros((0, 0)))
+        effects, found = (*best.effects, entry), list[State]()
+        begun_at = fit_of(self.question, best.effects, best.theta, np.zeros((0, 0)))
         for start in starts(self.problem, self.question.entries[entry]):
             fit = handed_over(
                 joined(self.problem, begun_at, entry, start), self.question.entries[entry]
             )
             theta = np.clip(fit.theta, [f.low for f in fit.free], [f.high for f in fit.free])
-            begun = self.at(suspects, theta, best.starts, best.weights)
+            begun = self.at(effects, theta, best.starts, best.weights)
             step = self.half_step(begun, base) if np.isfinite(begun.square) else None
             if step is not None:
                 found.append(step)
@@ -263,8 +265,8 @@ class LeastSquares:
 
     def half_step(self, state: State, base: Linear) -> State | None:
         """A step with the derivatives by all but the last entry as they were in the base."""
-        free = free_of(self.question, state.suspects)
-        new = [j for j, f in enumerate(free) if f.effect == state.suspects[-1] and not f.relative]
+        free = free_of(self.question, state.effects)
+        new = [j for j, f in enumerate(free) if f.effect == state.effects[-1] and not f.relative]
         here = base.about(state.errors)
         columns = [
             base.raw[:, self.before(state, j)] if j not in new else self.column(state, here, j)
@@ -274,6 +276,6 @@ class LeastSquares:
 
     def before(self, state: State, j: int) -> int:
         """Where a parameter was before the last entry came in."""
-        free = free_of(self.question, state.suspects)
-        rest = [(f.effect, f.name) for f in free if f.effect != state.suspects[-1] or f.relative]
+        free = free_of(self.question, state.effects)
+        rest = [(f.effect, f.name) for f in free if f.effect != state.effects[-1] or f.relative]
         return rest.index((free[j].effect, free[j].name))

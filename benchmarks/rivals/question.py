@@ -16,9 +16,9 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import called, library_for
 from boatsim.diagnosis.checks.position_outliers import without_outliers
 from boatsim.diagnosis.checks.repeated_positions import without_repeats
-from boatsim.diagnosis.filter import noise_of, nominal_levels, track
+from boatsim.diagnosis.filter import map_recording, noise_of, nominal_levels
 from boatsim.diagnosis.pipeline import open_recording
-from boatsim.diagnosis.problem import Fit, Free, Problem
+from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.diagnosis.report.answer import key_of
 from boatsim.physics.base import Array, Effect
@@ -39,7 +39,7 @@ class Question:
     ]  # of the library, those that are tried on this vessel and have a course to be fitted
     noise: dict[str, float]  # by family, as found in the recordings [m, rad]
     # what hypotheses fit, once asked
-    known: dict[tuple[str, ...], tuple[Free, ...]] = field(default_factory=dict)
+    known: dict[tuple[str, ...], tuple[FreeParameter, ...]] = field(default_factory=dict)
 
     def start(self) -> Array:
         """The vessel's own coefficients as written."""
@@ -55,7 +55,7 @@ def asked(trial: Path) -> Question:
     library = library_for(vessel, (), runs[0].notes.facts, columns)
     program = Program(vessel, library.compiled)
     stated = noise_of(vessel, runs)
-    tracks = [track(r, program, stated) for r in runs]
+    tracks = [map_recording(r, program, stated) for r in runs]
     uncertainty = priors.uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
     problem = Problem(tracks, nominal_levels(vessel, runs), uncertainty)
     entries = {e.name: e for e in library.entries if e.name in library.tried and not type(e).random}
@@ -64,17 +64,17 @@ def asked(trial: Path) -> Question:
     return Question(vessel, problem, entries, noise)
 
 
-def free_of(question: Question, suspects: tuple[str, ...]) -> tuple[Free, ...]:
+def free_of(question: Question, effects: tuple[str, ...]) -> tuple[FreeParameter, ...]:
     """What a hypothesis may fit: the vessel's own coefficients, then the parameters of its entries."""
-    if suspects not in question.known:
-        question.known[suspects] = question.problem.parameters(suspects)
-    return question.known[suspects]
+    if effects not in question.known:
+        question.known[effects] = question.problem.parameters(effects)
+    return question.known[effects]
 
 
-def fit_of(question: Question, suspects: tuple[str, ...], theta: Array, covariance: Array) -> Fit:
+def fit_of(question: Question, effects: tuple[str, ...], theta: Array, covariance: Array) -> Fit:
     """A rival's fit as the diagnosis writes one, for the patched vessel."""
     problem = question.problem
-    return Fit(suspects, free_of(question, suspects), theta, covariance, problem.ambient, 0.0)
+    return Fit(effects, free_of(question, effects), theta, covariance, problem.ambient, 0.0)
 
 
 def answer(
@@ -92,7 +92,7 @@ def answer(
                 "parameters": parameters(question, found, n),
                 "gain_nats": round(gains[n], 2),
             }
-            for n in found.suspects
+            for n in found.effects
         ],
         "unknown": {"flag": unknown},
     }

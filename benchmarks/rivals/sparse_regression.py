@@ -34,7 +34,7 @@ DRAWS, SEED = 5, 1  # of the noise
 class State:
     """A hypothesis where its fit has come to."""
 
-    suspects: tuple[str, ...]
+    effects: tuple[str, ...]
     theta: Array  # (F,)
     errors: tuple[Array, ...]  # (M, NQ) recorded less predicted accelerations of each run
     square: float  # weighted, with the stated spread of the vessel's own coefficients
@@ -61,11 +61,11 @@ class SparseRegression:
         self.entries = {n: e for n, e in question.entries.items() if n not in late}
         self.judge = Judge(plain, len(self.entries))
         self.smoothers = [
-            Smoother.of(t, self.problem.ambient, question.noise) for t in self.problem.tracks
+            Smoother.of(t, self.problem.ambient, question.noise) for t in self.problem.recordings
         ]
-        self.recorded = [positions(t) for t in self.problem.tracks]
+        self.recorded = [positions(t) for t in self.problem.recordings]
         self.weights = np.ones(self.problem.program.module.NQ)
-        self.held = [held_by(t, (), t.values) for t in self.problem.tracks]
+        self.held = [held_by(t, (), t.values) for t in self.problem.recordings]
 
     def answer(self) -> tuple[Fit, dict[str, float], bool]:
         """The effects found, what each gains [nats], whether the cause is unknown."""
@@ -80,21 +80,21 @@ class SparseRegression:
         best = self.pruned(nominal, best)
         gains = {
             n: self.gain(nominal, best) - self.gain(nominal, self.without(best, n))
-            for n in best.suspects
+            for n in best.effects
         }
-        fit = fit_of(self.question, best.suspects, best.theta, self.covariance(best))
+        fit = fit_of(self.question, best.effects, best.theta, self.covariance(best))
         return fit, gains, self.beyond_the_water(best)
 
     # ---- one fit
 
-    def at(self, suspects: tuple[str, ...], theta: Array) -> State:
+    def at(self, effects: tuple[str, ...], theta: Array) -> State:
         """A hypothesis evaluated along the recordings."""
         free, on, errors = (
-            free_of(self.question, suspects),
-            self.problem.program.switches(suspects),
+            free_of(self.question, effects),
+            self.problem.program.switches(effects),
             list[Array](),
         )
-        kinds = [self.entries[n] for n in suspects]
+        kinds = [self.entries[n] for n in effects]
         for smoother, recorded, held in zip(self.smoothers, self.recorded, self.held, strict=True):
             track = smoother.track
             values = self.problem.values(track, free, theta)
@@ -105,7 +105,7 @@ class SparseRegression:
             )
             states, accelerations = smoother.motion(true)
             if held.any() and any(not isinstance(e, Measurement | Force) for e in kinds):
-                held = held_by(track, suspects, values)
+                held = held_by(track, effects, values)
             left = accelerations - smoother.blurred(predicted(track, states, held, values, on))
             errors.append(left[smoother.margin : len(left) - smoother.margin])
         with np.errstate(over="ignore", invalid="ignore"):
@@ -113,24 +113,24 @@ class SparseRegression:
         square += sum(
             ((x - f.mean) / f.sd) ** 2 for f, x in zip(free, theta, strict=True) if f.relative
         )
-        return State(suspects, theta, tuple(errors), square if np.isfinite(square) else np.inf)
+        return State(effects, theta, tuple(errors), square if np.isfinite(square) else np.inf)
 
     def row(self, state: State) -> Array:
         """(R,) weighted errors of both runs, then those of the vessel's own coefficients by what is stated."""
-        free = free_of(self.question, state.suspects)
+        free = free_of(self.question, state.effects)
         prior = [(x - f.mean) / f.sd for f, x in zip(free, state.theta, strict=True) if f.relative]
         return np.concatenate([*((e * self.weights).ravel() for e in state.errors), prior])
 
     def slopes(self, state: State, only: str = "") -> Array:
         """(R, F) derivatives of that row by the parameters, or by those of one entry."""
         here, columns = self.row(state), []
-        for j, f in enumerate(free_of(self.question, state.suspects)):
+        for j, f in enumerate(free_of(self.question, state.effects)):
             if only and (f.relative or f.effect != only):
                 continue
             h = STEP * f.sd if state.theta[j] + STEP * f.sd <= f.high else -STEP * f.sd
             moved = state.theta.copy()
             moved[j] += h
-            column = (self.row(self.at(state.suspects, moved)) - here) / h
+            column = (self.row(self.at(state.effects, moved)) - here) / h
             columns.append(np.where(np.isfinite(column), column, 0.0))
         return np.column_stack(columns) if columns else np.zeros((len(here), 0))
 
@@ -139,7 +139,7 @@ class SparseRegression:
 
         `known`: derivatives by the vessel's own coefficients, held.
         """
-        free = free_of(self.question, state.suspects)
+        free = free_of(self.question, state.effects)
         low, high = [f.low for f in free], [f.high for f in free]
 
         def stepped(s: State) -> State | None:
@@ -148,13 +148,13 @@ class SparseRegression:
             J = (
                 self.slopes(s)
                 if known is None
-                else np.hstack([known, self.slopes(s, s.suspects[-1])])
+                else np.hstack([known, self.slopes(s, s.effects[-1])])
             )
             move = solved(J, self.row(s), low, high, s.theta)
             nearer = (
                 np.clip(s.theta + share * move, low, high) for share in (1.0, 0.5, 0.25, 0.125)
             )
-            steps = (self.at(s.suspects, theta) for theta in nearer)
+            steps = (self.at(s.effects, theta) for theta in nearer)
             return next((after for after in steps if after.square < s.square), None)
 
         return descended(state, stepped, rounds)
@@ -169,7 +169,7 @@ class SparseRegression:
 
     def covariance(self, state: State) -> Array:
         """(F, F) of a fit; what nothing is known of keeps about its prior spread."""
-        sd = np.array([f.sd for f in free_of(self.question, state.suspects)])
+        sd = np.array([f.sd for f in free_of(self.question, state.effects)])
         J = self.slopes(state) * sd
         return np.asarray(np.linalg.inv(J.T @ J + 1e-6 * np.eye(len(sd))) * np.outer(sd, sd))
 
@@ -177,14 +177,14 @@ class SparseRegression:
         """What a set gains over another [nats]."""
         more, entries = (
             len(after.theta) - len(before.theta),
-            len(after.suspects) - len(before.suspects),
+            len(after.effects) - len(before.effects),
         )
         prior = self.prior(before) - self.prior(after)
         return self.judge.gain(before.errors, after.errors, more, entries) + 0.5 * prior
 
     def prior(self, state: State) -> float:
         """How far the vessel's own coefficients are from what is stated, squares of sds."""
-        free = free_of(self.question, state.suspects)
+        free = free_of(self.question, state.effects)
         return sum(
             ((x - f.mean) / f.sd) ** 2 for f, x in zip(free, state.theta, strict=True) if f.relative
         )
@@ -212,15 +212,15 @@ class SparseRegression:
         columns = np.column_stack([shape, slopes])
         return Group(columns, alone) if np.isfinite(columns).all() and shape.any() else None
 
-    def placed(self, suspects: tuple[str, ...], states: Sequence[State]) -> Array:
+    def placed(self, effects: tuple[str, ...], states: Sequence[State]) -> Array:
         """(F,) parameters of a set, as later ones of some states have them where several do."""
         known = {
             (f.effect, f.name, f.relative): x
             for s in states
-            for f, x in zip(free_of(self.question, s.suspects), s.theta, strict=True)
+            for f, x in zip(free_of(self.question, s.effects), s.theta, strict=True)
         }
         return np.array(
-            [known[f.effect, f.name, f.relative] for f in free_of(self.question, suspects)]
+            [known[f.effect, f.name, f.relative] for f in free_of(self.question, effects)]
         )
 
     def thresholded(
@@ -256,14 +256,14 @@ class SparseRegression:
 
     def without(self, state: State, name: str) -> State:
         """A set without one of its entries, fitted again."""
-        left = tuple(n for n in state.suspects if n != name)
+        left = tuple(n for n in state.effects if n != name)
         return self.fitted(self.at(left, self.placed(left, [state])))
 
     def pruned(self, nominal: State, best: State) -> State:
         """Without entries that BIC is better off without."""
-        while best.suspects:
+        while best.effects:
             fewer = max(
-                (self.without(best, n) for n in best.suspects), key=lambda s: self.gain(nominal, s)
+                (self.without(best, n) for n in best.effects), key=lambda s: self.gain(nominal, s)
             )
             if self.gain(nominal, fewer) < self.gain(nominal, best):
                 break
@@ -287,7 +287,7 @@ class SparseRegression:
                 y + s.noisy(self.question.noise, rng)
                 for y, s in zip(recorded, self.smoothers, strict=True)
             ]
-            noisy = self.at(best.suspects, best.theta).errors
+            noisy = self.at(best.effects, best.theta).errors
             found.append(sizes([a - b for a, b in zip(noisy, best.errors, strict=True)]) ** 2)
         self.recorded = recorded
         return np.asarray(np.mean(found, axis=0))

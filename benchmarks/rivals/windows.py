@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track, body_of, segments
+from boatsim.diagnosis.filter import MappedRecording, body_of, segments
 from boatsim.physics.base import Array
 
 FIRST = 1.0  # [s] from which a window's start is guessed
@@ -20,12 +20,12 @@ STEP = 1e-4  # [m, rad and per s] by which starts are moved for derivatives
 class Windows:
     """One recording cut into windows."""
 
-    track: Track
+    track: MappedRecording
     begins: Array  # (W,) rows, integers
     ends: Array
 
     @classmethod
-    def of(cls, track: Track, horizon: float) -> "Windows":
+    def of(cls, track: MappedRecording, horizon: float) -> "Windows":
         """Windows of `horizon` s from the first row on."""
         begins, ends = segments(track.times, horizon)
         return cls(track, np.array(begins), np.array(ends))

@@ -171,7 +171,7 @@ def compare(run: Path, vessel: str | None, load: list[str], scenario: str | None
             problem, fitted = as_written(recording, boat, told)
             told("the free run", 0.8)
             whole = float(recording.t[-1] - recording.t[0])
-            simulated = free_runs(problem, {"simulated": fitted}, problem.tracks, whole)[
+            simulated = free_runs(problem, {"simulated": fitted}, problem.recordings, whole)[
                 0
             ].channels["simulated"]
     for line in recording.remarks:

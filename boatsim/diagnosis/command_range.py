@@ -8,14 +8,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.physics.base import Channel, Effect, Release
 from boatsim.physics.vessel import Vessel
 
 LARGEST = 98.0  # percentile of the size of a command: a stray row does not count
 
 
-def excursion(tracks: Sequence[Track], effect: Effect) -> float:
+def excursion(tracks: Sequence[MappedRecording], effect: Effect) -> float:
     """Largest recorded command of what an entry acts on, in that channel's unit; 0 where there is none."""
     vessel = tracks[0].program.vessel
     order = list(vessel.commands)

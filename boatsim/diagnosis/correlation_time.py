@@ -12,7 +12,7 @@ from math import log, sqrt
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.problem import Fit, Problem
@@ -32,7 +32,7 @@ def timed(problem: Problem, found: Fit) -> Problem:
     if seconds == problem.ambient.time_constant:
         return problem
     return Problem(
-        problem.tracks,
+        problem.recordings,
         problem.ambient.lasting(seconds),
         problem.uncertainty,
         problem.horizon,
@@ -43,7 +43,7 @@ def timed(problem: Problem, found: Fit) -> Problem:
 def correlation_time(problem: Problem, found: Fit) -> float:
     """The correlation time [s] for a hypothesis."""
     usual = problem.ambient.time_constant
-    if not found.suspects:
+    if not found.effects:
         return usual  # it leaves nothing to the latent force that coefficients could explain
     at_usual = halves_errors(problem, found, usual)
     for factor in (0.5, 2.0):
@@ -58,7 +58,9 @@ def correlation_time(problem: Problem, found: Fit) -> float:
     return usual
 
 
-def halves(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
+def halves(
+    tracks: Sequence[MappedRecording],
+) -> tuple[list[MappedRecording], list[MappedRecording]]:
     """Every second recording and the others; of a single one its halves in time."""
     if len(tracks) > 1:
         return list(tracks[0::2]), list(tracks[1::2])
@@ -66,7 +68,7 @@ def halves(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
     return [part(tracks[0], 0, middle)], [part(tracks[0], middle, len(tracks[0].times))]
 
 
-def part(track: Track, begin: int, end: int) -> Track:
+def part(track: MappedRecording, begin: int, end: int) -> MappedRecording:
     """Some rows of a recording."""
     times, measured, commands = (
         np.ascontiguousarray(x[begin:end]) for x in (track.times, track.measured, track.commands)
@@ -98,7 +100,7 @@ def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
     """
     ambient = problem.ambient.lasting(seconds)
     begin = replace(start, levels=start.levels.lasting(seconds), evidence=-np.inf)
-    first, second = halves(problem.tracks)
+    first, second = halves(problem.recordings)
     horizon = min(problem.horizon, *(float(np.ptp(t.times)) for t in (*first, *second)))
     stretches = []
     for fitted, held_out in ((first, second), (second, first)):

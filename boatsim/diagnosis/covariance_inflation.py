@@ -23,7 +23,7 @@ def widened(problem: Problem, found: Fit) -> Fit:
     blocks = list(stretches(problem, STRETCH * found.levels.time_constant))
     if len(blocks) < FEWEST or not found.free:
         return found
-    on = problem.program.switches(found.suspects)
+    on = problem.program.switches(found.effects)
     problem.likelihood(found.free, found.theta, on, found.levels)
     white = problem.white()
     J = jacobian(problem, found.free, found.theta, on, found.levels, white)
@@ -40,7 +40,7 @@ def widened(problem: Problem, found: Fit) -> Fit:
 def stretches(problem: Problem, seconds: float) -> Iterator[NDArray[np.intp]]:
     """Rows of the whitened errors of all runs, stretch by stretch."""
     before = 0
-    for track in problem.tracks:
+    for track in problem.recordings:
         number = ((track.times - track.times[0]) / seconds).astype(int)
         rows = np.repeat(number, track.measured.shape[1])
         for block in range(int(number[-1]) + 1):

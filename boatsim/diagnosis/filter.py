@@ -54,7 +54,7 @@ NOTHING = (
 
 
 @dataclass(frozen=True)
-class Levels:
+class NoiseLevels:
     """How noisy sensors and water are: one set for all recordings of a diagnosis."""
 
     force: Array  # (NQ,) rms of the latent force [N, N m]
@@ -63,7 +63,7 @@ class Levels:
     # (NQ,) least rms of the force when a recording begins
     begins: Array = field(default_factory=lambda: np.zeros(1))
 
-    def lasting(self, seconds: float) -> "Levels":
+    def lasting(self, seconds: float) -> "NoiseLevels":
         """The same slow force with another correlation time: what it does to the motion over long times stays."""
         return replace(
             self, force=self.force * np.sqrt(self.time_constant / seconds), time_constant=seconds
@@ -71,7 +71,7 @@ class Levels:
 
 
 @dataclass
-class Track:
+class MappedRecording:
     """One recording laid on a program: what was measured and commanded, and this run's own parameter values."""
 
     name: str
@@ -152,11 +152,13 @@ class Track:
         """Whether a motion of the hull dies out within a sample: its damping then moves the filter's gains most."""
         return self.rate * float(np.median(np.diff(self.times))) > 1.0
 
-    def likelihood(self, values: Array, on: Array, levels: Levels, fresh: bool = True) -> float:
+    def likelihood(
+        self, values: Array, on: Array, levels: NoiseLevels, fresh: bool = True
+    ) -> float:
         """Log likelihood of parameters; not `fresh`: linearised where the last fresh one was, for other levels."""
         return self._pass(values, on, levels, True, None, fresh)
 
-    def whitened(self, values: Array, on: Array, levels: Levels) -> Array:
+    def whitened(self, values: Array, on: Array, levels: NoiseLevels) -> Array:
         """Whitened prediction errors (N * C,) with gains, outliers and scale of the last `likelihood`."""
         self._pass(values, on, levels, False, None)
         return self._white.ravel().copy()
@@ -171,13 +173,13 @@ class Track:
         """Whitened prediction errors (N * C,) of the last pass."""
         return self._white.ravel().copy()
 
-    def smoothed(self, values: Array, on: Array, levels: Levels) -> tuple[Array, Array]:
+    def smoothed(self, values: Array, on: Array, levels: NoiseLevels) -> tuple[Array, Array]:
         """Smoothed states (N, n) and their covariances (N, n, n)."""
         means, covariances, _ = self.smoothed_with_gains(values, on, levels)
         return means, covariances
 
     def smoothed_with_gains(
-        self, values: Array, on: Array, levels: Levels
+        self, values: Array, on: Array, levels: NoiseLevels
     ) -> tuple[Array, Array, Array]:
         """`smoothed` with the smoother's gains G (N, n, n): the errors of rows i < j covary by G_i ... G_j-1 P_j.
 
@@ -213,7 +215,7 @@ class Track:
         return means, covariances, gains
 
     def free_runs(
-        self, values: Array, on: Array, levels: Levels, horizon: float
+        self, values: Array, on: Array, levels: NoiseLevels, horizon: float
     ) -> list[tuple[int, Array]]:
         """Free runs of `horizon` s, each started at its smoothed state: (first row, channels (M, 2 NQ) as recorded).
 
@@ -267,7 +269,7 @@ class Track:
             values[self.program.index(e.name, n)] > 0.0 for e in acting for n in type(e).strength
         )
 
-    def jolts(self, values: Array, on: Array, levels: Levels) -> tuple[Array, Array]:
+    def jolts(self, values: Array, on: Array, levels: NoiseLevels) -> tuple[Array, Array]:
         """Rms of the latent force on a hull of these values (NQ,), and that of the first row.
 
         It is what would shake the hull as written as much: were it the force itself, any mass added would calm the
@@ -280,7 +282,7 @@ class Track:
         self,
         values: Array,
         on: Array,
-        levels: Levels,
+        levels: NoiseLevels,
         full: bool,
         keep: tuple[Array, ...] | None,
         fresh: bool = True,
@@ -355,12 +357,12 @@ def axes_of(vessel: Vessel) -> tuple[str, ...]:
     return tuple(a for a in AXES if a in vessel.dof)
 
 
-def track(
+def map_recording(
     recording: Recording,
     program: Program,
     stated: Mapping[str, float] | None = None,
     beside: Mapping[str, float] | None = None,
-) -> Track:
+) -> MappedRecording:
     """Lay a recording on a program; `stated` is the sensor noise all recordings share, where its own differs.
 
     `beside` is how many times noisier than theirs its own instruments are, by family, where nobody states it. Raises
@@ -393,7 +395,7 @@ def track(
         else np.zeros((len(recording), 1))
     )
     facts = facts_of(vessel, recording)
-    laid = Track(
+    laid = MappedRecording(
         recording.name,
         program,
         np.ascontiguousarray(recording.t),
@@ -542,7 +544,7 @@ def _called(recording: Recording) -> str:
     return str(recording.path or recording.name)
 
 
-def nominal_levels(vessel: Vessel, recordings: Sequence[Recording]) -> Levels:
+def nominal_levels(vessel: Vessel, recordings: Sequence[Recording]) -> NoiseLevels:
     """What is known before any fit: ambient force as the first recording states it or by rule, noise.
 
     Raises BadInput.
@@ -573,4 +575,4 @@ def nominal_levels(vessel: Vessel, recordings: Sequence[Recording]) -> Levels:
             f"{_called(recording)}: ambient time_constant_s = {time_constant:g}; allowed is more than 0, "
             f"at most {HUGE:g}"
         )
-    return Levels(force, time_constant, noise_of(vessel, recordings), START * force)
+    return NoiseLevels(force, time_constant, noise_of(vessel, recordings), START * force)

@@ -5,9 +5,9 @@ from math import erf, log, sqrt
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Levels
+from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.noise_levels import FINE, ROUGH, fit_force, force_prior
-from boatsim.diagnosis.problem import Fit, Free, Problem
+from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.physics.base import Array
 
 SETTLED = 0.3  # [nats] a refit that gains less changes nothing
@@ -45,25 +45,25 @@ def converge(problem: Problem, found: Fit, most: int = 8) -> Fit:
 
 def reduced(problem: Problem, found: Fit, without: str) -> Fit:
     """The start of a fit without one of the suspects, nearer to nothing missing where the boat would run away."""
-    suspects = tuple(n for n in found.suspects if n != without)
-    free = problem.parameters(suspects)
+    effects = tuple(n for n in found.effects if n != without)
+    free = problem.parameters(effects)
     known = {(f.effect, f.name): x for f, x in zip(found.free, found.theta, strict=True)}
     theta, nothing = (
         np.array([known[f.effect, f.name] for f in free]),
         np.array([f.mean for f in free]),
     )
-    on = problem.program.switches(suspects)
+    on = problem.program.switches(effects)
     for _ in range(HALVINGS):
         if np.isfinite(problem.likelihood(free, theta, on, found.levels)):
             break
         theta = 0.5 * (theta + nothing)
-    return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), found.levels, -np.inf)
+    return Fit(effects, free, theta, np.diag([f.sd**2 for f in free]), found.levels, -np.inf)
 
 
 class Space:
     """Bounds and priors of free parameters, for steps in units of the prior sd."""
 
-    def __init__(self, free: Sequence[Free]) -> None:
+    def __init__(self, free: Sequence[FreeParameter]) -> None:
         self.mean, self.sd, self.low, self.high = (
             np.array([getattr(f, a) for f in free], dtype=float)
             for a in ("mean", "sd", "low", "high")
@@ -107,7 +107,7 @@ def as_promised(gain: float, promised: float) -> bool:
     return abs(gain - promised) < 0.1 + 0.02 * abs(promised)
 
 
-def log_prior(free: Sequence[Free], theta: Array) -> float:
+def log_prior(free: Sequence[FreeParameter], theta: Array) -> float:
     """Log prior density up to what all hypotheses share; half a normal distribution has twice the density."""
     found = 0.0
     for f, x in zip(free, theta, strict=True):
@@ -115,7 +115,7 @@ def log_prior(free: Sequence[Free], theta: Array) -> float:
     return found
 
 
-def cut_off(free: Sequence[Free], theta: Array, covariance: Array) -> float:
+def cut_off(free: Sequence[FreeParameter], theta: Array, covariance: Array) -> float:
     """Log of the share of a posterior that lies within bounds where priors are one-sided: a half for what is at one."""
     found = 0.0
     for f, x, variance in zip(free, theta, np.diag(covariance), strict=True):
@@ -133,7 +133,7 @@ def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit
     does not do as these promised are they taken anew.
     """
     free, levels, space = found.free, found.levels, Space(found.free)
-    on = problem.program.switches(found.suspects)
+    on = problem.program.switches(found.effects)
     theta = space.clipped(found.theta)
 
     def score(x: Array) -> float:
@@ -183,7 +183,7 @@ def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit
     covariance = space.covariance(information)
     evidence = best - 0.5 * float(np.linalg.slogdet(information)[1]) + force_prior(problem, levels)
     return Fit(
-        found.suspects, free, theta, covariance, levels, evidence + cut_off(free, theta, covariance)
+        found.effects, free, theta, covariance, levels, evidence + cut_off(free, theta, covariance)
     )
 
 
@@ -195,7 +195,7 @@ def learnt(J: Array, change: Array, step: Array) -> Array:
 
 def slopes(
     problem: Problem,
-    free: Sequence[Free],
+    free: Sequence[FreeParameter],
     score: Callable[[Array], float],
     best: float,
     theta: Array,
@@ -223,10 +223,10 @@ def slopes(
 
 def jacobian(
     problem: Problem,
-    free: Sequence[Free],
+    free: Sequence[FreeParameter],
     theta: Array,
     on: Array,
-    levels: Levels,
+    levels: NoiseLevels,
     white: Array,
     only: int = 0,
 ) -> Array:
@@ -248,7 +248,7 @@ def jacobian(
 
 
 def _curvature(
-    problem: Problem, free: Sequence[Free], theta: Array, on: Array, levels: Levels
+    problem: Problem, free: Sequence[FreeParameter], theta: Array, on: Array, levels: NoiseLevels
 ) -> Array:
     """Information on parameters without a gradient, by second differences of the likelihood half a prior sd wide."""
     found = np.zeros(len(free))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track, segments
+from boatsim.diagnosis.filter import MappedRecording, segments
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
@@ -30,7 +30,7 @@ class FreeRun:
 
 
 def free_runs(
-    problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Track], horizon: float
+    problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[MappedRecording], horizon: float
 ) -> list[FreeRun]:
     """Free runs of all models over recordings, each started at its own smoothed state every `horizon` s."""
     nq = problem.program.module.NQ
@@ -39,7 +39,7 @@ def free_runs(
         runs = {
             name: track.free_runs(
                 problem.values(track, f.free, f.theta),
-                problem.program.switches(f.suspects),
+                problem.program.switches(f.effects),
                 f.levels,
                 horizon,
             )

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.coordinate_search import climbed
-from boatsim.diagnosis.filter import Levels
+from boatsim.diagnosis.filter import NoiseLevels
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array, Wandering
 
@@ -24,7 +24,7 @@ LOOSER = 10  # times that the force is raised e-fold until the filter follows a 
 TIME_PRIOR = 0.7  # sd of log time constant
 
 
-def force_prior(problem: Problem, levels: Levels) -> float:
+def force_prior(problem: Problem, levels: NoiseLevels) -> float:
     """Log prior of the latent force: near the ambient level, more is likelier than less."""
     over = np.log(levels.force / problem.ambient.force)
     return float(
@@ -49,20 +49,20 @@ def fit_force(problem: Problem, found: Fit, enough: float = ROUGH) -> Fit:
 
     Where the error of an instrument wanders, the noise of the instruments with them: it was fitted without that error.
     """
-    on = problem.program.switches(found.suspects)
+    on = problem.program.switches(found.effects)
     searched = [j for j, f in enumerate(found.free) if f.searched]
     low = np.array([found.free[j].low for j in searched])
     high = np.array([found.free[j].high for j in searched])
     mean = np.array([found.free[j].mean for j in searched])
     sd = np.array([found.free[j].sd for j in searched])
     wanders = any(
-        isinstance(e, Wandering) and e.name in found.suspects for e in problem.program.suspects
+        isinstance(e, Wandering) and e.name in found.effects for e in problem.program.candidates
     )
-    families = sorted({f for t in problem.tracks for f in t.families}) if wanders else []
+    families = sorted({f for t in problem.recordings for f in t.families}) if wanders else []
     stated = np.log([problem.ambient.sensors[f] for f in families])
     k, n = len(searched), len(searched) + len(families)
 
-    def placed(x: Array) -> tuple[Levels, Array]:
+    def placed(x: Array) -> tuple[NoiseLevels, Array]:
         theta = found.theta.copy()
         theta[searched] = np.clip(x[:k] * sd, low, high)
         sensors = _sensors(families, x[k:n], stated)
@@ -92,13 +92,13 @@ def fit_force(problem: Problem, found: Fit, enough: float = ROUGH) -> Fit:
 
 def fit_noise(problem: Problem, found: Fit) -> Fit:
     """A hypothesis with sensor noise and latent-force levels fitted, parameters as they are."""
-    families = sorted({f for t in problem.tracks for f in t.families})
+    families = sorted({f for t in problem.recordings for f in t.families})
     n = len(problem.ambient.force)
-    on = problem.program.switches(found.suspects)
+    on = problem.program.switches(found.effects)
     stated = np.log([problem.ambient.sensors[f] for f in families])
     rough = np.log([_roughness(problem, f) or problem.ambient.sensors[f] for f in families])
 
-    def levels(x: Array) -> Levels:
+    def levels(x: Array) -> NoiseLevels:
         sensors = {**problem.ambient.sensors, **_sensors(families, x[n:], stated)}
         return replace(problem.ambient, force=_forces(problem, x[:n]), sensors=sensors)
 
@@ -119,11 +119,11 @@ def fit_noise(problem: Problem, found: Fit) -> Fit:
     return replace(found, levels=levels(climbed(score, x, 0.4, FINE)[1]))
 
 
-def fit_time_constant(problem: Problem, found: Fit) -> Levels:
+def fit_time_constant(problem: Problem, found: Fit) -> NoiseLevels:
     """Latent-force levels with their correlation time, for the band that locates a mismatch in time."""
-    on = problem.program.switches(found.suspects)
+    on = problem.program.switches(found.effects)
 
-    def levels(x: Array) -> Levels:
+    def levels(x: Array) -> NoiseLevels:
         lasting = found.levels.lasting(float(np.exp(x[1])))
         return replace(lasting, force=lasting.force * np.exp(x[0]))
 
@@ -140,7 +140,7 @@ def fit_time_constant(problem: Problem, found: Fit) -> Levels:
 def _roughness(problem: Problem, family: str) -> float:
     """Noise sd of a sensor from third differences of its signal, robust to outliers; 0 if it never varies."""
     found = []
-    for t in problem.tracks:
+    for t in problem.recordings:
         for c, f in enumerate(t.families):
             y = t.measured[np.isfinite(t.measured[:, c]), c]
             if f == family and len(y) > 8:

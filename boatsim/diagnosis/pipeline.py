@@ -26,7 +26,14 @@ from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import timed
 from boatsim.diagnosis.covariance_inflation import widened
 from boatsim.diagnosis.experiment_design import next_experiment
-from boatsim.diagnosis.filter import Track, axes_of, noise_beside, noise_of, nominal_levels, track
+from boatsim.diagnosis.filter import (
+    MappedRecording,
+    axes_of,
+    map_recording,
+    noise_beside,
+    noise_of,
+    nominal_levels,
+)
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.locate import missing_force as locate
 from boatsim.diagnosis.locate import nominal_forces
@@ -72,9 +79,11 @@ class Diagnosis:
     remarks: tuple[str, ...]  # what was read and not used
     plan: next_experiment.Plan | None = None  # what to record next
 
-    def laid(self, recording: Recording, stated: Mapping[str, float] | None = None) -> Track:
+    def laid(
+        self, recording: Recording, stated: Mapping[str, float] | None = None
+    ) -> MappedRecording:
         """A further recording on the same program, with the laws that were described; `stated` is sensor noise."""
-        made = begun(track(recording, self.problem.program, stated), self.problem.ambient)
+        made = begun(map_recording(recording, self.problem.program, stated), self.problem.ambient)
         for w in self.ranking.description.terms if self.ranking.description else ():
             write(self.problem, w.term.name, w.term, [made])
         return made
@@ -175,7 +184,7 @@ def pose(
     library: Sequence[str] = (),
     horizon: float | None = None,
     config: DiagnosisConfig = DEFAULT,
-) -> tuple[Problem, list[Track], Callable[[Recording], Track], Library]:
+) -> tuple[Problem, list[MappedRecording], Callable[[Recording], MappedRecording], Library]:
     """The question that opened recordings put: them on one program, those unseen, how one is laid, what is tried."""
     boat, facts = boats[fitted[0].path], fitted[0].notes.facts
     columns = sorted({c for r in fitted for c in r.signals})
@@ -186,12 +195,12 @@ def pose(
     programs = {path: Program(b, there[path].compiled) for path, b in known.items()}
     stated, levels = noise_of(boat, fitted), nominal_levels(boat, fitted)
 
-    def lay(recording: Recording) -> Track:
-        return begun(track(recording, programs[recording.path], stated), levels)
+    def lay(recording: Recording) -> MappedRecording:
+        return begun(map_recording(recording, programs[recording.path], stated), levels)
 
     laid = [lay(r) for r in fitted]
     laid += [
-        begun(track(r, programs[r.path], stated, noise_beside(boat, fitted, r)), levels)
+        begun(map_recording(r, programs[r.path], stated, noise_beside(boat, fitted, r)), levels)
         for r in held_out
     ]
     uncertainty = priors.uncertainty(boat)
@@ -359,7 +368,7 @@ def _names(paths: Sequence[Path]) -> list[str]:
 def _compile(problem: Problem) -> None:
     """Compile or load the filter before the clock starts: the first time takes far longer than any diagnosis."""
     nominal, on = problem.nominal(), problem.program.switches()
-    track = problem.tracks[0]
+    track = problem.recordings[0]
     track.free_runs(
         problem.values(track, nominal.free, nominal.theta),
         on,
@@ -371,7 +380,7 @@ def _compile(problem: Problem) -> None:
 
 
 def _described(
-    problem: Problem, ranking: Ranking, held_out: Sequence[Track], report: Report
+    problem: Problem, ranking: Ranking, held_out: Sequence[MappedRecording], report: Report
 ) -> Ranking:
     """The same with a law written down for what nothing explains, and without entries that but stood for it."""
     found = (
@@ -381,7 +390,7 @@ def _described(
     )
     if found is None:
         return ranking
-    named = tuple(n for n in ranking.named if n.name in found.fit.suspects)
+    named = tuple(n for n in ranking.named if n.name in found.fit.effects)
     best = ranking.best if found.fit is ranking.best else widened(problem, found.fit)
     terms = (
         replace(w, sd=best.value(w.term.name, "coefficient")[1]) if w.carries else w
@@ -393,7 +402,7 @@ def _described(
 def _findings(
     problem: Problem,
     ranking: Ranking,
-    held_out: Sequence[Track],
+    held_out: Sequence[MappedRecording],
     vessel: Vessel,
     note: str,
     plan: next_experiment.Plan | None,
@@ -402,12 +411,12 @@ def _findings(
     longest = max(float(np.ptp(t.times)) for t in held_out)
     horizon = min(problem.horizon, float(f"{longest:.3g}") if longest < problem.horizon else np.inf)
     fits = before_after.fits_of(problem, ranking)
-    everything = before_after.in_time([*problem.tracks, *held_out])
+    everything = before_after.in_time([*problem.recordings, *held_out])
     forces = locate.missing_force(problem, ranking.recalibrated, everything)
     left = locate.force_left(problem, ranking.best, everything)
     stretches = free_runs(problem, fits, held_out, horizon)
     parts = before_after.by_part(problem, fits, everything, horizon) if ranking.adds else []
-    table = before_after.table_of(parts, problem.tracks, horizon)
+    table = before_after.table_of(parts, problem.recordings, horizon)
     axes = axes_of(vessel)
 
     def columns(values: Array) -> dict[str, Array]:
@@ -445,15 +454,15 @@ def _findings(
     return Findings(
         answer,
         vessel.name,
-        tuple(t.name for t in problem.tracks),
+        tuple(t.name for t in problem.recordings),
         held_out_names,
         note,
         missing,
         tuple(stretches),
-        tuple(before_after.remarks(parts, problem.tracks, errors(stretches), ranking)),
+        tuple(before_after.remarks(parts, problem.recordings, errors(stretches), ranking)),
         coefficients,
         (table,) if table[2] else (),
-        meanings(problem.program.suspects, problem.program.vessel),
+        meanings(problem.program.candidates, problem.program.vessel),
         ranking.description.terms if ranking.description else (),
         next_experiment.steps(plan),
         (vessel.length, vessel.beam),

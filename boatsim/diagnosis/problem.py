@@ -12,14 +12,14 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.command_range import excursion
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.filter import BODY, Levels, Track
+from boatsim.diagnosis.filter import BODY, MappedRecording, NoiseLevels
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Effect, Param, Release, Wandering
 from boatsim.physics.vessel import Vessel
 
 
 @dataclass(frozen=True)
-class Free:
+class FreeParameter:
     """A parameter to fit, and what it does to which numbers of a boat.
 
     A nuisance scales the run's own value: `relative` is true and its mean is 1. A release scales, shifts or sets
@@ -55,11 +55,11 @@ class Free:
 class Fit:
     """A converged hypothesis."""
 
-    suspects: tuple[str, ...]
-    free: tuple[Free, ...]
+    effects: tuple[str, ...]  # candidates that act, in the order in which they were added
+    free: tuple[FreeParameter, ...]
     theta: Array  # (F,) fitted values
     covariance: Array  # (F, F)
-    levels: Levels
+    levels: NoiseLevels
     evidence: float  # log of the Laplace evidence [nats]
 
     def value(self, effect: str, name: str) -> tuple[float, float]:
@@ -126,8 +126,8 @@ class Problem:
 
     def __init__(
         self,
-        tracks: Sequence[Track],
-        ambient: Levels,
+        tracks: Sequence[MappedRecording],
+        ambient: NoiseLevels,
         uncertainty: dict[str, float],
         horizon: float | None = None,
         config: DiagnosisConfig = DEFAULT,
@@ -136,7 +136,7 @@ class Problem:
 
         `horizon` is the length [s] of the free runs by which it is judged, if not the usual one.
         """
-        self.tracks, self.ambient, self.uncertainty = list(tracks), ambient, uncertainty
+        self.recordings, self.ambient, self.uncertainty = list(tracks), ambient, uncertainty
         self.program = tracks[0].program
         self.config = config
         self.horizon = horizon or priors.horizon(self.program.vessel)
@@ -146,17 +146,17 @@ class Problem:
             str, float
         ] = {}  # prior sd of the coefficient of each law that the diagnosis describes
 
-    def on(self, tracks: Sequence[Track]) -> "Problem":
+    def on(self, tracks: Sequence[MappedRecording]) -> "Problem":
         """The same question to other recordings."""
         other = copy(self)
-        other.tracks = list(tracks)
+        other.recordings = list(tracks)
         return other
 
-    def parameters(self, suspects: Sequence[str]) -> tuple[Free, ...]:
+    def parameters(self, effects: Sequence[str]) -> tuple[FreeParameter, ...]:
         """Coefficients of the nominal, then everything that the suspects let be fitted, in their order."""
         free = list(self.nuisances)
-        effects = {e.name: e for e in self.program.suspects}
-        for effect in (effects[n] for n in suspects):
+        candidates = {e.name: e for e in self.program.candidates}
+        for effect in (candidates[n] for n in effects):
             for name, about in type(effect).params().items():
                 axis_is_free = not about.axis or about.axis in self.program.vessel.dof
                 if (
@@ -168,7 +168,7 @@ class Problem:
                     sd = self.spreads.get(effect.name, about.spread * self.scale(effect, name))
                     low, high = self._bounds(about)
                     free.append(
-                        Free(
+                        FreeParameter(
                             effect.name,
                             name,
                             acts.at,
@@ -184,7 +184,7 @@ class Problem:
                     )
         return tuple(free)
 
-    def values(self, track: Track, free: Sequence[Free], theta: Array) -> Array:
+    def values(self, track: MappedRecording, free: Sequence[FreeParameter], theta: Array) -> Array:
         """A run's numbers with the free ones put in."""
         p = track.values.copy()
         for f, x in zip(free, theta, strict=True):
@@ -208,17 +208,24 @@ class Problem:
         return self.program.index(owner, key)
 
     def likelihood(
-        self, free: Sequence[Free], theta: Array, on: Array, levels: Levels, fresh: bool = True
+        self,
+        free: Sequence[FreeParameter],
+        theta: Array,
+        on: Array,
+        levels: NoiseLevels,
+        fresh: bool = True,
     ) -> float:
         """Log likelihood of all runs; not `fresh`: linearised where the last fresh one was, for other levels."""
         return sum(
-            t.likelihood(self.values(t, free, theta), on, levels, fresh) for t in self.tracks
+            t.likelihood(self.values(t, free, theta), on, levels, fresh) for t in self.recordings
         )
 
-    def whitened(self, free: Sequence[Free], theta: Array, on: Array, levels: Levels) -> Array:
+    def whitened(
+        self, free: Sequence[FreeParameter], theta: Array, on: Array, levels: NoiseLevels
+    ) -> Array:
         """Whitened prediction errors of all runs with the gains of the last `likelihood`."""
         return np.concatenate(
-            [t.whitened(self.values(t, free, theta), on, levels) for t in self.tracks]
+            [t.whitened(self.values(t, free, theta), on, levels) for t in self.recordings]
         )
 
     def scale(self, effect: Effect, name: str) -> float:
@@ -234,7 +241,7 @@ class Problem:
         if (
             name in type(effect).thresholds
             and unit != "rad"
-            and (largest := excursion(self.tracks, effect))
+            and (largest := excursion(self.recordings, effect))
         ):
             return largest
         return scale_of(unit, self.program.vessel)
@@ -254,11 +261,11 @@ class Problem:
     @property
     def stiff(self) -> bool:
         """Whether the hull's quickest motion dies out within a sample of any run."""
-        return any(t.stiff for t in self.tracks)
+        return any(t.stiff for t in self.recordings)
 
     def white(self) -> Array:
         """Whitened prediction errors of all runs, of the last pass."""
-        return np.concatenate([t.white for t in self.tracks])
+        return np.concatenate([t.white for t in self.recordings])
 
     def nominal(self) -> Fit:
         """Nothing fitted: the vessel as it is written."""
@@ -267,7 +274,7 @@ class Problem:
             (), free, np.ones(len(free)), np.zeros((len(free), len(free))), self.ambient, -np.inf
         )
 
-    def _nuisances(self) -> tuple[Free, ...]:
+    def _nuisances(self) -> tuple[FreeParameter, ...]:
         """Coefficients of the vessel's own that are never known exactly; what several instances share is one."""
         vessel, shared = (
             self.program.vessel,
@@ -277,7 +284,7 @@ class Problem:
             for name, about in type(effect).params().items():
                 sd = self.uncertainty.get(about.calibrates, 0.0)
                 at = self.program.index(effect.name, name)
-                used = self.tracks[0].values[at] != 0.0 and (
+                used = self.recordings[0].values[at] != 0.0 and (
                     not about.axis or about.axis in vessel.dof
                 )
                 if about.calibrates and sd > 0 and used:
@@ -289,7 +296,7 @@ class Problem:
                 tuple(at for _, at in places),
             )
             found.append(
-                Free(
+                FreeParameter(
                     called,
                     name,
                     all_of,

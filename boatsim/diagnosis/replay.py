@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.diagnosis.candidates import composed
 from boatsim.diagnosis.checks.initial_actuator_state import begun
-from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.filter import map_recording, nominal_levels
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
@@ -24,7 +24,7 @@ def replayed(
     """Free runs of `horizon` [s], model "simulated" beside "recorded". Raises BadInput for too short a recording."""
     problem, fitted = as_written(recording, boat, told)
     told("free runs", 0.8)
-    stretches = free_runs(problem, {"simulated": fitted}, problem.tracks, horizon)
+    stretches = free_runs(problem, {"simulated": fitted}, problem.recordings, horizon)
     if not stretches:
         name, whole = recording.path or recording.name, recording.t[-1] - recording.t[0]
         raise BadInput(f"{name}: {whole:g} s long; a free run of {horizon:g} s does not fit")
@@ -55,6 +55,6 @@ def as_written(recording: Recording, boat: Vessel, told: Report = silent) -> tup
     told("compiling, or loading what was compiled before", 0.1)
     program, acting = composed(boat)
     levels = nominal_levels(boat, [recording])
-    problem = Problem([begun(track(recording, program), levels)], levels, {})
+    problem = Problem([begun(map_recording(recording, program), levels)], levels, {})
     told("fitting the noise", 0.3)
-    return problem, fit_noise(problem, replace(problem.nominal(), suspects=acting))
+    return problem, fit_noise(problem, replace(problem.nominal(), effects=acting))

@@ -19,7 +19,7 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import composed
 from boatsim.diagnosis.checks.data_cleaning import lasting, thinned
 from boatsim.diagnosis.checks.initial_actuator_state import begun
-from boatsim.diagnosis.filter import nominal_levels, track
+from boatsim.diagnosis.filter import map_recording, nominal_levels
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.pipeline import open_recording
@@ -125,9 +125,9 @@ def _problems(
     """The question to the parts that are fitted, and the same to those that judge."""
     program, _ = composed(boat)
     levels = nominal_levels(boat, first)
-    laid = [begun(track(r, program), levels) for r in first]
+    laid = [begun(map_recording(r, program), levels) for r in first]
     problem = Problem(laid, levels, priors.uncertainty(boat))
-    return problem, problem.on([track(r, program) for r in last])
+    return problem, problem.on([map_recording(r, program) for r in last])
 
 
 def _with_more(problem: Problem, best: Fit, report: Report) -> Fit:
@@ -136,7 +136,7 @@ def _with_more(problem: Problem, best: Fit, report: Report) -> Fit:
     while there:
         tried = {}
         for i, n in enumerate(there):
-            share = (len(best.suspects) + i / len(there)) / (len(best.suspects) + 2)
+            share = (len(best.effects) + i / len(there)) / (len(best.effects) + 2)
             report("trying what a boat may have besides", share, n.replace("_", " "))
             tried[n] = converge(problem, _start(problem, best, n))
         name = max(tried, key=lambda n: tried[n].evidence)
@@ -149,20 +149,20 @@ def _with_more(problem: Problem, best: Fit, report: Report) -> Fit:
 
 def _start(problem: Problem, best: Fit, name: str) -> Fit:
     """The start of a fit with one more."""
-    suspects = (*best.suspects, name)
-    free = problem.parameters(suspects)
+    effects = (*best.effects, name)
+    free = problem.parameters(effects)
     known = {(f.effect, f.name): x for f, x in zip(best.free, best.theta, strict=True)}
     theta = np.array([known.get((f.effect, f.name), f.mean) for f in free])
-    return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), best.levels, -np.inf)
+    return Fit(effects, free, theta, np.diag([f.sd**2 for f in free]), best.levels, -np.inf)
 
 
 def _without(best: Fit, names: Sequence[str]) -> Fit:
     """The fit less what is not the boat's."""
     keep = [j for j, f in enumerate(best.free) if f.effect not in names]
-    suspects = tuple(n for n in best.suspects if n not in names)
+    effects = tuple(n for n in best.effects if n not in names)
     return replace(
         best,
-        suspects=suspects,
+        effects=effects,
         free=tuple(best.free[j] for j in keep),
         theta=best.theta[keep],
         covariance=best.covariance[np.ix_(keep, keep)],
@@ -172,7 +172,7 @@ def _without(best: Fit, names: Sequence[str]) -> Fit:
 def _errors(judge: Problem, nominal: Fit, best: Fit) -> tuple[dict[str, float], dict[str, float]]:
     """Free runs on what was not fitted, before and after."""
     found = errors(
-        free_runs(judge, {"before": nominal, "after": best}, judge.tracks, judge.horizon)
+        free_runs(judge, {"before": nominal, "after": best}, judge.recordings, judge.horizon)
     )
     if not found:
         raise BadInput(
@@ -231,7 +231,7 @@ def _before(table: Mapping[str, Any], key: str) -> str:
 def _told(best: Fit) -> list[str]:
     """What was found beside the coefficients."""
     lines = []
-    for name in best.suspects:
+    for name in best.effects:
         cells = [
             f"{f.name} = {x:.3g} +- {np.sqrt(v):.2g}"
             for f, x, v in zip(best.free, best.theta, np.diag(best.covariance), strict=True)

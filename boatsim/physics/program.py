@@ -28,29 +28,29 @@ class Program:
     """
 
     vessel: Vessel
-    suspects: tuple[Effect, ...] = ()  # those with a law act only where `on` says so
+    # effects that act only where `on` switches them on
+    candidates: tuple[Effect, ...] = ()
     effects: tuple[Effect, ...] = field(init=False)
     offsets: tuple[int, ...] = field(init=False)  # where each effect's parameters start
 
     def __post_init__(self) -> None:
-        laws = (
-            e for e in self.suspects if not isinstance(e, Release)
-        )  # a release has nothing to compile
+        # a release has nothing to compile
+        laws = (e for e in self.candidates if not isinstance(e, Release))
         object.__setattr__(self, "effects", (*self.vessel.effects, *laws))
         sizes = [len(type(e).params()) for e in self.effects]
         object.__setattr__(self, "offsets", tuple(int(n) for n in np.cumsum([0, *sizes])[:-1]))
 
     @property
     def entries(self) -> tuple[str, ...]:
-        """Names of what may be tried: all suspects but the slots that a diagnosis writes laws into."""
-        return tuple(e.name for e in self.suspects if not type(e).described)
+        """Names of the candidates without the placeholder effects of symbolic regression."""
+        return tuple(e.name for e in self.candidates if not type(e).described)
 
     def values(self) -> Array:
         """Parameters of all effects, flat."""
         return np.array([v for e in self.effects for v in e.values()], dtype=float)
 
     def switches(self, active: Sequence[str] = ()) -> Array:
-        """`on` with the named suspects acting."""
+        """`on` (effects,) with the named candidates switched on."""
         own = len(self.vessel.effects)
         return np.array(
             [i < own or e.name in active for i, e in enumerate(self.effects)], dtype=np.float64

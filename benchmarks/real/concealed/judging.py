@@ -244,7 +244,7 @@ def _with_known(found: Diagnosis, truth: Sequence[Cause], known: Collection[str]
 
 def entry_of(problem: Problem, name: str) -> Effect | None:
     """The library's entry of that name as it was composed with a vessel."""
-    there = {e.name: e for e in problem.program.suspects}
+    there = {e.name: e for e in problem.program.candidates}
     return there.get(FURTHER + name) or there.get(name)
 
 

@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 from boatsim.diagnosis.checks.finding import Change, Finding, applied
 from boatsim.diagnosis.checks.reinterpretations import Meaning, meanings, points_aside, turned_by
 from boatsim.diagnosis.checks.steering_sense import turned
-from boatsim.diagnosis.filter import Track, axes_of
+from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.priors import rate
@@ -45,7 +45,7 @@ NEAR = np.radians(35.0)  # by which turns of the heading are no rivals
 ABOUT = 4.0  # [deg] by which a quarter turn may be missed
 ROUNDS = 2  # faults one upon the other
 LEVEL = ("surge", "sway", "yaw")
-Lay = Callable[[Recording], Track]
+Lay = Callable[[Recording], MappedRecording]
 
 
 def tried(recordings: Sequence[Recording], lay: Lay, problem: Problem) -> list[Finding]:
@@ -67,7 +67,7 @@ def unexplained(problem: Problem, nominal: Fit) -> float:
     vessel = problem.program.vessel
     axes = axes_of(vessel)
     pushed = np.zeros(len(axes))
-    for laid in problem.tracks:
+    for laid in problem.recordings:
         held = nominal_forces.actuators(laid)[:: max(1, len(laid.times) // 100)]
         rest = np.zeros((len(held), 2 * problem.program.module.NQ))
         pushed = np.maximum(

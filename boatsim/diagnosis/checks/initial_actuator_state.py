@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Levels, Track
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
 from boatsim.physics.commands import sent_row, taken
 
 # [s] ahead of the first row: actuators settle to what was in force then, however long ago
@@ -18,7 +18,7 @@ TOLD = 6.0  # [nats] by which the recording must be likelier with actuators that
 SLOW = 0.2
 
 
-def begun(track: Track, levels: Levels) -> Track:
+def begun(track: MappedRecording, levels: NoiseLevels) -> MappedRecording:
     """The track, its actuators at neutral before the first row where the boat lies still then and is likelier so."""
     vessel = track.program.vessel
     rest = track.orders[0].copy()
@@ -33,7 +33,7 @@ def begun(track: Track, levels: Levels) -> Track:
     return resting if from_rest > settled + TOLD and _lies_still(resting, levels) else track
 
 
-def _lies_still(track: Track, levels: Levels) -> bool:
+def _lies_still(track: MappedRecording, levels: NoiseLevels) -> bool:
     """Whether the boat does when the recording begins: where it does not, a wrong vessel may ask for less thrust."""
     nq = track.program.module.NQ
     means, _ = track.smoothed(track.values, track.program.switches(), levels)

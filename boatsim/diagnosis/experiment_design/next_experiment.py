@@ -16,7 +16,7 @@ import numpy as np
 from boatsim.diagnosis.candidates import called
 from boatsim.diagnosis.experiment_design.manoeuvres import menu
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import Course, laid, walls
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem, scale_of
 from boatsim.diagnosis.report.schema import NextEntry
 from boatsim.diagnosis.search.pruning import ALIKE, Named
@@ -63,7 +63,7 @@ def plans(problem: Problem, winner: Fit, rivals: Mapping[str, Fit]) -> list[Plan
     """Every manoeuvre this vessel can do, with what it would tell; none without rivals."""
     if not rivals:
         return []
-    own = (n for n in winner.suspects if any(n not in r.suspects for r in rivals.values()))
+    own = (n for n in winner.effects if any(n not in r.effects for r in rivals.values()))
     separates = (*own, *rivals)
     able = menu(
         problem.program.vessel, _in_use(problem), _heel(problem), walls(problem) is not None
@@ -162,7 +162,7 @@ def others(named: Named) -> list[str]:
 
 
 def expected(
-    problem: Problem, track: Track, winner: Fit, rivals: Mapping[str, Fit]
+    problem: Problem, track: MappedRecording, winner: Fit, rivals: Mapping[str, Fit]
 ) -> dict[str, float]:
     """Expected log Bayes factor [nats] of a course that the winner expects, against each rival."""
     score, U = _refitted(problem, track, winner, winner, 0)
@@ -180,7 +180,7 @@ def expected(
     return gains
 
 
-def _tempered(gain: float, track: Track, winner: Fit) -> float:
+def _tempered(gain: float, track: MappedRecording, winner: Fit) -> float:
     """What is left of a gain [nats] if the rival's ambient force is refitted too.
 
     A misfit of g nats is spread over n independent stretches of the latent force, n = 1 + T / 2 tau for an
@@ -191,13 +191,13 @@ def _tempered(gain: float, track: Track, winner: Fit) -> float:
 
 
 def _refitted(
-    problem: Problem, track: Track, winner: Fit, model: Fit, rounds: int
+    problem: Problem, track: MappedRecording, winner: Fit, model: Fit, rounds: int
 ) -> tuple[float, Array]:
     """Log posterior of a model at its best for this course, and the derivative of its whitened errors there.
 
     Parameters are counted in standard deviations along the axes of what the data so far have left: xi = 0 is the fit.
     """
-    on = problem.program.switches(model.suspects)
+    on = problem.program.switches(model.effects)
     root = np.linalg.cholesky(model.covariance)
     low, high = np.array([f.low for f in model.free]), np.array([f.high for f in model.free])
 
@@ -240,7 +240,7 @@ def _refitted(
 
 def _in_use(problem: Problem) -> dict[str, float]:
     """Median of each command over the recordings."""
-    commands = np.concatenate([t.commands for t in problem.tracks])
+    commands = np.concatenate([t.commands for t in problem.recordings])
     return {
         n: float(np.median(commands[:, i])) for i, n in enumerate(problem.program.vessel.commands)
     }
@@ -249,6 +249,8 @@ def _in_use(problem: Problem) -> dict[str, float]:
 def _heel(problem: Problem) -> float:
     """Largest roll angle recorded [rad]."""
     found = [
-        t.measured[:, t.signals.index("phi_rad")] for t in problem.tracks if "phi_rad" in t.signals
+        t.measured[:, t.signals.index("phi_rad")]
+        for t in problem.recordings
+        if "phi_rad" in t.signals
     ]
     return float(np.nanmax(np.abs(np.concatenate(found)))) if found else 0.0

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre
-from boatsim.diagnosis.filter import FIT_STEP, Track, axes_of, body_of, changes
+from boatsim.diagnosis.filter import FIT_STEP, MappedRecording, axes_of, body_of, changes
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
@@ -25,7 +25,7 @@ class Course:
         Manoeuvre  # with the times at which a zig-zag changes over, and no longer than walls allow
     )
     start: Array  # (2 NQ,) state of the kernels at its begin
-    track: Track  # what sensors like those of the recordings would show
+    track: MappedRecording  # what sensors like those of the recordings would show
 
 
 def laid(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Course | None:
@@ -55,9 +55,9 @@ def laid(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Course | None:
 def walls(problem: Problem) -> Array | None:
     """Where walls stand, plus and minus (x, y) [m], if the library that is tried knows of any."""
     program = problem.program
-    if "surge" not in program.vessel.dof or "walls_m" not in problem.tracks[0].facts:
+    if "surge" not in program.vessel.dof or "walls_m" not in problem.recordings[0].facts:
         return None
-    x_low, x_high, y_low, y_high = problem.tracks[0].facts["walls_m"]
+    x_low, x_high, y_low, y_high = problem.recordings[0].facts["walls_m"]
     return np.array([min(-x_low, x_high), min(-y_low, y_high)])
 
 
@@ -69,9 +69,9 @@ def _cut(manoeuvre: Manoeuvre, end: float) -> Manoeuvre:
 
 def _track(
     problem: Problem, name: str, times: Array, commands: Array, shown: Array, start: Array
-) -> Track:
+) -> MappedRecording:
     """What the sensors of the first recording would show (N, 2 NQ) of a course begun at a state, as a recording."""
-    first, nq = problem.tracks[0], problem.program.module.NQ
+    first, nq = problem.recordings[0], problem.program.module.NQ
     measured = np.ascontiguousarray(shown[:, first.codes])
     given, orders = changes(times, commands)
     track = replace(
@@ -93,7 +93,7 @@ def _track(
 
 def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: Array) -> Array:
     """Channels (N, 2 NQ) of a free run as a recording would show them, ambient force left out."""
-    values = problem.values(problem.tracks[0], found.free, found.theta)
+    values = problem.values(problem.recordings[0], found.free, found.theta)
     out = np.full((1, len(times), len(start)), np.nan)
     problem.program.module.free_runs(
         times,
@@ -102,7 +102,7 @@ def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: 
         FIT_STEP,
         body_of(values),
         values,
-        problem.program.switches(found.suspects),
+        problem.program.switches(found.effects),
         np.array([0]),
         np.array([len(times) - 1]),
         start[None],
@@ -113,7 +113,7 @@ def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: 
 
 def _rows(problem: Problem, manoeuvre: Manoeuvre) -> tuple[Array, Array]:
     """Times (N,) of a recording at the rate of the first one, and the commands (N, C) in force."""
-    rate = float(np.median(np.diff(problem.tracks[0].times)))
+    rate = float(np.median(np.diff(problem.recordings[0].times)))
     times = np.asarray(rate * np.arange(int(manoeuvre.duration / rate) + 1), dtype=np.float64)
     now = np.searchsorted(np.array(manoeuvre.times) - 1e-6, times, side="right") - 1
     rows = [problem.program.command_array(level) for level in manoeuvre.levels]
@@ -149,7 +149,7 @@ def _switched(problem: Problem, found: Fit, manoeuvre: Manoeuvre, start: Array) 
 
 def _start(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Array:
     """State (2 NQ,) in which it begins: where the recordings were, at rest, or at their usual speed."""
-    first, axes = problem.tracks[0], axes_of(problem.program.vessel)
+    first, axes = problem.recordings[0], axes_of(problem.program.vessel)
     nq = len(axes)
     state = np.zeros(2 * nq)
     if "surge" not in axes:
@@ -161,7 +161,7 @@ def _start(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Array:
     if manoeuvre.under_way:
         values, on = (
             problem.values(first, found.free, found.theta),
-            problem.program.switches(found.suspects),
+            problem.program.switches(found.effects),
         )
         states, _ = first.smoothed(values, on, found.levels)
         state[nq] = float(f"{np.median(np.hypot(states[:, nq], states[:, nq + 1])):.3g}")

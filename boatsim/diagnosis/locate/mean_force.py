@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track, axes_of
+from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.diagnosis.locate.missing_force import UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.locate.smoothing import variance_of_mean
@@ -15,7 +15,9 @@ from boatsim.physics.base import Array
 CLEAR = 3.0  # [sd] that a mean is away from zero
 
 
-def mean_left(problem: Problem, found: Fit, tracks: Sequence[Track]) -> dict[str, MeanEntry]:
+def mean_left(
+    problem: Problem, found: Fit, tracks: Sequence[MappedRecording]
+) -> dict[str, MeanEntry]:
     """Mean of the force that a fit leaves over all recordings, in axes of the hull, by axis.
 
     Only where it is clearly not zero and more than the vessel tolerates of an unsteady force.
@@ -35,13 +37,13 @@ def mean_left(problem: Problem, found: Fit, tracks: Sequence[Track]) -> dict[str
     return out
 
 
-def _mean(problem: Problem, found: Fit, track: Track) -> tuple[Array, Array]:
+def _mean(problem: Problem, found: Fit, track: MappedRecording) -> tuple[Array, Array]:
     """Mean (axes,) of the smoothed force over a recording, and the variance that one has which is zero on average.
 
     Beside what the noise leaves open, so short a stretch of an unsteady force has a mean of its own by chance.
     """
     on, nq, levels = (
-        problem.program.switches(found.suspects),
+        problem.program.switches(found.effects),
         problem.program.module.NQ,
         found.levels,
     )

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.filter import Levels, Track, axes_of
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, axes_of
 from boatsim.diagnosis.locate.nominal_forces import coefficient_forces
 from boatsim.diagnosis.locate.smoothing import averaged_rows, running_average, variance_of_average
 from boatsim.diagnosis.noise_levels import fit_time_constant
@@ -47,13 +47,13 @@ class Interval:
     axis: str
 
 
-def missing_force(problem: Problem, found: Fit, tracks: Sequence[Track]) -> list[Force]:
+def missing_force(problem: Problem, found: Fit, tracks: Sequence[MappedRecording]) -> list[Force]:
     """Force missing on the vessel as written. `found` fits its coefficients and names no suspects."""
     levels = fit_time_constant(problem, found)
     return [_on_the_nominal(problem, found, track, levels) for track in tracks]
 
 
-def force_left(problem: Problem, found: Fit, tracks: Sequence[Track]) -> list[Force]:
+def force_left(problem: Problem, found: Fit, tracks: Sequence[MappedRecording]) -> list[Force]:
     """Force that a fitted hypothesis, whatever its suspects, itself leaves over at its own force levels."""
     out = []
     for track in tracks:
@@ -63,10 +63,10 @@ def force_left(problem: Problem, found: Fit, tracks: Sequence[Track]) -> list[Fo
 
 
 def _latent(
-    problem: Problem, found: Fit, theta: Array, track: Track, levels: Levels
+    problem: Problem, found: Fit, theta: Array, track: MappedRecording, levels: NoiseLevels
 ) -> tuple[Array, Array, Array]:
     """Averages of the smoothed latent force (N, axes), their variance, and the smoothed states (N, 2 NQ)."""
-    on, nq = problem.program.switches(found.suspects), problem.program.module.NQ
+    on, nq = problem.program.switches(found.effects), problem.program.module.NQ
     states, covariances, gains = track.smoothed_with_gains(
         problem.values(track, found.free, theta), on, levels
     )
@@ -76,16 +76,20 @@ def _latent(
     return running_average(states[:, latent], rows), variance, states[:, : 2 * nq]
 
 
-def _average(problem: Problem, found: Fit, theta: Array, track: Track, levels: Levels) -> Array:
+def _average(
+    problem: Problem, found: Fit, theta: Array, track: MappedRecording, levels: NoiseLevels
+) -> Array:
     """Averages of the smoothed latent force (N, axes) alone: their variance costs far more."""
-    on, nq = problem.program.switches(found.suspects), problem.program.module.NQ
+    on, nq = problem.program.switches(found.effects), problem.program.module.NQ
     states, _ = track.smoothed(problem.values(track, found.free, theta), on, levels)
     return running_average(
         states[:, 2 * nq : 3 * nq], averaged_rows(track.times, problem.ambient.time_constant)
     )
 
 
-def _on_the_nominal(problem: Problem, found: Fit, track: Track, levels: Levels) -> Force:
+def _on_the_nominal(
+    problem: Problem, found: Fit, track: MappedRecording, levels: NoiseLevels
+) -> Force:
     """What a recalibrated vessel leaves over and what the recalibration changed."""
     left, variance, states = _latent(problem, found, found.theta, track, levels)
     rows = averaged_rows(track.times, problem.ambient.time_constant)
@@ -102,7 +106,7 @@ def _on_the_nominal(problem: Problem, found: Fit, track: Track, levels: Levels) 
     return _with_ambient(problem, track, mean, variance)
 
 
-def _with_ambient(problem: Problem, track: Track, mean: Array, variance: Array) -> Force:
+def _with_ambient(problem: Problem, track: MappedRecording, mean: Array, variance: Array) -> Force:
     """What is tolerated is not missing: where zero lies outside the band, the force exceeds the ambient one."""
     return Force(
         track.name, track.times, mean, np.sqrt(variance + (problem.ambient.force / BAND) ** 2)

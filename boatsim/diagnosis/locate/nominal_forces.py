@@ -5,19 +5,21 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from boatsim.diagnosis.experiment_design.manoeuvres import commanded
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
 
-def actuators(track: Track, suspects: Sequence[str] = (), values: Array | None = None) -> Array:
+def actuators(
+    track: MappedRecording, effects: Sequence[str] = (), values: Array | None = None
+) -> Array:
     """(N, HELD) mean actuators from row to row, under each row's mean commands.
 
     Those of the vessel as written, or with suspects acting and other `values`.
     """
     program, values = track.program, track.values if values is None else values
     on, act, memory = (
-        program.switches(suspects),
+        program.switches(effects),
         np.zeros(program.held_size),
         np.zeros(program.memory_size),
     )
@@ -32,21 +34,21 @@ def actuators(track: Track, suspects: Sequence[str] = (), values: Array | None =
 
 
 def along(
-    track: Track,
+    track: MappedRecording,
     states: Iterable[Array],
     held: Iterable[Array],
     values: Array,
-    suspects: Sequence[str] = (),
+    effects: Sequence[str] = (),
 ) -> Array:
     """(N, axes) body-axes wrench of the vessel's laws, and of suspects, at states (N, 2 NQ), actuators (N, HELD)."""
-    forces, on = track.program.module.forces, track.program.switches(suspects)
+    forces, on = track.program.module.forces, track.program.switches(effects)
     first = np.int64(0)
     return np.array(
         [forces(0.0, y, act, first, values, on) for y, act in zip(states, held, strict=True)]
     )
 
 
-def full_thrust(track: Track) -> float:
+def full_thrust(track: MappedRecording) -> float:
     """Surge force [N] of the vessel as written at rest, every drive at its limit and straight ahead, over neutral."""
     program, vessel = track.program, track.program.vessel
     drives = [n for n in commanded(vessel) if n not in vessel.angles]
@@ -63,7 +65,9 @@ def full_thrust(track: Track) -> float:
     return float(found[0][0] - found[1][0])
 
 
-def coefficient_forces(problem: Problem, found: Fit, track: Track, states: Array) -> Array:
+def coefficient_forces(
+    problem: Problem, found: Fit, track: MappedRecording, states: Array
+) -> Array:
     """(F, N, axes) force that goes with each fitted coefficient of the vessel's own, at its value as written.
 
     Laws are linear in the coefficients that a recalibration may change.

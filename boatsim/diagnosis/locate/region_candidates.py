@@ -6,7 +6,7 @@ from math import exp
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track, axes_of
+from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.diagnosis.locate.nominal_forces import actuators, along
 from boatsim.physics.base import Array
 from boatsim.physics.effects.wall_effect import REACH
@@ -29,7 +29,7 @@ class Idea:
     sentence: Callable[[Array], str]  # of the fitted factors
 
 
-def ideas(track: Track, states: Array, damping: Array) -> list[Idea]:
+def ideas(track: MappedRecording, states: Array, damping: Array) -> list[Idea]:
     """Everything tried on a run; `states` (N, 2 NQ) are smoothed, `damping` (N, axes) is the vessel's own."""
     axes = axes_of(track.program.vessel)
     found = [
@@ -58,7 +58,7 @@ def _world(axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
         yield Idea("heading in the world", shapes, _direction)
 
 
-def _speeds(track: Track, axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
+def _speeds(track: MappedRecording, axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
     """The square of each speed."""
     rates = track.program.body_rates(states)[:, len(axes) :]
     for i, name in enumerate(axes):
@@ -67,7 +67,7 @@ def _speeds(track: Track, axes: tuple[str, ...], states: Array) -> Iterator[Idea
         yield Idea(variable, (np.outer(w * np.abs(w), np.eye(len(axes))[i]),), _square(variable))
 
 
-def _rolling(track: Track, axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
+def _rolling(track: MappedRecording, axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
     """Amplitude of roll, and the forward speed at which a hull that only rolls does so."""
     shape, i = np.eye(len(axes))[axes.index("roll")], axes.index("roll")
     angle, rate = states[:, i], states[:, len(axes) + i]
@@ -76,7 +76,7 @@ def _rolling(track: Track, axes: tuple[str, ...], states: Array) -> Iterator[Ide
         yield Idea("forward speed", (np.outer(rate * float(track.facts[SPEED]), shape),), _forward)
 
 
-def _astern(track: Track) -> Iterator[Idea]:
+def _astern(track: MappedRecording) -> Iterator[Idea]:
     """Force of the thrusters that push astern."""
     vessel = track.program.vessel
     thrusters = [i for i, a in enumerate(vessel.actuators) if vessel.roles[a] == THRUST]
@@ -89,7 +89,7 @@ def _astern(track: Track) -> Iterator[Idea]:
     yield Idea("thrust astern", (_at_rest(track, back) - _at_rest(track, idle),), _thrust)
 
 
-def _reversals(track: Track) -> Iterator[Idea]:
+def _reversals(track: MappedRecording) -> Iterator[Idea]:
     """Force that is missing while the angles stay behind a steering that has reversed (play operator)."""
     vessel = track.program.vessel
     angles = [vessel.actuators.index(a) for a in vessel.angles]
@@ -109,13 +109,15 @@ def _reversals(track: Track) -> Iterator[Idea]:
     )
 
 
-def _at_rest(track: Track, held: Array) -> Array:
+def _at_rest(track: MappedRecording, held: Array) -> Array:
     """(N, axes) force of the vessel at rest with given actuators."""
     still = np.zeros((len(held), 2 * track.program.module.NQ))
     return along(track, still, held, track.values)
 
 
-def _walls(track: Track, axes: tuple[str, ...], states: Array, damping: Array) -> Iterator[Idea]:
+def _walls(
+    track: MappedRecording, axes: tuple[str, ...], states: Array, damping: Array
+) -> Iterator[Idea]:
     """Pull towards the walls and damping that rises near them."""
     walls = walls_of(track)
     if walls is None or not {"surge", "sway", "yaw"} <= set(axes):
@@ -137,7 +139,7 @@ def _walls(track: Track, axes: tuple[str, ...], states: Array, damping: Array) -
     yield Idea("distance to the walls", (pull, near * damping), _near(reach))
 
 
-def walls_of(track: Track) -> tuple[float, ...] | None:
+def walls_of(track: MappedRecording) -> tuple[float, ...] | None:
     """x_low, x_high, y_low, y_high [m] of the tank, as the recording or its vessel states them."""
     return tuple(track.facts["walls_m"]) if "walls_m" in track.facts else None
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.locate.nominal_forces import coefficient_forces
 from boatsim.diagnosis.locate.periodicity import BAND, rhythm
 from boatsim.diagnosis.locate.region_candidates import ideas
@@ -45,9 +45,9 @@ def regions(problem: Problem, found: Fit) -> list[Region]:
 def _evidence(problem: Problem, found: Fit) -> tuple[Evidence, dict[str, Callable[[Array], str]]]:
     """What all runs together say of every idea that can be tried on all of them, and how to say the ideas."""
     nq, levels = problem.program.module.NQ, found.levels
-    on, latent = problem.program.switches(found.suspects), slice(2 * nq, 3 * nq)
+    on, latent = problem.program.switches(found.effects), slice(2 * nq, 3 * nq)
     evidence, sentences = [], []
-    for track in problem.tracks:
+    for track in problem.recordings:
         values = problem.values(track, found.free, found.theta)
         z, covariances, gains = track.smoothed_with_gains(values, on, levels)
         states = np.ascontiguousarray(z[:, : 2 * nq])
@@ -93,10 +93,10 @@ def _rhythm(problem: Problem, found: Fit, tests: int) -> list[Region]:
     if "roll" in problem.program.vessel.dof:
         # a hull that rolls has a period of its own, and so has whatever depends on its roll
         return []
-    found_in = rhythm([(t.times, _unexpected(problem, found, t)) for t in problem.tracks])
+    found_in = rhythm([(t.times, _unexpected(problem, found, t)) for t in problem.recordings])
     if found_in is None or found_in.p_value * tests >= LIKELY:
         return []
-    commanded = rhythm([(t.times, t.commands) for t in problem.tracks])
+    commanded = rhythm([(t.times, t.commands) for t in problem.recordings])
     if (
         commanded
         and commanded.p_value < LIKELY
@@ -107,9 +107,9 @@ def _rhythm(problem: Problem, found: Fit, tests: int) -> list[Region]:
     return [_region("period", sentence, found_in.p_value * tests)]
 
 
-def _unexpected(problem: Problem, found: Fit, track: Track) -> Array:
+def _unexpected(problem: Problem, found: Fit, track: MappedRecording) -> Array:
     """(N, C) whitened prediction errors."""
-    on = problem.program.switches(found.suspects)
+    on = problem.program.switches(found.effects)
     track.likelihood(problem.values(track, found.free, found.theta), on, found.levels)
     return track.white.reshape(len(track.times), -1)
 

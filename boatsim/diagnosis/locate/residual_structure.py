@@ -11,7 +11,7 @@ from itertools import combinations
 import numpy as np
 from scipy.special import chdtrc
 
-from boatsim.diagnosis.filter import Track, axes_of
+from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.diagnosis.locate.smoothing import information_alone
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
@@ -62,10 +62,10 @@ def structure(problem: Problem, found: Fit) -> Structure:
     levels = replace(
         found.levels, force=np.minimum(found.levels.force, FACTOR * problem.ambient.force)
     )
-    on, latent = problem.program.switches(found.suspects), slice(2 * nq, 3 * nq)
+    on, latent = problem.program.switches(found.effects), slice(2 * nq, 3 * nq)
     known, score = dict[tuple[str, str], float](), dict[tuple[str, str], float]()
     axes = axes_of(problem.program.vessel)
-    for track in problem.tracks:
+    for track in problem.recordings:
         values = problem.values(track, found.free, found.theta)
         z, covariances, gains = track.smoothed_with_gains(values, on, levels)
         named = dict(features(track, np.ascontiguousarray(z[:, : 2 * nq]), levels.time_constant))
@@ -96,7 +96,7 @@ def structure(problem: Problem, found: Fit) -> Structure:
     )
 
 
-def features(track: Track, states: Array, lasting: float) -> Iterator[tuple[str, Array]]:
+def features(track: MappedRecording, states: Array, lasting: float) -> Iterator[tuple[str, Array]]:
     """What a force may go with: (words, (N,) values of size one); `states` (N, 2 NQ), `lasting` [s] of the water."""
     for name, values in _features(track, states, lasting):
         size = float(np.sqrt(np.mean(values**2)))
@@ -104,7 +104,7 @@ def features(track: Track, states: Array, lasting: float) -> Iterator[tuple[str,
             yield name, values / size
 
 
-def _features(track: Track, states: Array, lasting: float) -> Iterator[tuple[str, Array]]:
+def _features(track: MappedRecording, states: Array, lasting: float) -> Iterator[tuple[str, Array]]:
     axes, t = axes_of(track.program.vessel), track.times
     speeds = {
         f"{a} {'rate' if a in TURNING else 'speed'}": w

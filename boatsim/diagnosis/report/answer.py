@@ -96,7 +96,7 @@ def compose(
     if ranking.structure.likely:
         answer["unknown"]["structure"] = _structure(ranking.structure)
     answer["sentence"] = report_words.sentence(
-        answer, meanings(problem.program.suspects, problem.program.vessel)
+        answer, meanings(problem.program.candidates, problem.program.vessel)
     )
     return answer
 
@@ -111,15 +111,15 @@ def _structure(found: Structure) -> StructureEntry:
     }
 
 
-def meanings(suspects: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
+def meanings(candidates: Iterable[Effect], vessel: Vessel) -> dict[str, str]:
     """What each entry says, by name, and each of its parameters and ratios, by "entry.parameter" as in the answer."""
-    there = [(called(e.name), type(e)) for e in suspects]
+    there = [(called(e.name), type(e)) for e in candidates]
     fitted = (
         (entry, name, p) for entry, kind in there for name, p in kind.params().items() if p.fit
     )
     ratios = (
         (called(e.name), key, words)
-        for e in suspects
+        for e in candidates
         for key, (_, words) in e.ratios(vessel).items()
     )
     of_parameters = {f"{n}.{key_of(name, p.unit)}": p.words for n, name, p in fitted}
@@ -151,7 +151,7 @@ def _fit(stretches: Sequence[FreeRun], held_out: Sequence[str], horizon: float) 
 
 
 def _effect(problem: Problem, best: Fit, named: Named) -> EffectEntry:
-    effect = next(e for e in problem.program.suspects if e.name == named.name)
+    effect = next(e for e in problem.program.candidates if e.name == named.name)
     kind = type(effect)
     acting: Acting = {"on": list(effect.on)} if effect.on else {}
     return {
@@ -271,4 +271,4 @@ def _limits(problem: Problem, fitted: Fit, name: str) -> dict[str, float]:
 
 
 def _kind(problem: Problem, name: str) -> type[Effect]:
-    return next(type(e) for e in problem.program.suspects if e.name == name)
+    return next(type(e) for e in problem.program.candidates if e.name == name)

@@ -20,13 +20,13 @@ def add(answer: Answer, problem: Problem, library: Library, tried: Sequence[str]
     left_out: list[LeftOutEntry] = [{"name": n, "reason": why} for n, why in by_idea.items()]
     answer["tried"] = sorted({called(n) for n in tried})
     answer["left_out"] = left_out
-    answer["facts"] = dict(problem.tracks[0].facts)
+    answer["facts"] = dict(problem.recordings[0].facts)
     answer["rules"] = _rules(problem, len(tried))
 
 
 def _rules(problem: Problem, number_tried: int) -> RulesEntry:
     vessel, levels = problem.program.vessel, problem.ambient
-    thrust = full_thrust(problem.tracks[0])
+    thrust = full_thrust(problem.recordings[0])
     ambient: dict[str, AmbientEntry] = {}
     for axis, rms in zip(axes_of(vessel), levels.force.tolist(), strict=True):
         ambient[axis] = {"rms": float(f"{rms:.3g}"), "unit": UNITS[axis]}

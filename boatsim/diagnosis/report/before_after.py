@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import descend
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.locate.residual_structure import FACTOR
@@ -54,7 +54,7 @@ def _third(name: str, which: str) -> str:
     return f"{name} ({which} third)"
 
 
-def in_time(tracks: Sequence[Track]) -> list[Track]:
+def in_time(tracks: Sequence[MappedRecording]) -> list[MappedRecording]:
     """Recordings as they were given, the parts of a single one in the order of time."""
     whole = tracks[0].name.removesuffix(_third("", THIRDS[0]))
     one = {t.name for t in tracks} == {_third(whole, n) for n in THIRDS}
@@ -71,8 +71,8 @@ def fits_of(problem: Problem, ranking: Ranking) -> dict[str, Fit]:
 
 
 def by_part(
-    problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[Track], horizon: float
-) -> list[tuple[Track, str, dict[str, float]]]:
+    problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[MappedRecording], horizon: float
+) -> list[tuple[MappedRecording, str, dict[str, float]]]:
     """(part, family, rms by model) of every part; "alone" is the nominal structure refitted to that part only."""
     out = []
     for track in tracks:
@@ -86,7 +86,9 @@ def by_part(
 
 
 def table_of(
-    parts: Sequence[tuple[Track, str, dict[str, float]]], fitted: Sequence[Track], horizon: float
+    parts: Sequence[tuple[MappedRecording, str, dict[str, float]]],
+    fitted: Sequence[MappedRecording],
+    horizon: float,
 ) -> tuple[str, list[str], list[list[str]]]:
     """Free-run errors of every part of the data, fitted and unseen: (title, header, rows)."""
     rows = []
@@ -115,8 +117,8 @@ def table_of(
 
 
 def remarks(
-    parts: Sequence[tuple[Track, str, dict[str, float]]],
-    fitted: Sequence[Track],
+    parts: Sequence[tuple[MappedRecording, str, dict[str, float]]],
+    fitted: Sequence[MappedRecording],
     held_out: Mapping[str, Mapping[str, float]],
     ranking: Ranking,
 ) -> list[str]:

@@ -30,9 +30,11 @@ def patched(
 
     `described` are the laws that a diagnosis wrote down, by name; what else of that kind was fitted are events of runs.
     """
-    events = {e.name for e in problem.program.suspects if type(e).described} - set(described or {})
-    suspects = [
-        (described or {}).get(e.name, e) for e in problem.program.suspects if e.name not in events
+    events = {e.name for e in problem.program.candidates if type(e).described} - set(
+        described or {}
+    )
+    candidates = [
+        (described or {}).get(e.name, e) for e in problem.program.candidates if e.name not in events
     ]
     text = vessel.file.read_text(encoding="utf-8-sig")
     base = tomlkit.parse(text).get("based_on")
@@ -42,11 +44,11 @@ def patched(
     document = tomlkit.parse(text)
     document["based_on"] = tomlkit.item(_based_on(vessel, base, path))
     document["based_on"].comment("its folder holds the hull")
-    laws = [e.name for e in suspects if e.name in found.suspects and not isinstance(e, Release)]
+    laws = [e.name for e in candidates if e.name in found.effects and not isinstance(e, Release)]
     document["found"] = tomlkit.item(laws)
     document["found"].comment("effects that were added to it; the others it had")
     document.setdefault("effect", tomlkit.aot())
-    settings: dict[str, dict[str, float]] = {name: {} for name in found.suspects}
+    settings: dict[str, dict[str, float]] = {name: {} for name in found.effects}
     for free, x in zip(found.free, found.theta, strict=True):
         if free.relative:
             for one in vessel.known_as(free.effect):
@@ -54,7 +56,7 @@ def patched(
                 _alter(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
         else:
             settings[free.effect][free.name] = float(x)
-    for effect in suspects:  # channels act in the order of the diagnosis
+    for effect in candidates:  # channels act in the order of the diagnosis
         if effect.name in settings and isinstance(effect, Release):
             _release(document, vessel, effect, settings[effect.name])
         elif effect.name in settings:
@@ -132,7 +134,7 @@ def _alter(
 
 def _hold(document: tomlkit.TOMLDocument, problem: Problem, vessel: Vessel, found: Fit) -> None:
     """State what the file's own rules would now fill in otherwise than the fitted boat had it."""
-    values = problem.values(problem.tracks[0], found.free, found.theta)
+    values = problem.values(problem.recordings[0], found.free, found.theta)
     raw = document.unwrap()
     for name in vessel.load:
         raw = overlaid(raw, raw["loads"][name], name)

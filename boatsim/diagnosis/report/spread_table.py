@@ -7,7 +7,7 @@ import tomlkit
 from tomlkit.items import Table
 
 from boatsim.diagnosis.filter import BODY
-from boatsim.diagnosis.problem import Fit, Free, Problem
+from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report.answer import told_sd
 
 DIGITS = 6  # significant
@@ -15,7 +15,7 @@ DIGITS = 6  # significant
 
 def spread(problem: Problem, found: Fit, gone: Collection[str] = ()) -> Table | None:
     """The table, or None where nothing was fitted; `gone` are effects that the patched file does not have."""
-    boat = {e.name for e in problem.program.vessel.effects} | set(found.suspects)
+    boat = {e.name for e in problem.program.vessel.effects} | set(found.effects)
     kept, rows = [], []
     for j, free in enumerate(found.free):
         there = [
@@ -46,13 +46,13 @@ def spread(problem: Problem, found: Fit, gone: Collection[str] = ()) -> Table | 
 def _sd(problem: Problem, found: Fit, j: int) -> float:
     """As the report tells it of what was found, as it was fitted of a coefficient."""
     free = found.free[j]
-    effect = next((e for e in problem.program.suspects if e.name == free.effect), None)
+    effect = next((e for e in problem.program.candidates if e.name == free.effect), None)
     if effect is not None and not free.relative and not type(effect).described:
         return told_sd(found, effect, free.name)
     return float(np.sqrt(max(found.covariance[j, j], 0.0)))
 
 
-def _numbers(problem: Problem, free: Free) -> list[tuple[str, float]]:
+def _numbers(problem: Problem, free: FreeParameter) -> list[tuple[str, float]]:
     """Numbers, as "effect.number", that a fitted quantity acts on, each with its weight, and those that follow them."""
     places = {
         problem.program.index(e.name, n): f"{e.name}.{n}"
@@ -65,7 +65,7 @@ def _numbers(problem: Problem, free: Free) -> list[tuple[str, float]]:
     return [(places[at], weight) for at, weight in weights.items()]
 
 
-def _row(free: Free, x: float, sd: float, there: list[tuple[str, float]]) -> Table:
+def _row(free: FreeParameter, x: float, sd: float, there: list[tuple[str, float]]) -> Table:
     row = tomlkit.table()
     row["fitted"] = f"{free.effect}.{free.name}"
     if free.how == "scales":

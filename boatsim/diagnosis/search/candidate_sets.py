@@ -41,9 +41,9 @@ class Sets:
         self.vouched: set[str] = (
             set()
         )  # members without which sets foretell unseen recordings worse, free runs say
-        self.random = {e.name for e in problem.program.suspects if type(e).random}
+        self.random = {e.name for e in problem.program.candidates if type(e).random}
         self.unsteady = {
-            e.name for e in problem.program.suspects if isinstance(e, Unsteady)
+            e.name for e in problem.program.candidates if isinstance(e, Unsteady)
         }  # of them, forces
         self.price = price(len(candidates))
 
@@ -54,14 +54,14 @@ class Sets:
         """
         laws = best
         for name in (
-            n for n in best.suspects if n in self.random
+            n for n in best.effects if n in self.random
         ):  # in their order, not that of hashes
             laws = self.without(laws, name)
         return float(laws.evidence - self.base.evidence)
 
     def converged(self, start: Fit) -> Fit:
         """The fit of a set, kept: made from `start` unless it was made before from one no worse."""
-        key = frozenset(start.suspects)
+        key = frozenset(start.effects)
         known, promised = self.fits.get(key), self.promised.get(key, -np.inf)
         if known is None or start.evidence > max(known.evidence, promised) + SETTLED:
             self.promised[key] = (
@@ -87,7 +87,7 @@ class Sets:
         other = converge(self.problem, begun) if np.isfinite(begun.evidence) else begun
         if not other.evidence > found.evidence + SETTLED:
             return found
-        key = frozenset(found.suspects)
+        key = frozenset(found.effects)
         self.forget(key)
         self.fits[key] = other
         return other
@@ -108,9 +108,9 @@ class Sets:
 
     def looked(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
         """Other candidates on top of a set: a quick look at all, or `among` some, those in front fitted in full."""
-        key = frozenset(best.suspects)
+        key = frozenset(best.effects)
         known = self.looks.setdefault(key, {})
-        ideas = {called(n) for n in best.suspects}
+        ideas = {called(n) for n in best.effects}
         rest = [n for n in among or self.candidates if called(n) not in ideas and n not in known]
         if rest:
             known |= screen(
@@ -150,7 +150,7 @@ class Sets:
 
         An effect may come in only as another makes way, as a current beside a wind that had stood for both.
         """
-        key = frozenset(best.suspects)
+        key = frozenset(best.effects)
         wrong = [
             n
             for n, f in allowed.items()
@@ -164,7 +164,7 @@ class Sets:
     def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
         """A candidate fitted in full from its quick look; where that leaves much over, from the best of its starts."""
         found = fit(self.problem, look)
-        effect = next(e for e in self.problem.program.suspects if e.name == name)
+        effect = next(e for e in self.problem.program.candidates if e.name == name)
         begun = starts(self.problem, effect)
         if len(begun) == 1 or type(effect).random or left_over(self.problem, found) < UNKNOWN:
             return found
@@ -179,7 +179,7 @@ class Sets:
 
         None where no such set was looked at, as at the beginning of a second pass: all are looked at then.
         """
-        key = frozenset(best.suspects)
+        key = frozenset(best.effects)
         looks = {k: x for k, x in self.looks.items() if k <= key}
         gained = {
             n for k, x in looks.items() for n, f in x.items() if f.evidence > self.fits[k].evidence

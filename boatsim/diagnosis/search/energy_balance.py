@@ -10,7 +10,7 @@ BRAKES = -0.3  # of the power that it could take, from where a force is said to 
 
 def waves_of(sets: Sets, best: Fit) -> str:
     """The oscillating force of a set; "" where it has none."""
-    return next((n for n in best.suspects if n in sets.unsteady), "")
+    return next((n for n in best.effects if n in sets.unsteady), "")
 
 
 def braking(sets: Sets, best: Fit) -> str:
@@ -25,10 +25,10 @@ def braking(sets: Sets, best: Fit) -> str:
 
 def _share_of_power(sets: Sets, best: Fit) -> float:
     """Mean power of the smoothed oscillating force, over what it would be were it in phase with the hull's rates."""
-    problem, on = sets.problem, sets.problem.program.switches(best.suspects)
+    problem, on = sets.problem, sets.problem.program.switches(best.effects)
     nq, swell = problem.program.module.NQ, problem.program.module.swell
     power, most = 0.0, 0.0
-    for track in problem.tracks:
+    for track in problem.recordings:
         values = problem.values(track, best.free, best.theta)
         states, _ = track.smoothed(values, on, best.levels)
         force = states[:, 3 * nq + 1 : 5 * nq : 2] / swell(values, on).frequency

@@ -57,7 +57,7 @@ def front(tried: Mapping[str, Fit], base: Fit) -> list[str]:
 
 def left_over(problem: Problem, best: Fit) -> float:
     """Nats that the latent force gains beyond the tolerated level: what nothing in the library explains."""
-    on = problem.program.switches(best.suspects)
+    on = problem.program.switches(best.effects)
     held = replace(best.levels, force=np.minimum(best.levels.force, FACTOR * problem.ambient.force))
     free = problem.likelihood(best.free, best.theta, on, best.levels)
     return free - problem.likelihood(best.free, best.theta, on, held)

@@ -28,7 +28,7 @@ def selected(sets: Sets, best: Fit) -> Fit:
     for _ in range(2 * MOST):  # additions and prunings together
         tried = sets.tried(best)
         _tell(sets, best)
-        if not tried or len(best.suspects) == MOST:
+        if not tried or len(best.effects) == MOST:
             break
         laws = {n: f for n, f in tried.items() if n not in sets.random}
         if _gained(laws, best) > max(sets.price, LAWFUL * _gained(tried, best)):
@@ -37,7 +37,7 @@ def selected(sets: Sets, best: Fit) -> Fit:
             break
         name = max(tried, key=lambda n: tried[n].evidence)
         further = _pruned(sets, sets.trusted(sets.converged(tried[name])))
-        if set(further.suspects) == set(best.suspects):
+        if set(further.effects) == set(best.effects):
             break  # the newest made way again
         best = further
     return best
@@ -45,8 +45,8 @@ def selected(sets: Sets, best: Fit) -> Fit:
 
 def _tell(sets: Sets, best: Fit) -> None:
     """What is the best so far."""
-    names, gain = ", ".join(map(called, best.suspects)), best.evidence - sets.base.evidence
-    done = SELECTING[1] - (SELECTING[1] - SELECTING[0]) * SLOWER ** len(best.suspects)
+    names, gain = ", ".join(map(called, best.effects)), best.evidence - sets.base.evidence
+    done = SELECTING[1] - (SELECTING[1] - SELECTING[0]) * SLOWER ** len(best.effects)
     sets.report("selecting", done, f"best so far: {names} ({gain:.0f} nats)" if names else "")
 
 
@@ -62,7 +62,7 @@ def _gained(tried: Mapping[str, Fit], best: Fit) -> float:
 
 def _pruned(sets: Sets, best: Fit) -> Fit:
     """Without the earlier effects that the newest one has made needless."""
-    for name in best.suspects[:-1]:
+    for name in best.effects[:-1]:
         if worth(best, name) > CLEAR * sets.price:
             continue
         without = sets.without(best, name)

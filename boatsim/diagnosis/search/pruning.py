@@ -42,13 +42,13 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
     """
     seen = set()
     while True:
-        seen.add(frozenset(best.suspects))
-        named = tuple(_named(sets, best, n) for n in best.suspects)
+        seen.add(frozenset(best.effects))
+        named = tuple(_named(sets, best, n) for n in best.effects)
         rivals = [(n.name, r, f) for n in named for r, f in n.rivals.items()]
         fair = [r for r in rivals if r[0] in sets.random or r[1] not in sets.random]
         better = [f for name, rival, f in fair if f.evidence > best.evidence + _ahead(name, rival)]
         further = selected(sets, max(better, key=lambda f: f.evidence)) if better else best
-        if frozenset(further.suspects) not in seen:
+        if frozenset(further.effects) not in seen:
             best = further
             continue
         little = [n for n in named if _little(sets, best, n) or _mends(sets, best, n)]
@@ -86,7 +86,7 @@ def _mends(sets: Sets, best: Fit, named: Named) -> bool:
     if named.gain > told_from(sets.explained(best)):
         return False
     alone = sets.without(best, named.name)
-    for other in alone.suspects:
+    for other in alone.effects:
         neither, instead = sets.without(alone, other), sets.without(best, other)
         both = best.evidence - neither.evidence
         alike = min(alone.evidence, instead.evidence) - neither.evidence > ALIKE_SHARE * both
@@ -105,14 +105,14 @@ def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
     problem, seen = sets.problem, []
     if (
         named.name in sets.random
-        or sets.unsteady & set(best.suspects)
+        or sets.unsteady & set(best.effects)
         or left_over(problem, best) > UNKNOWN
     ):
         return True
     for found in (best, sets.without(best, named.name)):
-        on = problem.program.switches(found.suspects)
+        on = problem.program.switches(found.effects)
         likelihood = problem.likelihood(found.free, found.theta, on, best.levels)
-        tightness = sum(t.tightness for t in problem.tracks)
+        tightness = sum(t.tightness for t in problem.recordings)
         seen.append(likelihood - tightness + log_prior(found.free, found.theta))
     return not seen[0] - seen[1] < WORTH
 
@@ -125,7 +125,7 @@ def there(sets: Sets, best: Fit, name: str) -> bool:
     are zero without it: a craft that never comes near the speed from which it planes shows by how much it is held back,
     not that speed. (The rhythm of a random force is told by what little of it there seems to be.)
     """
-    kind = next(type(e) for e in sets.problem.program.suspects if e.name == name)
+    kind = next(type(e) for e in sets.problem.program.candidates if e.name == name)
     own = {f.name: f for f in best.free if f.effect == name and not f.relative}
     params, found = kind.params(), {n: best.value(name, n) for n in own}
     strength = [n for n in own if n in (kind.strength or params)]
@@ -143,9 +143,9 @@ def _named(sets: Sets, best: Fit, name: str) -> Named:
     without = sets.without(best, name)
     gain = best.evidence - without.evidence
     tried = sets.tried(without, [n for n in sets.hopeful(without) if n != name])
-    others = {n: f for n, f in tried.items() if n not in best.suspects}
+    others = {n: f for n, f in tried.items() if n not in best.effects}
     ahead = {n: others[n] for n in front(others, without)[:RIVALS]}
-    key = frozenset(without.suspects)
+    key = frozenset(without.effects)
     poor = {
         n
         for n, f in ahead.items()

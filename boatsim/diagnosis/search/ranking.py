@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from boatsim.diagnosis.covariance_inflation import widened
 from boatsim.diagnosis.description import Description
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, descend
 from boatsim.diagnosis.locate.residual_structure import Structure, structure
 from boatsim.diagnosis.noise_levels import fit_noise
@@ -73,7 +73,7 @@ class Ranking:
 def rank(
     problem: Problem,
     candidates: tuple[str, ...],
-    held_out: Sequence[Track] = (),
+    held_out: Sequence[MappedRecording] = (),
     begin: Fit | None = None,
     report: Report = silent,
 ) -> Ranking:
@@ -110,7 +110,7 @@ def rank(
 
 
 def _judged(
-    sets: Sets, best: Fit, named: tuple[Named, ...], held_out: Sequence[Track]
+    sets: Sets, best: Fit, named: tuple[Named, ...], held_out: Sequence[MappedRecording]
 ) -> tuple[Fit, tuple[Named, ...]]:
     """The set without what physics or unseen recordings speak against, laws in place of what but sways like them."""
     while named and (worse := braking(sets, best) or misled(sets, best, held_out)):

@@ -59,7 +59,7 @@ def screen(
 
     `done` is told the share that was looked at.
     """
-    on = problem.program.switches(base.suspects)
+    on = problem.program.switches(base.effects)
     problem.likelihood(base.free, base.theta, on, base.levels)  # the gains that all looks share
     white = problem.white()
     known = jacobian(problem, base.free, base.theta, on, base.levels, white)
@@ -74,7 +74,7 @@ def screen(
         white,
         np.asarray(np.linalg.inv(np.eye(len(off)) + known.T @ known), dtype=np.float64),
     )
-    effects = {e.name: e for e in problem.program.suspects}
+    effects = {e.name: e for e in problem.program.candidates}
     looks: dict[str, Fit] = {}
     for name in sorted(candidates, key=lambda n: type(effects[n]).random):
         random = type(effects[name]).random
@@ -94,9 +94,9 @@ def checked(problem: Problem, base: Fit, look: Fit) -> Fit:
     A look may go wrong where gains held no longer suit the boat, as where much mass is missing: what seems little from
     where the filter bears it out may still gain most.
     """
-    on = problem.program.switches(look.suspects)
+    on = problem.program.switches(look.effects)
     at_base = problem.likelihood(
-        base.free, base.theta, problem.program.switches(base.suspects), base.levels
+        base.free, base.theta, problem.program.switches(base.effects), base.levels
     )
     at_base += log_prior(base.free, base.theta)
     promised = look.evidence - base.evidence
@@ -130,7 +130,7 @@ def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
         step = SMALL * p.spread * problem.scale(effect, name)
         default[name] = p.absent + (step if p.absent + step <= p.high else -step)
     given = [{n: x * problem.scale(effect, n) for n, x in s.items()} for s in type(effect).starts]
-    largest = excursion(problem.tracks, effect)
+    largest = excursion(problem.recordings, effect)
     given += [
         {n: share * largest}
         for n, shares in type(effect).thresholds.items()
@@ -142,13 +142,13 @@ def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
 
 def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -> Fit:
     """`base` with one more suspect at a start of its parameters, not yet scored."""
-    suspects = (*base.suspects, name)
-    free = problem.parameters(suspects)
+    effects = (*base.effects, name)
+    free = problem.parameters(effects)
     known = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
     theta = np.array(
         [known[f.effect, f.name] if (f.effect, f.name) in known else start[f.name] for f in free]
     )
-    return Fit(suspects, free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf)
+    return Fit(effects, free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf)
 
 
 def handed_over(start: Fit, effect: Effect) -> Fit:
@@ -177,7 +177,7 @@ def _look(problem: Problem, base: Fit, effect: Effect, begin: Begin) -> Fit:
         handed_over(joined(problem, base, effect.name, s), effect) for s in starts(problem, effect)
     ]
     if len(begun) > TRIED:
-        on = problem.program.switches(begun[0].suspects)
+        on = problem.program.switches(begun[0].effects)
         begun.sort(
             key=lambda b: (
                 -begin.promise(
@@ -201,7 +201,7 @@ def _look(problem: Problem, base: Fit, effect: Effect, begin: Begin) -> Fit:
 def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit, float]:
     """Gauss-Newton steps; the columns of what was free before stay as they are. Fit and score with its determinant."""
     free, levels = start.free, start.levels
-    on = problem.program.switches(start.suspects)
+    on = problem.program.switches(start.effects)
     space = Space(free)
     theta = middle = space.clipped(start.theta)
     known, off = begin.columns, np.append(begin.slope, np.zeros(len(free) - len(begin.slope)))
@@ -258,12 +258,12 @@ def _random_look(problem: Problem, base: Fit, effect: Effect) -> Fit:
     """
     # linearised once; the determinant of what was free before is much the same with and without
     was = problem.likelihood(
-        base.free, base.theta, problem.program.switches(base.suspects), base.levels
+        base.free, base.theta, problem.program.switches(base.effects), base.levels
     )
     was += log_prior(base.free, base.theta) + force_prior(problem, base.levels)
 
     def scored(at: Fit) -> Fit:
-        on = problem.program.switches(at.suspects)
+        on = problem.program.switches(at.effects)
         score = problem.likelihood(at.free, at.theta, on, at.levels, fresh=False) + log_prior(
             at.free, at.theta
         )

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_runs
 from boatsim.diagnosis.noise_levels import fit_force, force_prior
 from boatsim.diagnosis.problem import Fit
@@ -23,22 +23,24 @@ SURE_BETWEEN = 1.65
 DWARFED = 0.9
 
 
-def misled(sets: Sets, best: Fit, held_out: Sequence[Track]) -> str:
+def misled(sets: Sets, best: Fit, held_out: Sequence[MappedRecording]) -> str:
     """The effect without which free runs over unseen recordings are best, if with all they are worse than with none."""
     problem, horizon = sets.problem, _horizon(sets, held_out)
-    fits = {"none": sets.base, "all": best} | {n: sets.without(best, n) for n in best.suspects}
+    fits = {"none": sets.base, "all": best} | {n: sets.without(best, n) for n in best.effects}
     first = free_runs(problem, {n: fits[n] for n in ("none", "all")}, held_out, horizon)
     none = generalization.squares(first, "none")
-    sure = SURE_BETWEEN if sets.random & set(best.suspects) else SURE
+    sure = SURE_BETWEEN if sets.random & set(best.effects) else SURE
     if not none or not generalization.grew(none, generalization.squares(first, "all"), sure):
         return ""
-    rest = free_runs(problem, {n: fits[n] for n in best.suspects}, held_out, horizon)
+    rest = free_runs(problem, {n: fits[n] for n in best.effects}, held_out, horizon)
     return min(
-        best.suspects, key=lambda n: generalization.misfit(generalization.squares(rest, n), none)
+        best.effects, key=lambda n: generalization.misfit(generalization.squares(rest, n), none)
     )
 
 
-def refuted(sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[Track]) -> str:
+def refuted(
+    sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[MappedRecording]
+) -> str:
     """The effect by which unseen recordings become unlikelier than without it, if clearly so: it does not carry over.
 
     Or by which all recordings together gain less, its look-alikes counted in, than its price and what the laws of the
@@ -47,7 +49,7 @@ def refuted(sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[Tr
     """
     if not held_out:
         return ""
-    whole, rest = foretold(sets, best, held_out), {n: sets.without(best, n) for n in best.suspects}
+    whole, rest = foretold(sets, best, held_out), {n: sets.without(best, n) for n in best.effects}
     gains = {n: whole - foretold(sets, f, held_out) for n, f in rest.items()}
     unlikelier = {n for n in gains if gains[n] < -told_from(sets.explained(best))}
     others = {n.name: SLIGHT * max(sets.explained(best) - n.gain, 0.0) for n in named}
@@ -68,7 +70,7 @@ def refuted(sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[Tr
     return min(needless, key=lambda n: gains[n], default="")
 
 
-def missed(sets: Sets, before: Fit, after: Fit, held_out: Sequence[Track]) -> bool:
+def missed(sets: Sets, before: Fit, after: Fit, held_out: Sequence[MappedRecording]) -> bool:
     """Whether free runs over unseen recordings get worse by what became of a set without one of its members."""
     stretches = free_runs(
         sets.problem, {"before": before, "after": after}, held_out, _horizon(sets, held_out)
@@ -80,18 +82,18 @@ def missed(sets: Sets, before: Fit, after: Fit, held_out: Sequence[Track]) -> bo
     return bool(was) and not generalization.misfit(now, was) < generalization.WORSE**2
 
 
-def foretold(sets: Sets, found: Fit, held_out: Sequence[Track]) -> float:
+def foretold(sets: Sets, found: Fit, held_out: Sequence[MappedRecording]) -> float:
     """Log likelihood [nats] of unseen recordings by a fit to others, the water as rough as it is there."""
     problem = sets.problem.on(held_out)
     there = fit_force(problem, found)
-    on = problem.program.switches(there.suspects)
+    on = problem.program.switches(there.effects)
     return problem.likelihood(there.free, there.theta, on, there.levels) + force_prior(
         problem, there.levels
     )
 
 
 def with_unseen(
-    sets: Sets, best: Fit, rivals: Mapping[str, Fit], held_out: Sequence[Track]
+    sets: Sets, best: Fit, rivals: Mapping[str, Fit], held_out: Sequence[MappedRecording]
 ) -> dict[str, Fit]:
     """Rivals of a member of a set with the evidence that they have beside it on all recordings, unseen ones too."""
     own = foretold(sets, best, held_out)
@@ -103,7 +105,9 @@ def with_unseen(
     }
 
 
-def lawful(sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[Track]) -> Fit | None:
+def lawful(
+    sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[MappedRecording]
+) -> Fit | None:
     """A set with a law in the place of a random force, or of a law much like it, if unseen recordings ask for it.
 
     Free runs over them must get clearly better by it, or all recordings together be clearly likelier. What makes way,
@@ -137,7 +141,7 @@ def lawful(sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[Tra
 
 
 def told(
-    sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[Track]
+    sets: Sets, best: Fit, named: Sequence[Named], held_out: Sequence[MappedRecording]
 ) -> tuple[Named, ...]:
     """What is named, told from its rivals by all recordings: by evidence, and by unseen free runs that get worse."""
     horizon, found = _horizon(sets, held_out, generalization.FEWEST), []
@@ -157,7 +161,7 @@ def told(
     return tuple(found)
 
 
-def stood_for(sets: Sets, best: Fit, held_out: Sequence[Track]) -> Fit:
+def stood_for(sets: Sets, best: Fit, held_out: Sequence[MappedRecording]) -> Fit:
     """A set without those members, found to mislead, that may but stand for a part of what nothing explains.
 
     Much is left over, they take next to nothing of that force away, and unseen recordings do not ask for them either:
@@ -165,7 +169,7 @@ def stood_for(sets: Sets, best: Fit, held_out: Sequence[Track]) -> Fit:
     """
     whole: dict[str, list[float]] = {}
     while not left_over(sets.problem, best) < told_from(sets.explained(best)):
-        rest = {n: sets.without(best, n) for n in best.suspects}
+        rest = {n: sets.without(best, n) for n in best.effects}
         little = [
             n for n, f in rest.items() if np.min(best.levels.force / f.levels.force) > DWARFED
         ]
@@ -188,7 +192,7 @@ def stood_for(sets: Sets, best: Fit, held_out: Sequence[Track]) -> Fit:
     return best
 
 
-def _horizon(sets: Sets, held_out: Sequence[Track], parts: int = 1) -> float:
+def _horizon(sets: Sets, held_out: Sequence[MappedRecording], parts: int = 1) -> float:
     """Length [s] of free runs: the usual one, unless the longest recording holds not so many of them."""
     longest = max((float(np.ptp(t.times)) for t in held_out), default=0.0)
     return min(sets.problem.horizon, longest / parts)

@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track, axes_of
+from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.physics.base import Array
 from boatsim.physics.described_laws import EVER, Described
 from boatsim.physics.effects.described_force import DescribedForce
@@ -45,7 +45,10 @@ FINER, FINEST = (0.5, 0.25), (0.12, 0.06, 0.03, 0.015)
 
 
 def terms(
-    vessel: Vessel, tracks: Sequence[Track], moves: Mapping[str, Array], given: Sequence[str]
+    vessel: Vessel,
+    tracks: Sequence[MappedRecording],
+    moves: Mapping[str, Array],
+    given: Sequence[str],
 ) -> Iterator[Described]:
     """All terms that are weighed: `moves` are the speeds [SI], `given` the actuators that vary in the recordings."""
     lasting, swinging, memories = (
@@ -142,7 +145,7 @@ def _histories(moves: Sequence[str], given: Sequence[str]) -> Iterator[tuple[str
             yield from ((f"recent_{c}", s), (f"recent_abs_{c}", s))
 
 
-def _memories(tracks: Sequence[Track]) -> list[float]:
+def _memories(tracks: Sequence[MappedRecording]) -> list[float]:
     """Time constants [s] of what was commanded of late: what is shorter no row shows, what is longer looks constant."""
     rows = max(float(np.median(np.diff(t.times))) for t in tracks)
     whole = max(float(t.times[-1] - t.times[0]) for t in tracks)
@@ -166,7 +169,9 @@ def _thresholds(moves: Mapping[str, Array]) -> Iterator[tuple[str, float]]:
             yield f"beyond_{speed}", float(np.quantile(np.abs(values), share))
 
 
-def _ripples(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, float, float]]:
+def _ripples(
+    vessel: Vessel, tracks: Sequence[MappedRecording]
+) -> Iterator[tuple[str, float, float]]:
     """Patterns that lie still on the water: factor, wavelength [m] up to what was sailed through, and crest [m]."""
     for axis, place, signal in (("surge", "north", "x_m"), ("sway", "east", "y_m")):
         columns = [t.measured[:, t.signals.index(signal)] for t in tracks if signal in t.signals]
@@ -180,7 +185,7 @@ def _ripples(vessel: Vessel, tracks: Sequence[Track]) -> Iterator[tuple[str, flo
                 yield f"ripple_{place}", wavelength, 0.25 * wavelength
 
 
-def _lasting(tracks: Sequence[Track]) -> Iterator[tuple[str, str, float, float]]:
+def _lasting(tracks: Sequence[MappedRecording]) -> Iterator[tuple[str, str, float, float]]:
     """How a law may act for a while: recording or "" for all of them, course, begin, end [s]."""
     begin, end = _clock(tracks)
     for span in SPANS:
@@ -206,7 +211,9 @@ def _stretches() -> Iterator[tuple[int, int]]:
             yield k, k + length
 
 
-def _swinging(tracks: Sequence[Track], most: int) -> Iterator[tuple[str, str, float, float]]:
+def _swinging(
+    tracks: Sequence[MappedRecording], most: int
+) -> Iterator[tuple[str, str, float, float]]:
     """What swings, in all recordings alike or in one of them, with its cosine and its sine."""
     for run, near in (("", tracks), *((t.name, [t]) for t in tracks if len(tracks) > 1)):
         begin, end = _clock(near)
@@ -218,12 +225,12 @@ def _swinging(tracks: Sequence[Track], most: int) -> Iterator[tuple[str, str, fl
                 yield run, "swinging", 0.25 * period, 1.25 * period
 
 
-def _clock(tracks: Sequence[Track]) -> tuple[float, float]:
+def _clock(tracks: Sequence[MappedRecording]) -> tuple[float, float]:
     """First and last time [s] of recordings."""
     return min(float(t.times[0]) for t in tracks), max(float(t.times[-1]) for t in tracks)
 
 
-def neighbours(term: Described, tracks: Sequence[Track], by: float) -> list[Described]:
+def neighbours(term: Described, tracks: Sequence[MappedRecording], by: float) -> list[Described]:
     """The same term a little otherwise: begin, end, wavelength or period moved by a share `by` of the grid's step."""
     found: list[Described] = []
     near = [t for t in tracks if term.run in ("", t.name)]

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from boatsim.diagnosis.description import Description, Written
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.free_runs import free_runs
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search import generalization
@@ -23,7 +23,7 @@ def described(
     problem: Problem,
     best: Fit,
     recalibrated: Fit,
-    held_out: Sequence[Track],
+    held_out: Sequence[MappedRecording],
     report: Report = silent,
 ) -> Description | None:
     """What is left over beside a set, as terms; None where no term is worth its price."""
@@ -53,7 +53,7 @@ def _carried(
     begun: Chosen,
     gains: Mapping[str, float],
     recalibrated: Fit,
-    held_out: Sequence[Track],
+    held_out: Sequence[MappedRecording],
 ) -> Chosen:
     """As many of the terms that gain most as free runs over unseen recordings are best with, and all events.
 
@@ -63,7 +63,7 @@ def _carried(
     chain = [found]
     for name in lasting:
         chain.append(less(problem, chain[-1], name))
-    if not set(begun.fit.suspects) <= set(chain[-1].fit.suspects):
+    if not set(begun.fit.effects) <= set(chain[-1].fit.effects):
         chain.append(begun)
     fits = {"recalibrated": recalibrated} | {str(k): c.fit for k, c in enumerate(chain)}
     longest = max((float(t.times[-1] - t.times[0]) for t in held_out), default=0.0)

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Problem
 from boatsim.physics.base import Array
 from boatsim.physics.described_laws import Described
@@ -17,11 +17,11 @@ NEVER = (
 
 def free_slot(problem: Problem, kind: type[Described], taken: Sequence[str]) -> str:
     """Name of a slot of this kind that no term stands in; "" if all are taken."""
-    there = (e.name for e in problem.program.suspects if type(e) is kind)
+    there = (e.name for e in problem.program.candidates if type(e) is kind)
     return next((n for n in there if n not in taken), "")
 
 
-def write(problem: Problem, name: str, term: Described, tracks: Sequence[Track]) -> None:
+def write(problem: Problem, name: str, term: Described, tracks: Sequence[MappedRecording]) -> None:
     """Put a term's numbers into a slot, in the values of all recordings that may be looked at."""
     numbers = term.completed(problem.program.vessel).by_name()
     for track in tracks:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track, axes_of
+from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics import terms
@@ -37,7 +37,7 @@ class Way:
     """A recording as a fit sees it: motion and actuators of every row, the force it leaves over."""
 
     problem: Problem
-    track: Track
+    track: MappedRecording
     found: Fit
     states: Array  # (N, 2 NQ) smoothed
     left: Array  # (N, axes) force left over [N, N m]
@@ -82,12 +82,12 @@ class Way:
     @cached_property
     def on(self) -> Array:
         """Which effects act."""
-        return self.problem.program.switches(self.found.suspects)
+        return self.problem.program.switches(self.found.effects)
 
     @cached_property
     def held(self) -> Array:
         """(HELD, N) actuators."""
-        return nominal_forces.actuators(self.track, self.found.suspects, self.values).T
+        return nominal_forces.actuators(self.track, self.found.effects, self.values).T
 
     @cached_property
     def _thrusts(self) -> dict[tuple[str, str], Array]:
@@ -159,7 +159,9 @@ class Way:
     def thrust(self, side: str, sense: str) -> Array:
         """(N, axes) force of the drives on one side while they push in one sense."""
         if (side, sense) not in self._thrusts:
-            slot = next(e for e in self.problem.program.suspects if isinstance(e, DescribedThrust))
+            slot = next(
+                e for e in self.problem.program.candidates if isinstance(e, DescribedThrust)
+            )
             whole, own = self.values.copy(), DescribedThrust(name=slot.name, side=side, sense=sense)
             program = self.problem.program
             for name, x in own.completed(program.vessel).by_name().items():
@@ -167,8 +169,8 @@ class Way:
             whole[program.index(slot.name, "coefficient")] = 1.0
             states, held = np.ascontiguousarray(self.states), np.ascontiguousarray(self.held.T)
             nothing, everything = (
-                nominal_forces.along(self.track, states, held, whole, suspects)
-                for suspects in ((), (slot.name,))
+                nominal_forces.along(self.track, states, held, whole, effects)
+                for effects in ((), (slot.name,))
             )
             self._thrusts[side, sense] = everything - nothing
         return self._thrusts[side, sense]
@@ -176,9 +178,9 @@ class Way:
 
 def ways(problem: Problem, found: Fit) -> list[Way]:
     """The recordings fitted, as a fit sees them."""
-    on, nq = problem.program.switches(found.suspects), problem.program.module.NQ
+    on, nq = problem.program.switches(found.effects), problem.program.module.NQ
     out = []
-    for track in problem.tracks:
+    for track in problem.recordings:
         values = problem.values(track, found.free, found.theta)
         means, *smoother = track.smoothed_with_gains(values, on, found.levels)
         states, left = means[:, : 2 * nq].copy(), means[:, 2 * nq : 3 * nq].copy()

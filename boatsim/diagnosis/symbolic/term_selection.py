@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boatsim.diagnosis.filter import Track
+from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import SETTLED, converge, descend, fit, reduced
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import price
@@ -34,15 +34,17 @@ class Chosen:
 
 
 def chosen(
-    problem: Problem, best: Fit, held_out: Sequence[Track], report: Report = silent
+    problem: Problem, best: Fit, held_out: Sequence[MappedRecording], report: Report = silent
 ) -> Chosen:
     """Terms added one by one to a set, each time the one by which the evidence rises most, while one is worth it."""
     report("describing what is left over")
     begun = so_far = Chosen(best, {})
-    everywhere, refused = [*problem.tracks, *held_out], set[Likeness]()
+    everywhere, refused = [*problem.recordings, *held_out], set[Likeness]()
     while len(so_far.terms) < MOST:
         seen = ways(problem, so_far.fit)
-        ordered = weighed(seen, list(terms(problem.program.vessel, problem.tracks, *varying(seen))))
+        ordered = weighed(
+            seen, list(terms(problem.program.vessel, problem.recordings, *varying(seen)))
+        )
         ahead = [
             w for w in best_of_each(ordered) if w.gain > 0.0 and likeness(w.term) not in refused
         ][:TRIED]
@@ -96,7 +98,7 @@ def best_of_each(ordered: Sequence[Weighed]) -> list[Weighed]:
 
 
 def _with(
-    problem: Problem, so_far: Chosen, w: Weighed, tracks: Sequence[Track]
+    problem: Problem, so_far: Chosen, w: Weighed, tracks: Sequence[MappedRecording]
 ) -> tuple[str, Fit, Weighed] | None:
     """The fit with one more term, in its slot; None where no slot is free or the boat runs away."""
     slot = free_slot(problem, type(w.term), list(so_far.terms))
@@ -105,26 +107,31 @@ def _with(
     write(problem, slot, w.term, tracks)
     problem.spreads[slot] = w.spread
     base = so_far.fit
-    free = problem.parameters((*base.suspects, slot))
+    free = problem.parameters((*base.effects, slot))
     known = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
     theta = np.array([known.get((f.effect, f.name), w.coefficient) for f in free])
     start = Fit(
-        (*base.suspects, slot), free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf
+        (*base.effects, slot), free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf
     )
     found = descend(problem, start, 4, SETTLED)
     return (slot, fit(problem, found), w) if np.isfinite(found.evidence) else None
 
 
 def _finer(
-    problem: Problem, so_far: Chosen, slot: str, w: Weighed, found: Fit, tracks: Sequence[Track]
+    problem: Problem,
+    so_far: Chosen,
+    slot: str,
+    w: Weighed,
+    found: Fit,
+    tracks: Sequence[MappedRecording],
 ) -> tuple[Described, Fit]:
     """The term with its times or its wavelength moved to where they explain most, and the fit with it."""
-    if not neighbours(w.term, problem.tracks, FINER[0]):
+    if not neighbours(w.term, problem.recordings, FINER[0]):
         return w.term, found
     seen, best = ways(problem, so_far.fit), w
     for by in FINER:
         for _ in range(ROUNDS):
-            near = weighed(seen, neighbours(best.term, problem.tracks, by))
+            near = weighed(seen, neighbours(best.term, problem.recordings, by))
             if not near or near[0].gain <= best.gain:
                 break
             best = near[0]
@@ -139,13 +146,13 @@ def _finer(
 
 
 def _polished(
-    problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[Track]
+    problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[MappedRecording]
 ) -> tuple[Described, Fit]:
     """The same by the filter itself, all else held, and the fit then made: what is left over says it but roughly.
 
     In turns, for what is held may go along: a force that follows more slowly must be the stronger one.
     """
-    for _ in range(TURNS if neighbours(term, problem.tracks, FINEST[0]) else 0):
+    for _ in range(TURNS if neighbours(term, problem.recordings, FINEST[0]) else 0):
         moved = _moved(problem, slot, term, found, tracks)
         if moved == term:
             break
@@ -157,7 +164,7 @@ def _polished(
     return term, found
 
 
-def _beside(problem: Problem, so_far: Chosen, tracks: Sequence[Track]) -> Chosen:
+def _beside(problem: Problem, so_far: Chosen, tracks: Sequence[MappedRecording]) -> Chosen:
     """All terms moved once more, each beside the others: the first ones stood for a part of those that came later."""
     terms, found = dict(so_far.terms), so_far.fit
     for slot, term in terms.items():
@@ -166,10 +173,10 @@ def _beside(problem: Problem, so_far: Chosen, tracks: Sequence[Track]) -> Chosen
 
 
 def _moved(
-    problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[Track]
+    problem: Problem, slot: str, term: Described, found: Fit, tracks: Sequence[MappedRecording]
 ) -> Described:
     """A term, written into its slot, moved to where the filter finds the recordings likeliest, the fit held."""
-    on = problem.program.switches(found.suspects)
+    on = problem.program.switches(found.effects)
 
     def likelihood(one: Described) -> float:
         write(problem, slot, one, tracks)
@@ -179,7 +186,8 @@ def _moved(
     for by in FINEST:
         for _ in range(ROUNDS):
             scores = [
-                (likelihood(t), i, t) for i, t in enumerate(neighbours(term, problem.tracks, by))
+                (likelihood(t), i, t)
+                for i, t in enumerate(neighbours(term, problem.recordings, by))
             ]
             score, _, ahead = max(scores, key=lambda s: s[:2])
             if not score > best + TOLD:
@@ -194,7 +202,7 @@ def _said_already(problem: Problem, before: Chosen, further: Chosen) -> bool:
 
     A law of the library with a name, a little off, is the better answer: a wind, not a side force with the heading.
     """
-    for name in (n for n in before.fit.suspects if n not in before.terms):
+    for name in (n for n in before.fit.effects if n not in before.terms):
         without = less(problem, further, name).fit
         if without.evidence > further.fit.evidence - WORTH:
             neither = less(problem, before, name).fit.evidence
@@ -205,7 +213,7 @@ def _said_already(problem: Problem, before: Chosen, further: Chosen) -> bool:
 
 def _pruned(problem: Problem, so_far: Chosen) -> Chosen:
     """Without what the newest term has made needless: an earlier term, or an entry that but stood for it."""
-    for name in so_far.fit.suspects[:-1]:
+    for name in so_far.fit.effects[:-1]:
         without = converge(problem, reduced(problem, so_far.fit, name))
         if without.evidence > so_far.fit.evidence - WORTH:
             so_far = Chosen(without, {n: t for n, t in so_far.terms.items() if n != name})
