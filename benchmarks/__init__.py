@@ -1,7 +1,6 @@
-"""Speed, accuracy and diagnosis figures; they print tables and assert nothing."""
+"""Timings and comparisons with other software; they print tables and assert nothing."""
 
 import os
 
-os.environ.setdefault(
-    "OPENBLAS_NUM_THREADS", "1"
-)  # before numpy comes: what follows a diagnosis is as small as it
+# Must be set before numpy is imported: the matrices of a diagnosis are too small for several threads.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -6,10 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmarks.real.concealed import alterations as a
-from benchmarks.real.concealed.base import Patched
-from benchmarks.real.concealed.cases import STUDIES, late_by, uneven
-from benchmarks.real.concealed.judging import (
+from boatsim.diagnosis.report.schema import EffectEntry
+from boatsim.physics.effects import thrust_deadband, weak_reverse
+from boatsim.recordings.table import Recording
+from validation.real.concealed import alterations as a
+from validation.real.concealed.base import Patched
+from validation.real.concealed.cases import STUDIES, late_by, uneven
+from validation.real.concealed.judging import (
     ALONE,
     FAINT,
     MISSED,
@@ -21,9 +24,6 @@ from benchmarks.real.concealed.judging import (
     right_size,
     shares,
 )
-from boatsim.diagnosis.report.schema import EffectEntry
-from boatsim.physics.effects import thrust_deadband, weak_reverse
-from boatsim.recordings.table import Recording
 
 PORT, STARBOARD = "thrust_port_N", "thrust_starboard_N"
 NORTH, EAST = 0.2, -0.1  # [m/s]

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from benchmarks.real import esso_osaka_vessel as written
 from boatsim.physics import vessel
 from boatsim.physics.base import Array, Force, Wrench, motion
 from boatsim.physics.effects.mmg_low_speed_hull import MmgLowSpeedHull
@@ -23,6 +22,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.simulate import scenario
 from boatsim.simulate.engine import Engine, State
 from boatsim.simulate.run import run
+from validation.real import esso_osaka_vessel as written
 
 there = pytest.mark.skipif(
     not written.SOURCE.is_file(), reason="no ../shared/recordings/esso_osaka"

@@ -5,8 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.real import kvlcc2_mmg as bench
-from benchmarks.real.common import RECORDINGS, runs_of
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.problem import scale_of
 from boatsim.physics import vessel
@@ -15,6 +13,8 @@ from boatsim.recordings.table import Recording
 from boatsim.simulate import manoeuvre, scenario
 from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import Run, run
+from validation.real import kvlcc2_mmg as bench
+from validation.real.common import RECORDINGS, runs_of
 
 MODEL, SHIP = vessel.load("kvlcc2_mmg"), vessel.load("kvlcc2_mmg_full_scale")
 RATIO = SHIP.length / MODEL.length

@@ -13,7 +13,6 @@ from answers import diagnosed
 from real_boat import Real, recorded
 from typer.testing import CliRunner
 
-from benchmarks.log_faults import FAULTS, Columns, sailed, write
 from boatsim.cli.commands import app
 from boatsim.diagnosis.checks.finding import Change, applied, lines
 from boatsim.diagnosis.checks.position_jumps import leaps
@@ -23,6 +22,7 @@ from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import parse
 from boatsim.recordings.table import Recording, read, write_csv
+from validation.log_faults import FAULTS, Columns, sailed, write
 
 TRIALS = Path(__file__).parent / "data" / "trials"
 BOAT = vessel.load("trial_boat")

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from benchmarks.log_faults import Columns, write
 from boatsim.cli.commands import app
 from boatsim.diagnosis.checks.course_over_ground import aside
 from boatsim.diagnosis.pipeline import check
@@ -19,6 +18,7 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.importing.convert import notes_of
 from boatsim.recordings.table import Recording
 from boatsim.simulate.compiled_engine import Twin
+from validation.log_faults import Columns, write
 
 FULL = 1300.0  # [N]
 RATE = 5.0  # [Hz] of rows

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.real.thesis_score import J
 from boatsim.errors import BadInput
 from boatsim.metrics.sway import Sway
 from boatsim.metrics.yaw import Yaw
@@ -16,6 +15,7 @@ from boatsim.simulate.camera import Camera
 from boatsim.simulate.evaluation import Norm, norms, signal_norm, to_json
 from boatsim.simulate.run import Run
 from boatsim.simulate.scenario import Scenario, load
+from validation.real.thesis_score import J
 
 CAMERA = Camera(marks={"led": (0.183, 0.0), "button": (-0.117, 0.0)})
 CIRCLE = 0.183  # [m] on which the light is to stay (appendix F)

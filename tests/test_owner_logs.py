@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.owner_logs import boats, cases, faults
-from benchmarks.owner_logs.causes import CAUSES
-from benchmarks.owner_logs.commands import boatsim, findings, write_into
-from benchmarks.owner_logs.formats import earth
-from benchmarks.owner_logs.instruments import fit, names, see
-from benchmarks.owner_logs.judge import Result
-from benchmarks.owner_logs.owner import accept, wanted
-from benchmarks.owner_logs.pilot import pilot
-from benchmarks.owner_logs.plant import Around, Plant, State, slope, step
-from benchmarks.owner_logs.sail import Linkage, sail
-from benchmarks.owner_logs.table import goals
+from validation.owner_logs import boats, cases, faults
+from validation.owner_logs.causes import CAUSES
+from validation.owner_logs.commands import boatsim, findings, write_into
+from validation.owner_logs.formats import earth
+from validation.owner_logs.instruments import fit, names, see
+from validation.owner_logs.judge import Result
+from validation.owner_logs.owner import accept, wanted
+from validation.owner_logs.pilot import pilot
+from validation.owner_logs.plant import Around, Plant, State, slope, step
+from validation.owner_logs.sail import Linkage, sail
+from validation.owner_logs.table import goals
 
 FOLDER = Path(faults.__file__).parent
 JUDGES = {"judge.py", "commands.py", "table.py", "__main__.py"}
@@ -209,7 +209,7 @@ def test_advice_goes_into_a_recording_toml_beside_what_is_there(tmp_path: Path) 
 
 
 def test_findings_are_read_from_what_check_prints() -> None:
-    from benchmarks.owner_logs.commands import Said
+    from validation.owner_logs.commands import Said
 
     text = (
         "run.csv: probably your log, not your boat\n"

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.practice import motion
-from benchmarks.practice.boats import BOATS
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.simulate.compiled_engine import Twin
+from validation.practice import motion
+from validation.practice.boats import BOATS
 
 COMMANDS = {  # seconds and rows of commands in the vessel's order
     "catamaran": (3.0, [[6.0, 0.4], [2.0, -0.9], [10.0, 0.1], [0.0, 0.0], [4.0, 1.2]]),

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.practice import hulls
-from benchmarks.practice.make import Trial, evidence, make, sailed, trials
-from benchmarks.practice.plans import PLANS
 from boatsim.diagnosis.pipeline import open_recording
+from validation.practice import hulls
+from validation.practice.make import Trial, evidence, make, sailed, trials
+from validation.practice.plans import PLANS
 
 CHEAP = Trial(
     "T001_martin_tank_model",

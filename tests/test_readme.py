@@ -21,11 +21,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from benchmarks import trials
-from benchmarks.practice import __main__ as practice
-from benchmarks.real import common
 from boatsim.cli import app
 from tests.pages import MARK, ROOT, blocks, difference, numbers, same, wrong
+from validation import trials
+from validation.practice import __main__ as practice
+from validation.real import common
 
 pytestmark = pytest.mark.slow
 
@@ -200,7 +200,7 @@ def printed_by(benchmark: str) -> list[str]:
     """Lines that a benchmark's command prints."""
     said = io.StringIO()
     with contextlib.redirect_stdout(said):
-        importlib.import_module(f"benchmarks.real.{benchmark}").main()
+        importlib.import_module(f"validation.real.{benchmark}").main()
     return said.getvalue().splitlines()
 
 

@@ -3,10 +3,10 @@
 import pytest
 from runs import found
 
-from benchmarks.real import kvlcc2_roll_decay as roll
-from benchmarks.real import thesis_tables as thesis
-from benchmarks.real.thesis_runs import Bench
 from boatsim.diagnosis.pipeline import Diagnosis
+from validation.real import kvlcc2_roll_decay as roll
+from validation.real import thesis_tables as thesis
+from validation.real.thesis_runs import Bench
 
 TRUTH = {"thrust": 0.6, "astern": 0.7}  # [N], ratio
 

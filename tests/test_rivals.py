@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks import trials
-from benchmarks.entry import BadEntry, answers_in, horizon_of, read_answer, replay_errors
-from benchmarks.practice import __main__ as practice
-from benchmarks.practice import hulls
-from benchmarks.practice.make import Trial, make
-from benchmarks.rivals.__main__ import RIVALS, enter
-from benchmarks.rivals.accelerations import derived, kernel
-from benchmarks.rivals.evidence import Judge
-from benchmarks.rivals.linear import solved
+from validation import trials
+from validation.entry import BadEntry, answers_in, horizon_of, read_answer, replay_errors
+from validation.practice import __main__ as practice
+from validation.practice import hulls
+from validation.practice.make import Trial, make
+from validation.rivals.__main__ import RIVALS, enter
+from validation.rivals.accelerations import derived, kernel
+from validation.rivals.evidence import Judge
+from validation.rivals.linear import solved
 
 EASY = Trial(
     "T001_martin_tank_model",

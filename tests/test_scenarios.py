@@ -7,12 +7,12 @@ from typing import Any
 import pytest
 from runs import SHIPPED, TESTS, found, mean, mean_of, raw
 
-from benchmarks.real.thesis_score import J
 from boatsim.errors import BadInput
 from boatsim.physics.content import find
 from boatsim.simulate import scenario
 from boatsim.simulate.evaluation import norms
 from boatsim.simulate.run import run
+from validation.real.thesis_score import J
 
 SEEDS = 6  # of the means in section 11
 FEW = 3  # where a bar is far away

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.real import silverbox
-from benchmarks.real.common import RECORDINGS
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
+from validation.real import silverbox
+from validation.real.common import RECORDINGS
 
 RUNS = RECORDINGS / silverbox.NAME / "runs"
 there = pytest.mark.skipif(not RUNS.is_dir(), reason="no ../shared/recordings/silverbox")

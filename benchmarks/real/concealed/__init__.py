@@ -1,1 +1,0 @@
-"""Real recordings altered so that the right answer is known: `python -m benchmarks.real.concealed`."""

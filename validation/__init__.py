@@ -1,0 +1,6 @@
+"""Accuracy of the diagnosis on simulated trials and on real recordings; prints tables, asserts nothing."""
+
+import os
+
+# Must be set before numpy is imported: the matrices of a diagnosis are too small for several threads.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -1,0 +1,257 @@
+"""What the next experiment is worth: `python -m validation.experiment [--jobs N] [--quick]`.
+
+Every entry of trial_boat's suspects acts once per seed on a boat simulated with the project's own twin, at half the
+strength that its prior expects (half of each strength's prior sd; directions and places drawn from their prior), with
+damping and thrust off by 5 %, ambient force and camera noise as in the practice trials. A first, short recording of
+gentle steering is diagnosed. Then it is diagnosed with one more recording beside it, three times: of the suggested
+manoeuvre, of another manoeuvre drawn from the same menu, and of gentle steering again; all three last as long. The
+probability of the truth is its weight, by evidence, among all single entries and nothing: what diagnosis.json says
+under candidates. A case without a suggestion takes the run of gentle steering for it.
+"""
+
+import argparse
+import os
+import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from rich.progress import track as shown
+
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.experiment_design.next_experiment import (
+    Plan,
+    next_experiment,
+    plans,
+    question,
+)
+from boatsim.diagnosis.filter import axes_of, map_recording, nominal_levels
+from boatsim.diagnosis.problem import Problem, scale_of
+from boatsim.diagnosis.search.ranking import Ranking, rank
+from boatsim.physics import vessel
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+from boatsim.recordings.table import Recording
+
+BOAT, STRENGTH, ERROR = "trial_boat", 0.5, 0.05
+SHORT, LONG = 20.0, 40.0  # [s] of the first run, and of one more
+RATE, SUBSTEPS = 6.0, 8  # rows per second, steps of integration per row
+POSITION_SD, HEADING_SD = (0.002, 0.005), (0.009, 0.018)  # [m], [rad] range of the camera's noise
+NOTHING = "nothing"
+
+
+@dataclass(frozen=True)
+class Boat:
+    """A boat that differs from its vessel file: parameters and switches of the compiled program, and its camera."""
+
+    values: Array
+    on: Array
+    position_sd: float  # [m]
+    heading_sd: float  # [rad]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One case: probability of the truth, and what was suggested."""
+
+    truth: str
+    before: float
+    suggested: float
+    other: float
+    same: float
+    manoeuvre: str
+    expected: float  # [nats]
+    # [nats] evidence of the truth over its best rival, after the suggested run less before
+    gained: float
+
+
+@cache
+def program() -> Program:
+    """The vessel with all its suspects, compiled once for all cases."""
+    boat = vessel.load(BOAT)
+    return Program(boat, library_for(boat).compiled)
+
+
+def drawn(truth: str, rng: np.random.Generator) -> Boat:
+    """A boat with one entry acting at half strength, its own coefficients off."""
+    boat, values = program().vessel, program().values()
+    for effect in boat.effects:
+        for name, about in type(effect).params().items():
+            if about.calibrates:
+                values[program().index(effect.name, name)] *= 1.0 + ERROR * rng.standard_normal()
+    kind = next(type(e) for e in program().candidates if e.name == truth)
+    for name, about in kind.params().items():
+        if about.fit:
+            spread = about.spread * scale_of(about.unit, boat)
+            away = (
+                rng.choice((-1.0, 1.0)) * STRENGTH
+                if name in (kind.strength or kind.params())
+                else rng.normal()
+            )
+            inside = about.low <= about.absent + away * spread <= about.high
+            value = about.absent + (away if inside else -away) * spread
+            values[program().index(truth, name)] = np.clip(value, about.low, about.high)
+    return Boat(
+        values, program().switches([truth]), rng.uniform(*POSITION_SD), rng.uniform(*HEADING_SD)
+    )
+
+
+def gentle(rng: np.random.Generator, length: float) -> tuple[Array, Array]:
+    """Start (x, y, psi, 0, 0, 0) and commands (N, C) of a pilot who moves slowly and hardly steers."""
+    rows = round(length * RATE)
+    commands = np.zeros((rows, 4))
+    begin = 0
+    while begin < rows:
+        end = begin + round(rng.uniform(3.0, 6.0) * RATE)
+        thrust, turn, steer = (
+            0.3 * rng.choice((-1.0, 1.0)),
+            rng.uniform(-0.1, 0.1),
+            rng.uniform(-0.2, 0.2),
+        )
+        commands[begin:end] = thrust + turn, thrust - turn, steer, steer
+        begin = end
+    return np.array(
+        [*rng.uniform(-1.0, 1.0, 2), rng.uniform(-np.pi, np.pi), 0.0, 0.0, 0.0]
+    ), commands
+
+
+def played(plan: Plan) -> tuple[Array, Array]:
+    """Start and commands of a plan."""
+    t = np.arange(round(plan.duration * RATE)) / RATE
+    now = np.searchsorted(np.array(plan.times) - 1e-6, t, side="right") - 1
+    rows = np.array([program().command_array(level) for level in plan.levels])
+    start = [plan.start.get(n, 0.0) for n in ("x", "y", "psi", "u")]
+    return np.array([*start, 0.0, 0.0]), rows[now]
+
+
+def recorded(
+    name: str, boat: Boat, start: Array, commands: Array, rng: np.random.Generator
+) -> Recording:
+    """What the camera sees of a boat under commands, with ambient force."""
+    code, y, out = program().module, start.copy(), np.zeros((2, 6))
+    memory, act = np.zeros(program().memory_size), np.zeros(program().held_size)
+    code.settle(commands[0], memory, boat.values, boat.on, act)
+    about = program().vessel.diagnosis
+    rms = np.array([about.ambient[axis] for axis in axes_of(program().vessel)])
+    kept = np.exp(-1.0 / RATE / priors.time_constant(program().vessel))
+    force, rows = rms * rng.standard_normal(3), []
+    for i in range(len(commands)):
+        rows.append(y[:3].copy())
+        code.rollout(
+            i / RATE,
+            y,
+            commands[i : i + 1],
+            memory,
+            1.0 / RATE / SUBSTEPS,
+            SUBSTEPS,
+            program().body,
+            boat.values,
+            boat.on,
+            force,
+            out,
+        )
+        force = kept * force + np.sqrt(1.0 - kept**2) * rms * rng.standard_normal(3)
+    sd = np.array([boat.position_sd, boat.position_sd, boat.heading_sd])
+    x, y_m, psi = (np.array(rows) + sd * rng.standard_normal((len(rows), 3))).T
+    signals = dict(zip(program().vessel.commands, commands.T, strict=True))
+    return Recording(
+        name, np.arange(len(rows)) / RATE, {"x_m": x, "y_m": y_m, "psi_rad": psi, **signals}
+    )
+
+
+def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
+    """All entries ranked."""
+    boat = program().vessel
+    uncertainty = priors.uncertainty(boat)
+    problem = Problem(
+        [map_recording(r, program()) for r in recordings],
+        nominal_levels(boat, recordings),
+        uncertainty,
+    )
+    return problem, rank(problem, tuple(e.name for e in program().candidates))
+
+
+def probability(ranking: Ranking, name: str) -> float:
+    """Weight of one entry among all single ones and nothing."""
+    gains = {NOTHING: 0.0, **ranking.first}
+    return float(np.exp(gains[name] - np.logaddexp.reduce(list(gains.values()))))
+
+
+def lead(ranking: Ranking, name: str) -> float:
+    """Evidence of one entry over the best of the others and nothing [nats]."""
+    return ranking.first[name] - max(
+        g for n, g in {NOTHING: 0.0, **ranking.first}.items() if n != name
+    )
+
+
+def case(truth: str, seed: int) -> Outcome:
+    """One boat, diagnosed four times."""
+    rng = np.random.default_rng([seed, *truth.encode()])
+    boat = drawn(truth, rng)
+    first = recorded("first", boat, *gentle(rng, SHORT), rng)
+    again = recorded("same kind", boat, *gentle(rng, LONG), rng)
+    problem, before = diagnosed([first])
+    plan = next_experiment(problem, *question(before))
+    _, same = diagnosed([first, again])
+    after = other = same
+    if plan is not None:
+        menu = [p for p in plans(problem, *question(before)) if p.manoeuvre != plan.manoeuvre]
+        any_one = menu[rng.integers(len(menu))]
+        after, other = (
+            diagnosed([first, recorded(p.manoeuvre, boat, *played(p), rng)])[1]
+            for p in (plan, any_one)
+        )
+    return Outcome(
+        truth,
+        *(probability(r, truth) for r in (before, after, other, same)),
+        plan.manoeuvre if plan else "",
+        plan.expected_gain if plan else 0.0,
+        lead(after, truth) - lead(before, truth),
+    )
+
+
+def print_table(found: Sequence[Outcome]) -> None:
+    """Every case, then the means."""
+    columns = f"{'before':>7s} {'suggested':>9s} {'other':>6s} {'same':>6s} {'expected':>8s} {'gained':>7s}"
+    print(f"{'truth':22s} {columns}  suggested manoeuvre")
+    for o in found:
+        figures = f"{o.before:7.2f} {o.suggested:9.2f} {o.other:6.2f} {o.same:6.2f} {o.expected:8.1f} {o.gained:7.1f}"
+        print(f"{o.truth:22s} {figures}  {o.manoeuvre or '(none suggested)'}")
+    print(f"\nmean probability of the truth over {len(found)} cases")
+    print(f"  after a short run of gentle steering  {np.mean([o.before for o in found]):.2f}")
+    print(f"  with the suggested manoeuvre added    {np.mean([o.suggested for o in found]):.2f}")
+    print(f"  with another one of the menu added    {np.mean([o.other for o in found]):.2f}")
+    print(f"  with one more run of gentle steering  {np.mean([o.same for o in found]):.2f}")
+    print(f"cases with a suggestion: {sum(bool(o.manoeuvre) for o in found)}")
+    print(
+        "expected, gained: evidence of the truth over its best rival [nats], foreseen and after the suggested run"
+    )
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--quick", action="store_true", help="one seed, every third entry")
+    args = parser.parse_args()
+    names = [e.name for e in program().candidates if type(e).kind == "physics"]
+    chosen = (
+        [(n, 0) for n in names[::3]]
+        if args.quick
+        else [(n, seed) for n in names for seed in (0, 1)]
+    )
+    program().module  # noqa: B018  # compiled before the processes start, so that each need not
+    begin = time.time()
+    with ProcessPoolExecutor(args.jobs) as pool:
+        found = list(shown(pool.map(case, *zip(*chosen, strict=True)), "diagnosing", len(chosen)))
+    print_table(found)
+    print(f"{time.time() - begin:.0f} s on {args.jobs} processes")
+
+
+if __name__ == "__main__":
+    main()

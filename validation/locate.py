@@ -1,0 +1,183 @@
+"""How well the missing force is located: `python -m validation.locate [TRIALS]`.
+
+TRIALS/Txxx/ holds run_1.csv, run_2.csv, answer.json and missing_force_1.csv, missing_force_2.csv: the force missing on
+the vessel as written (body axes, 1 s averages) at times t_s. Each trial's noise is fitted, its coefficients are
+recalibrated, and the force that `diagnose.locate.forces` finds, an average over 1 s too, is compared sample by sample,
+one sample per time and axis:
+
+inside     share of samples at which the true force lies within 2 sd of the found one, the mean over trials
+flagged    samples at which zero lies outside the 2-sd band of the found force
+false      flagged samples whose true force is below the ambient rms of that axis
+precision  share of the flagged samples that are not false
+there      samples whose true force is beyond twice the ambient rms
+recall     share of those that are flagged
+
+by axis and by concealed effect, a trial with two effects counting under both and one without under "nothing missing".
+A region found in a nothing-missing trial is an accident; at the level at which regions are told, one in a hundred
+trials may have one. Last, the processor seconds for locating, regions included.
+"""
+
+import argparse
+import json
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.filter import axes_of, map_recording, noise_of, nominal_levels
+from boatsim.diagnosis.locate.missing_force import BAND, missing_force
+from boatsim.diagnosis.locate.regions import LIKELY, Region, regions
+from boatsim.diagnosis.pipeline import open_recording
+from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.search.ranking import baseline
+from boatsim.physics.base import Array
+from boatsim.physics.program import Program
+from validation.trials import SHARED
+
+RUNS = (1, 2)
+NOTHING = "nothing missing"
+
+
+@dataclass(frozen=True)
+class Located:
+    """One trial: what was found and what was there, (samples, axes) each, forces in ambient ones."""
+
+    causes: tuple[str, ...]
+    found: Array
+    sd: Array
+    true: Array
+    regions: tuple[Region, ...]
+    seconds: float
+
+    @property
+    def flagged(self) -> Any:
+        """(samples, axes) zero lies outside the band."""
+        return np.abs(self.found) > BAND * self.sd
+
+
+def problem_of(trial: Path) -> Problem:
+    """The recordings of a trial laid on the vessel's program, as a diagnosis does it."""
+    opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
+    recordings, boat = [r.thinned(priors.rate(b)) for r, b in opened], opened[0][1]
+    program = Program(boat, library_for(boat).compiled)
+    tracks = [map_recording(r, program, noise_of(boat, recordings)) for r in recordings]
+    uncertainty = priors.uncertainty(boat)
+    return Problem(
+        tracks,
+        nominal_levels(boat, recordings),
+        uncertainty | recordings[0].notes.coefficient_uncertainty,
+    )
+
+
+def recalibrated(problem: Problem) -> Fit:
+    """The vessel as written with noise, force levels and its own coefficients fitted."""
+    return baseline(problem)[1]
+
+
+def located(trial: Path) -> Located:
+    """Locate in one trial."""
+    problem = problem_of(trial)
+    known = recalibrated(problem)
+    begin = time.process_time()
+    forces = missing_force(problem, known, problem.recordings)
+    found_in = regions(problem, known)
+    seconds = time.process_time() - begin
+    samples = []
+    columns = [
+        f"{axis}_{'Nm' if axis in ('roll', 'yaw') else 'N'}"
+        for axis in axes_of(problem.program.vessel)
+    ]
+    for k, force in zip(RUNS, forces, strict=True):
+        truth = np.genfromtxt(trial / f"missing_force_{k}.csv", delimiter=",", names=True)
+        # an average over an even number of rows lies half a row behind the row it is about
+        rows = np.searchsorted(force.t, truth["t_s"], side="right") - 1
+        samples.append(
+            (force.mean[rows], force.sd[rows], np.column_stack([truth[c] for c in columns]))
+        )
+    found, sd, true = (
+        np.concatenate(s) / problem.ambient.force for s in zip(*samples, strict=True)
+    )
+    causes = tuple(e["name"] for e in json.loads((trial / "answer.json").read_text())["effects"])
+    return Located(causes or (NOTHING,), found, sd, true, tuple(found_in), seconds)
+
+
+def figures(trials: Sequence[Located], axis: int | slice = slice(None)) -> list[str]:
+    """The row of a table."""
+
+    def count(which: Callable[[Located], Any]) -> int:
+        return sum(int(which(t)[:, axis].sum()) for t in trials)
+
+    inside = np.mean(
+        [np.mean(np.abs(t.found - t.true)[:, axis] <= BAND * t.sd[:, axis]) for t in trials]
+    )
+    flagged, false = count(lambda t: t.flagged), count(lambda t: t.flagged & (np.abs(t.true) < 1.0))
+    there, hit = (
+        count(lambda t: np.abs(t.true) > 2.0),
+        count(lambda t: t.flagged & (np.abs(t.true) > 2.0)),
+    )
+    shares = [
+        f"{1.0 - false / flagged:.3f}" if flagged else "-",
+        f"{hit / there:.3f}" if there else "-",
+    ]
+    return [f"{len(trials)}", f"{inside:.3f}", *shares, f"{flagged}", f"{there}"]
+
+
+def table(trials: Sequence[Located], axes: Sequence[str]) -> Table:
+    """Figures of all, by axis and by effect."""
+    out = Table("", *("trials", "inside", "precision", "recall", "flagged", "there"))
+    out.columns[0].no_wrap = True
+    for column in out.columns[1:]:
+        column.justify = "right"
+    out.add_row("all", *figures(trials))
+    for i, axis in enumerate(axes):
+        out.add_row(axis, *figures(trials, i), end_section=i == len(axes) - 1)
+    for cause in sorted({c for t in trials for c in t.causes}):
+        out.add_row(cause, *figures([t for t in trials if cause in t.causes]))
+    return out
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("trials", type=Path, nargs="?", default=SHARED)
+    folders = sorted(
+        t for t in parser.parse_args().trials.glob("T*") if (t / "missing_force_1.csv").exists()
+    )
+    if not folders:
+        raise SystemExit(f"{parser.parse_args().trials}: no trials with missing_force_1.csv there")
+    located(folders[0])  # compiles
+    trials = {t.name: located(t) for t in folders}
+    console = Console()
+    console.print(
+        table(list(trials.values()), axes_of(open_recording(folders[0] / "run_1.csv", None, ())[1]))
+    )
+    none = {n: t for n, t in trials.items() if t.causes == (NOTHING,)}
+    accidents = sum(bool(t.regions) for t in none.values())
+    console.print(
+        f"regions found in nothing-missing trials: {accidents} of {len(none)}, at p < {LIKELY} a trial"
+    )
+    for name, t in trials.items():
+        for region in t.regions:
+            console.print(
+                f"  {name} ({', '.join(t.causes)}): {region.statement}",
+                highlight=False,
+                soft_wrap=True,
+            )
+    seconds = [t.seconds for t in trials.values()]
+    console.print(
+        f"processor seconds for locating: median {statistics.median(seconds):.3f}, most {max(seconds):.3f}"
+    )
+
+
+if __name__ == "__main__":
+    main()

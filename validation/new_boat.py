@@ -1,0 +1,250 @@
+"""Boats made from their particulars and part of their logs, beside hand-made ones: `python -m validation.new_boat`.
+
+Each boat is made as `boatsim new ... --from-log` makes it, from what an owner knows, fitted to some logs and judged
+by free runs on others. The hand-made vessel is judged on the same, as it is written, and fitted in the same way to the
+same logs. Boats whose recordings are not there are skipped.
+"""
+
+import json
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from boatsim.newboat.from_log import Fitted, fitted
+from boatsim.newboat.particulars import Particulars, particulars
+from boatsim.newboat.write import VESSEL, files
+from boatsim.physics.base import Array
+from boatsim.physics.content import find
+from tests import pushed_three_metre
+from validation.real import esso_osaka_pond, esso_osaka_vessel
+from validation.real.common import RECORDINGS, table
+
+GOAL = 1.3  # times the hand-made vessel's error, at most
+UNITS = {
+    "position_rms_m": ("position [m]", np.sqrt(2.0)),
+    "heading_rms_rad": ("heading [deg]", 57.29578),
+}
+# K_T of a propeller of P/D 0.7 under way: M. M. Bernitsas et al. 1981, Wageningen B-series at J =
+# 0.35
+THRUST_COEFFICIENT = 0.2
+LONGEST = 150.0  # [s] of a run of the tanker, for the time it takes
+MOST = 17.0  # [1/s] the fastest shaft of the manoeuvres that are fitted and judged
+
+
+@dataclass(frozen=True)
+class Case:
+    """A boat as its owner knows it, its logs by name, and the hand-made vessel."""
+
+    boat: Particulars
+    logs: Mapping[str, Mapping[str, Array]]  # columns
+    held_out: Sequence[str]
+    hand_made: Callable[[Path], Path]  # its file, written into a folder if it has to be
+    # columns as the hand-made vessel has them
+    its_logs: Callable[[Mapping[str, Array]], Mapping[str, Array]] = dict
+
+
+def three_metre(folder: Path) -> Case:
+    """The 3 m boat of the independent integrator."""
+    logs = {}
+    for seed in (1, 2, 3):
+        pushed_three_metre.write(folder / f"run_{seed}.csv", seed)
+        logs[f"run_{seed}"] = dict(columns(folder / f"run_{seed}.csv"))
+    boat = particulars("three_metre", 3.0, 1.6, 90.0, ["-1.2,-0.6,60", "-1.2,0.6,60"], [])
+
+    def hand_made(where: Path) -> Path:
+        where.mkdir(exist_ok=True)
+        (where / VESSEL).write_text(pushed_three_metre.HAND_MADE, encoding="utf-8")
+        return where / VESSEL
+
+    return Case(boat, logs, ("run_3",), hand_made)
+
+
+def blueboat(_: Path) -> Case:
+    """The catamaran on the lake; its makers' page has the sizes, its source the thrusters."""
+    boat = particulars(
+        "blueboat_new",
+        1.2,
+        0.77,
+        15.0,
+        ["-0.45,-0.285,55.2,27.6", "-0.45,0.285,55.2,27.6"],
+        [],
+        hulls=2,
+    )
+    logs = {}
+    for path in runs("blueboat_lake"):
+        read = columns(path)
+        names = {"x_m": "north_m", "y_m": "east_m", "psi_rad": "heading_rad"}
+        names |= {
+            "thrust_port_N": "force_right_N",
+            "thrust_starboard_N": "force_left_N",
+        }  # its README: exchanged
+        logs[path.stem] = {"t_s": read["t_s"]} | {
+            ours: read[theirs] for ours, theirs in names.items()
+        }
+    held_out = sorted(logs)[2::4]
+    return Case(boat, logs, held_out, lambda _: find("vessel", "blueboat"))
+
+
+def esso_osaka(_: Path) -> Case:
+    """The 3 m model of the tanker: zig-zags and turns, thrust by the square of the shaft's speed."""
+    told = json.loads((RECORDINGS / "esso_osaka" / "vessel.json").read_text(encoding="utf-8"))
+    ahead, propeller, rudder = told["x_G_m"], told["propeller"], told["rudder"]
+    per = THRUST_COEFFICIENT * told["density_water_kgm3"] * propeller["D_m"] ** 4  # [N s^2]
+    at = propeller["x_over_Lpp"] * told["Lpp_m"] - ahead
+    boat = particulars(
+        "esso_osaka_new",
+        told["Lpp_m"],
+        told["beam_m"],
+        told["mass_kg"],
+        [f"{at},0,{per * MOST**2}"],
+        [],
+        rudder=f"{rudder['x_from_midship_m'] - ahead},{rudder['area_m2']}",
+        draught=told["draught_m"],
+    )
+    logs = {}
+    for path in [p for p in runs("esso_osaka") if p.stem.startswith(("zigzag", "turn"))]:
+        read = columns(path)
+        kept = {n: read[n] for n in ("t_s", "x_m", "y_m", "psi_rad", "rudder_rad")}
+        kept["thrust_motor_N"] = per * read["shaft_rps"] * np.abs(read["shaft_rps"])
+        bridged, leaps = esso_osaka_pond.defects(np.genfromtxt(path, delimiter=",", names=True))
+        begin, end = longest(read["t_s"], read["t_s"][leaps])
+        inside = (read["t_s"] >= begin) & (read["t_s"] <= min(end, begin + LONGEST))
+        logs[path.stem] = {n: x[inside & ~bridged] for n, x in kept.items()}
+
+    def theirs(log: Mapping[str, Array]) -> Mapping[str, Array]:
+        shaft = np.sqrt(np.abs(log["thrust_motor_N"]) / per) * np.sign(log["thrust_motor_N"])
+        kept = {n: log[n] for n in ("t_s", "x_m", "y_m", "psi_rad")}
+        return {**kept, "delta_rad": log["rudder_rad"], "n_rps": shaft}
+
+    return Case(
+        boat, logs, sorted(logs)[2::4], lambda where: esso_osaka_vessel.written(where), theirs
+    )
+
+
+def longest(t: Array, leaps: Array) -> tuple[float, float]:
+    """Begin and end [s] of the longest stretch between leaps of a run, as esso_osaka_pond cuts it."""
+    begins = [float(t[0]), *(leaps + esso_osaka_pond.SOON)]
+    ends = [*(leaps - esso_osaka_pond.LATE), float(t[-1])]
+    return max(zip(begins, ends, strict=True), key=lambda span: span[1] - span[0])
+
+
+CASES: Mapping[str, Callable[[Path], Case]] = {
+    "three_metre": three_metre,
+    "blueboat": blueboat,
+    "esso_osaka": esso_osaka,
+}
+SETS = {"blueboat": "blueboat_lake", "esso_osaka": "esso_osaka"}
+
+
+def runs(name: str) -> list[Path]:
+    """Recordings of a set."""
+    return sorted((RECORDINGS / name / "runs").glob("*.csv"))
+
+
+def columns(path: Path) -> dict[str, Array]:
+    """Every column of a csv."""
+    read = np.genfromtxt(path, delimiter=",", names=True)
+    return {name: read[name] for name in read.dtype.names or ()}
+
+
+def judged(case: Case, folder: Path) -> Iterator[tuple[str, Fitted]]:
+    """The new boat, then the hand-made one."""
+    own = folder / case.boat.name
+    own.mkdir()
+    for name, text in files(case.boat).items():
+        (own / name).write_text(text, encoding="utf-8")
+    yield "new", _fitted(own / VESSEL, case, folder / "new_logs", dict)
+    yield (
+        "hand-made",
+        _fitted(case.hand_made(folder / "hand_made"), case, folder / "its_logs", case.its_logs),
+    )
+
+
+def _fitted(
+    file: Path,
+    case: Case,
+    folder: Path,
+    taken: Callable[[Mapping[str, Array]], Mapping[str, Array]],
+) -> Fitted:
+    folder.mkdir()
+    for name, log in case.logs.items():
+        _write(folder / f"{name}.csv", taken(log))
+    fit = [folder / f"{n}.csv" for n in case.logs if n not in case.held_out]
+    return fitted(file, fit, [folder / f"{n}.csv" for n in case.held_out])
+
+
+def _write(file: Path, log: Mapping[str, Array]) -> None:
+    """A recording."""
+    np.savetxt(
+        file, np.column_stack(list(log.values())), "%.9g", ",", header=",".join(log), comments=""
+    )
+
+
+def rows(name: str) -> Iterator[list[str]]:
+    """Lines of the table of one boat."""
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        case = CASES[name](folder)
+        found = dict(judged(case, folder))
+    for family, (words, scale) in UNITS.items():
+        new, hand = found["new"], found["hand-made"]
+        cells = [
+            scale * x
+            for x in (
+                new.before[family],
+                new.after[family],
+                hand.before[family],
+                hand.after[family],
+            )
+        ]
+        ratios = [cells[1] / cells[2], cells[1] / cells[3]]
+        verdict = "yes" if ratios[0] <= GOAL else "no"
+        yield [
+            name,
+            words,
+            f"{new.judge.horizon:g}",
+            *(f"{c:.3g}" for c in cells),
+            *(f"{r:.2f}" for r in ratios),
+            verdict,
+        ]
+    print(
+        f"{name}: {', '.join(found['new'].best.effects) or 'nothing'} found beside its coefficients",
+        file=sys.stderr,
+    )
+
+
+def main(names: Sequence[str]) -> None:
+    """Print the table."""
+    lines = []
+    for name in names or CASES:
+        if name in SETS and not runs(SETS[name]):
+            print(
+                f"{name}: skipped, there are no recordings in ../shared/recordings/{SETS[name]}/runs"
+            )
+            continue
+        lines += list(rows(name))
+    header = [
+        "boat",
+        "",
+        "free run [s]",
+        "particulars",
+        "fitted",
+        "hand-made",
+        "and fitted",
+        "ratio",
+        "to fitted",
+        "goal",
+    ]
+    table(
+        f"errors of free runs on logs no fit has seen; goal: at most {GOAL:g} times the hand-made",
+        header,
+        lines,
+    )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,71 @@
+"""Runs the rehearsal: `python -m validation.owner_logs --out DIR [--seed N] [--cases K] [--jobs 1]`.
+
+Every case has a folder: the logs, the vessel that `boatsim new` made, the map, the answer, and history.txt with each
+command and what it said. The same seed gives the same logs.
+"""
+
+import argparse
+import json
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+from validation.owner_logs.cases import Case, cases
+from validation.owner_logs.judge import Judge, Result
+from validation.owner_logs.table import goals, line
+
+
+def judged(case: Case, out: Path, log_only: bool) -> Result:
+    """One case in its folder."""
+    return Judge(case, out / f"case_{case.number:02d}", log_only).judge()
+
+
+def show(results: list[Result]) -> None:
+    """A line a case, then the goals."""
+    print("\n".join([*map(line, results), "", *goals(results)]))
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--cases", type=int, default=12)
+    parser.add_argument(
+        "--only", type=int, nargs="*", help="numbers of cases, of those of the seed"
+    )
+    parser.add_argument(
+        "--log-only", action="store_true", help="import and check alone, no diagnosis"
+    )
+    parser.add_argument(
+        "--show", action="store_true", help="the table of what lies in the folder, nothing run"
+    )
+    parser.add_argument("--jobs", type=int, default=1)
+    given = parser.parse_args()
+    if given.show:
+        show(
+            [
+                Result(**json.loads(f.read_text(encoding="utf-8")))
+                for f in sorted(given.out.glob("case_*/result.json"))
+            ]
+        )
+        return
+    begin = time.time()
+    all_of_them = cases(given.seed, given.cases)
+    asked = [c for c in all_of_them if not given.only or c.number in given.only]
+    results = []
+    with ProcessPoolExecutor(given.jobs) as pool:
+        for result in pool.map(
+            judged, asked, [given.out] * len(asked), [given.log_only] * len(asked)
+        ):
+            results.append(result)
+            print(line(result), flush=True)
+    print()
+    print("\n".join(goals(results)))
+    print(f"seed {given.seed}, {len(results)} cases, {(time.time() - begin) / 60.0:.0f} min")
+
+
+if __name__ == "__main__":
+    main()

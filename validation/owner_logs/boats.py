@@ -1,0 +1,248 @@
+"""Three boats drawn from a seed among plausible kinds: what they are, and what their owners know of them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+
+from validation.owner_logs.plant import RHO, Hull, Plant, Propeller, Rudder, resistance, thrust
+
+Rng = np.random.Generator
+
+
+@dataclass(frozen=True)
+class Boat:
+    """A boat with its drives, as it is and as its owner states it."""
+
+    name: str
+    plant: Plant
+    helm_most: float  # [rad] of rudder or outboards; 0: it is steered by its thrusters
+    # revolutions are this power of the command: 0.5 where the controller is linear in thrust
+    curve: float
+    lag: float  # [s] of the drives
+    helm_rate: float  # [rad/s]
+    top_rpm: float
+    options: tuple[str, ...]  # of `boatsim new`
+    channels: tuple[str, ...]  # thrust commands as `boatsim new` calls them
+    helms: tuple[str, ...]  # angle commands
+    helm_sign: float  # of the vessel's angles for helm to starboard
+    stated: tuple[float, ...]  # [N] full thrusts as the vessel has them
+
+    @property
+    def length(self) -> float:
+        """[m]."""
+        return self.plant.hull.length
+
+    @property
+    def scale(self) -> float:
+        """Froude's scale of time against a boat of 2 m."""
+        return sqrt(self.length / 2.0)
+
+
+def about(rng: Rng, value: float, share: float) -> float:
+    """A value within a share of another."""
+    return float(value * (1.0 + share * rng.uniform(-1.0, 1.0)))
+
+
+def hull(rng: Rng, length: float, beam: float, draught: float, mass: float, hulls: int = 1) -> Hull:
+    """A hull of these sizes, what the water does drawn about usual values."""
+    wide = 0.3 * beam if hulls == 2 else beam
+    wetted = hulls * about(rng, 1.7 * length * draught + 0.75 * length * wide, 0.1)
+    sway = about(rng, 0.45 * RHO * pi * draught**2 * length * hulls, 0.3)
+    yaw = about(rng, 0.07 * sway * length**2, 0.3)
+    inertia = mass * about(rng, 0.25, 0.1) ** 2 * length**2 + (
+        mass * 0.12 * beam**2 if hulls == 2 else 0.0
+    )
+    return Hull(
+        length,
+        beam,
+        draught,
+        hulls,
+        mass,
+        inertia,
+        (about(rng, 0.09, 0.4) * mass, sway, yaw, sway * length * rng.uniform(-0.03, 0.05)),
+        wetted,
+        about(rng, 0.35, 0.5),
+        about(rng, 0.006, 0.5),
+        about(rng, 0.9, 0.3),
+        rng.uniform(-0.3, 0.2),
+        about(rng, 0.8, 0.3),
+        rng.uniform(-0.4, -0.2),
+        about(rng, 0.12, 0.5) * (inertia + yaw) / sqrt(length / 2.0),
+        (0.35 * beam * beam, 0.3 * beam * length, rng.uniform(-0.05, 0.1) * length),
+    )
+
+
+def top_speed(plant: Plant) -> float:
+    """[m/s] at full ahead, in still water and air."""
+    low, high = 0.0, 20.0
+    for _ in range(50):
+        u = 0.5 * (low + high)
+        left = sum(thrust(p, 1.0, u) for p in plant.propellers) - resistance(plant.hull, u)
+        low, high = (u, high) if left > 0.0 else (low, u)
+    return low
+
+
+def told(rng: Rng, plant: Plant, thrusts: bool, draught: bool, top: bool) -> list[str]:
+    """Sizes as an owner states them; `top`: he knows the top speed."""
+    h = plant.hull
+    found = [
+        "--length",
+        f"{about(rng, h.length, 0.01):.2f}",
+        "--beam",
+        f"{about(rng, h.beam, 0.02):.2f}",
+    ]
+    found += ["--mass", f"{about(rng, h.mass, 0.1):.3g}", "--hulls", str(h.hulls)]
+    found += ["--draught", f"{about(rng, h.draught, 0.08):.2g}"] if draught else []
+    found += ["--speed", f"{about(rng, top_speed(plant), 0.06):.2g}"] if top or not thrusts else []
+    return found
+
+
+def mounts(
+    rng: Rng, plant: Plant, option: str, thrusts: bool, astern: bool
+) -> tuple[list[str], list[float]]:
+    """Where the drives are and how hard they push, and the full thrusts [N] that are stated."""
+    found, full = [], []
+    factor = about(rng, 1.0, 0.12)
+    for p in plant.propellers:
+        place = f"{about(rng, p.x, 0.04):.2f},{p.y:.2f}"
+        most = float(f"{p.full * factor:.2g}")
+        full.append(most)
+        said = f",{most:g}" + (f",{p.astern * most:.2g}" if astern else "") if thrusts else ""
+        found += [f"{option}={place}{said}"]
+    return found, full
+
+
+def named(plant: Plant) -> tuple[str, ...]:
+    """Drives as `boatsim new` calls them."""
+    return (
+        ("motor",)
+        if len(plant.propellers) == 1
+        else tuple("starboard" if p.y > 0 else "port" for p in plant.propellers)
+    )
+
+
+def built(
+    rng: Rng,
+    name: str,
+    plant: Plant,
+    option: str,
+    helm_most: float,
+    curve: float,
+    lag: float,
+    helm_rate: float,
+    top_rpm: float,
+    thrusts: bool = True,
+    draught: bool = True,
+    top: bool = True,
+    astern: bool = True,
+) -> Boat:
+    """The boat with its owner's words."""
+    places, full = mounts(rng, plant, option, thrusts, astern)
+    options = [*told(rng, plant, thrusts, draught, top), *places]
+    if plant.rudder:
+        options.append(f"--rudder={plant.rudder.x:.2f},{about(rng, plant.rudder.area, 0.1):.2g}")
+    names = named(plant)
+    steers = (
+        ("rudder_rad",)
+        if plant.rudder
+        else tuple(f"steer_{n}_rad" for n in names)
+        if helm_most
+        else ()
+    )
+    return Boat(
+        name,
+        plant,
+        helm_most,
+        curve,
+        lag,
+        helm_rate,
+        top_rpm,
+        tuple(options),
+        tuple(f"thrust_{n}_N" for n in names),
+        steers,
+        1.0 if plant.rudder else -1.0,
+        tuple(full) if thrusts else (),
+    )
+
+
+def workboat(rng: Rng) -> Boat:
+    """4 to 5 m of aluminium with two steered outboards on one wheel."""
+    L = rng.uniform(4.2, 5.2)
+    mass = about(rng, 620.0, 0.15) * (L / 4.6) ** 3
+    full, y = about(rng, 650.0, 0.15), about(rng, 0.38, 0.1)
+    motors = tuple(
+        Propeller(
+            -0.47 * L, side * y, full, about(rng, 0.7, 0.1), about(rng, 7.0, 0.1), 0.05, 0.045, True
+        )
+        for side in (-1.0, 1.0)
+    )
+    plant = Plant(hull(rng, L, 0.4 * L, about(rng, 0.26, 0.1), mass), motors)
+    return built(rng, "workboat", plant, "--steered", 0.52, 0.5, 0.35, 0.6, 5200.0)
+
+
+def survey_catamaran(rng: Rng) -> Boat:
+    """About 2 m with two fixed electric thrusters."""
+    L = rng.uniform(1.6, 2.4)
+    mass = about(rng, 60.0, 0.15) * (L / 2.0) ** 3
+    full, y, astern = about(rng, 95.0, 0.2), about(rng, 0.36, 0.1), about(rng, 0.75, 0.1)
+    motors = tuple(
+        Propeller(-0.4 * L, side * y, full, astern, 4.2, 0.05, 0.012) for side in (-1.0, 1.0)
+    )
+    plant = Plant(hull(rng, L, 0.52 * L, about(rng, 0.14, 0.1), mass, 2), motors)
+    return built(rng, "survey_catamaran", plant, "--thruster", 0.0, 0.5, 0.15, 1.0, 1800.0)
+
+
+def launch(rng: Rng) -> Boat:
+    """6 to 8 m with one screw and a rudder."""
+    L = rng.uniform(6.2, 7.8)
+    mass = about(rng, 3600.0, 0.15) * (L / 7.0) ** 3
+    screw = Propeller(
+        -0.40 * L, 0.0, about(rng, 3600.0, 0.15), about(rng, 0.6, 0.1), 5.6, 0.2, 0.28
+    )
+    plant = Plant(
+        hull(rng, L, 0.34 * L, about(rng, 0.6, 0.1), mass), (screw,), Rudder(-0.46 * L, 0.21, 2.4)
+    )
+    return built(rng, "launch", plant, "--thruster", 0.6, 1.0, 0.8, 0.25, 1500.0, draught=True)
+
+
+def ship_model(rng: Rng) -> Boat:
+    """A 3 m model with a screw and a rudder."""
+    L = rng.uniform(2.7, 3.4)
+    mass = about(rng, 150.0, 0.15) * (L / 3.0) ** 3
+    screw = Propeller(
+        -0.44 * L, 0.0, about(rng, 32.0, 0.15), about(rng, 0.65, 0.1), 2.4, 0.25, 0.012
+    )
+    plant = Plant(
+        hull(rng, L, 0.16 * L, about(rng, 0.16, 0.08), mass),
+        (screw,),
+        Rudder(-0.48 * L, 0.011, 2.5),
+    )
+    return built(rng, "ship_model", plant, "--thruster", 0.6, 0.5, 0.25, 0.35, 900.0)
+
+
+def rib(rng: Rng) -> Boat:
+    """5 to 6 m with one steered outboard, driven at displacement speeds."""
+    L = rng.uniform(4.8, 6.0)
+    mass = about(rng, 850.0, 0.15) * (L / 5.4) ** 3
+    motor = (
+        Propeller(
+            -0.46 * L, 0.0, about(rng, 1500.0, 0.15), about(rng, 0.6, 0.1), 8.5, 0.05, 0.06, True
+        ),
+    )
+    plant = Plant(hull(rng, L, 0.42 * L, about(rng, 0.3, 0.1), mass), motor)
+    return built(
+        rng, "rib", plant, "--steered", 0.55, 0.5, 0.4, 0.7, 5000.0, thrusts=True, draught=False
+    )
+
+
+KINDS: tuple[Callable[[Rng], Boat], ...] = (workboat, survey_catamaran, launch, ship_model, rib)
+
+
+def fleet(seed: int) -> list[Boat]:
+    """Three boats: one steered by its outboards, one by fixed thrusters, one by a rudder, in any order."""
+    rng = np.random.default_rng([seed, 1])
+    outboards, rudders = (workboat, rib), (launch, ship_model)
+    chosen = [outboards[int(rng.integers(2))], survey_catamaran, rudders[int(rng.integers(2))]]
+    return [kind(rng) for kind in chosen]

@@ -1,0 +1,178 @@
+"""The cases of a seed: a boat, a format, a fault or none, a cause or none, and the two logs."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from validation.owner_logs.boats import Boat, Rng, fleet
+from validation.owner_logs.causes import CAUSES
+from validation.owner_logs.faults import FAULTS, Fault
+from validation.owner_logs.formats import ardupilot, nmea, px4, ros, tables
+from validation.owner_logs.formats.log import Written
+from validation.owner_logs.instruments import Fit, Seen, fit, see
+from validation.owner_logs.pilot import Owner, pilot
+from validation.owner_logs.sail import Linkage, sail
+
+FORMATS = ("csv", "BIN", "mcap", "ros", "ulog", "nmea", "parquet")
+KINDS = (
+    "good",
+    "fault",
+    "cause",
+    "good",
+    "fault",
+    "cause",
+    "good",
+    "both",
+    "cause",
+    "good",
+    "fault",
+    "both",
+)
+SHORTEST, LONGEST = 240.0, 360.0  # [s] of a log
+
+
+@dataclass(frozen=True)
+class Case:
+    """One question of the examination."""
+
+    number: int
+    kind: str  # good, fault, cause, both
+    boat: Boat
+    form: str
+    fault: str = ""
+    cause: str = ""
+    strength: str = ""  # of the cause, in words
+    lasts: tuple[float, float] = (SHORTEST, SHORTEST)  # [s] of the log and of the second one
+    seed: int = 0
+
+    @property
+    def wrong(self) -> Fault | None:
+        """Its fault."""
+        return FAULTS[self.fault] if self.fault else None
+
+
+def cases(seed: int, count: int) -> list[Case]:
+    """All of them; faults and causes come in random order, none twice before all have been."""
+    boats, rng = fleet(seed), np.random.default_rng([seed, 2])
+    faults, causes, forms, turns = list[str](), list[str](), list[str](), list[int]()
+    found = []
+    for i in range(count):
+        forms = forms or [str(f) for f in rng.permutation(FORMATS)]
+        turns = turns or [int(b) for b in rng.permutation(3)]
+        kind, boat = KINDS[i % len(KINDS)], boats[turns.pop()]
+        form = _dialect(forms.pop(), boat, rng)
+        fault = cause = ""
+        if kind in ("fault", "both"):
+            fault = _next(faults, list(FAULTS), partial(_may, boat, kind), rng)
+            form = _possible(FAULTS[fault], form, rng)
+        if kind in ("cause", "both"):
+            cause = _next(causes, list(CAUSES), partial(_can, boat), rng)
+        lasts = tuple(float(np.round(rng.uniform(SHORTEST, LONGEST))) for _ in range(2))
+        found.append(
+            Case(i + 1, kind, boat, form, fault, cause, "", lasts, int(rng.integers(2**31)))
+        )  # type: ignore[arg-type]
+    return found
+
+
+def _may(boat: Boat, kind: str, name: str) -> bool:
+    """Whether a boat's log may have a fault; a table in newtons needs an owner who stated some."""
+    fault = FAULTS[name]
+    in_newtons = "plain.csv" in fault.formats
+    return (
+        fault.fits(boat)
+        and not (in_newtons and not boat.stated)
+        and not (fault.blind and kind == "both")
+    )
+
+
+def _can(boat: Boat, name: str) -> bool:
+    """Whether a boat can have a cause."""
+    return CAUSES[name].fits(boat)
+
+
+def _next(bag: list[str], everything: Sequence[str], fits: Callable[[str], bool], rng: Rng) -> str:
+    """The first in the bag that fits, taken out of it; the bag is filled again when none is left that does."""
+    if not any(map(fits, bag)):
+        bag += [str(n) for n in rng.permutation(everything) if n not in bag]
+    chosen = next(n for n in bag if fits(n))
+    bag.remove(chosen)
+    return chosen
+
+
+def _dialect(form: str, boat: Boat, rng: Rng) -> str:
+    if form in ("csv", "parquet"):
+        return f"plain.{form}" if boat.stated and rng.integers(2) else form
+    return str(rng.choice(["ros1", "ros2"])) if form == "ros" else form
+
+
+def _possible(fault: Fault, form: str, rng: Rng) -> str:
+    return form if not fault.formats or form in fault.formats else str(rng.choice(fault.formats))
+
+
+@dataclass(frozen=True)
+class Logs:
+    """The files of a case."""
+
+    first: Written
+    second: Written
+    truth: dict[str, float]  # what is worth knowing: sd of a fix, ...
+
+
+def make(case: Case, folder: Path) -> tuple[Logs, Case]:
+    """Sail and write both logs."""
+    rng = np.random.default_rng(case.seed)
+    boat, link, strength = case.boat, Linkage(gains=(1.0,) * len(case.boat.plant.propellers)), ""
+    if case.cause:
+        around, link, strength = CAUSES[case.cause].make(boat, rng)
+        link = replace(link, gains=link.gains[: len(boat.plant.propellers)])
+        boat = replace(boat, plant=replace(boat.plant, around=around))
+    on = fit(boat, rng)
+    written = []
+    for number, lasts in enumerate(case.lasts, 1):
+        wrong = case.wrong if number == 1 else None
+        written.append(_log(case, boat, link, wrong, on, lasts, folder, f"log_{number}", rng))
+    return Logs(written[0], written[1], {"fix_sd": on.fix_sd}), replace(case, strength=strength)
+
+
+def _log(
+    case: Case,
+    boat: Boat,
+    link: Linkage,
+    wrong: Fault | None,
+    on: Fit,
+    lasts: float,
+    folder: Path,
+    stem: str,
+    rng: Rng,
+) -> Written:
+    hand = pilot(boat, rng, lasts, wrong.without if wrong else ())
+    if wrong and wrong.limit > 1.0:
+        hand = Owner([replace(s, throttle=1.0) for s in hand.plan])
+    seen = see(boat, sail(boat, link, hand, lasts, rng), on, rng)
+    if wrong and wrong.seen:
+        seen = wrong.seen(seen, boat, rng)
+    return write(case, boat, seen, wrong, folder, stem)
+
+
+def write(
+    case: Case, boat: Boat, seen: Seen, wrong: Fault | None, folder: Path, stem: str
+) -> Written:
+    """In the format of the case."""
+    form = case.form
+    if form.startswith("plain."):
+        columns = tables.plain(seen, boat)
+        columns = wrong.columns(columns, boat) if wrong and wrong.columns else columns
+        return tables.write(columns, {}, folder / f"{stem}.{form.removeprefix('plain.')}")
+    if form in ("csv", "parquet"):
+        return tables.write(*tables.instrument(seen, boat), folder / f"{stem}.{form}")
+    if form in ("mcap", "ros1", "ros2"):
+        writer = {"mcap": ros.mcap, "ros1": ros.bag1, "ros2": ros.bag2}[form]
+        ned = bool(wrong and wrong.ned)
+        local = ned or bool(case.wrong and case.wrong.ned) or case.seed % 2 == 0
+        return writer(seen, boat, folder, stem, local, ned)
+    return {"BIN": ardupilot.write, "ulog": px4.write, "nmea": nmea.write}[form](
+        seen, boat, folder, stem
+    )

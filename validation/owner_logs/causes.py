@@ -1,0 +1,131 @@
+"""Physics that a boat has and its particulars have not, and what may rightly be named for each."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import cos, sin
+
+import numpy as np
+
+from validation.owner_logs.boats import Boat, Rng
+from validation.owner_logs.plant import Around
+from validation.owner_logs.sail import Linkage
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One cause: what it does to surroundings and linkage, and the entries that name it."""
+
+    make: Callable[[Boat, Rng], tuple[Around, Linkage, str]]
+    named: tuple[str, ...]
+    fits: Callable[[Boat], bool] = lambda boat: True
+
+
+def _around(**made: object) -> tuple[Around, Linkage]:
+    return replace(Around(), **made), Linkage()  # type: ignore[arg-type]
+
+
+def _link(boat: Boat, **made: object) -> tuple[Around, Linkage]:
+    usual = Linkage(gains=(1.0,) * len(boat.plant.propellers))
+    return Around(), replace(usual, **made)  # type: ignore[arg-type]
+
+
+def _vector(rng: Rng, size: float) -> tuple[float, float]:
+    way = rng.uniform(0.0, 2.0 * np.pi)
+    return size * cos(way), size * sin(way)
+
+
+def wind(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """A fresh breeze."""
+    speed = rng.uniform(6.0, 9.0)
+    return *_around(wind=_vector(rng, speed)), f"{speed:.1f} m/s"
+
+
+def current(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """The water moves."""
+    speed = rng.uniform(0.2, 0.5)
+    return *_around(current=_vector(rng, speed)), f"{speed:.2f} m/s"
+
+
+def weak_reverse(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """Astern the drives push far less than stated."""
+    factor = rng.uniform(0.3, 0.5)
+    return *_link(boat, astern=factor), f"times {factor:.2f}"
+
+
+def weak_motor(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """One of two drives is weaker."""
+    factor = rng.uniform(0.55, 0.75)
+    gains = (factor, 1.0) if rng.integers(2) else (1.0, factor)
+    return *_link(boat, gains=gains), f"times {factor:.2f}"
+
+
+def lag(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """The drives are slow to follow."""
+    time = rng.uniform(1.0, 2.0) * boat.scale
+    return *_link(boat, lag=time), f"{time:.1f} s"
+
+
+def delay(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """Orders arrive late."""
+    time = rng.uniform(0.6, 1.2) * boat.scale
+    return *_link(boat, delay=time), f"{time:.1f} s"
+
+
+def dead_band(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """Small throttle turns nothing."""
+    share = rng.uniform(0.15, 0.28)
+    return *_link(boat, dead=share), f"{share:.2f} of full"
+
+
+def steering_offset(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """Midships is not."""
+    angle = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.07, 0.14))
+    return *_link(boat, helm_offset=angle), f"{np.degrees(angle):.1f} deg"
+
+
+def slow_helm(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """The steering gear is slow."""
+    rate = boat.helm_most / (rng.uniform(3.0, 5.0) * boat.scale)
+    return *_link(boat, helm_rate=rate), f"{np.degrees(rate):.1f} deg/s"
+
+
+def load(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """Cargo ahead or astern."""
+    mass = rng.uniform(0.25, 0.4) * boat.plant.hull.mass
+    at = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.2, 0.32) * boat.length)
+    return *_around(load=mass, load_at=at), f"{mass:.0f} kg {at:+.1f} m ahead"
+
+
+def fouling(boat: Boat, rng: Rng) -> tuple[Around, Linkage, str]:
+    """Weed on the hull, or something in tow."""
+    factor = rng.uniform(2.5, 4.0)
+    return *_around(drag=factor), f"times {factor:.1f}"
+
+
+def _twins(boat: Boat) -> bool:
+    return len(boat.plant.propellers) == 2
+
+
+def _steers(boat: Boat) -> bool:
+    return boat.helm_most > 0.0
+
+
+CAUSES: dict[str, Cause] = {
+    "wind": Cause(wind, ("wind", "fan_wind", "gust", "gust_off_centre")),
+    "current": Cause(current, ("current",)),
+    "weak reverse": Cause(weak_reverse, ("weak_reverse", "drive_map", "dragged_propeller")),
+    "one motor weaker": Cause(weak_motor, ("thrust_imbalance",), _twins),
+    "lag": Cause(lag, ("thrust_lag", "command_delay")),
+    "delay": Cause(delay, ("command_delay", "thrust_lag")),
+    "dead band": Cause(
+        dead_band, ("thrust_deadband", "drive_map", "shaft_deadband", "pulse_thrust", "pwm_thrust")
+    ),
+    "steering offset": Cause(steering_offset, ("steering_offset",), _steers),
+    "slow helm": Cause(slow_helm, ("rate_limit", "steering_rate_limit", "servo"), _steers),
+    "load off centre": Cause(load, ("extra_mass", "mass_centre_shift", "payload")),
+    "drag": Cause(
+        fouling,
+        ("surge_drag", "quadratic_damping", "cubic_damping", "damping_error", "damping_exponent"),
+    ),
+}
+"""Every cause; the entries of the library that name it, ties among them."""

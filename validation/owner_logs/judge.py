@@ -1,0 +1,203 @@
+"""One case judged: the commands an owner gives, one behind the other, and what each made of the log."""
+
+import json
+import re
+import shutil
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from validation.owner_logs.cases import Case, make
+from validation.owner_logs.causes import CAUSES
+from validation.owner_logs.commands import Finding, Said, boatsim, findings, limits, write_into
+from validation.owner_logs.formats.log import Written
+from validation.owner_logs.owner import accept, wanted
+
+HORIZON = 8.0  # [s] of the free runs of the second log, on a boat of 2 m
+POSITION = re.compile(r"position_rms_m: ([\d.e+-]+)")
+HALF = 0.5  # of the error of the vessel from particulars
+PLAIN_SIGHT = 4.0  # sd of a fix: where that vessel is off by less, nothing is there to be gained
+LIMITS = {"never_turned": "turn", "saturated": "full|limit|saturat|highest", "one_speed": "speed"}
+
+
+@dataclass
+class Result:
+    """What came of a case."""
+
+    number: int
+    kind: str
+    boat: str
+    form: str
+    fault: str
+    cause: str
+    strength: str
+    read: bool = False
+    need: str = ""  # where it could not be read, what was said
+    edits: list[str] = field(default_factory=list)
+    found: list[str] = field(default_factory=list)  # by check
+    fault_named: bool | None = None
+    mended: bool | None = None  # by the advised lines; None: no line can
+    accused: bool = False  # a good log
+    verdict: str = ""
+    effects: list[str] = field(default_factory=list)
+    physics_named: bool | None = None
+    called_physics: bool | None = None
+    nominal_m: float = float("nan")  # second log, vessel from particulars
+    answer_m: float = float("nan")  # second log, vessel of the answer
+    possible: bool | None = None
+    seconds: float = 0.0
+    trouble: str = ""
+
+    @property
+    def ratio(self) -> float:
+        """Of the errors of the second log."""
+        return self.answer_m / self.nominal_m
+
+
+class Judge:
+    """Of one case, in a folder of its own."""
+
+    def __init__(self, case: Case, folder: Path, log_only: bool = False) -> None:
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        self.folder, self.log_only = folder, log_only
+        self.logs, self.case = make(case, folder)
+        c = self.case
+        self.result = Result(c.number, c.kind, c.boat.name, c.form, c.fault, c.cause, c.strength)
+        self.vessel = folder / c.boat.name
+        self.history: list[str] = []
+
+    def call(self, *arguments: str | Path) -> Said:
+        """A command, kept in history.txt."""
+        said = boatsim(*arguments)
+        shown = " ".join(str(a) for a in arguments)
+        self.history.append(
+            f"$ boatsim {shown}\n{said.out}{said.err}[exit {said.code}, {said.seconds:.1f} s]\n"
+        )
+        (self.folder / "history.txt").write_text("\n".join(self.history), encoding="utf-8")
+        self.result.seconds += said.seconds
+        return said
+
+    def judge(self) -> Result:
+        """All of it, kept in result.json."""
+        made = self.call("new", self.vessel, *self.case.boat.options)
+        if made.code:
+            self.result.trouble = f"new: {made.last}"
+        elif run := self.recording(self.logs.first, 1):
+            self.log(run)
+            if not self.log_only:
+                self.physics(run)
+        (self.folder / "result.json").write_text(
+            json.dumps(asdict(self.result), indent=1), encoding="utf-8"
+        )
+        return self.result
+
+    def recording(self, log: Written, number: int) -> Path | None:
+        """The log as a recording; a table in our own names is one."""
+        home = self.folder / f"run_{number}"
+        home.mkdir()
+        if self.case.form.startswith("plain."):
+            run = home / log.path.name
+            shutil.copy(log.path, run)
+            write_into(
+                home / "recording.toml", [f"vessel = {json.dumps('../' + self.case.boat.name)}"]
+            )
+            self.result.read = True
+            return run
+        return self.imported(log, home, number)
+
+    def imported(self, log: Written, home: Path, number: int) -> Path | None:
+        """Through a proposed map."""
+        map, run = home / "map.toml", home / "run.csv"
+        asked = self.call("import", log.path, "--vessel", self.vessel, "--propose", map)
+        if asked.code:
+            return self._refused(asked, number)
+        lines = wanted(self.case.boat, self.vessel / "vessel.toml", log.orders)
+        text, edits = accept(map.read_text(encoding="utf-8"), lines)
+        map.write_text(text, encoding="utf-8")
+        made = self.call("import", log.path, "--map", map, "--out", run, "--vessel", self.vessel)
+        if made.code or "a diagnosis would refuse it" in made.err:
+            return self._refused(made, number)
+        if number == 1:
+            self.result.read, self.result.edits = True, edits
+        return run
+
+    def _refused(self, said: Said, number: int) -> None:
+        if number == 1:
+            self.result.need = said.last if said.code != 99 else ""
+        self.result.trouble = f"import {number}: {said.last}"
+
+    def log(self, run: Path) -> None:
+        """What check says, and whether its advice puts the log right."""
+        r, wrong = self.result, self.case.wrong
+        said = self.call("check", run)
+        found = findings(said)
+        r.found = [f.name for f in found] + [f"limit: {text[17:60]}" for text in limits(said)]
+        if said.code == 2 or said.code == 99:
+            r.trouble = f"check: {said.last}"
+        if wrong is None:
+            r.accused = any(f.name not in ("position_held",) for f in found)
+            return
+        r.fault_named = bool({f.name for f in found} & set(wrong.named)) or any(
+            re.search(LIMITS[n], text.lower())
+            for n in wrong.named
+            if n in LIMITS
+            for text in limits(said)
+        )
+        advice = [f for f in found if f.lines]
+        if not wrong.mendable:
+            return
+        r.mended = any(f.allowed and f.name in wrong.named for f in found)
+        if advice:
+            self._follow(run, advice[0])
+            left = [f for f in findings(self.call("check", run)) if f.lines]
+            r.mended = r.fault_named and not left
+            r.found += [f"then {f.name}" for f in left]
+
+    def _follow(self, run: Path, first: Finding) -> None:
+        write_into(run.parent / "recording.toml", first.lines)
+
+    def physics(self, run: Path) -> None:
+        """What diagnose names, and how well its vessel foretells the second log."""
+        r, out = self.result, self.folder / "diagnosis"
+        said = self.call("diagnose", run, "--out", out)
+        if said.code:
+            r.trouble = "" if r.fault_named and said.code == 2 else f"diagnose: {said.last}"
+            r.need = said.last
+            r.physics_named = False if self.case.cause else None
+            r.called_physics = False if self.case.fault else None
+            return
+        answer = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+        r.verdict = answer["verdict"]
+        r.effects = [
+            n for e in answer["effects"] for n in dict.fromkeys([e["name"], *e["tied_with"]])
+        ]
+        if self.case.cause:
+            r.physics_named = bool(set(r.effects) & set(CAUSES[self.case.cause].named))
+        if self.case.wrong:
+            told = r.fault_named or any(
+                e["name"] in self.case.wrong.named for e in answer.get("log", [])
+            )
+            told = r.fault_named = bool(told or set(r.effects) & set(self.case.wrong.entries))
+            r.called_physics = not told and r.verdict != "nothing_missing"
+        self.foretell(out / "patched.toml")
+
+    def foretell(self, patched: Path) -> None:
+        """The second log by both vessels."""
+        r = self.result
+        second = self.recording(self.logs.second, 2)
+        if second is None:
+            return
+        horizon = f"{HORIZON * self.case.boat.scale:.0f}"
+        r.nominal_m = self.error(second, self.vessel, horizon)
+        r.answer_m = self.error(second, patched, horizon)
+        r.possible = r.nominal_m > PLAIN_SIGHT * self.logs.truth["fix_sd"]
+
+    def error(self, run: Path, vessel: Path, horizon: str) -> float:
+        """[m] rms of free runs."""
+        said = self.call(
+            "replay", run, "--vessel", vessel, "--horizon", horizon, "--out", self.folder / "replay"
+        )
+        match = POSITION.search(said.out)
+        if not match:
+            self.result.trouble = f"replay: {said.last}"
+        return float(match[1]) if match else float("nan")

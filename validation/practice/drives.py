@@ -1,0 +1,224 @@
+"""Causes in motors and steering: what the actuators do of what they are told."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from validation.practice.boats import forces, pushed
+from validation.practice.cause import Cause, Given, Rng, sign
+from validation.practice.motion import RUNS, Array, Boat, Motion
+
+
+def strongest(boat: Boat) -> float:
+    """A usual thrust [N] of one drive."""
+    return {"catamaran": 6.0, "joystick_boat": 0.6}.get(boat.name, 1.0)
+
+
+def each(rows: tuple[int, ...], by: Callable[[Array], Array]) -> Given:
+    """A memoryless curve on some actuators."""
+    at = list(rows)
+
+    def given(goal: Array, k: int) -> Array:
+        goal = goal.copy()
+        goal[at] = by(goal[at])
+        return goal
+
+    return given
+
+
+def remembering(rows: tuple[int, ...], follow: Callable[[Array, Array], Array]) -> Given:
+    """Some actuators that go from where they are towards their goal; settled at the first one."""
+    at, memory = list(rows), dict[str, Array]()
+
+    def given(goal: Array, k: int) -> Array:
+        goal, y = goal.copy(), memory.get("y", goal[at])
+        memory["y"] = goal[at] = follow(y, goal[at])
+        return goal
+
+    return given
+
+
+def weak_reverse(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Astern thrust k T, coming in by and by."""
+    k, soft = 1.0 - 0.45 * s, 0.04 * strongest(boat)
+
+    def curve(T: Array) -> Array:
+        return np.asarray(T * (1.0 - (1.0 - k) / (1.0 + np.exp(np.clip(T / soft, -50, 50)))))
+
+    return Cause(
+        "weak_reverse", {"astern_factor": k}, drive=lambda b, dt: each(b.drive.thrusts, curve)
+    )
+
+
+def thrust_lag(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Two lags behind each other, in all as late as the library's one."""
+    T = 0.6 * s * boat.scale
+
+    def drive(b: Boat, dt: float) -> Given:
+        keep = np.exp(-dt / (T / 2))
+        first = remembering(b.drive.thrusts, lambda y, goal: goal + (y - goal) * keep)
+        second = remembering(b.drive.thrusts, lambda y, goal: goal + (y - goal) * keep)
+        return lambda goal, k: second(first(goal, k), k)
+
+    return Cause("thrust_lag", {"time_constant_s": T}, drive=drive)
+
+
+def command_delay(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Commands late by a time that wanders by a tenth from second to second."""
+    late, lots = 0.5 * s * boat.scale, rng.uniform(0.9, 1.1, 4000)
+
+    def drive(b: Boat, dt: float) -> Given:
+        past: list[Array] = []
+
+        def given(goal: Array, k: int) -> Array:
+            past.append(goal)
+            at = max(len(past) - 1 - late * lots[int(len(past) * dt / b.scale)] / dt, 0.0)
+            first, part = int(at), at % 1.0
+            return np.asarray((1 - part) * past[first] + part * past[min(first + 1, len(past) - 1)])
+
+        return given
+
+    return Cause("command_delay", {"delay_s": late}, drive=drive, same_by_hand=("clock_offset",))
+
+
+def thrust_deadband(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Friction of the shaft, smooth where it lets go."""
+    w = 0.2 * s * strongest(boat)
+    return Cause(
+        "thrust_deadband",
+        {"width_N": w},
+        drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T - w * np.tanh(T / w))),
+    )
+
+
+def thrust_imbalance(boat: Boat, rng: Rng, s: float) -> Cause:
+    """One side pushes harder, a little more so at high thrust."""
+    f, usual = 0.2 * s * sign(rng), strongest(boat)
+
+    def curve(T: Array) -> Array:
+        side = np.array([[1.0], [-1.0]]) * f
+        return np.asarray(T * (1.0 + side * (0.9 + 0.2 * np.minimum(np.abs(T) / usual, 1.5))))
+
+    return Cause(
+        "thrust_imbalance", {"fraction": f}, drive=lambda b, dt: each(b.drive.thrusts, curve)
+    )
+
+
+def steering_offset(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Bent mounts, and a linkage that for the same reason gives a little less than asked."""
+    sides = ("middle",) if len(boat.drive.angles) == 1 else ("port", "starboard")
+    off = np.array([[0.15 * s * sign(rng)] for _ in sides])
+    stated = {f"{n}_rad": float(a[0]) for n, a in zip(sides, off, strict=True)}
+    return Cause(
+        "steering_offset",
+        stated,
+        drive=lambda b, dt: each(
+            b.drive.angles, lambda x: np.asarray((1 - 0.15 * np.abs(off)) * x + off)
+        ),
+    )
+
+
+def steering_backlash(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Play of the linkage; friction lets the angle creep after it instead of following at once."""
+    width = 0.3 * s
+
+    def drive(b: Boat, dt: float) -> Given:
+        def play(y: Array, goal: Array) -> Array:
+            return np.clip(y, goal - width / 2, goal + width / 2)
+
+        creep = 1.0 - np.exp(-dt / (0.05 * b.scale))
+        loose = remembering(b.drive.angles, play)
+        slow = remembering(b.drive.angles, lambda y, goal: np.asarray(y + creep * (goal - y)))
+        return lambda goal, k: slow(loose(goal, k), k)
+
+    return Cause("steering_backlash", {"width_rad": width}, drive=drive)
+
+
+def steering_rate_limit(boat: Boat, rng: Rng, s: float) -> Cause:
+    """A steering machine that is slow, and slower still close to its goal."""
+    rate = 0.12 / s / boat.scale
+
+    def drive(b: Boat, dt: float) -> Given:
+        near = 0.03  # [rad]
+        return remembering(
+            b.drive.angles, lambda y, goal: np.asarray(y + rate * dt * np.tanh((goal - y) / near))
+        )
+
+    return Cause("steering_rate_limit", {"rate_radps": rate}, drive=drive)
+
+
+def rudder_stall(boat: Boat, rng: Rng, s: float) -> Cause:
+    """The force bends over about an angle and falls a little beyond it."""
+    stall = 0.7 - 0.45 * s
+
+    def curve(x: Array) -> Array:
+        bent = x / (1.0 + np.abs(x / stall) ** 6) ** (1.0 / 6.0)
+        return np.asarray(bent * (1.0 - 0.08 * np.clip(np.abs(x) / stall - 1.0, 0.0, 1.0)))
+
+    return Cause(
+        "rudder_stall",
+        {"angle_rad": stall},
+        drive=lambda b, dt: each(b.drive.angles, curve),
+        not_compared=("angle_rad",),
+    )
+
+
+def prop_walk(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Side force of the turning propellers, an odd smooth curve that is three times as strong astern."""
+    k = 0.15 * s * sign(rng)
+
+    def force(b: Boat, m: Motion) -> Array:
+        found = np.zeros_like(m.nu)
+        for i, (x, _) in zip(b.drive.thrusts, b.drive.mounts, strict=True):
+            T = m.act[i]
+            Y = k * T * (2.0 / 3.0 - np.tanh(T / (0.1 * strongest(b))) / 3.0)
+            found += forces(T.size, Y=Y, N=x * Y)
+        return found
+
+    return Cause("prop_walk", {"side_force_per_thrust": k}, force=force)
+
+
+def thrust_loss_with_speed(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Thrust falls with the advance of the propeller, as K_T does with J: a little faster at high speed."""
+    loss = 0.4 * s / boat.scale
+
+    def force(b: Boat, m: Motion) -> Array:
+        found, u = np.zeros_like(m.nu), m.through[0]
+        for i, a, (x, y) in zip(b.drive.thrusts, b.drive.angles, b.drive.mounts, strict=True):
+            lost = loss * u * (0.9 + 0.2 * np.abs(u) / b.scale) * np.abs(m.act[i])
+            found -= pushed(u.size, lost, m.act[a], x, y)
+        return found
+
+    return Cause("thrust_loss_with_speed", {"loss_spm": loss}, force=force)
+
+
+def thrust_gain_error(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Another propeller than the one in the file; a bend would be evidence of a bend, not of a gain."""
+    factor = 1.0 + 0.5 * s * sign(rng)
+    return Cause(
+        "thrust_gain_error",
+        {"factor": factor},
+        drive=lambda b, dt: each(b.drive.thrusts, lambda T: np.asarray(T * factor)),
+    )
+
+
+# ---- outside the library
+
+
+def seized_motor(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Weed in the first propeller for some seconds of each run: it stutters."""
+    begin, lasts = rng.uniform(6.0, 24.0, RUNS) * boat.scale, 9.0 * boat.scale
+    quick = rng.uniform(1.2, 1.8) / boat.scale  # [1/s]
+    at = boat.drive.thrusts[0]
+
+    def drive(b: Boat, dt: float) -> Given:
+        def given(goal: Array, k: int) -> Array:
+            t = k * dt
+            caught = (begin <= t) & (t < begin + lasts) & ((quick * t) % 1.0 < 0.3 + 0.6 * s)
+            goal = goal.copy()
+            goal[at] = np.where(caught, 0.15 * goal[at], goal[at])
+            return goal
+
+        return given
+
+    return Cause("outside_library:seized_motor", drive=drive)

@@ -1,0 +1,260 @@
+"""Causes in the hull: mass, damping, righting; and what instruments show of its motion."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from validation.practice.boats import forces
+from validation.practice.cause import Cause, Rng, resistance, scaled, sign, wavy
+from validation.practice.motion import GRAVITY, RUNS, Array, Boat, Motion
+
+UNITS = {0: "surge_Ns{p}pm{p}", 1: "sway_Ns{p}pm{p}", 3: "roll_Nms{p}", 5: "yaw_Nms{p}"}
+
+
+def usual_rate(boat: Boat, axis: int) -> float:
+    """A rate of the boat's manoeuvres [m/s, rad/s]."""
+    return {0: 0.4 * boat.scale, 1: 0.15 * boat.scale, 3: 0.6 / boat.scale, 5: 0.35 / boat.scale}[
+        axis
+    ]
+
+
+def point(mass: float, x: float, y: float = 0.0) -> Array:
+    """(6, 6) of a mass point at the height of the origin."""
+    lever = np.array([[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]])
+    return np.block([[mass * np.eye(3), -mass * lever], [mass * lever, -mass * lever @ lever]])
+
+
+def extra_mass(boat: Boat, rng: Rng, s: float) -> Cause:
+    """A battery of its own size forward or aft; where the hull floats free, it sinks and trims it."""
+    mass, x = 0.2 * s * boat.mass, float(rng.uniform(-0.25, 0.25)) * boat.length
+    own = np.diag([0.0, 0.0, 0.0, *[mass * (0.04 * boat.length) ** 2] * 3])
+
+    def weight(b: Boat, m: Motion) -> Array:
+        Z = mass * GRAVITY * np.cos(m.q[3]) * np.cos(m.q[4])
+        return forces(Z.size, Z=Z, M=-x * Z)
+
+    return Cause(
+        "extra_mass",
+        {"mass_kg": mass, "x_m": x},
+        boat=lambda b: replace(b, hull=b.hull + point(mass, x) + own),
+        force=weight if boat.tilts else None,
+        same=("payload",) if abs(x) < 0.06 * boat.length else (),
+    )
+
+
+def mass_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Gear stowed at the other end: half of the mass lies twice as far off."""
+    shift = 0.09 * s * boat.length * sign(rng)
+    moved = point(boat.mass / 2, 2 * shift) - point(boat.mass / 2, 0.0)
+    return Cause(
+        "mass_centre_shift", {"shift_m": shift}, boat=lambda b: replace(b, hull=b.hull + moved)
+    )
+
+
+def lateral_centre_shift(boat: Boat, rng: Rng, s: float) -> Cause:
+    """A skeg takes a part of the sway damping with it, to where it is."""
+    shift = 0.08 * s * boat.length * sign(rng)
+    at = 0.4 * boat.length * np.sign(shift)
+    share = shift / at
+
+    def force(b: Boat, m: Motion) -> Array:
+        d, v, r = share * b.c["sway"], m.through[1], m.through[5]
+        return forces(
+            v.size, Y=d * v - d * (v + at * r), N=-d * at * (v + at * r) * (1.0 - 0.3 * abs(share))
+        )
+
+    return Cause("lateral_centre_shift", {"shift_m": shift}, force=force)
+
+
+def steeper(
+    boat: Boat, s: float, name: str, power: float, like: int, axes: tuple[int, ...]
+) -> Cause:
+    """Damping of a power that is not whole, on top of the boat's own; at a usual rate a share of it."""
+    gains = {
+        a: 0.9 * s * resistance(boat, a, usual_rate(boat, a)) * usual_rate(boat, a) for a in axes
+    }
+
+    def force(b: Boat, m: Motion) -> Array:
+        found = np.zeros_like(m.nu)
+        for a, gain in gains.items():
+            part = m.through[a] - (b.cruise if a == 0 else 0.0)
+            found[a] = -gain * np.sign(part) * np.abs(part / usual_rate(b, a)) ** power
+        return found
+
+    stated = {
+        UNITS[a].format(p=like): gain / usual_rate(boat, a) ** like for a, gain in gains.items()
+    }
+    return Cause(name, stated, force=force, not_compared=tuple(stated))
+
+
+def quadratic_damping(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Power 1.85."""
+    axes = (3,) if boat.free == (3,) else (1, 5) if boat.cruise else (0, 1, 5)
+    return replace(steeper(boat, s, "quadratic_damping", 1.85, 2, axes), same=("damping_exponent",))
+
+
+def cubic_damping(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Power 2.9."""
+    axes = (3,) if 3 in boat.free else (0, 5)
+    return steeper(boat, s, "cubic_damping", 2.9, 3, axes)
+
+
+def damping_error(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Weed on the hull: linear damping off by a factor in each axis."""
+    factors = {a: 1.0 + s * rng.uniform(0.3, 0.8) for a in ("surge", "sway", "yaw") if a in boat.c}
+    stated = {f"{a}_factor": f for a, f in factors.items()}
+    return Cause("damping_error", stated, boat=lambda b: scaled(b, **factors))
+
+
+def added_mass_coriolis(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Separation takes a part of the Munk moment away, or the model has it too small."""
+    missing = 0.7 * s * sign(rng)
+    return Cause(
+        "added_mass_coriolis",
+        {"fraction": missing},
+        boat=lambda b: replace(b, coriolis=b.coriolis + missing),
+    )
+
+
+# ---- roll
+
+
+def righting_arm_stiffening(boat: Boat, rng: Rng, s: float) -> Cause:
+    """A curve of levers: a sine that bends over, or the wall-sided formula that hardens."""
+    bends = bool(rng.integers(2))
+    n, wall = 3.0 * np.sqrt(s), 1 / 3 + 4.0 * s
+
+    def force(b: Boat, m: Motion) -> Array:
+        phi, k = m.q[3], b.c["righting"]
+        lever = np.sin(n * phi) / n if bends else np.sin(phi) * (1.0 + wall / 2 * np.tan(phi) ** 2)
+        return forces(phi.size, K=-k * (lever - phi))
+
+    cubic = float(-n * n / 6 if bends else wall / 2 - 1 / 6)
+    return Cause(
+        "righting_arm_stiffening",
+        {"cubic_perrad2": cubic},
+        force=force,
+        not_compared=("cubic_perrad2",),
+    )
+
+
+def metacentric_height_error(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Ballast higher or lower than stated."""
+    factor = 1.0 + 0.3 * s * sign(rng)
+    return Cause(
+        "metacentric_height_error", {"factor": factor}, boat=lambda b: scaled(b, righting=factor)
+    )
+
+
+def steady_force(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Ballast off the centre line: a moment that falls with the cosine of the heel."""
+    K = 0.05 * s * boat.c["righting"] * sign(rng)
+    return Cause(
+        "steady_force", {"roll_Nm": K}, force=lambda b, m: forces(m.t.size, K=K * np.cos(m.q[3]))
+    )
+
+
+# ---- instruments
+
+
+def camera_scale(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Each axis of the camera has a length of its own."""
+    x, y = 0.12 * s * sign(rng), 0.12 * s * sign(rng)
+    stretch = np.array([[1 + x], [1 + y], [1.0], [1.0], [1.0], [1.0]])
+    return Cause(
+        "camera_scale", {"x_fraction": x, "y_fraction": y}, show=lambda q: np.asarray(q * stretch)
+    )
+
+
+def heading_deviation(boat: Boat, rng: Rng, s: float) -> Cause:
+    """A compass near iron: semicircular, and a little quadrantal."""
+    size, phase = 0.2 * s, rng.uniform(-np.pi, np.pi)
+    cos, sin = float(size * np.cos(phase)), float(size * np.sin(phase))
+
+    def show(q: Array) -> Array:
+        off = cos * np.cos(q[5]) + sin * np.sin(q[5]) + 0.06 * size * np.sin(2 * q[5])
+        return np.concatenate([q[:5], q[5:] + off])
+
+    return Cause("heading_deviation", {"cos_rad": cos, "sin_rad": sin}, show=show)
+
+
+def heading_offset(boat: Boat, rng: Rng, s: float) -> Cause:
+    """A compass mounted askew."""
+    off = 0.15 * s * sign(rng)
+    stated = {"offset_rad": off}
+    return Cause("heading_offset", stated, show=lambda q: np.concatenate([q[:5], q[5:] + off]))
+
+
+def position_frame_error(boat: Boat, rng: Rng, s: float) -> Cause:
+    """The antenna stands elsewhere."""
+    ahead, side = 0.18 * s * boat.length * sign(rng), 0.05 * s * boat.length * sign(rng)
+
+    def show(q: Array) -> Array:
+        c, n = np.cos(q[5]), np.sin(q[5])
+        return np.concatenate([[q[0] + c * ahead - n * side, q[1] + n * ahead + c * side], q[2:]])
+
+    return Cause("position_frame_error", {"forward_m": ahead, "starboard_m": side}, show=show)
+
+
+def clock_offset(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Poses late behind commands."""
+    late = 0.4 * s * boat.scale
+    return Cause("clock_offset", {"pose_late_s": late}, late=late, same_by_hand=("command_delay",))
+
+
+# ---- outside the library
+
+
+def bilge_pump(boat: Boat, rng: Rng, s: float) -> Cause:
+    """A jet to one side for a second, every few seconds."""
+    every, push = rng.uniform(4.0, 7.0) * boat.scale, 40.0 * s * boat.push
+    begin = rng.uniform(0.0, every, RUNS)
+
+    def force(b: Boat, m: Motion) -> Array:
+        on = 0.5 * (1 + np.tanh((np.cos(2 * np.pi * (m.t - begin[m.run]) / every) - 0.7) / 0.1))
+        Y = push * on
+        return forces(Y.size, Y=Y, K=-b.draught * Y if 3 in b.free else 0.0, N=0.2 * b.length * Y)
+
+    return Cause("outside_library:bilge_pump", force=force)
+
+
+def eddies(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Forces that belong to places: a row of eddies a few lengths apart."""
+    k, push = 2 * np.pi / (3.0 * boat.length), 25.0 * s * boat.push
+    a, b = rng.uniform(0.0, 2 * np.pi, 2)
+
+    def force(hull: Boat, m: Motion) -> Array:
+        north, east = push * np.sin(k * m.q[1] + a), push * np.sin(k * m.q[0] + b)
+        c, n = np.cos(m.q[5]), np.sin(m.q[5])
+        return forces(c.size, X=c * north + n * east, Y=c * east - n * north)
+
+    return Cause("outside_library:eddies", force=force)
+
+
+def lifting_hull(boat: Boat, rng: Rng, s: float) -> Cause:
+    """A dented bow: beyond a speed the hull is lifted to one side."""
+    push, side, from_ = 60.0 * s * boat.push, sign(rng), 0.3 * boat.scale
+
+    def force(b: Boat, m: Motion) -> Array:
+        Y = side * push * np.clip(m.through[0] / from_ - 1.0, 0.0, 1.5) ** 2
+        return forces(Y.size, Y=Y, N=0.3 * b.length * Y)
+
+    return Cause("outside_library:lifting_hull", force=force)
+
+
+def stiction(boat: Boat, rng: Rng, s: float) -> Cause:
+    """A rubbing stern gland or guide: dry friction in roll."""
+    K = 0.004 * s * boat.c["righting"]
+    return Cause(
+        "outside_library:stiction",
+        force=lambda b, m: forces(m.t.size, K=-K * np.tanh(m.nu[3] / 0.02)),
+    )
+
+
+def shifting_cargo(boat: Boat, rng: Rng, s: float) -> Cause:
+    """Something loose that rolls from side to side every now and then."""
+    K, slow = 0.04 * s * boat.c["righting"], wavy(rng, 0.3 / boat.scale, 1.2 / boat.scale, 4)
+    return Cause(
+        "outside_library:shifting_cargo",
+        force=lambda b, m: forces(m.t.size, K=K * np.tanh(6 * slow(m.t, m.run))),
+    )

@@ -1,0 +1,239 @@
+"""Makes trials: draws what is concealed, sails three runs, asks the oracle, writes recordings and answers."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation.practice.boats import BOATS
+from validation.practice.cause import Cause, Maker, Rng
+from validation.practice.motion import RUNS, Array, Boat
+from validation.practice.oracle import Oracle
+from validation.practice.pilots import Keeper, hand
+from validation.practice.plans import PLANS, Plan
+from validation.practice.sail import Voyage, sail
+
+COLUMNS = ("x_m", "y_m", "z_m", "phi_rad", "theta_rad", "psi_rad")
+FAMILIES = ("position", "position", "heave", "roll", "pitch", "heading")
+UNITS = {"position": "m", "heave": "m", "roll": "rad", "pitch": "rad", "heading": "rad"}
+STATED = ("position_sd_m", "heading_sd_rad", "roll_sd_rad")  # what a recording.toml may say
+AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+KINDS = (
+    "none",
+    "single",
+    "single",
+    "single",
+    "pair",
+    "unknown",
+)  # by turns steered by hand and kept on its track
+CALIBRATION = 0.03  # sd of a real boat's own damping and thrust
+RIGHTING = 0.005  # and of its righting levers
+SEEN, SURE = 12.0, (5.0, 20.0)  # [nats] visible from, borderline between
+STRANGE_SEEN, STRANGE_SURE = 20.0, (10.0, 40.0)  # [nats] the same of causes outside the library
+FIRST, WEAK_TO_STRONG = (
+    0.5,
+    (0.03, 1.2),
+)  # strength of a first try, from which that with the wanted evidence follows
+WANTED, STRANGE_WANTED = (6.0, 300.0), (40.0, 400.0)  # [nats] drawn evenly by ratio
+OUTLIERS, FAR = 0.02, 15.0  # share of the rows, and how far off in sd of the instrument
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What is to be made."""
+
+    name: str
+    vessel: str
+    kind: str
+    concealed: bool
+    outliers: bool
+    makers: tuple[Maker, ...]
+
+
+def trials(seed: int, per_vessel: int) -> Iterator[Trial]:
+    """All trials of a set: kinds in turn, causes by lot without putting back."""
+    number = 0
+    for index, (vessel, plan) in enumerate(PLANS.items()):
+        rng = np.random.default_rng([seed, index])
+        known, strange = Deck(plan.single, rng), Deck(plan.strange, rng)
+        for i in range(per_vessel):
+            kind, number = KINDS[i % len(KINDS)], number + 1
+            drawn = (
+                strange.draw(1)
+                if kind == "unknown"
+                else known.draw({"none": 0, "single": 1, "pair": 2}[kind])
+            )
+            concealed = plan.kept and kind != "none" and (i // len(KINDS) + i) % 2 == 1
+            yield Trial(
+                f"T{number:03d}_{vessel}", vessel, kind, concealed, kind == "none" and i > 0, drawn
+            )
+
+
+class Deck:
+    """Causes to draw from, shuffled anew when they run out."""
+
+    def __init__(self, makers: tuple[Maker, ...], rng: Rng) -> None:
+        self.makers, self.rng, self.left = makers, rng, list[Maker]()
+
+    def draw(self, n: int) -> tuple[Maker, ...]:
+        """The next n, all different."""
+        found: list[Maker] = []
+        while len(found) < n:
+            if not self.left:
+                self.left = [self.makers[i] for i in self.rng.permutation(len(self.makers))]
+            if (maker := self.left.pop()) not in found:
+                found.append(maker)
+        return tuple(found)
+
+
+def make(trial: Trial, seed: int, out: Path) -> dict[str, Any]:
+    """Write one trial to its folder; its answer."""
+    lots = (seed, int(trial.name[1:4]))
+    plan, strange = PLANS[trial.vessel], trial.kind == "unknown"
+    strengths, oracle, gains = chosen(trial, lots)
+    answer = {
+        "kind": trial.kind,
+        "vessel": trial.vessel,
+        "concealed": trial.concealed,
+        "strength": [round(float(s), 3) for s in strengths],
+        "outliers": trial.outliers,
+        "calibration_error": CALIBRATION,
+        "effects": [described(c) for c in oracle.causes],
+        **{
+            f"noise_{f}_{UNITS[f]}": float(f"{s:.3g}")
+            for f, s in zip(FAMILIES, oracle.noise, strict=True)
+            if s
+        },
+        **told(strange, gains),
+        **same(trial, oracle.causes),
+    }
+    rng = np.random.default_rng([*lots, 1])
+    if 0 in oracle.nominal.free:
+        rms = oracle.free_runs(6.0 * oracle.nominal.scale, rng)
+        left_out = "true_structure" if strange else ""
+        answer["reference_position_rms_m"] = {
+            k: round(v, 6) for k, v in rms.items() if k != left_out
+        }
+    voyage = spoilt(oracle.voyage, oracle.noise, rng) if trial.outliers else oracle.voyage
+    write(out / trial.name, oracle.nominal, plan, voyage, answer)
+    return answer
+
+
+def chosen(trial: Trial, lots: tuple[int, int]) -> tuple[Array, Oracle, Array]:
+    """Strengths of the causes with which they give about the evidence that is wanted, the trial, its gains [nats]."""
+    strange, count = trial.kind == "unknown", len(trial.makers)
+    low, high = np.log(STRANGE_WANTED if strange else WANTED)
+    wanted = np.exp([np.random.default_rng([*lots, 0, i]).uniform(low, high) for i in range(count)])
+    strengths = np.full(count, FIRST)
+    oracle = sailed(trial, lots, strengths)
+    if not count:
+        return strengths, oracle, strengths
+    found = np.maximum(evidence(oracle, strange), 0.1)
+    strengths = np.clip(strengths * np.sqrt(wanted / found), *WEAK_TO_STRONG)
+    oracle = sailed(trial, lots, strengths)
+    return strengths, oracle, evidence(oracle, strange)
+
+
+def sailed(trial: Trial, lots: tuple[int, int], strengths: Array) -> Oracle:
+    """The trial with causes of these strengths; all else is drawn alike."""
+    nominal, plan = BOATS[trial.vessel](), PLANS[trial.vessel]
+    grid, rng = plan.grid(), np.random.default_rng([*lots, 2])
+    noise, real = instruments(nominal, plan, rng), own(nominal, rng)
+    causes = [
+        on_grid(maker(nominal, np.random.default_rng([*lots, 3, i]), float(s)), grid.dt)
+        for i, (maker, s) in enumerate(zip(trial.makers, strengths, strict=True))
+    ]
+    pilot = Keeper(nominal, grid, rng) if trial.concealed else hand(nominal, grid, rng)
+    return Oracle(nominal, real, causes, sail(real, causes, pilot, grid, noise, rng), noise)
+
+
+def on_grid(cause: Cause, dt: float) -> Cause:
+    """A late clock is late by whole fine steps."""
+    if not cause.late:
+        return cause
+    late = max(round(cause.late / dt), 1) * dt
+    return replace(cause, late=late, parameters={name: late for name in cause.parameters})
+
+
+def instruments(boat: Boat, plan: Plan, rng: Rng) -> Array:
+    """(6,) sd of this trial's."""
+    usual = {f: sd * rng.uniform(0.7, 1.3) for f, sd in plan.noise.items()}
+    return np.array([usual[f] if i in boat.free else 0.0 for i, f in enumerate(FAMILIES)])
+
+
+def own(nominal: Boat, rng: Rng) -> Boat:
+    """A boat as boats are: its own coefficients near those of the file."""
+    sd = {"damping": CALIBRATION, "thrust": CALIBRATION, "restoring": RIGHTING}
+    factors = {n: 1.0 + sd[kind] * rng.standard_normal() for n, kind in nominal.kinds.items()}
+    return replace(nominal, c={n: x * factors.get(n, 1.0) for n, x in nominal.c.items()})
+
+
+def described(cause: Cause) -> dict[str, Any]:
+    """An effect of an answer."""
+    found: dict[str, Any] = {
+        "name": cause.name,
+        "parameters": {k: float(v) for k, v in cause.parameters.items()},
+    }
+    return found | ({"not_compared": list(cause.not_compared)} if cause.not_compared else {})
+
+
+def evidence(oracle: Oracle, strange: bool) -> Array:
+    """Nats that each cause adds to the others, or to the library."""
+    return np.array(
+        [oracle.beyond_library(c) if strange else oracle.marginal(c) for c in oracle.causes]
+    )
+
+
+def told(strange: bool, gains: Array) -> dict[str, Any]:
+    """What the oracle says of the evidence."""
+    if not len(gains):
+        return {}
+    seen, (low, high) = (STRANGE_SEEN, STRANGE_SURE) if strange else (SEEN, SURE)
+    least = float(gains.min())
+    return {
+        "visible": least > seen,
+        "borderline": low < least < high,
+        "marginal_gain_nats": [round(float(g), 1) for g in gains],
+    }
+
+
+def same(trial: Trial, causes: tuple[Cause, ...]) -> dict[str, Any]:
+    """Entries that count as the true ones."""
+    found = {c.name: [*c.same, *(() if trial.concealed else c.same_by_hand)] for c in causes}
+    found = {name: others for name, others in found.items() if others}
+    return {"equivalent": found} if found else {}
+
+
+def spoilt(voyage: Voyage, noise: Array, rng: Rng) -> Voyage:
+    """Two per cent of the rows far off: reflections, another mark, a jump of the receiver."""
+    hit = rng.random((len(voyage.recorded), RUNS)) < OUTLIERS
+    jump = FAR * noise[:, None] * rng.standard_normal((len(voyage.recorded), 6, RUNS))
+    jump[:, 5] = 0.0
+    return replace(voyage, recorded=voyage.recorded + jump * hit[:, None, :])
+
+
+def write(folder: Path, boat: Boat, plan: Plan, voyage: Voyage, answer: dict[str, Any]) -> None:
+    """recording.toml, three runs, answer.json."""
+    folder.mkdir(parents=True, exist_ok=True)
+    noise = {f"{f}_sd_{UNITS[f]}": sd for f, sd in plan.noise.items()}
+    size = dict(zip(AXES, boat.ambient(), strict=True))
+    free = [AXES[i] for i in boat.free]
+    (folder / "recording.toml").write_text(
+        f'vessel = "{boat.name}"\n\n[noise]\n'
+        + "".join(f"{k} = {noise[k]:g}\n" for k in STATED if k in noise)
+        + f"\n[ambient]\naxes = {json.dumps(free)}\nforce_rms = [{', '.join(f'{size[a]:.3g}' for a in free)}]\n"
+    )
+    t = np.arange(voyage.grid.rows) * voyage.grid.row
+    used = [i for i in range(len(boat.channels)) if np.any(voyage.commands[:, i])]
+    names = ["t_s", *(COLUMNS[i] for i in boat.free), *(list(boat.channels)[i] for i in used)]
+    for run in range(RUNS):
+        table = np.column_stack(
+            [t, voyage.recorded[:, boat.free, run], voyage.commands[:, used, run]]
+        )
+        np.savetxt(
+            folder / f"run_{run + 1}.csv", table, "%.7g", ",", header=",".join(names), comments=""
+        )
+    (folder / "answer.json").write_text(json.dumps(answer, indent=1) + "\n")

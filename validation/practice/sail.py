@@ -1,0 +1,150 @@
+"""Three runs of a real boat at once: actuators, ambient forces, Runge-Kutta steps, and what the instruments show."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from scipy.signal import lfilter
+
+from validation.practice.cause import Cause, Rng, changed, extra, shown, water
+from validation.practice.motion import RUNS, Array, Boat, step
+
+LEAD = 1.0  # [s at 1.2 m] for which the first commands act before the first row
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Fine steps and rows."""
+
+    dt: float  # [s]
+    every: int  # steps in a row
+    rows: int
+    lead: int  # steps before the first row
+
+    @property
+    def row(self) -> float:
+        """Seconds from row to row."""
+        return self.dt * self.every
+
+    @property
+    def steps(self) -> int:
+        """From the first row to the last."""
+        return self.every * (self.rows - 1)
+
+
+class Pilot(Protocol):
+    """Whoever gives the commands."""
+
+    def begin(self) -> tuple[Array, Array]:
+        """Pose and rates (6, RUNS) to start from."""
+
+    def command(self, row: int, pose: Array) -> Array:
+        """Commands (C, RUNS) of a row, of the recorded pose (6, RUNS)."""
+
+
+class Acts(NamedTuple):
+    """Actuators at the begin, in the middle and at the end of every step, each (K, A, RUNS)."""
+
+    begin: Array
+    middle: Array
+    end: Array
+
+
+class Actuators:
+    """What the actuators do of the commands, settled at the first ones."""
+
+    def __init__(self, boat: Boat, causes: Sequence[Cause], dt: float) -> None:
+        self.boat, self.dt = boat, dt
+        self.causes = [c.drive(boat, dt) for c in causes if c.drive]
+        self.quick = (boat.drive.lag == 0.0)[:, None]
+        self.y: Array | None = None
+
+    def step(self, commands: Array, k: int) -> tuple[Array, Array, Array]:
+        """Over step k from the first row on, commands (C, RUNS)."""
+        goal = self.boat.drive.goals(commands)
+        for cause in self.causes:
+            goal = cause(goal, k)
+        y = goal if self.y is None else self.y
+        if self.quick.all():
+            self.y = goal
+            return goal, goal, goal
+        half, end = (self.boat.drive.follow(y, goal, s) for s in (self.dt / 2, self.dt))
+        self.y = end
+        return np.where(self.quick, goal, y), half, end
+
+
+@dataclass(frozen=True)
+class Voyage:
+    """Runs on the fine grid, K steps of which the first `grid.lead` come before the first row."""
+
+    grid: Grid
+    q: Array  # (K, 6, RUNS)
+    nu: Array  # (K, 6, RUNS)
+    push: Array  # (K, 6, RUNS) ambient force held over each step
+    commands: Array  # (rows, C, RUNS)
+    recorded: Array  # (rows, 6, RUNS) with noise
+
+    def row_of(self, k: int) -> int:
+        """Row of commands that step k before or after the first row belongs to."""
+        return min(max(k, 0) // self.grid.every, self.grid.rows - 1)
+
+    def acts(self, boat: Boat, causes: Sequence[Cause]) -> Acts:
+        """What another boat's actuators would have done of the same commands."""
+        chain = Actuators(boat, causes, self.grid.dt)
+        found = [
+            chain.step(self.commands[self.row_of(i - self.grid.lead)], i - self.grid.lead)
+            for i in range(len(self.q))
+        ]
+        return Acts(*(np.array(part) for part in zip(*found, strict=True)))
+
+
+def ambient(boat: Boat, n: int, dt: float, rng: Rng) -> Array:
+    """(n, 6, RUNS) Ornstein-Uhlenbeck forces in body axes, 1 s scaled by Froude."""
+    keep = np.exp(-dt / boat.scale)
+    white = rng.standard_normal((n, 6, RUNS))
+    white[1:] *= np.sqrt(1.0 - keep * keep)
+    return np.asarray(lfilter([1.0], [1.0, -keep], white, axis=0) * boat.ambient()[:, None])
+
+
+def sail(
+    boat: Boat, causes: Sequence[Cause], pilot: Pilot, grid: Grid, noise: Array, rng: Rng
+) -> Voyage:
+    """The real boat, `noise` (6,) of its instruments."""
+    real = changed(boat, causes)
+    count = grid.lead + grid.steps + 1
+    push = ambient(boat, count, grid.dt, rng)
+    errors = noise[:, None] * rng.standard_normal((grid.rows, 6, RUNS))
+    late = round(max((c.late for c in causes), key=abs, default=0.0) / grid.dt)
+    chain, force, flow, inverse = (
+        Actuators(real, causes, grid.dt),
+        extra(real, causes),
+        water(causes),
+        real.inverse(),
+    )
+    q, nu = pilot.begin()
+    u = pilot.command(0, shown(causes, q))
+    Q, NU, commands, recorded = [], [], [], []
+    run = np.arange(RUNS)
+    for i in range(count):
+        k = i - grid.lead
+        Q.append(q)
+        NU.append(nu)
+        if k >= 0 and k % grid.every == 0:
+            recorded.append(shown(causes, Q[max(i - late, 0)]) + errors[k // grid.every])
+            u = pilot.command(k // grid.every, recorded[-1]) if k else u
+            commands.append(u)
+        q, nu = step(
+            real,
+            np.full(RUNS, k * grid.dt),
+            run,
+            q,
+            nu,
+            chain.step(u, k),
+            grid.dt,
+            push[i],
+            force,
+            flow,
+            inverse,
+        )
+    return Voyage(grid, np.array(Q), np.array(NU), push, np.array(commands), np.array(recorded))

@@ -1,0 +1,112 @@
+"""What a trial asks of a rival: two recordings on the same compiled program, the same library; and how it answers."""
+
+import contextlib
+import io
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from boatsim.cli import diagnosis as commands
+from boatsim.control.base import wrap
+from boatsim.diagnosis import priors
+from boatsim.diagnosis.candidates import called, library_for
+from boatsim.diagnosis.checks.position_outliers import without_outliers
+from boatsim.diagnosis.checks.repeated_positions import without_repeats
+from boatsim.diagnosis.filter import map_recording, noise_of, nominal_levels
+from boatsim.diagnosis.pipeline import open_recording
+from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
+from boatsim.diagnosis.report import patched_vessel
+from boatsim.diagnosis.report.answer import key_of
+from boatsim.physics.base import Array, Effect
+from boatsim.physics.program import Program
+from boatsim.physics.vessel import Vessel
+from validation.entry import horizon_of, vessel_of
+
+LEAST_SD = 1e-9  # of a parameter that a fit takes for exactly known
+
+
+@dataclass(frozen=True)
+class Question:
+    """Recordings to explain, and what may be named."""
+
+    vessel: Vessel
+    problem: Problem
+    entries: dict[
+        str, Effect
+    ]  # of the library, those that are tried on this vessel and have a course to be fitted
+    noise: dict[str, float]  # by family, as found in the recordings [m, rad]
+    # what hypotheses fit, once asked
+    known: dict[tuple[str, ...], tuple[FreeParameter, ...]] = field(default_factory=dict)
+
+    def start(self) -> Array:
+        """The vessel's own coefficients as written."""
+        return np.array([f.mean for f in self.problem.parameters(())])
+
+
+def asked(trial: Path) -> Question:
+    """The question of one trial: rows, noise and library as the diagnosis has them, random forces left out."""
+    opened = [open_recording(trial / f"run_{i}.csv", vessel_of(trial), ()) for i in (1, 2)]
+    vessel = opened[0][1]
+    runs = [without_outliers(without_repeats(r.thinned(priors.rate(b))), b) for r, b in opened]
+    columns = sorted({c for r in runs for c in r.signals})
+    library = library_for(vessel, (), runs[0].notes.facts, columns)
+    program = Program(vessel, library.compiled)
+    stated = noise_of(vessel, runs)
+    tracks = [map_recording(r, program, stated) for r in runs]
+    uncertainty = priors.uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
+    problem = Problem(tracks, nominal_levels(vessel, runs), uncertainty)
+    entries = {e.name: e for e in library.entries if e.name in library.tried and not type(e).random}
+    families = {f for t in tracks for f in t.families}
+    noise = {f: priors.sensed_noise(vessel, runs, f) or stated[f] for f in families}
+    return Question(vessel, problem, entries, noise)
+
+
+def free_of(question: Question, effects: tuple[str, ...]) -> tuple[FreeParameter, ...]:
+    """What a hypothesis may fit: the vessel's own coefficients, then the parameters of its entries."""
+    if effects not in question.known:
+        question.known[effects] = question.problem.parameters(effects)
+    return question.known[effects]
+
+
+def fit_of(question: Question, effects: tuple[str, ...], theta: Array, covariance: Array) -> Fit:
+    """A rival's fit as the diagnosis writes one, for the patched vessel."""
+    problem = question.problem
+    return Fit(effects, free_of(question, effects), theta, covariance, problem.ambient, 0.0)
+
+
+def answer(
+    question: Question, found: Fit, gains: dict[str, float], unknown: bool, trial: Path, out: Path
+) -> None:
+    """Write diagnosis.json, patched.toml and replay.csv of one trial."""
+    out.mkdir(parents=True, exist_ok=True)
+    patched_vessel.write(question.problem, question.vessel, found, out / "patched.toml")
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon_of(trial), out)
+    said: dict[str, Any] = {
+        "effects": [
+            {
+                "name": called(n),
+                "parameters": parameters(question, found, n),
+                "gain_nats": round(gains[n], 2),
+            }
+            for n in found.effects
+        ],
+        "unknown": {"flag": unknown},
+    }
+    (out / "diagnosis.json").write_text(json.dumps(said, indent=1) + "\n")
+
+
+def parameters(question: Question, found: Fit, entry: str) -> dict[str, dict[str, Any]]:
+    """Value, sd and unit of an entry's parameters, by the names that answers use."""
+    kind = type(question.entries[entry])
+    stated = {}
+    for f in found.free:
+        if f.effect == entry and not f.relative:
+            value, sd = found.value(entry, f.name)
+            unit = kind.params()[f.name].unit
+            value = wrap(value) if unit == "rad" else value
+            stated[key_of(f.name, unit)] = {"value": value, "sd": max(sd, LEAST_SD), "unit": unit}
+    return stated

@@ -1,0 +1,410 @@
+"""Diagnoses a folder of trials: `python -m validation.trials [TRIALS] [--out RESULTS] [--unknowns] [--jobs N]`.
+
+`--make DIR --seed N` makes such a folder (the second practice set) and no more. `--answers RESULTS` scores what any
+tool answered, `RESULTS/Txxx/diagnosis.json` and `replay.csv`, and diagnoses nothing: see docs/benchmark.md.
+
+TRIALS/Txxx/ holds run_1.csv, run_2.csv (to diagnose from), run_3.csv (held out) and answer.json. Writes
+RESULTS/Txxx/diagnosis.json, patched.toml and replay.csv (free runs over run_3: 6 s for a boat of 1.2 m,
+for others by Froude's scale of time), then prints how the answers compare with the truth, vessel by vessel where there
+are several (their recording.toml names them; `python -m validation.practice` makes such a set):
+
+- a trial is exact if every true effect is named and nothing else; an effect counts if it is visible (adds more than
+  6 nats in the program that made the trials);
+- a name is wrong unless it is true, or the answer says that it cannot be told from a true one;
+- held-out skill is 1 where the patched boat follows run_3 as closely as the fitted true structure, 0 where it is no
+  better than the recalibrated nominal;
+- coverage is the share of true parameters within two stated standard deviations, over exact answers;
+- reliability: of all entries given a probability in some range in trials with one effect or none, how many were true.
+
+--unknowns adds the table made by taking the true entry, what counts as the same and its look-alikes out of the library.
+"""
+
+import argparse
+import contextlib
+import io
+import json
+import math
+import os
+import re
+import statistics
+import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+from rich.progress import Progress
+
+from validation.entry import BadEntry, answers_in, horizon_of, replay_errors, vessel_of
+
+SHARED = Path(__file__).parents[2] / "shared" / "recordings" / "trials" / "practice"
+BINS = (0.0, 0.02, 0.1, 0.3, 0.7, 0.95, 1.0)
+Answers = dict[str, dict[str, Any]]  # by trial
+KINDS = {  # cause outside the library -> axis and factors of a described law that is of its kind
+    "sag": "^thrust",
+    "seized_motor": "^thrust",
+    "eddies": "(north|east).*repeats every",
+    "stiction": "^roll.* roll rate",
+    "lifting_hull": "^(sway|yaw).* surge speed",
+    "bilge_pump": "^(sway|yaw|roll).*(swinging|, from)",
+    "shifting_cargo": "^roll.*(swinging|, from)",
+}
+SLACK = 1.05  # of the recalibrated error on run_3: a description must not do worse
+# share of the recalibrated error that the true structure must save for a skill to be told
+WORTH = 0.15
+
+
+def diagnose_one(trial: Path, out: Path, without: Sequence[str] = ()) -> dict[str, Any]:
+    """Diagnose one trial and replay its held-out run with the patched vessel; the answer."""
+    from boatsim.cli import diagnosis as commands
+    from boatsim.diagnosis import pipeline
+    from boatsim.diagnosis.report import patched_vessel
+
+    found = pipeline.diagnose(
+        [trial / "run_1.csv", trial / "run_2.csv"],
+        [trial / "run_3.csv"],
+        vessel_of(trial),
+        without=without,
+    )
+    out.mkdir(parents=True, exist_ok=True)
+    patched_vessel.write(
+        found.problem, found.vessel, found.ranking.best, out / "patched.toml", found.ranking.laws
+    )
+    with contextlib.redirect_stdout(io.StringIO()):
+        commands.replay(trial / "run_3.csv", str(out / "patched.toml"), [], horizon_of(trial), out)
+    (out / "diagnosis.json").write_text(json.dumps(found.findings.answer, indent=1))
+    return dict(found.findings.answer)
+
+
+def all_of(jobs: int, todo: dict[str, tuple[Path, Path, tuple[str, ...]]], what: str) -> Answers:
+    """Answers of many diagnoses, by name."""
+    with ProcessPoolExecutor(jobs) as pool, Progress() as progress:
+        task = progress.add_task(what, total=len(todo))
+        waiting = {pool.submit(diagnose_one, *args): name for name, args in todo.items()}
+        done = {}
+        for future in as_completed(waiting):
+            done[waiting[future]] = future.result()
+            progress.advance(task)
+    return dict(sorted(done.items()))
+
+
+# ---- one trial
+
+
+def truth_of(answer: dict[str, Any]) -> set[str]:
+    """Names that would be exactly right."""
+    return {"unknown"} if answer["kind"] == "unknown" else {e["name"] for e in answer["effects"]}
+
+
+def said_of(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
+    """Names the tool stands for, in the answer's own names where several count as the same."""
+    truth = truth_of(answer)
+    same = {
+        other: name for name, others in answer.get("equivalent", {}).items() for other in others
+    }
+    said = {e["name"] for e in found["effects"]} - set(answer.get("tolerated", []))
+    return {n if n in truth else same.get(n, n) for n in said} | (
+        {"unknown"} if found["unknown"]["flag"] else set()
+    )
+
+
+def meant_by(answer: dict[str, Any], found: dict[str, Any]) -> set[str]:
+    """The same, a name that the answer says it cannot tell from a true one taken for that one."""
+    truth, said = truth_of(answer), said_of(answer, found)
+    tied = {
+        e["name"]: truth & set(e["tied_with"])
+        for e in found["effects"]
+        if found["verdict"] == "ambiguous"
+    }
+    return {n if n in truth else min(tied.get(n, ()), default=n) for n in said}
+
+
+def deviations(answer: dict[str, Any], found: dict[str, Any]) -> list[float]:
+    """Errors of the parameters that can be compared, in stated standard deviations."""
+    out = []
+    stated = {e["name"]: e["parameters"] for e in found["effects"]}
+    for effect in answer["effects"]:
+        for key, true in (effect.get("parameters") or {}).items():
+            fitted = stated.get(effect["name"], {}).get(key)
+            if fitted is None or isinstance(true, bool) or key in effect.get("not_compared", []):
+                continue
+            error = fitted["value"] - true
+            error = math.remainder(error, 2 * math.pi) if key == "toward_rad" else error
+            out.append(abs(error) / fitted["sd"])
+    return out
+
+
+def skill(trial: Path, out: Path, answer: dict[str, Any]) -> float | None:
+    """Share of the error that the true structure saves on run_3 and the patched boat too; None if it saves none.
+
+    -1 where free runs are missing, or do not cover run_3.
+    """
+    reference = answer.get("reference_position_rms_m", {})
+    recalibrated, true = reference.get("recalibrated"), reference.get("true_structure")
+    if (
+        recalibrated is None
+        or true is None
+        or recalibrated - true <= max(1e-3, WORTH * recalibrated)
+    ):
+        return None
+    patched = replay_errors(trial, out / "replay.csv", horizon_of(trial))
+    return (
+        -1.0
+        if patched is None
+        else max(-1.0, min(1.0, (recalibrated - patched) / (recalibrated - true)))
+    )
+
+
+def of_its_kind(answer: dict[str, Any], found: dict[str, Any]) -> bool:
+    """Whether a described law holds a term of the kind of the unknown cause."""
+    (cause,) = answer["effects"]
+    kind = KINDS[cause["name"].partition(":")[2]]
+    return any(
+        re.search(kind, f"{law['axis']} {term['of']}")
+        for law in found["described"]
+        for term in law["terms"]
+    )
+
+
+def of_recalibrated(found: dict[str, Any]) -> float | None:
+    """Error of the patched boat on run_3 in errors of the recalibrated one, all signals alike; None if none is told."""
+    rms = [v for k, v in found["fit"].items() if k.endswith(("_rms_m", "_rms_rad")) and v]
+    ratios = [v["patched"] / v["recalibrated"] for v in rms if v["recalibrated"] > 0.0]
+    return statistics.geometric_mean(ratios) if ratios else None
+
+
+# ---- all trials
+
+
+def share(rows: Sequence[bool]) -> str:
+    """5/6 of the rows."""
+    return f"{sum(rows)}/{len(rows)}" if rows else "none there"
+
+
+def quantile(values: Sequence[float], q: float) -> float:
+    """The value below which a share q of them lies."""
+    return sorted(values)[int(q * (len(values) - 1))]
+
+
+def figures(answers: Answers, found: Answers) -> dict[str, str]:
+    """Names right and wrong, by kind of trial."""
+    kind = {
+        k: [n for n in found if answers[n]["kind"] == k]
+        for k in ("none", "single", "pair", "unknown")
+    }
+    visible = {
+        k: [n for n in v if answers[n].get("visible") and not answers[n].get("borderline")]
+        for k, v in kind.items()
+    }
+    said = {n: said_of(answers[n], found[n]) for n in found}
+    exact = {n: said[n] == truth_of(answers[n]) for n in found}
+    meant = {n: meant_by(answers[n], found[n]) for n in found}
+    fair = {n: meant[n] == truth_of(answers[n]) and len(said[n]) == len(meant[n]) for n in found}
+    wrong = {n: meant[n] - truth_of(answers[n]) - {"unknown"} for n in found}
+    concealed = [n for n in visible["single"] if answers[n]["concealed"]]
+    known = [*kind["none"], *kind["single"], *kind["pair"]]
+    unknown = {
+        c: [n for n in visible["unknown"] if answers[n]["concealed"] is c] for c in (False, True)
+    }
+    return {
+        "false alarms among nothing-missing trials": share([bool(said[n]) for n in kind["none"]]),
+        "visible single effects, exactly named": share([exact[n] for n in visible["single"]]),
+        "  of these concealed by the tracker": share([exact[n] for n in concealed]),
+        "  exactly named, or told to be tied": share([fair[n] for n in visible["single"]]),
+        "visible pairs, both named and nothing else": share([exact[n] for n in visible["pair"]]),
+        "wrong names (none, singles, pairs)": share([bool(wrong[n]) for n in known]),
+        "visible unknown cause flagged, pilot": share(
+            ["unknown" in said[n] for n in unknown[False]]
+        ),
+        "visible unknown cause flagged, concealed": share(
+            ["unknown" in said[n] for n in unknown[True]]
+        ),
+        "visible unknown cause described": share(
+            [bool(found[n]["described"]) for n in visible["unknown"]]
+        ),
+        "  with a term of its kind": share(
+            [of_its_kind(answers[n], found[n]) for n in visible["unknown"]]
+        ),
+        "known cause called unknown": share(
+            ["unknown" in said[n] for n in (*kind["single"], *kind["pair"])]
+        ),
+    }
+
+
+def fit_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> dict[str, str]:
+    """Held-out skill, parameters, seconds."""
+    skills = [
+        s
+        for n in found
+        if answers[n]["kind"] in ("single", "pair")
+        and (s := skill(trials / n, out / n, answers[n])) is not None
+    ]
+    exact = [n for n in found if said_of(answers[n], found[n]) == truth_of(answers[n])]
+    z = [x for n in exact for x in deviations(answers[n], found[n])]
+    table, seconds = {}, [f["seconds"] for f in found.values() if "seconds" in f]
+    if seconds:
+        words = f"{statistics.median(seconds):.2f} / {quantile(seconds, 0.95):.2f}"
+        table["seconds per diagnosis, median / p95"] = words
+    if skills and any((out / n / "replay.csv").is_file() for n in found):
+        tenth = f"{statistics.median(skills):.3f} / {sorted(skills)[len(skills) // 10]:.3f} ({len(skills)} trials)"
+        table["held-out skill, median / lowest tenth"] = tenth
+    carried = [n for n in found if any(law["carries_over"] for law in found[n]["described"])]
+    if ratios := [r for n in carried if (r := of_recalibrated(found[n])) is not None]:
+        words = f"{statistics.median(ratios):.2f} / {max(ratios):.2f} ({len(ratios)} trials)"
+        table["described: error ratio, median / worst"] = words
+        table[f"  above {SLACK:g} of the recalibrated"] = share([r > SLACK for r in ratios])
+    if z:
+        table["true parameters within 2 sd"] = f"{sum(x <= 2 for x in z) / len(z):.3f} of {len(z)}"
+        table["median error of a parameter in sd"] = f"{statistics.median(z):.2f}"
+    return table
+
+
+def reliability(answers: Answers, found: Answers) -> list[tuple[str, int, float, float]]:
+    """(range, entries, mean stated probability, share true) over trials with one effect or none."""
+    pairs = []
+    for n, f in found.items():
+        if answers[n]["kind"] not in ("none", "single") or answers[n].get("tolerated"):
+            continue
+        truth = truth_of(answers[n])
+        same = truth | {o for t in truth for o in answers[n].get("equivalent", {}).get(t, [])}
+        stated = {c["name"]: c["probability"] for c in f["candidates"]}
+        together = sum(stated.pop(name, 0.0) for name in same)
+        pairs += [(p, False) for p in stated.values()]
+        pairs += [(together, True)] if truth else []
+        pairs.append((max(0.0, 1.0 - sum(stated.values()) - together), not truth))
+    table = []
+    for low, high in zip(BINS[:-1], BINS[1:], strict=True):
+        inside = [(p, true) for p, true in pairs if low <= p < high or p == high == 1.0]
+        if inside:
+            mean = statistics.mean(p for p, _ in inside)
+            table.append(
+                (
+                    f"{low:.2f} to {high:.2f}",
+                    len(inside),
+                    mean,
+                    statistics.mean(float(t) for _, t in inside),
+                )
+            )
+    return table
+
+
+def unknowns(trials: Path, out: Path, jobs: int, answers: Answers, found: Answers) -> None:
+    """Every visible single effect once more, with its entry and the look-alikes taken out of the library."""
+    left_out = {}
+    for n, answer in answers.items():
+        if n in found and answer["kind"] == "single" and answer.get("visible"):
+            (name,) = truth_of(answer)
+            alike = [t for e in found[n]["effects"] if e["name"] == name for t in e["tied_with"]]
+            left_out[n] = tuple(
+                dict.fromkeys((name, *answer.get("equivalent", {}).get(name, []), *alike))
+            )
+    todo = {n: (trials / n, out / "unknowns" / n, names) for n, names in left_out.items()}
+    again = all_of(jobs, todo, "without the truth")
+    flagged = {n: f["unknown"]["flag"] for n, f in again.items()}
+    print("\nunknowns: the true entry and its look-alikes taken out of the library")
+    for what, concealed in (("pilot", False), ("concealed", True)):
+        print(
+            f"  flagged, {what:10s} {share([flagged[n] for n in again if answers[n]['concealed'] is concealed])}"
+        )
+    print(
+        f"  flagged, or nothing named  {share([flagged[n] or not f['effects'] for n, f in again.items()])}"
+    )
+    skills = {n: skill(trials / n, out / "unknowns" / n, answers[n]) for n in again}
+    told = [s for s in skills.values() if s is not None]
+    if told:
+        print(f"  skill, truth taken out     {statistics.median(told):.3f} ({len(told)} trials)")
+    by_law = [s for n, s in skills.items() if s is not None and again[n]["described"]]
+    if by_law:
+        print(
+            f"  of these by a description  {statistics.median(by_law):.3f} ({len(by_law)} trials)"
+        )
+    for n, f in again.items():
+        instead = [f"{e['name']} ({e['gain_nats']:.0f} nats)" for e in f["effects"]]
+        law = "described" if f["described"] else "unknown"
+        said = ", ".join([*([law] if flagged[n] else []), *instead]) or "nothing missing"
+        print(f"    {n} without {', '.join(left_out[n])}: {said}")
+
+
+def print_figures(trials: Path, out: Path, answers: Answers, found: Answers) -> None:
+    """Of all trials, then of each vessel where there are several."""
+    vessels = {n: vessel_of(trials / n) for n in found}
+    several = sorted(set(vessels.values())) if len(set(vessels.values())) > 1 else []
+    for vessel in ("", *several):
+        part = {n: f for n, f in found.items() if vessel in ("", vessels[n])}
+        print(f"\n{vessel}, {len(part)} trials" if vessel else "")
+        for what, value in {
+            **figures(answers, part),
+            **fit_figures(trials, out, answers, part),
+        }.items():
+            print(f"{what:44s} {value}")
+    print()
+
+
+def print_wrong(answers: Answers, found: Answers) -> None:
+    """Trials that are not exactly right."""
+    for n, f in found.items():
+        said, truth = said_of(answers[n], f), truth_of(answers[n])
+        if said != truth:
+            seen = "" if answers[n].get("visible", True) else " (invisible)"
+            print(f"  {n} {answers[n]['kind']}: truth {sorted(truth)}, said {sorted(said)}{seen}")
+
+
+def score(trials: Path, results: Path, answers: Answers) -> None:
+    """Print how the answers of any tool compare with the truth. Raises BadEntry."""
+    found = answers_in(results, list(answers))
+    print(f"{len(found)} trials; answers in {results}")
+    print_figures(trials, results, answers, found)
+    print_wrong(answers, found)
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("trials", type=Path, nargs="?", default=SHARED)
+    parser.add_argument("--out", type=Path, default=Path("out/trials"))
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--unknowns", action="store_true", help="also the table of unknowns")
+    parser.add_argument(
+        "--answers", type=Path, metavar="RESULTS", help="score these answers, diagnose nothing"
+    )
+    parser.add_argument(
+        "--make", type=Path, metavar="DIR", help="make the second practice set there, and no more"
+    )
+    parser.add_argument("--seed", type=int, default=1, help="of the set that is made")
+    args = parser.parse_args()
+    if args.make:
+        from validation.practice.__main__ import make_set
+
+        make_set(args.make, args.seed)
+        return
+    answers = {
+        t.name: json.loads((t / "answer.json").read_text()) for t in sorted(args.trials.glob("T*"))
+    }
+    if not answers:
+        raise SystemExit(f"{args.trials}: no trials there")
+    if args.answers:
+        try:
+            score(args.trials, args.answers, answers)
+        except BadEntry as error:
+            raise SystemExit(str(error)) from None
+        return
+    begin = time.time()
+    found = all_of(
+        args.jobs, {n: (args.trials / n, args.out / n, ()) for n in answers}, "diagnosing"
+    )
+    print(
+        f"{len(found)} trials in {time.time() - begin:.0f} s on {args.jobs} processes; answers in {args.out}"
+    )
+    print_figures(args.trials, args.out, answers, found)
+    print_wrong(answers, found)
+    print("\nreliability: entries by stated probability, in trials with one effect or none")
+    for span, count, mean, true in reliability(answers, found):
+        print(f"  {span}   {count:5d} entries, mean {mean:.3f}, true {true:.3f}")
+    if args.unknowns:
+        unknowns(args.trials, args.out, args.jobs, answers, found)
+
+
+if __name__ == "__main__":
+    main()
