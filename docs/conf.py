@@ -1,4 +1,4 @@
-"""The site: `python -m sphinx -W --keep-going -n docs docs/_build`."""
+"""Configuration of the site: `python -m sphinx -W --keep-going -n docs docs/_build`."""
 
 import sys
 from pathlib import Path
@@ -7,14 +7,20 @@ sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 
 project = "boatsim"
 author = "the authors of boatsim"
-extensions = ["myst_parser", "reference", "tutorial"]
+extensions = ["myst_parser", "reference", "tutorial", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 exclude_patterns = ["_build"]
 nitpicky = True
-highlight_language = "text"  # of blocks without a language: what commands print
+# Types of libraries in signatures have no pages here.
+nitpick_ignore_regex = [("py:.*", ".*")]
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+highlight_language = "text"  # for blocks without a language, which show printed output
 html_theme = "furo"
 html_title = "boatsim"
-html_static_path, html_css_files = ["_static"], ["site.css"]
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
 html_copy_source = False
 html_show_copyright = False
-pygments_style, pygments_dark_style = "friendly", "monokai"
+pygments_style = "friendly"
+pygments_dark_style = "monokai"
 myst_heading_anchors = 3
