@@ -1,4 +1,4 @@
-"""What docs/_ext knows of the pages, for the tests: it lies beside the pages because Sphinx loads it from there."""
+"""Access of the tests to the Sphinx extensions in docs/_ext, which are not a package."""
 
 import sys
 from pathlib import Path
@@ -6,10 +6,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "docs" / "_ext"))
 
 import reference as reference  # noqa: E402
-from shown import MARK as MARK  # noqa: E402
-from shown import ROOT as ROOT  # noqa: E402
-from shown import blocks as blocks  # noqa: E402
-from shown import difference as difference  # noqa: E402
-from shown import numbers as numbers  # noqa: E402
-from shown import same as same  # noqa: E402
-from shown import wrong as wrong  # noqa: E402
+from page_commands import MARK as MARK  # noqa: E402
+from page_commands import ROOT as ROOT  # noqa: E402
+from page_commands import blocks as blocks  # noqa: E402
+from page_commands import failures as failures  # noqa: E402
+from page_commands import figures as figures  # noqa: E402
+from page_commands import figures_agree as figures_agree  # noqa: E402
+from page_commands import first_difference as first_difference  # noqa: E402

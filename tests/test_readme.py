@@ -22,7 +22,7 @@ import pytest
 from typer.testing import CliRunner
 
 from boatsim.cli import app
-from tests.pages import MARK, ROOT, blocks, difference, numbers, same, wrong
+from tests.pages import MARK, ROOT, blocks, failures, figures, figures_agree, first_difference
 from validation import trials
 from validation.practice import __main__ as practice
 from validation.real import common
@@ -41,7 +41,7 @@ TUTORIALS = sorted(name for name, page in PAGES.items() if MARK in page)
 def compare(row: str, shown: Sequence[str], printed: Sequence[str]) -> None:
     """Fails with the row and the figures in it that differ."""
     assert len(shown) == len(printed), f"{row}: the page has {shown}, printed is {printed}"
-    wrong = [f"{a} is {b}" for a, b in zip(shown, printed, strict=True) if not same(a, b)]
+    wrong = [f"{a} is {b}" for a, b in zip(shown, printed, strict=True) if not figures_agree(a, b)]
     assert not wrong, f"{row}: {'; '.join(wrong)}"
 
 
@@ -80,7 +80,7 @@ def test_a_command_prints_what_is_shown_below_it(
         done = CliRunner().invoke(app, words)
         assert done.exit_code in (0, 1), done.output  # 1: a bar is missed
         printed += done.output.splitlines()
-    assert not difference(shown, printed)
+    assert not first_difference(shown, printed)
 
 
 def test_the_commands_of_the_front_page_are_looked_at() -> None:
@@ -94,7 +94,7 @@ def test_the_commands_of_the_front_page_are_looked_at() -> None:
 
 @pytest.mark.parametrize("name", TUTORIALS)
 def test_a_tutorial_prints_what_it_shows_in_an_empty_home(name: str, tmp_path: Path) -> None:
-    assert not list(wrong(PAGES[name], tmp_path))
+    assert not list(failures(PAGES[name], tmp_path))
 
 
 def test_tutorials_go_from_a_log_to_a_diagnosis() -> None:
@@ -208,7 +208,7 @@ def in_table(lines: Sequence[str], title: str, label: str) -> list[str]:
     """Figures of a printed table's row."""
     begin = next(i for i, line in enumerate(lines) if line.startswith(title))
     row = next(line for line in lines[begin:] if line.strip().startswith(label + "  "))
-    return numbers(row.replace(label, "", 1))
+    return figures(row.replace(label, "", 1))
 
 
 @pytest.mark.parametrize("row", REAL, ids=lambda row: f"{row.benchmark}-{row.judged_on}")
@@ -227,7 +227,7 @@ def test_a_row_about_real_recordings_is_what_its_benchmark_prints(
     )
     monkeypatch.chdir(tmp_path)
     found = in_table(printed_by(row.benchmark), row.title, row.label)
-    shown = [numbers(cell)[0] for cell in cells[2:5]]
+    shown = [figures(cell)[0] for cell in cells[2:5]]
     compare(f"{row.benchmark}, {cells[1]}", shown, [found[i] for i in row.columns])
 
 
@@ -311,5 +311,5 @@ def compare_trials(heading: str) -> None:
         printed = []
         for label in labels:
             line = next(line for line in lines if line.startswith(label))
-            printed += numbers(re.sub(r"\(.*?\)| of \d+|2 sd|^.*?  +", "", line).replace("/", " "))
-        compare(cells[0], numbers(cells[1]), printed)
+            printed += figures(re.sub(r"\(.*?\)| of \d+|2 sd|^.*?  +", "", line).replace("/", " "))
+        compare(cells[0], figures(cells[1]), printed)

@@ -1,10 +1,10 @@
-"""Sphinx extension: pages with the mark of `shown` are run when they are built; what is not as shown is a warning."""
+"""Sphinx extension that runs the tutorial pages while the site is built and warns where their output differs."""
 
 import tempfile
 from pathlib import Path
 from typing import Any
 
-import shown
+import page_commands
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
@@ -12,15 +12,21 @@ log = logging.getLogger(__name__)
 
 
 def run(app: Sphinx, name: str, source: list[str]) -> None:
-    """Run a page's commands in an empty home."""
-    if shown.MARK not in source[0]:
+    """Run the commands of a marked page in an empty home folder.
+
+    Args:
+        app: The running Sphinx application.
+        name: Name of the page.
+        source: List whose only element is the text of the page.
+    """
+    if page_commands.MARK not in source[0]:
         return
     with tempfile.TemporaryDirectory() as home:
-        for line, said in shown.wrong(source[0], Path(home)):
-            log.warning(said, location=(name, line))
+        for line, message in page_commands.failures(source[0], Path(home)):
+            log.warning(message, location=(name, line))
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Listen to pages as they are read."""
+    """Register the extension."""
     app.connect("source-read", run)
     return {"parallel_read_safe": True}

@@ -1,0 +1,155 @@
+"""Run the commands of a documentation page and compare their output with what the page shows.
+
+A shown line agrees with a printed one if the words are equal and the figures agree to one unit of the last digit shown. A page
+may omit lines of the output anywhere; "..." is good style but not required.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+# Marks a page whose commands are run one after the other in an empty home folder.
+MARK = "<!-- run when built -->"
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?")
+# A block of commands; before it the exit code if it is not 0, after it the output.
+BLOCK = re.compile(
+    r"(?:<!-- exit (?P<code>\d+) -->\n\n?)?```sh\n(?P<commands>(?:(?!```).)*)\n```"
+    r"(?:\n\n```(?:text)?\n(?P<shown>(?:(?!```).)*)\n```)?",
+    re.DOTALL,
+)
+TIMEOUT = 600  # [s] for one block
+
+
+@dataclass(frozen=True)
+class Block:
+    """A block of commands on a page.
+
+    Attributes:
+        line: Line of the page where the commands begin, from 1.
+        commands: Text of the commands.
+        code: Expected exit code.
+        shown: Lines of the output that the page shows.
+    """
+
+    line: int
+    commands: str
+    code: int
+    shown: tuple[str, ...]
+
+
+def blocks(page: str) -> Iterator[Block]:
+    """Yield every block of commands of a page."""
+    for match in BLOCK.finditer(page):
+        line = page.count("\n", 0, match.start("commands")) + 1
+        shown = tuple((match["shown"] or "").splitlines())
+        yield Block(line, match["commands"], int(match["code"] or 0), shown)
+
+
+def figures(text: str) -> list[str]:
+    """Return the numbers in a text as they are printed."""
+    return NUMBER.findall(text)
+
+
+def words_of(line: str) -> str:
+    """Return a line with its numbers replaced and its white space collapsed."""
+    return " ".join(NUMBER.sub("#", line).split())
+
+
+def figures_agree(shown: str, printed: str) -> bool:
+    """Check that two printed numbers agree to one unit of the last digit shown.
+
+    If the shown number has more digits than the printed one, half a unit of the printed one is allowed in addition.
+    """
+    unit_shown = 10.0 ** -len(shown.partition(".")[2])
+    unit_printed = 10.0 ** -len(printed.partition(".")[2])
+    allowed = 1.01 * unit_shown
+    if unit_printed > unit_shown:
+        allowed += 0.5 * unit_printed
+    return abs(float(shown) - float(printed)) <= allowed
+
+
+def first_difference(shown: Sequence[str], printed: Sequence[str]) -> str:
+    """Compare shown lines with printed ones, which must occur in the same order.
+
+    Args:
+        shown: Lines of the page.
+        printed: Lines of the output.
+
+    Returns:
+        A description of the first shown line that was not printed, or an empty string.
+    """
+    position = 0
+    for line in shown:
+        if not re.search(r"\w", line):
+            continue
+        index = _index_of(line, printed, position)
+        if index is None:
+            return "\n".join((f"not printed: {line}", "printed:", *printed[position:]))
+        differences = []
+        for expected, actual in zip(figures(line), figures(printed[index]), strict=True):
+            if not figures_agree(expected, actual):
+                differences.append(f"{expected} is {actual}")
+        if differences:
+            return f"{line.strip()}: {'; '.join(differences)}"
+        position = index + 1
+    return ""
+
+
+def _index_of(line: str, printed: Sequence[str], start: int) -> int | None:
+    """Return the index of the first printed line with the same words, from `start` on."""
+    for index in range(start, len(printed)):
+        if words_of(printed[index]) == words_of(line):
+            return index
+    return None
+
+
+def failures(page: str, home: Path) -> Iterator[tuple[int, str]]:
+    """Run all commands of a page and yield what differs from the page.
+
+    Args:
+        page: Text of the page.
+        home: Empty folder used as the home folder; `~/boatsim` in it is a link to the repository.
+
+    Yields:
+        Line number and description of each difference; the run stops after a wrong exit code.
+    """
+    (home / "boatsim").symlink_to(ROOT)
+    working_folder = str(home)
+    folder_file = home / ".working_folder"
+    for block in blocks(page):
+        script = f'cd "{working_folder}"\n{block.commands}\npwd > {folder_file}\n'
+        result = subprocess.run(
+            ["bash", "-euo", "pipefail", "-c", script],
+            env=_environment(home),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=TIMEOUT,
+        )
+        if result.returncode != block.code:
+            message = f"exit code {result.returncode} instead of {block.code}:\n{result.stdout}"
+            yield block.line, message
+            return
+        if message := first_difference(block.shown, result.stdout.splitlines()):
+            yield block.line, message
+        working_folder = folder_file.read_text().strip()
+
+
+def _environment(home: Path) -> dict[str, str]:
+    """Return the environment of a new user who shares the builder's cache of compiled programs."""
+    caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    compiled = os.environ.get("BOATSIM_CACHE", str(caches / "boatsim"))
+    changes = {
+        "HOME": str(home),
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "BOATSIM_CACHE": compiled,
+        "COLUMNS": "120",
+        "TERM": "dumb",
+    }
+    return os.environ | changes
