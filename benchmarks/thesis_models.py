@@ -81,7 +81,7 @@ def _crossing(x: Array, level: float) -> float:
 
 def neutral_angle(load: str, spacing: str) -> float:
     """Inward angle [deg] at which thrust ahead on one side and astern on the other turn the boat neither way."""
-    port, starboard = vessel.load("joystick_boat", [load, spacing]).all_of("thruster")
+    port, starboard = vessel.load("joystick_boat", [load, spacing]).effects_of("thruster")
     assert isinstance(port, Force) and isinstance(starboard, Force)
     resistance = port.x + ARM[load]  # type: ignore[attr-defined]  # [m] centre of lateral resistance ahead of the CG
 

@@ -99,7 +99,9 @@ def test_more_of_the_channel_called_left_turns_the_blueboat_to_port(tmp_path: Pa
     assert boat.columns["thrust_starboard_N"] == "force_left_N"
     left, right = 30.0, 10.0
     thrusts = {"port": right, "starboard": left}
-    wrenches = [e.wrench(motion(), pushing(e, thrusts[e.name])) for e in boat.all_of("thruster")]
+    wrenches = [
+        e.wrench(motion(), pushing(e, thrusts[e.name])) for e in boat.effects_of("thruster")
+    ]
     X, Y, _, _, _, N = np.sum(wrenches, axis=0)
     assert N == pytest.approx(ARM * (right - left))
     assert X == pytest.approx(left + right) and Y == 0.0

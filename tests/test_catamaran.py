@@ -333,7 +333,7 @@ def test_gust_off_centre_is_what_a_lever_adds_to_the_vessels_own_gust() -> None:
     told = {"mean": 10.0, "amplitude": 5.0, "toward": 2.0}
     boat, m = vessel.load("catamaran", settings={"gust": told}), motion(t=1.0, psi=0.7)
     own: Any = boat.effect("gust")
-    off: Any = vessel.added(boat, GustOffCentre(arm=0.1)).effect("gust")
+    off: Any = boat.composed_with(GustOffCentre(arm=0.1)).effect("gust")
     Y = own.wrench(m).Y
     assert off.wrench(m) == pytest.approx(own.wrench(m)._replace(N=own.wrench(m).N + 0.1 * Y))
 
@@ -349,19 +349,19 @@ def test_speed_hold_keeps_the_speed_whatever_the_turn() -> None:
 
 def test_payload_and_deeper_draught_make_the_heavier_boat() -> None:
     boat = vessel.load("catamaran")
-    more = vessel.added(boat, Payload(mass=2.0))
+    more = boat.composed_with(Payload(mass=2.0))
     assert more.body.mass == 9.0
     assert more.body.yaw_inertia - boat.body.yaw_inertia == pytest.approx(
         2.0 * (0.55**2 + 1.0) / 12, rel=1e-4
     )
     own: Any = boat.effect("added_mass")
     error = AddedMassError(surge_factor=1.3, sway_factor=1.5, yaw_factor=0.8)
-    off: Any = vessel.added(boat, error).effect("added_mass")
+    off: Any = boat.composed_with(error).effect("added_mass")
     assert (off.surge, off.sway, off.yaw) == pytest.approx(
         (1.3 * own.surge, 1.5 * own.sway, 0.8 * own.yaw)
     )
     with pytest.raises(BadInput, match="body.mass = -1"):
-        vessel.added(boat, Payload(mass=-8.0))
+        boat.composed_with(Payload(mass=-8.0))
 
 
 def test_damping_exponent_makes_a_power_law_of_the_vessels_linear_damping() -> None:
@@ -369,7 +369,7 @@ def test_damping_exponent_makes_a_power_law_of_the_vessels_linear_damping() -> N
     release = DampingExponent(
         surge_exponent=1.5, sway_exponent=2.0, sway_equal=0.5, yaw_exponent=3.0
     )
-    power: Any = vessel.added(boat, release).effect("linear_damping")
+    power: Any = boat.composed_with(release).effect("linear_damping")
     assert power.wrench(m) == pytest.approx(
         Wrench(X=-14 * 0.5**1.5, Y=80 * 0.2**2 / 0.5, N=-5 * 0.4**3)
     )

@@ -9,7 +9,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.effects.current import Current
 from boatsim.physics.program import Program
 from boatsim.physics.signals import signals_of
-from boatsim.physics.vessel import Vessel, added
+from boatsim.physics.vessel import Vessel
 from boatsim.simulate.compiled_engine import Twin
 
 NORTH, EAST = 0.8, -0.6  # [m/s] of the current: 1 m/s
@@ -27,7 +27,7 @@ CASES = [
 def in_flow(name: str, loads: list[str]) -> Vessel:
     """A vessel in water that may move."""
     boat = vessel.load(name, loads)
-    return boat if boat.effect("current") else added(boat, Current())
+    return boat if boat.effect("current") else boat.composed_with(Current())
 
 
 def commands(boat: Vessel) -> Array:

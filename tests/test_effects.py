@@ -368,7 +368,7 @@ def test_a_suspect_whose_fitted_parameters_are_absent_is_not_there(name: str, se
     effect = on_a_vessel(absent(kind, {"walls_m": [-4.0, 4.0, -3.0, 3.0]}))
     if isinstance(effect, Release):
         boat = next(b for b in map(vessel.load, content.names("vessel")) if effect.changes(b))
-        assert vessel.added(boat, effect) == boat
+        assert boat.composed_with(effect) == boat
     moving = motion(current=(0.0, 0.0), **drawn_motion(seed))
     if isinstance(effect, Force):
         assert effect.wrench(moving, *arguments(kind, seed)) == pytest.approx(Wrench(), abs=1e-15)
@@ -483,8 +483,8 @@ def test_damping_error_multiplies_the_vessels_own_damping() -> None:
     boat = vessel.load("trial_boat")
     own, m = boat.effect("linear_damping"), motion(u=0.3, v=-0.2, r=0.5)
     assert isinstance(own, LinearDamping)
-    off = vessel.added(
-        boat, DampingError(surge_factor=1.4, sway_factor=0.7, yaw_factor=2.0)
+    off = boat.composed_with(
+        DampingError(surge_factor=1.4, sway_factor=0.7, yaw_factor=2.0)
     ).effect("linear_damping")
     assert isinstance(off, LinearDamping)
     assert off.wrench(m) == replace(
@@ -500,7 +500,7 @@ def test_righting_arm_rests_at_its_list() -> None:
 
 def test_righting_arm_stiffening_bends_the_vessels_own_curve() -> None:
     boat = vessel.load("kvlcc2_roll")
-    bent = vessel.added(boat, RightingArmStiffening(cubic=-2.0)).effect("righting_arm")
+    bent = boat.composed_with(RightingArmStiffening(cubic=-2.0)).effect("righting_arm")
     assert isinstance(bent, RightingArm)
     assert bent.wrench(motion(phi=0.3)).K == pytest.approx(-822.3 * (0.3 - 2.0 * 0.3**3))
 
@@ -563,7 +563,7 @@ def test_shallow_water_multiplies_sway_and_yaw(factor: float) -> None:
     boat, m = vessel.load("joystick_boat"), motion(u=0.3, v=-0.2, r=0.5)
     mass, drag = boat.effect("added_mass"), boat.effect("cross_flow_drag")
     assert isinstance(mass, AddedMass) and isinstance(drag, CrossFlowDrag)
-    shallow = vessel.added(boat, ShallowWater(factor=factor))
+    shallow = boat.composed_with(ShallowWater(factor=factor))
     deeper, more = shallow.effect("added_mass"), shallow.effect("cross_flow_drag")
     assert isinstance(deeper, AddedMass) and isinstance(more, CrossFlowDrag)
     assert deeper.matrix()[1:, 1:] == pytest.approx(factor * mass.matrix()[1:, 1:])
@@ -652,8 +652,8 @@ def test_imbalance_and_gain_error() -> None:
     assert [stepped(uneven, [2.0], 0.02, side)[0] for side in (-1.0, 1.0)] == pytest.approx(
         [2.2, 1.8]
     )
-    gained = vessel.added(vessel.load("trial_boat"), ThrustGainError(factor=1.3))
-    assert [e.gain for e in gained.all_of("thruster")] == [1.3, 1.3]  # type: ignore[attr-defined]
+    gained = vessel.load("trial_boat").composed_with(ThrustGainError(factor=1.3))
+    assert [e.gain for e in gained.effects_of("thruster")] == [1.3, 1.3]  # type: ignore[attr-defined]
 
 
 def test_steering_offset_of_each_side() -> None:

@@ -146,8 +146,8 @@ def test_added_mass_coriolis_is_kirchhoffs_force_of_the_water(fraction: float) -
     Tu, Tv = (
         ((e @ M @ nu) + (nu @ M @ e)) / 2 for e in np.eye(6)[:2]
     )  # derivatives of the energy nu' M nu / 2
-    boat = vessel.added(
-        replace(BOAT, effects=(replace(water, coriolis=0.0),)), AddedMassCoriolis(fraction=fraction)
+    boat = replace(BOAT, effects=(replace(water, coriolis=0.0),)).composed_with(
+        AddedMassCoriolis(fraction=fraction)
     )
     own: Any = boat.effects[0]
     wanted = Wrench(X=m.r * Tv, Y=-m.r * Tu, N=m.vr * Tu - m.ur * Tv)
@@ -166,8 +166,8 @@ def test_prop_walk_pushes_the_stern_to_port_astern_and_a_third_as_much_to_starbo
 
 @pytest.mark.parametrize("shift", [-0.1, 0.25])
 def test_shifted_lateral_centre_takes_only_the_power_of_the_cross_flow_there(shift: float) -> None:
-    boat = vessel.added(
-        replace(BOAT, effects=(LinearDamping(sway=10.0),)), LateralCentreShift(shift=shift)
+    boat = replace(BOAT, effects=(LinearDamping(sway=10.0),)).composed_with(
+        LateralCentreShift(shift=shift)
     )
     m = motion(v=0.3, r=-0.5)
     own: Any = boat.effects[0]

@@ -104,7 +104,7 @@ def test_leak_and_time_constant_astern_are_the_nomoto_model_with_another_gain_or
     own = ReversingJet(thrust=185.0, yaw=275.0)
     m, seen = motion(u=-0.5, r=0.1), {"angle": 0.2, "bucket": beta}
     boat = vessel.load("jet_ski", ["low_speed"])
-    leaking: Any = vessel.added(replace(boat, effects=(own,)), JetLeak(fraction=0.25)).effects[0]
+    leaking: Any = replace(boat, effects=(own,)).composed_with(JetLeak(fraction=0.25)).effects[0]
     share = cos(2 * beta) + 0.25
     assert leaking.wrench(m, **seen) == pytest.approx(
         Wrench(X=185.0 * share, N=275.0 * share * 0.2)

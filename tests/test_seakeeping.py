@@ -288,7 +288,7 @@ def test_a_hull_too_short_for_a_spheroid_is_refused() -> None:
 def test_a_stalled_rudder_gives_what_it_gave_at_the_angle_of_stall(delta: float) -> None:
     boat = vessel.load("eastward_ho")
     own, stalling = (
-        b.effect("rudder") for b in (boat, vessel.added(boat, RudderStall(angle=0.35)))
+        b.effect("rudder") for b in (boat, boat.composed_with(RudderStall(angle=0.35)))
     )
     assert isinstance(own, Rudder) and isinstance(stalling, Rudder)
     stalled = min(max(delta, -0.35), 0.35)

@@ -204,7 +204,7 @@ def test_rate_limit_takes_the_time_of_a_ramp_and_its_mean_is_exact() -> None:
 
 def test_metacentric_height_changes_the_period_by_the_inverse_root() -> None:
     own = RightingArm(stiffness=822.3, list=0.01)
-    boat = vessel.added(replace(SHIP, effects=(own,)), MetacentricHeightError(factor=0.64))
+    boat = replace(SHIP, effects=(own,)).composed_with(MetacentricHeightError(factor=0.64))
     inertia, m = 135.4, motion(phi=0.11)
     period = [2 * pi * sqrt(inertia * 0.1 / -arm.wrench(m).K) for arm in (own, boat.effects[0])]
     assert period[1] / period[0] == pytest.approx(1.25)

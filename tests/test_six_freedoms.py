@@ -159,7 +159,7 @@ def test_otter_has_the_published_mass_matrix_and_restoring_force() -> None:
     mass = engine.vessel.effect("added_mass")
     water = mass.matrix()  # type: ignore[union-attr]
     c = skew(np.array([body.centre[0], 0.0, body.centre[1]]))
-    inertia = np.diag([body.roll_inertia, body.pitched(), body.yaw_inertia])
+    inertia = np.diag([body.roll_inertia, body.effective_pitch_inertia(), body.yaw_inertia])
     rigid = np.block(
         [[body.mass * np.eye(3), -body.mass * c], [body.mass * c, inertia - body.mass * c @ c]]
     )

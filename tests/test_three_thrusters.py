@@ -133,8 +133,8 @@ def test_each_channel_drives_what_it_is_bound_to(place: Path) -> None:
     boat = vessel.load(str(place))
     assert boat.actuators == COMMANDS and boat.angles == ("pod_rad", "fore_rad", "aft_rad")
     assert [boat.side(n) for n in COMMANDS] == [0, 1, -1, -1, 0, 0]
-    assert [e.name for e in boat.all_of("thruster")] == list(THRUSTERS)
-    assert [e.name for e in boat.all_of("rudder")] == list(RUDDERS)
+    assert [e.name for e in boat.effects_of("thruster")] == list(THRUSTERS)
+    assert [e.name for e in boat.effects_of("rudder")] == list(RUDDERS)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -161,7 +161,7 @@ def test_a_fixed_thruster_does_not_turn_with_the_only_rudder(tmp_path: Path) -> 
     boat = vessel.load(str(boats.written(tmp_path, "workboat", text)))
     assert boat.angles == ("aft_rad",)
     screw = boat.effect("screw")
-    assert screw is not None and boat.bound(screw) == {"thrust": "screw_N"}
+    assert screw is not None and boat.bindings(screw) == {"thrust": "screw_N"}
 
 
 def test_engine_and_twin_sail_alike(place: Path) -> None:

@@ -39,7 +39,7 @@ def test_every_entry_that_is_tried_can_be_put_on_the_vessel_and_fitted(name: str
     for entry in library.entries:
         own = [p for p in type(entry).params().values() if p.fit and p.axis in ("", *boat.dof)]
         assert own and set(type(entry).needs) <= set(boat.dof)
-        vessel.check_bindings(vessel.added(boat, entry), name)
+        vessel.check_bindings(boat.composed_with(entry), name)
     there = {called(e.name) for e in library.entries}
     of_shelf = {n for n in content.names("effect") if fittable(content.load_class("effect", n))}
     assert there | set(library.idle) | set(library.left_out) == of_shelf and not there & set(
@@ -106,7 +106,7 @@ def test_an_entry_that_shows_as_another_does_is_tried_where_it_is_asked_for() ->
 
 
 def test_what_takes_the_place_of_a_rule_needs_a_reason(tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match="rate takes the place of a rule; say why in reasons.rate"):
+    with pytest.raises(BadInput, match="rate replaces a rule; give the reason in reasons.rate"):
         of(boats.PLANAR + "[diagnosis]\nrate = 3.0\n", tmp_path)
     boat = of(
         boats.PLANAR + '[diagnosis]\nrate = 3.0\nreasons = { rate = "a slow hull" }\n', tmp_path
@@ -208,13 +208,13 @@ def test_what_the_vessel_is_asked_for() -> None:
     assert boat.roles["thrust_port_N"] == "thrust" and "pwm_port" not in boat.roles
     assert boat.angles == ("steer_port_rad", "steer_starboard_rad")
     fed = boat.effect("pwm_thrust")
-    assert fed is not None and boat.feeder(fed, "thrust_starboard_N") == "pwm_starboard"
+    assert fed is not None and boat.feeding_command(fed, "thrust_starboard_N") == "pwm_starboard"
     assert [boat.side(n) for n in ("thrust_port_N", "pwm_starboard", "steer_starboard_rad")] == [
         -1,
         1,
         1,
     ]
-    assert boat.known_as("thruster") == ["port", "starboard"] and boat.known_as("port") == ["port"]
+    assert boat.names_of("thruster") == ["port", "starboard"] and boat.names_of("port") == ["port"]
     assert boat.effect("thruster") is None  # which of them?
 
 
@@ -304,9 +304,9 @@ BINDINGS = [
 MORE = [
     (
         'use = "thruster"\nname = "port"\non = { thrust = 1.0 }',
-        "effect port is there 2 times; give each a name of",
+        "effect port occurs 2 times; each needs a unique name",
     ),
-    ('use = "current"', "effect current is there 2 times; give each a name of its own"),
+    ('use = "current"', "effect current occurs 2 times; each needs a unique name"),
     (
         'use = "weak_reverse"\non = "thrust_prot_N"',
         "effect weak_reverse: channel 'thrust_prot_N' does not exist; did you mean 'thrust_port_N'",
@@ -398,4 +398,4 @@ def test_a_vessel_that_does_not_exist_is_named_with_the_nearest() -> None:
 
 
 def test_a_command_that_does_not_exist_is_named_with_the_nearest() -> None:
-    assert "did you mean 'pwm_port'" in vessel.load("joystick_boat").no_command("pmw_port")
+    assert "did you mean 'pwm_port'" in vessel.load("joystick_boat").unknown_command("pmw_port")

@@ -105,7 +105,7 @@ def slots(vessel: Vessel) -> tuple[Effect, ...]:
     found, taken = list[Effect](), {e.name for e in vessel.effects}
     for idea, (begins, most) in SLOTS.items():
         kind: type[Effect] = load_class("effect", idea)
-        if kind.rides and not vessel.all_of(kind.rides):
+        if kind.rides and not vessel.effects_of(kind.rides):
             continue
         free = (name for k in count(1) if (name := f"{begins}{k}") not in taken)
         found += [
@@ -170,7 +170,7 @@ def lacking(
         return f"nobody states {in_words(fact)}"
     if issubclass(kind, Measurement) and kind.late is not None and not vessel.actuators:
         return "no command to be late behind"
-    if kind.alone and (there := vessel.known_as(kind.idea())):
+    if kind.alone and (there := vessel.names_of(kind.idea())):
         return f"its own {there[0]}, whose numbers other entries release"
     try:
         found = placed(kind, vessel, facts, table)
@@ -191,7 +191,7 @@ def placed(
 ) -> Effect:
     """An entry on a vessel, doing nothing yet; a second of its kind under another name. Raises BadInput."""
     given = {k: v for k, v in (table or {}).items() if k != "use"}
-    if not given.get("name") and vessel.known_as(kind.idea()) and not issubclass(kind, Release):
+    if not given.get("name") and vessel.names_of(kind.idea()) and not issubclass(kind, Release):
         given["name"] = FURTHER + kind.idea()
     effect = absent(kind, facts, given).completed(vessel)
     check_bindings(replace(vessel, effects=(*vessel.effects, effect)), vessel.name)

@@ -39,6 +39,6 @@ def bound(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
         (type(owner).roles[role], n)
         for owner in owners
         if owner
-        for role, n in vessel.bound(owner).items()
+        for role, n in vessel.bindings(owner).items()
     )
     return tuple(n for role, n in signals if isinstance(n, str) and role.unit in units)

@@ -492,7 +492,7 @@ def _unfed(recording: Recording, vessel: Vessel) -> list[str]:
 
 def _feeds(vessel: Vessel, actuator: str, command: str) -> bool:
     """Whether a channel effect of the vessel turns this command into that actuator."""
-    return any(vessel.feeder(e, actuator) == command for e in vessel.effects)
+    return any(vessel.feeding_command(e, actuator) == command for e in vessel.effects)
 
 
 def noise_of(vessel: Vessel, recordings: Sequence[Recording]) -> dict[str, float]:

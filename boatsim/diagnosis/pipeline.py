@@ -101,7 +101,7 @@ def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
             f"{path}: no vessel given; name one with --vessel or in a recording.toml beside it"
         )
     try:
-        found = vessels.load(name, load or notes.load, notes.settings, beside=beside)
+        found = vessels.load(name, load or notes.load, notes.settings, base_folder=beside)
     except BadInput as error:
         by_notes = not vessel or notes.settings or (notes.load and not load)
         raise BadInput(

@@ -83,7 +83,11 @@ def levers(vessel: Vessel) -> list[Lever]:
     """What is commanded: each actuator, or the raw command that feeds it."""
     found: list[Lever] = []
     for actuator in vessel.actuators:
-        fed = [source for e in vessel.effects if (source := vessel.feeder(e, actuator)) is not None]
+        fed = [
+            source
+            for e in vessel.effects
+            if (source := vessel.feeding_command(e, actuator)) is not None
+        ]
         channel = fed[0] if fed else actuator
         turning = vessel.unit(actuator) == "rad" and "angle" in vessel.roles[actuator]
         sense = _sense(vessel, actuator) if turning else 1.0
@@ -96,7 +100,9 @@ def _sense(vessel: Vessel, actuator: str) -> float:
     if turns := vessel.commands[actuator].turns:
         return 1.0 if turns == "starboard" else -1.0
     places = [
-        float(getattr(e, "x", 1.0)) for e in vessel.effects if actuator in vessel.stated(e).values()
+        float(getattr(e, "x", 1.0))
+        for e in vessel.effects
+        if actuator in vessel.specified_bindings(e).values()
     ]
     return -1.0 if places and places[0] < 0.0 else 1.0
 

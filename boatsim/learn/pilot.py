@@ -49,6 +49,6 @@ def _sense(t: float, row: Sequence[float]) -> Sense:
 
 def _row(sent: Mapping[str, float], names: Sequence[str], play: Play) -> list[float]:
     if unknown := [name for name in sent if name not in names]:
-        raise BadInput(play.vessel.no_command(unknown[0]))
+        raise BadInput(play.vessel.unknown_command(unknown[0]))
     neutral = [c.neutral for c in play.vessel.commands.values()]
     return [sent.get(name, usual) for name, usual in zip(names, neutral, strict=True)]

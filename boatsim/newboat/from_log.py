@@ -191,7 +191,7 @@ def _written(problem: Problem, boat: Vessel, own: Fit, logs: str) -> str:
     by_rule = boat.diagnosis.coefficient_uncertainty
     sd = {str(kind): LEAST for kind in by_rule}
     for f, x, variance in zip(own.free, own.theta, np.diag(own.covariance), strict=True):
-        for effect in (e for e in boat.effects if f.relative and e.name in boat.known_as(f.effect)):
+        for effect in (e for e in boat.effects if f.relative and e.name in boat.names_of(f.effect)):
             table = document["effect"][boat.effects.index(effect)]
             # against the rule's number where less is left: what is next to nothing is not unsure
             spread, kind = (

@@ -21,7 +21,7 @@ def sent_row(vessel: Vessel, given: Mapping[str, float]) -> Array:
     """
     for name in given:
         if name not in vessel.commands:
-            raise BadInput(vessel.no_command(name))
+            raise BadInput(vessel.unknown_command(name))
     sent = [given.get(n, c.neutral) for n, c in vessel.commands.items()]
     return np.array([*sent, *(m.neutral for m in vessel.measured.values())], dtype=float)
 

@@ -66,7 +66,7 @@ class Composition:
         own = self._values(number)
         held = ("act", "at", f"np.int64({self.own(number)})") if type(effect).sees_held else ()
         if type(effect).rides:
-            carriers = [self.effects.index(e) for e in self.vessel.ridden(effect)]
+            carriers = [self.effects.index(e) for e in self.vessel.carriers(effect)]
             return [
                 Site(number, own, (self._carried(i, type(effect).rides), self._values(i), *held))
                 for i in carriers
@@ -79,7 +79,7 @@ class Composition:
 
     def source(self, number: int, actuator: str) -> str | None:
         """The command that feeds an actuator through a channel effect, if it takes one."""
-        return self.vessel.feeder(self.effects[number], actuator)
+        return self.vessel.feeding_command(self.effects[number], actuator)
 
     def side(self, actuator: str) -> float:
         """-1 port, +1 starboard, 0 middle of what an actuator drives."""
@@ -129,7 +129,7 @@ class Composition:
     def _signals(self, i: int) -> str:
         """`S3(act[at], act[at + 4], ...)`: the signals bound to an effect's roles."""
         effect, texts = self.effects[i], []
-        bound = self.vessel.bound(effect)
+        bound = self.vessel.bindings(effect)
         for role, about in type(effect).roles.items():
             texts.append(self._signal(bound.get(role, about.fixed)))
         for role, about in type(effect).roles.items():

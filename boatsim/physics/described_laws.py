@@ -81,11 +81,11 @@ class Described(Force, Recall):
 
     def rules(self, vessel: Boat) -> dict[str, float]:
         """What its words are to the program. Raises BadInput for factors that the vessel has not."""
-        first, second, third = terms.codes(self.name, self.of, vessel.seen)
+        first, second, third = terms.codes(self.name, self.of, vessel.described_signals)
         turning = any(terms.UNITS.get(name.removeprefix("sign_")) == "rad/s" for name in self.of)
         little = LITTLE * (GRAVITY / vessel.length if turning else GRAVITY * vessel.length) ** 0.5
         acts = terms.code_of(self.name, self.acts, terms.COURSES)
-        looks_at, looks = terms.looks(self.name, self.of, vessel.seen)
+        looks_at, looks = terms.looks(self.name, self.of, vessel.described_signals)
         if looks_at and not self.stated("memory"):
             raise BadInput(
                 f"{self.name}: memory is missing: the time constant [s] of of = {list(self.of)}"

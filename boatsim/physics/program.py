@@ -66,7 +66,14 @@ class Program:
         """(6,) mass [kg], mass centre x, z [m], inertia about it in roll, pitch and yaw [kg m^2]."""
         b = self.vessel.body
         return np.array(
-            [b.mass, b.centre[0], b.centre[1], b.roll_inertia, b.pitched(), b.yaw_inertia]
+            [
+                b.mass,
+                b.centre[0],
+                b.centre[1],
+                b.roll_inertia,
+                b.effective_pitch_inertia(),
+                b.yaw_inertia,
+            ]
         )
 
     @cached_property

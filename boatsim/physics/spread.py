@@ -10,6 +10,8 @@ from scipy.special import ndtri
 from boatsim.files import Table
 from boatsim.physics.signals import Array
 
+CORRELATION_DECIMALS = 9  # in a file; far below the uncertainty of an estimated correlation
+
 
 class FittedTable(Table):
     """One fitted quantity, and the numbers that differ with it."""
@@ -62,6 +64,11 @@ class Spread:
             np.array([f.sd for f in table.of]),
             vectors * np.sqrt(np.maximum(values, 0.0)),
         )
+
+    def table(self) -> dict[str, object]:
+        """Return the [spread] table of a vessel file."""
+        correlation = np.round(self.root @ self.root.T, CORRELATION_DECIMALS)
+        return {"correlation": correlation.tolist(), "of": [one.model_dump() for one in self.of]}
 
     def times(self, factor: float) -> "Spread":
         """As wide as that factor says."""

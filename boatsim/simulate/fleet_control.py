@@ -96,7 +96,7 @@ class ByFunction:
             orders = np.tile(sent_row(boat, {}), (len(batch), 1))
             for name, values in self.function(self._sense, goal).items():
                 if name not in boat.commands:
-                    raise BadInput(boat.no_command(name))
+                    raise BadInput(boat.unknown_command(name))
                 orders[:, boat.inputs.index(name)] = values
             self.aboard.send(orders, self.aboard.steps)
 

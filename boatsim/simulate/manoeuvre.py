@@ -108,7 +108,7 @@ def handled(vessel: Vessel) -> ManoeuvringTable:
     """The vessel's [manoeuvring] table, completed from its channels. Raises BadInput where nothing steers."""
     given, taken = vessel.manoeuvring, vessel.commands
     if wrong := [n for n in (*given.ahead, *given.astern, *given.steer) if n not in taken]:
-        raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.no_command(wrong[0])}")
+        raise BadInput(f"{vessel.name}: [manoeuvring] {vessel.unknown_command(wrong[0])}")
     thrusters = [
         n for n in vessel.actuators if vessel.roles[n] == "thrust" and n not in athwart(vessel)
     ]
@@ -134,7 +134,7 @@ def athwart(vessel: Vessel) -> dict[str, float]:
 
     Each with the share of it that pushes to starboard.
     """
-    bound = [vessel.bound(e) for e in vessel.effects if "angle" in type(e).roles]
+    bound = [vessel.bindings(e) for e in vessel.effects if "angle" in type(e).roles]
     held = [(b.get("thrust"), b.get("angle")) for b in bound]
     return {
         str(thrust): sin(angle)

@@ -405,7 +405,7 @@ class Runner:
         total = [0.0] * len(AXES)
         for effect in self._winds:
             law = type(effect).law.py_func  # type: ignore[attr-defined]  # one call needs no compiling
-            bound = self.scenario.vessel.stated(effect).items()
+            bound = self.scenario.vessel.specified_bindings(effect).items()
             read = {role: self._around[c] if isinstance(c, str) else c for role, c in bound}
             signals = (type(effect).signals(**read),) if type(effect).roles else ()
             w = law(motion(**s._asdict()), effect.values(), *signals)

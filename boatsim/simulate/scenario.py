@@ -213,9 +213,9 @@ def from_table(raw: Mapping[str, object], place: Place) -> Scenario:
     label, path = place.label, place.path
     file = checked(ScenarioFile, raw, label)
     try:
-        vessel = vessels.load(file.vessel, file.load, file.set, file.effect, path.parent).measuring(
-            file.measured
-        )
+        vessel = vessels.load(
+            file.vessel, file.load, file.set, file.effect, path.parent
+        ).with_measured(file.measured)
         controller = _made(Controller, file.controller, path.parent)
         sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
         aboard = _aboard(file.sensor, path.parent)
@@ -294,7 +294,7 @@ def _check_goals(file: ScenarioFile, vessel: Vessel, controller: Controller) -> 
         raise BadInput(f"[[goal]] from = {starts}; allowed are times in ascending order")
     if unknown := [c for c in type(controller).commands if c not in vessel.commands]:
         raise BadInput(
-            f"controller {file.controller['use']} sets {unknown[0]}; {vessel.no_command(unknown[0])}"
+            f"controller {file.controller['use']} sets {unknown[0]}; {vessel.unknown_command(unknown[0])}"
         )
 
 

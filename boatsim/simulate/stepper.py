@@ -103,7 +103,7 @@ class Stepper(ABC):
         sent = list(self._neutral)
         for name, value in commands.items():
             if name not in self._places:
-                raise BadInput(self.vessel.no_command(name))
+                raise BadInput(self.vessel.unknown_command(name))
             sent[self._places[name]] = float(value)
         if not isfinite(sum(sent)):
             taken(self.vessel, np.array(sent))  # says which

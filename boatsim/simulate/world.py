@@ -256,7 +256,7 @@ def set_inertia(hull: mujoco.MjsBody, vessel: Vessel) -> None:
     ahead, below = body.centre
     hull.ipos = (ahead, 0, origin_height(vessel) - below)
     hull.iquat = HALF_TURN
-    hull.inertia = (body.roll_inertia, body.pitched(), body.yaw_inertia)
+    hull.inertia = (body.roll_inertia, body.effective_pitch_inertia(), body.yaw_inertia)
 
 
 def origin_height(vessel: Vessel) -> float:

@@ -119,7 +119,7 @@ def _effect(said: Said, place: Place, rest: Sequence[str], key: str) -> tuple[Sa
     extra = [str(table.get("name", table.get("use"))) for table in tables(said.get("effect"))]
     if name in extra:
         return said, [("effect", extra.index(name), *rest[1:])]
-    own = from_table(said, place).vessel.known_as(name)
+    own = from_table(said, place).vessel.names_of(name)
     if own:
         return said, [("set", one, *rest[1:]) for one in own]
     if name in known("effect"):
@@ -211,7 +211,7 @@ def _loads(said: Said, place: Place, value: str) -> list[str]:
     stated = said.get("load", [])
     before = [str(one) for one in stated] if isinstance(stated, list) else []
     more = [one.strip() for one in value.split("+") if one.strip()]
-    return vessels.with_loads(str(said.get("vessel")), before, more, place.path.parent)
+    return vessels.merged_loads(str(said.get("vessel")), before, more, place.path.parent)
 
 
 def _controller(said: Said, value: str) -> Mapping[str, object]:

@@ -130,7 +130,7 @@ def _with_hull(solids: tuple[Solid, ...], vessel: "Vessel") -> tuple[Solid, ...]
 def _thrusters(vessel: "Vessel") -> Iterator[Thruster]:
     """One for each effect that takes a thrust, where it is mounted."""
     for effect in vessel.effects:
-        on = vessel.bound(effect) if "thrust" in type(effect).roles else {}
+        on = vessel.bindings(effect) if "thrust" in type(effect).roles else {}
         if isinstance(on.get("thrust"), str):
             x, y = (float(getattr(effect, n, 0.0)) for n in ("x", "y"))
             yield Thruster(effect.name, x, y, f"actual_{on['thrust']}", f"actual_{on.get('angle')}")

@@ -10,7 +10,7 @@ from boatsim.recordings.table import Recording
 
 def unwound(recording: Recording, vessel: Vessel) -> Recording:
     """The recording with measured directions that never jump by a turn, so that rows may be averaged."""
-    there = [n for n in vessel.bearings if n in recording.signals]
+    there = [n for n in vessel.reading_angles if n in recording.signals]
     return replace(
         recording, signals=recording.signals | {n: np.unwrap(recording[n]) for n in there}
     )

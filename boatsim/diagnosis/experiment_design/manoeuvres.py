@@ -120,7 +120,7 @@ def menu(
 
 def commanded(vessel: Vessel) -> tuple[str, ...]:
     """Commands a manoeuvre uses: a command that feeds an actuator (PWM) takes its place."""
-    fed = {a for e in vessel.effects for a in vessel.targets(e) if vessel.feeder(e, a)}
+    fed = {a for e in vessel.effects for a in vessel.targets(e) if vessel.feeding_command(e, a)}
     return tuple(n for n in vessel.commands if n not in fed)
 
 

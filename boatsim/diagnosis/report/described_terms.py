@@ -207,7 +207,7 @@ def unit_of(term: Described, vessel: Vessel) -> str:
         powers["N"] = 1
         powers["m"] = int(term.axis in TURNING)
     for name in term.of:
-        signal = looking(name, vessel.seen)[1] or name
+        signal = looking(name, vessel.described_signals)[1] or name
         unit = UNITS.get(name) or vessel.unit(signal.removeprefix("abs_"))
         above, _, below = unit.partition("/")
         for part, sign in ((above, -1), (below, 1)):

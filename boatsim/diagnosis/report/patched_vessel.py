@@ -13,7 +13,7 @@ from boatsim.diagnosis.report import spread_table
 from boatsim.files import replacing
 from boatsim.physics.base import Change, Channel, Effect, Release
 from boatsim.physics.content import address, find, vessel_address
-from boatsim.physics.vessel import Body, Vessel, added, effect_from, overlaid
+from boatsim.physics.vessel import Body, Vessel, effect_from_table, overlaid
 
 DIGITS = 10  # significant, so that the file gives the fitted motion back
 SAME = 1e-9  # numbers this close, relative, are one
@@ -51,7 +51,7 @@ def patched(
     settings: dict[str, dict[str, float]] = {name: {} for name in found.effects}
     for free, x in zip(found.free, found.theta, strict=True):
         if free.relative:
-            for one in vessel.known_as(free.effect):
+            for one in vessel.names_of(free.effect):
                 change = Change(free.name, one, free.name, "scales", 1.0)
                 _alter(document, vessel, change, float(x), f"recalibrated x {x:.4f}")
         else:
@@ -140,14 +140,14 @@ def _hold(document: tomlkit.TOMLDocument, problem: Problem, vessel: Vessel, foun
         raw = overlaid(raw, raw["loads"][name], name)
     boat = replace(vessel, body=Body(**raw["body"]), effects=())
     for table, given in zip(document["effect"], raw["effect"], strict=True):
-        effect = effect_from(given, vessel.name, vessel.path).completed(boat)
+        effect = effect_from_table(given, vessel.name, vessel.path).completed(boat)
         fitted = {n: float(values[problem.place(effect.name, n)]) for n in sorted(effect.filled)}
         off = {
             n: _rounded(x) for n, x in fitted.items() if abs(x - getattr(effect, n)) > SAME * abs(x)
         }
         for name, x in off.items():
             _state(table, name, x, "as fitted")
-        boat = added(boat, effect.having(off))
+        boat = boat.composed_with(effect.having(off))
 
 
 def _state(table: Table | InlineTable, name: str, value: float, why: str) -> None:

@@ -71,6 +71,6 @@ def _values(way: Way, term: Described, over: str, size: Array) -> Array:
         return size
     if over in RIPPLES:
         return np.asarray(way.motion.x if over.endswith("north") else way.motion.y)
-    held = way.problem.program.vessel.seen
+    held = way.problem.program.vessel.described_signals
     (number, *_), late = codes(term.name, (over,), held), looks(term.name, (over,), held)
     return way.factor(number, (1.0, 0.0, 1.0, 0.0), (*late, term.memory) if late[0] else NEVER)

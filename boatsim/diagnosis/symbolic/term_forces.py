@@ -128,11 +128,11 @@ class Way:
         little = term.completed(vessel).little if set(term.of) & set(terms.SENSES) else 1.0
         detail = (term.wavelength, term.crest, little, term.beyond)
         late = (
-            (*terms.looks(term.name, term.of, vessel.seen), term.memory)
+            (*terms.looks(term.name, term.of, vessel.described_signals), term.memory)
             if term.looks_back
             else NEVER
         )
-        for number in terms.codes(term.name, term.of, vessel.seen)[: len(term.of)]:
+        for number in terms.codes(term.name, term.of, vessel.described_signals)[: len(term.of)]:
             size = size * self.factor(number, detail, late)
         return size
 

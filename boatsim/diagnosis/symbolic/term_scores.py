@@ -104,4 +104,4 @@ def varying(ways: Sequence[Way]) -> tuple[dict[str, Array], list[str]]:
     held = np.concatenate([w.held for w in ways], axis=1)
     moves = {n: x for n, x in speeds.items() if np.ptp(x) > 0.0}
     given = (*vessel.actuators, *vessel.sums)
-    return moves, [a for a in given if np.ptp(held[vessel.seen.index(a)]) > 0.0]
+    return moves, [a for a in given if np.ptp(held[vessel.described_signals.index(a)]) > 0.0]

@@ -261,13 +261,13 @@ class Boat(Protocol):
         """The rigid body."""
 
     @property
-    def seen(self) -> Sequence[str]:
+    def described_signals(self) -> Sequence[str]:
         """What described laws see of its actuators: themselves, cosine and sine of angles, the sums of several."""
 
     def effect(self, name: str) -> Effect | None:
         """Its own effect of that name, or the only one of that idea."""
 
-    def known_as(self, name: str) -> list[str]:
+    def names_of(self, name: str) -> list[str]:
         """Names of its own effects that a word means."""
 
 

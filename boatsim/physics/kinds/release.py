@@ -25,7 +25,7 @@ class Change(NamedTuple):
 def _there(places: str, vessel: Boat) -> list[str]:
     """Of places that say the same of different hulls, `a.key|b.key`, the first that the vessel has."""
     owners = ((place, place.partition(".")[0]) for place in places.split("|"))
-    return [place for place, owner in owners if owner == "body" or vessel.known_as(owner)][:1]
+    return [place for place, owner in owners if owner == "body" or vessel.names_of(owner)][:1]
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Release(Effect):
         for name, about in type(self).params().items():
             for place in (p for places in about.releases for p in _there(places, vessel)):
                 owner, _, key = place.partition(".")
-                instances = ["body"] if owner == "body" else vessel.known_as(owner)
+                instances = ["body"] if owner == "body" else vessel.names_of(owner)
                 found += [
                     Change(name, one, key, about.how, weights.get(place, 1.0)) for one in instances
                 ]

@@ -1,0 +1,32 @@
+"""Vessels: the schema of a vessel.toml, the `Vessel` dataclass, its channel bindings, and loading from files."""
+
+from boatsim.physics.vessel.bindings import check_bindings
+from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
+from boatsim.physics.vessel.loading import load, merged_loads, with_effect_tables
+from boatsim.physics.vessel.loads import overlaid
+from boatsim.physics.vessel.model import Vessel
+from boatsim.physics.vessel.schema import (
+    Body,
+    CommandChannel,
+    DiagnosisTable,
+    ManoeuvringTable,
+    MeasuredChannel,
+    VesselFile,
+)
+
+__all__ = [
+    "Body",
+    "CommandChannel",
+    "DiagnosisTable",
+    "ManoeuvringTable",
+    "MeasuredChannel",
+    "Vessel",
+    "VesselFile",
+    "check_bindings",
+    "effect_from_table",
+    "effect_name",
+    "load",
+    "merged_loads",
+    "overlaid",
+    "with_effect_tables",
+]

@@ -1,0 +1,268 @@
+"""Channel bindings of a vessel: which commands and measured signals each effect acts on."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from boatsim.errors import BadInput, unknown_name
+from boatsim.physics.kinds.channel import Channel
+from boatsim.physics.kinds.effect import Effect
+from boatsim.physics.vessel.schema import Body, CommandChannel, MeasuredChannel
+
+ANGLE_PARTS = ("cos", "sin")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bindings:
+    """Dimensions, channels and effects of a vessel, with the channels that each effect is bound to.
+
+    An *actuator* is a command channel that a law uses; other commands only feed actuators (PWM feeds thrust). A
+    *reading* is a measured channel that a law uses.
+
+    Attributes:
+        name: Name of the vessel.
+        length: Length [m].
+        beam: Beam [m].
+        draught: Draught [m].
+        body: Rigid body.
+        commands: Command channels by name.
+        measured: Measured channels of the environment by name.
+        effects: Effects in the order in which they are composed.
+    """
+
+    name: str
+    length: float
+    beam: float
+    draught: float
+    body: Body
+    commands: Mapping[str, CommandChannel] = field(default_factory=dict)
+    measured: Mapping[str, MeasuredChannel] = field(default_factory=dict)
+    effects: tuple[Effect, ...] = ()
+
+    # Channels
+    # -----------------------------------------------------------------------------------------------
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of all inputs of the compiled program: the commands, then the measured channels."""
+        return (*self.commands, *self.measured)
+
+    @property
+    def actuators(self) -> tuple[str, ...]:
+        """Names of the commands that are bound to a role of an effect."""
+        return tuple(name for name in self.commands if name in self.roles)
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Names of the measured channels that are bound to a role of an effect."""
+        return tuple(name for name in self.measured if name in self.roles)
+
+    @cached_property
+    def roles(self) -> Mapping[str, str]:
+        """Channel -> role ("thrust", "angle", ...) in which the first effect uses it."""
+        roles: dict[str, str] = {}
+        for effect in self.effects:
+            for role, channel in self.specified_bindings(effect).items():
+                if isinstance(channel, str):
+                    roles.setdefault(channel, role)
+        return roles
+
+    @cached_property
+    def angles(self) -> tuple[str, ...]:
+        """Names of the actuators that are angles. Laws have their cosine and sine too."""
+        return tuple(name for name in self.actuators if self.unit(name) == "rad")
+
+    @cached_property
+    def reading_angles(self) -> tuple[str, ...]:
+        """Names of the readings that are angles. Laws have their cosine and sine too."""
+        return tuple(name for name in self.readings if self.unit(name) == "rad")
+
+    @cached_property
+    def held(self) -> tuple[str, ...]:
+        """Names of the signals of the laws: actuators, cosines and sines of angles, then the same of readings."""
+        return (
+            *self.actuators,
+            *_parts_of(self.angles),
+            *self.readings,
+            *_parts_of(self.reading_angles),
+        )
+
+    @cached_property
+    def sums(self) -> Mapping[str, tuple[str, ...]]:
+        """Role -> names of the actuators that share it, for roles of several: their sum is a signal, the `thrust`."""
+        sums: dict[str, tuple[str, ...]] = {}
+        for role in self.roles.values():
+            names = tuple(name for name in self.actuators if self.roles[name] == role)
+            if len(names) > 1 and role not in self.inputs:
+                sums[role] = names
+        return sums
+
+    @property
+    def described_signals(self) -> tuple[str, ...]:
+        """Names of the signals of described laws: those of `held`, then the sums."""
+        return (*self.held, *self.sums)
+
+    def unit(self, channel: str) -> str:
+        """Return the unit of an actuator, a reading or a sum; "" where no effect uses it."""
+        first, *_ = self.sums.get(channel, (channel,))
+        for effect in self.effects:
+            for role, bound in self.specified_bindings(effect).items():
+                if bound == first:
+                    return type(effect).roles[role].unit
+        return ""
+
+    def side(self, channel: str) -> int:
+        """Return the side of the hull on which the device of a channel is mounted.
+
+        Args:
+            channel: Name of a command; one that feeds an actuator has the side of that actuator.
+
+        Returns:
+            -1 for port, +1 for starboard, 0 for the middle.
+        """
+        for effect in self.effects:
+            if channel in self.specified_bindings(effect).values():
+                y = float(getattr(effect, "y", 0.0))
+                return int(y > 0.0) - int(y < 0.0)
+        for effect in self.effects:
+            for actuator in self.targets(effect):
+                if self.feeding_command(effect, actuator) == channel:
+                    return self.side(actuator)
+        return 0
+
+    def unknown_command(self, name: str) -> str:
+        """Return the message for a command that the vessel does not have."""
+        return unknown_name(f"{self.name}: command", name, self.commands)
+
+    # Effects
+    # -----------------------------------------------------------------------------------------------
+
+    def effect(self, name: str) -> Effect | None:
+        """Return the effect of that name, or the only effect of that type; None where there is none or several.
+
+        Args:
+            name: Name of an effect ("port"), or of a type of effects as in `use` ("thruster").
+        """
+        for effect in self.effects:
+            if effect.name == name:
+                return effect
+        same_type = [effect for effect in self.effects if type(effect).idea() == name]
+        return same_type[0] if len(same_type) == 1 else None
+
+    def names_of(self, name: str) -> list[str]:
+        """Return the names of all effects that have a name or a type."""
+        return [e.name for e in self.effects if name in (e.name, type(e).idea())]
+
+    def effects_of(self, idea: str) -> list[Effect]:
+        """Return all effects of a type, and those that declare a conversion to it, in the order of the file."""
+        return [e for e in self.effects if type(e).idea() == idea or hasattr(type(e), f"as_{idea}")]
+
+    @staticmethod
+    def specified_bindings(effect: Effect) -> Mapping[str, str | float]:
+        """Return what an effect's own table binds its roles to: a channel's name, or a constant."""
+        return effect.on if isinstance(effect.on, Mapping) else {}
+
+    def bindings(self, effect: Effect) -> dict[str, str | float]:
+        """Return what each role of an effect is bound to: a channel's name, or a constant.
+
+        An effect without bindings of its own is bound to the vessel's only channel in each role. An optional role
+        stays unbound then: a fixed thruster does not turn with the only rudder.
+        """
+        bound = dict(self.specified_bindings(effect))
+        if bound:
+            return bound
+        for role, about in type(effect).roles.items():
+            candidates = [name for name in self.actuators if self.roles[name] == role]
+            if about.fixed is None and len(candidates) == 1:
+                bound[role] = candidates[0]
+        return bound
+
+    def carriers(self, effect: Effect) -> list[Effect]:
+        """Return the effects at which an effect acts, such as the thrusters of a prop walk: those it names, else all."""
+        carriers = self.effects_of(type(effect).rides)
+        return [e for e in carriers if not effect.on or e.name in effect.on]
+
+    def targets(self, effect: Effect) -> tuple[str, ...]:
+        """Return the actuators that a channel effect acts on: those it names, else all in its role."""
+        if not isinstance(effect, Channel):
+            return ()
+        if effect.on:
+            return tuple(name for name in self.actuators if name in effect.on)
+        roles = type(effect).acts_on.split("|")
+        if roles == [""]:
+            return self.actuators
+        return tuple(name for name in self.actuators if self.roles[name] in roles)
+
+    def feeding_command(self, effect: Effect, actuator: str) -> str | None:
+        """Return the command in `fed_by` that feeds an actuator through a channel effect, None where there is none."""
+        if not isinstance(effect, Channel) or actuator not in effect.on:
+            return None
+        return dict(zip(effect.on, effect.fed_by, strict=False)).get(actuator)
+
+
+def _parts_of(angles: tuple[str, ...]) -> list[str]:
+    return [f"{part}_{angle}" for angle in angles for part in ANGLE_PARTS]
+
+
+def check_bindings(vessel: Bindings, label: str) -> None:
+    """Check that every effect has a unique name and that all channels and effects it names exist.
+
+    Args:
+        vessel: The vessel.
+        label: Name of the file in messages.
+
+    Raises:
+        BadInput: One line with the effect, the key and the nearest valid name.
+    """
+    names = [effect.name for effect in vessel.effects]
+    for effect in vessel.effects:
+        what = f"{label}: effect {effect.name}"
+        if names.count(effect.name) > 1:
+            raise BadInput(
+                f"{what} occurs {names.count(effect.name)} times; each needs a unique name"
+            )
+        _check_roles(vessel, effect, what)
+        if type(effect).sees_held and not effect.still_as_on(vessel):
+            raise BadInput(
+                f"{what} stands before an effect by which a channel acts; move it behind all of these"
+            )
+        if isinstance(effect, Channel):
+            _check_channel(vessel, effect, what)
+        elif type(effect).rides:
+            _check_carriers(vessel, effect, what)
+
+
+def _check_roles(vessel: Bindings, effect: Effect, what: str) -> None:
+    roles = type(effect).roles
+    for role, channel in vessel.specified_bindings(effect).items():
+        if role not in roles:
+            raise BadInput(unknown_name(f"{what}: on", role, roles))
+        if isinstance(channel, str) and channel not in vessel.inputs:
+            raise BadInput(unknown_name(f"{what}: on.{role} channel", channel, vessel.inputs))
+    bound = vessel.bindings(effect)
+    for role, about in roles.items():
+        if role not in bound and about.fixed is None:
+            channels = ", ".join(vessel.inputs)
+            raise BadInput(
+                f"{what}: on.{role} is missing: the channel of {about.words}; there are: {channels}"
+            )
+
+
+def _check_channel(vessel: Bindings, effect: Channel, what: str) -> None:
+    for name in (*effect.on, *effect.fed_by):
+        if name not in vessel.commands:
+            raise BadInput(unknown_name(f"{what}: channel", name, vessel.commands))
+    if effect.fed_by and len(effect.fed_by) != len(effect.on):
+        raise BadInput(
+            f"{what}: fed_by names {len(effect.fed_by)} channels, on {len(effect.on)}; each needs one"
+        )
+
+
+def _check_carriers(vessel: Bindings, effect: Effect, what: str) -> None:
+    idea = type(effect).rides
+    carriers = [carrier.name for carrier in vessel.effects_of(idea)]
+    for name in effect.on:
+        if name not in carriers:
+            raise BadInput(unknown_name(f"{what}: {idea}", name, carriers))
+    if not carriers:
+        raise BadInput(f"{what} needs a vessel with {idea}")

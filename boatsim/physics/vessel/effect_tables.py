@@ -1,0 +1,65 @@
+"""Effects of [[effect]] tables, and the tables of effects."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+
+from boatsim.errors import BadInput
+from boatsim.physics.content import address, load_class
+from boatsim.physics.kinds.effect import Effect
+
+
+def effect_from_table(table: Mapping[str, object], label: str, folder: Path) -> Effect:
+    """Return the effect of an [[effect]] table.
+
+    Args:
+        table: The table; `use` names the type of the effect.
+        label: Name of the file in messages.
+        folder: Folder from which a relative path in `use` starts.
+
+    Raises:
+        BadInput: For an unknown type or parameter, or a value out of bounds.
+    """
+    use = table.get("use")
+    if not isinstance(use, str):
+        raise BadInput(f"{label}: an [[effect]] needs use = its name")
+    settings = dict(table)
+    del settings["use"]
+    try:
+        kind: type[Effect] = load_class("effect", use, folder)
+        return kind.from_settings(settings)
+    except BadInput as error:
+        raise BadInput(f"{label}: {error}") from None
+
+
+def effect_name(table: Mapping[str, object]) -> str:
+    """Return the name of the effect that an [[effect]] table describes."""
+    return str(table.get("name", table.get("use")))
+
+
+def table_of(effect: Effect) -> dict[str, object]:
+    """Return the [[effect]] table of an effect: its type, and all specified values that differ from the defaults.
+
+    Parameters in `effect.filled` are left out: a rule computes them when the vessel is loaded.
+    """
+    table: dict[str, object] = {"use": address(type(effect))}
+    if effect.name != type(effect).idea():
+        table["name"] = effect.name
+    for field in fields(effect):
+        if "ours" in field.metadata or field.name == "name" or field.name in effect.filled:
+            continue
+        value = getattr(effect, field.name)
+        is_default = value == field.default
+        if "param" in field.metadata:
+            is_default = is_default or not effect.stated(field.name)
+        if not is_default:
+            table[field.name] = _toml_value(value)
+    return table
+
+
+def _toml_value(value: object) -> object:
+    if isinstance(value, Mapping):
+        return dict(value)
+    if isinstance(value, tuple):
+        return list(value)
+    return value

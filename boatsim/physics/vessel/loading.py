@@ -1,0 +1,129 @@
+"""Loading of vessel files: content by name, load conditions, settings and further effects."""
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from boatsim.errors import BadInput
+from boatsim.files import checked, read_toml
+from boatsim.physics.content import find
+from boatsim.physics.vessel import loads as load_conditions
+from boatsim.physics.vessel.effect_tables import effect_from_table, effect_name
+from boatsim.physics.vessel.model import FILE_NAME, Vessel
+from boatsim.physics.vessel.schema import VesselFile
+
+
+def load(
+    name: str,
+    loads: Sequence[str] = (),
+    settings: Mapping[str, Mapping[str, object]] | None = None,
+    extra: Sequence[Mapping[str, object]] = (),
+    base_folder: Path | None = None,
+) -> Vessel:
+    """Return a vessel by name or path.
+
+    Args:
+        name: Name of a shipped vessel, or path of a vessel.toml or of its folder.
+        loads: Load conditions in force.
+        settings: Values that replace those of the file: name of an effect or "body" -> key -> value.
+        extra: Tables of further effects, as [[effect]] of a scenario.
+        base_folder: Folder of the file that names the vessel; relative paths start there.
+
+    Raises:
+        BadInput: For names, keys and values that do not exist or are out of bounds: one line with file, key, value
+            found, what is allowed and the nearest valid name.
+    """
+    path = find("vessel", name, base_folder)
+    vessel_name = path.parent.name if path.name == FILE_NAME else path.stem
+    label = _label(path)
+    raw: Mapping[str, object] = read_toml(path)
+    conditions = checked(VesselFile, raw, label).loads
+    load_conditions.check_known(loads, conditions, label)
+    load_conditions.check_compatible(loads, conditions, label)
+    for one in dict.fromkeys(loads):
+        raw = load_conditions.overlaid(raw, conditions[one], label)
+    raw = load_conditions.overlaid(raw, dict(settings or {}), label)
+    content = checked(VesselFile, raw, label)
+    content.check_channels(label)
+    _check_new_names(extra, content, vessel_name)
+    folder = _hull_folder(content.based_on, path, label)
+    vessel = Vessel.from_file(content, vessel_name, path, folder)
+    vessel = dataclasses.replace(vessel, load=tuple(loads))
+    vessel = with_effect_tables(vessel, content.effect, folder, label)
+    vessel = with_effect_tables(vessel, extra, base_folder or folder, label)
+    vessel.check(label)
+    return vessel
+
+
+def merged_loads(
+    name: str, loads: Sequence[str], more: Sequence[str], base_folder: Path | None = None
+) -> list[str]:
+    """Return load conditions with others added; those that exclude one of the added ones are removed.
+
+    Args:
+        name: Name or path of the vessel.
+        loads: Load conditions in force.
+        more: Load conditions to add.
+        base_folder: Folder of the file that names the vessel; relative paths start there.
+
+    Raises:
+        BadInput: For a load condition that does not exist.
+    """
+    path = find("vessel", name, base_folder)
+    label = _label(path)
+    conditions = checked(VesselFile, read_toml(path), label).loads
+    load_conditions.check_known(more, conditions, label)
+    merged: list[str] = []
+    for one in loads:
+        excluded = one not in conditions or any(
+            load_conditions.conflicts(conditions[one], conditions[new]) for new in more
+        )
+        if not excluded:
+            merged.append(one)
+    return list(dict.fromkeys((*merged, *more)))
+
+
+def with_effect_tables(
+    vessel: Vessel, tables: Sequence[Mapping[str, object]], folder: Path, label: str
+) -> Vessel:
+    """Return the vessel with the effects of [[effect]] tables added, each completed by those before it.
+
+    Args:
+        vessel: The vessel.
+        tables: The [[effect]] tables.
+        folder: Folder from which relative paths of effect files start.
+        label: Name of the file in messages.
+
+    Raises:
+        BadInput: For an unknown effect or parameter, or a value out of bounds.
+    """
+    for table in tables:
+        vessel = vessel.composed_with(effect_from_table(table, label, folder))
+    return vessel
+
+
+def _label(path: Path) -> str:
+    """Name of a vessel file in messages: folder and file."""
+    return f"{path.parent.name}/{path.name}"
+
+
+def _check_new_names(
+    extra: Sequence[Mapping[str, object]], content: VesselFile, vessel_name: str
+) -> None:
+    own = [effect_name(table) for table in content.effect]
+    for name in map(effect_name, extra):
+        if name in own:
+            raise BadInput(
+                f"{name} is one of {vessel_name}'s own effects; change its values in [set.{name}], "
+                "or give the second one another name"
+            )
+
+
+def _hull_folder(based_on: str, path: Path, label: str) -> Path:
+    """Folder of the hull and of the vessel's own effect files."""
+    if not based_on:
+        return path.parent
+    try:
+        return find("vessel", based_on, path.parent).parent
+    except BadInput as error:
+        raise BadInput(f"{label}: based_on: {error}") from None

@@ -1,0 +1,94 @@
+"""Load conditions of a vessel file: tables of values that replace those of the file."""
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+
+from boatsim.errors import BadInput, unknown_name
+from boatsim.files import tables
+from boatsim.physics.vessel.effect_tables import effect_name
+
+INNER_TABLES = ("body", "geometry", "manoeuvring", "diagnosis")
+NUMBERS = ("length", "beam", "draught")
+
+Loads = Mapping[str, Mapping[str, object]]
+
+
+def check_known(names: Sequence[str], loads: Loads, label: str) -> None:
+    """Check that all load conditions exist. Raises BadInput."""
+    for name in names:
+        if name not in loads:
+            raise BadInput(unknown_name(f"{label}: load", name, loads))
+
+
+def check_compatible(names: Sequence[str], loads: Loads, label: str) -> None:
+    """Check that no two load conditions change one value, for the result would depend on their order.
+
+    Raises:
+        BadInput: With the two load conditions and the value.
+    """
+    for first, second in combinations(dict.fromkeys(names), 2):
+        for key, (one, other) in conflicts(loads[first], loads[second]).items():
+            raise BadInput(
+                f"{label}: loads {first} ({key} = {one}) and {second} ({key} = {other}) exclude each other"
+            )
+
+
+def conflicts(
+    first: Mapping[str, object], second: Mapping[str, object]
+) -> dict[str, tuple[object, object]]:
+    """Return the values that two load conditions set differently: key ("body.mass") -> both values."""
+    flat_first, flat_second = _flat(first), _flat(second)
+    shared = [key for key in flat_first if key in flat_second]
+    return {
+        key: (flat_first[key], flat_second[key])
+        for key in shared
+        if flat_first[key] != flat_second[key]
+    }
+
+
+def _flat(table: Mapping[str, object]) -> dict[str, object]:
+    """Values of a load condition by dotted key: `length`, `body.mass`."""
+    values: dict[str, object] = {}
+    inner: dict[str, object] = {}
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            inner |= {f"{key}.{name}": x for name, x in value.items()}
+        else:
+            values[key] = value
+    return values | inner
+
+
+def overlaid(
+    raw: Mapping[str, object], changes: Mapping[str, object], label: str
+) -> dict[str, object]:
+    """Return the content of a vessel file with the values of a load condition or of [set] in place of its own.
+
+    Args:
+        raw: Content of the vessel file.
+        changes: Name of an effect, "body", "geometry", "manoeuvring" or "diagnosis" -> values; "length", "beam" or
+            "draught" -> number.
+        label: Name of the file in messages.
+
+    Raises:
+        BadInput: For an effect or a table that does not exist.
+    """
+    changed = dict(raw)
+    effects: list[dict[str, object]] = [dict(table) for table in tables(raw.get("effect"))]
+    by_name: dict[str, dict[str, object]] = {}
+    for table in effects:
+        by_name.setdefault(effect_name(table), table)
+    for key, value in changes.items():
+        if key in by_name:
+            if not isinstance(value, Mapping):
+                raise BadInput(f"{label}: {key} = {value!r}; allowed is a table of its values")
+            by_name[key].update(value)
+        elif isinstance(value, dict) and key in INNER_TABLES:
+            own = raw.get(key)
+            changed[key] = {**own, **value} if isinstance(own, Mapping) else value
+        elif key in NUMBERS:
+            changed[key] = value
+        else:
+            names = [*by_name, *INNER_TABLES, *NUMBERS]
+            raise BadInput(unknown_name(f"{label}: table to change", key, names))
+    changed["effect"] = effects
+    return changed

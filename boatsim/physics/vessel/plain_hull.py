@@ -1,0 +1,127 @@
+"""Plain drawing of a hull as MJCF: boxes and ellipsoids from its dimensions.
+
+The origin is at the transom on the centre line in the water surface; x forward, y to port, z up.
+"""
+
+from collections.abc import Iterable, Iterator
+from xml.sax.saxutils import quoteattr
+
+from boatsim.physics.estimate import inertia
+from boatsim.physics.estimate.base import Hull
+
+HEAD = """\
+  <asset>
+    <material name="hull" rgba="0.10 0.42 0.70 1" specular="0.4" shininess="0.4"/>
+    <material name="deck" rgba="0.85 0.85 0.82 1" specular="0.3" shininess="0.3"/>
+    <material name="dark" rgba="0.14 0.15 0.17 1" specular="0.3"/>
+  </asset>
+  <default>
+    <default class="seen">
+      <geom contype="0" conaffinity="0" group="2" mass="0"/>
+    </default>
+    <default class="touch">
+      <geom contype="0" conaffinity="0" group="3" mass="0" rgba="0.8 0.2 0.2 0.3"/>
+    </default>
+  </default>"""
+
+
+def hull_xml(hull: Hull, name: str, comment: str, fittings: Iterable[str] = ()) -> str:
+    """Return the MJCF of a hull.
+
+    Args:
+        hull: Dimensions [m] and mass [kg].
+        name: Name of the model.
+        comment: Comment at the top of the file.
+        fittings: Elements of outboards, rudders and the like.
+    """
+    lines = [
+        f"<mujoco model={quoteattr(name)}>",
+        f"  <!-- {comment} -->",
+        "  <custom>",
+        f'    <numeric name="drawn_for" data="{hull.length:g} {hull.beam:g} {hull.draught:.4g}"/> '
+        "<!-- [m] L, B, T -->",
+        "  </custom>",
+        HEAD,
+        "  <worldbody>",
+        '    <body name="hull">',
+    ]
+    for part in (*_hull_parts(hull), *fittings):
+        lines.append(f"      {part}")
+    lines += ["    </body>", "  </worldbody>", "</mujoco>", ""]
+    return "\n".join(lines)
+
+
+def deck_height(hull: Hull) -> float:
+    """Return the height of the deck above the water [m], chosen for the looks."""
+    return max(hull.draught, 0.08 * hull.length)
+
+
+def _hull_parts(hull: Hull) -> Iterator[str]:
+    """Inertia, the box that touches walls, and what is drawn."""
+    length, high = hull.length, deck_height(hull)
+    middle = 0.5 * (high - hull.draught)
+    half_height = 0.5 * (high + hull.draught)
+    yaw_inertia = inertia.yaw(hull).value
+    diagonal = numbers(yaw_inertia, yaw_inertia, yaw_inertia)
+    yield f'<inertial pos="{numbers(0.5 * length, 0, 0)}" mass="{hull.mass:g}" diaginertia="{diagonal}"/>'
+    size = (0.5 * length, 0.5 * hull.beam, half_height)
+    yield geom("collision", "box", (0.5 * length, 0, middle), size, "touch")
+    if hull.hulls == 1:
+        yield from _one_hull(hull, "", 0.0)
+        return
+    yield from _one_hull(hull, "_port", 0.5 * hull.spacing)
+    yield from _one_hull(hull, "_starboard", -0.5 * hull.spacing)
+    for name, x in (("fore", 0.65), ("aft", 0.35)):
+        size = (0.02 * length, 0.5 * hull.spacing, 0.012 * length)
+        yield geom(f"beam_{name}", "box", (x * length, 0, 1.1 * high), size, "seen", "deck")
+    size = (0.18 * length, 0.2 * hull.beam, 0.01 * length)
+    yield geom("tray", "box", (0.5 * length, 0, 1.2 * high), size, "seen", "dark")
+
+
+def _one_hull(hull: Hull, side: str, y: float) -> Iterator[str]:
+    """A box aft that ends in an ellipsoid, the bow, and a deck on both."""
+    high = deck_height(hull)
+    middle = 0.5 * (high - hull.draught)
+    half_height = 0.5 * (high + hull.draught)
+    half_beam = 0.5 * hull.breadth
+    aft, bow = 0.55 * hull.length, 0.45 * hull.length
+    size = (0.5 * aft, half_beam, half_height)
+    yield geom(f"aft{side}", "box", (0.5 * aft, y, middle), size, "seen", "hull")
+    size = (bow, half_beam, half_height)
+    yield geom(f"bow{side}", "ellipsoid", (aft, y, middle), size, "seen", "hull")
+    size = (0.46 * aft, 0.85 * half_beam, 0.03 * half_height)
+    yield geom(f"deck{side}", "box", (0.5 * aft, y, high), size, "seen", "deck")
+    if hull.hulls == 1:
+        size = (0.06 * hull.length, 0.4 * half_beam, 0.5 * high)
+        at = (0.42 * hull.length, y, 1.5 * high)
+        yield geom("console", "box", at, size, "seen", "deck")
+
+
+def geom(
+    name: str,
+    kind: str,
+    pos: tuple[float, float, float],
+    size: tuple[float, float, float],
+    default_class: str,
+    material: str = "",
+) -> str:
+    """Return a MJCF geom element.
+
+    Args:
+        name: Name of the geom.
+        kind: "box" or "ellipsoid".
+        pos: Centre [m].
+        size: Half sizes [m].
+        default_class: "seen" for what is drawn, "touch" for what touches walls.
+        material: "hull", "deck" or "dark"; "" for that of the class.
+    """
+    of_material = f' material="{material}"' if material else ""
+    return (
+        f'<geom name={quoteattr(name)} class="{default_class}" type="{kind}"{of_material} '
+        f'pos="{numbers(*pos)}" size="{numbers(*size)}"/>'
+    )
+
+
+def numbers(*values: float) -> str:
+    """Return numbers with four digits, as MJCF attributes have them."""
+    return " ".join(f"{value:.4g}" for value in values)
