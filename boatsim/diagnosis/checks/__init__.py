@@ -1,1 +1,1 @@
-"""What is wrong with a log before physics is suspected."""
+"""Quality checks of a log, made before a mismatch is attributed to the vessel."""

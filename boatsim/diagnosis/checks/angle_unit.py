@@ -1,32 +1,46 @@
-"""Angles and turning rates in degrees."""
+"""Check for angles and angular rates that are recorded in degrees."""
 
 import numpy as np
 
 from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings import units
 from boatsim.recordings.expression import UNITS
 from boatsim.recordings.table import Recording
 
-NAMES = {"psi_rad": "heading", "phi_rad": "roll", "r_radps": "yaw_rate", "p_radps": "roll_rate"}
+QUANTITIES = {
+    "psi_rad": "heading",
+    "phi_rad": "roll",
+    "r_radps": "yaw_rate",
+    "p_radps": "roll_rate",
+}
 
 
-def look(recording: Recording, _: Vessel) -> list[Finding]:
-    """Headings, rolls and their rates whose size or steps are those of degrees."""
+def check_angle_unit(recording: Recording, _: Vessel, config: ChecksConfig) -> list[Finding]:
+    """Find headings, roll angles and their rates whose size or steps are those of degrees.
+
+    Args:
+        recording: The recording as written in the file.
+        config: Thresholds of the checks.
+
+    Returns:
+        One finding per column in degrees.
+    """
+    columns = {"t_s": recording.t, **recording.signals}
     found = []
-    for name, row in units.in_degrees({"t_s": recording.t, **recording.signals}).items():
-        values = recording[name]
-        low, high = np.nanmin(values), np.nanmax(values)
-        evidence = f"{name} goes from {low:.4g} to {high:.4g}, and by its steps it is degrees (row {row + 1})"
-        at = float(recording.t[row])
-        change = Change(name, name, UNITS["deg"])
+    for name, row in units.in_degrees(columns).items():
+        low = np.nanmin(recording[name])
+        high = np.nanmax(recording[name])
+        time = float(recording.t[row])
         found.append(
             Finding(
-                f"{NAMES[name]}_in_degrees",
-                evidence,
-                sure=0.99,
-                spans=((at, at),),
-                changes=(change,),
+                f"{QUANTITIES[name]}_in_degrees",
+                f"{name} ranges from {low:.4g} to {high:.4g}. Its steps are those of degrees, "
+                f"first in row {row + 1}",
+                probability=config.probability_evident,
+                spans=((time, time),),
+                changes=(Change(name, name, UNITS["deg"]),),
             )
         )
     return found

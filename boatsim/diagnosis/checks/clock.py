@@ -1,66 +1,93 @@
-"""A clock that stands still, goes back, or leaps ahead while the boat does not move on."""
+"""Check for time stamps that stall, go backwards, or jump ahead while the boat does not move."""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from boatsim.diagnosis.checks.finding import Finding
+from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding, longest_part
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-LEAPS = 20.0  # usual steps, and times of the boat, that pass at once
-NO_FARTHER = 3.0  # usual steps of the boat, which it has moved meanwhile
-WOULD = 10.0  # times as far as it would have moved
-SHOWN = 5  # places that are named
 
+def check_clock(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    """Find rows that are not later than the row before, and time jumps without motion.
 
-def look(recording: Recording, vessel: Vessel) -> list[Finding]:
-    """Rows whose time is not later than that of the row before, and leaps of time that the boat knows nothing of."""
+    Args:
+        recording: The recording as written in the file.
+        vessel: The vessel; its length scales the durations.
+        config: Thresholds of the checks.
+
+    Returns:
+        Findings "clock_stalls" and "clock_goes_back"; without them at most one "clock_leaps".
+    """
     steps = np.diff(recording.t)
     found = []
-    for name, rows, words in (
-        ("clock_stalls", np.flatnonzero(steps == 0.0) + 1, "rows have the time of the row before"),
-        (
-            "clock_goes_back",
-            np.flatnonzero(steps < 0.0) + 1,
-            "rows have an earlier time than the row before",
-        ),
-    ):
-        if len(rows):
-            places = ", ".join(str(r + 1) for r in rows[:SHOWN].tolist())
-            spans = tuple((float(recording.t[r]), float(recording.t[r])) for r in rows[:SHOWN])
-            remedy = "write the time with all its digits, or leave those rows out"
-            evidence = f"{len(rows)} of {len(recording)} {words} (rows {places}, counted without the header)"
-            found.append(Finding(name, evidence, spans=spans, remedy=remedy))
-    if not found and len(leaps := _leaps(recording, steps, froude_time(vessel))):
-        parts = np.split(recording.t, leaps + 1)
-        longest = max(parts, key=lambda t: float(np.ptp(t)) if len(t) else 0.0)
-        at = ", ".join(f"{recording.t[k]:g} s by {steps[k]:.4g} s" for k in leaps[:SHOWN])
-        evidence = f"the time leaps ahead at {at}, while the boat stays where it is"
-        spans = tuple((float(recording.t[k]), float(recording.t[k + 1])) for k in leaps[:SHOWN])
-        use = (float(longest[0]), float(longest[-1]))
-        found.append(Finding("clock_leaps", evidence, sure=0.95, spans=spans, use=use))
+    stalled = np.flatnonzero(steps == 0.0) + 1
+    if len(stalled):
+        found.append(_bad_rows(recording, "clock_stalls", stalled, "the same time as"))
+    reversed_rows = np.flatnonzero(steps < 0.0) + 1
+    if len(reversed_rows):
+        found.append(_bad_rows(recording, "clock_goes_back", reversed_rows, "an earlier time than"))
+    if found:
+        return found
+    jumps = _time_jumps(recording, steps, froude_time(vessel), config)
+    if len(jumps):
+        found.append(_jump_finding(recording, steps, jumps, config))
     return found
 
 
-def _leaps(
-    recording: Recording, steps: Array, usual_time: float
-) -> "np.ndarray[tuple[int], np.dtype[np.int64]]":
-    """Rows before which the clock leapt: it stood for far more than the boat sailed."""
+def _bad_rows(recording: Recording, name: str, rows: NDArray[np.int64], comparison: str) -> Finding:
+    listed = rows[:MAX_LISTED]
+    numbers = ", ".join(map(str, (listed + 1).tolist()))
+    times = recording.t[listed].tolist()
+    return Finding(
+        name,
+        f"{len(rows)} of {len(recording)} rows have {comparison} the row before "
+        f"(rows {numbers}, the header not counted)",
+        spans=tuple(zip(times, times, strict=True)),
+        remedy="write the time with all its digits, or leave those rows out",
+    )
+
+
+def _jump_finding(
+    recording: Recording, steps: Array, jumps: NDArray[np.int64], config: ChecksConfig
+) -> Finding:
+    t = recording.t
+    listed = jumps[:MAX_LISTED].tolist()
+    places = ", ".join(f"{t[k]:g} s by {steps[k]:.4g} s" for k in listed)
+    return Finding(
+        "clock_leaps",
+        f"the time jumps ahead at {places}, but the boat does not move in these intervals",
+        probability=config.probability_strong,
+        spans=tuple((float(t[k]), float(t[k + 1])) for k in listed),
+        use=longest_part(t, jumps),
+    )
+
+
+def _time_jumps(
+    recording: Recording, steps: Array, time_scale: float, config: ChecksConfig
+) -> NDArray[np.int64]:
+    """Rows before a step of time in which the boat moved far less than its speed implies."""
     none = np.zeros(0, dtype=np.int64)
-    if (
-        not {"x_m", "y_m"} <= recording.signals.keys()
-        or not (usual := float(np.median(steps))) > 0.0
-    ):
+    if not {"x_m", "y_m"} <= recording.signals.keys():
+        return none
+    usual = float(np.median(steps))
+    if not usual > 0.0:
         return none
     moved = np.hypot(np.diff(recording["x_m"]), np.diff(recording["y_m"]))
     known = moved[np.isfinite(moved)]
     if not len(known):
         return none
-    step = float(np.quantile(known, 0.75))
-    long = steps > LEAPS * max(usual, usual_time / LEAPS)
-    near = moved < NO_FARTHER * step
+    distance = float(np.quantile(known, 0.75))
+    ratio = config.clock_jump_steps
+    long = steps > ratio * max(usual, time_scale / ratio)
+    near = moved < config.clock_jump_max_distance * distance
     speed = np.convolve(
-        np.nan_to_num(moved / np.maximum(steps, usual)), np.ones(9) / 9.0, "same"
-    )  # about each row
-    return np.flatnonzero(long & near & (speed * steps > WOULD * step))
+        np.nan_to_num(moved / np.maximum(steps, usual)),
+        np.ones(config.clock_speed_rows) / config.clock_speed_rows,
+        "same",
+    )
+    expected_far = speed * steps > config.clock_jump_expected_distance * distance
+    return np.flatnonzero(long & near & expected_far)

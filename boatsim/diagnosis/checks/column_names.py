@@ -1,51 +1,81 @@
-"""Columns that are there under another name: what the vessel moves or is steered by and the file calls otherwise."""
+"""Check for required columns that the file has under another name."""
 
 from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
 from boatsim.recordings.importing.log import Log, Signal
 from boatsim.recordings.importing.signal_classification import Guess, guesses, side_of, tokens_of
 from boatsim.recordings.table import Recording
 
-PLACE = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw"}
+POSE_AXES = {"x_m": "surge", "y_m": "sway", "psi_rad": "yaw"}
+SIDES = {"port", "starboard"}
 
 
-def look(recording: Recording, vessel: Vessel) -> list[Finding]:
-    """What is missing and can be made of a column that is not ours; nothing where two might be it."""
-    missing = [n for n, axis in PLACE.items() if axis in vessel.dof and n not in recording.signals]
-    if {"u_mps", "v_mps"} & recording.signals.keys():
-        missing = [n for n in missing if n == "psi_rad"]
-    orders = [n for n in vessel.actuators if n not in recording.signals]
-    if not missing and not orders:
+def check_column_names(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    """Find a substitute for each missing column, if exactly one other column fits.
+
+    Args:
+        recording: The recording as written in the file.
+        vessel: The vessel, which determines the required columns.
+        config: Thresholds of the checks.
+
+    Returns:
+        At most one finding "column_names" for all missing columns.
+    """
+    poses = _missing_poses(recording, vessel)
+    commands = [n for n in vessel.actuators if n not in recording.signals]
+    if not poses and not commands:
         return []
-    signals = {
-        n: Signal(recording.t, v)
-        for n, v in recording.signals.items()
-        if n not in (*PLACE, *vessel.inputs)
-    }
-    there = guesses(Log(recording.path or vessel.file, signals), vessel.actuators)
-    found = [(n, [g for g in there if g.column == n]) for n in missing]
-    found += [(n, _orders(n, there)) for n in orders]
-    made = {n: found[0] for n, found in found if found and len(found) == 1}
-    if not made:
+    other = _other_columns(recording, vessel)
+    candidates = {n: [g for g in other if g.column == n] for n in poses}
+    for name in commands:
+        candidates[name] = _command_guesses(name, other)
+    unique = {name: each[0] for name, each in candidates.items() if len(each) == 1}
+    if not unique:
         return []
-    names = ", ".join(f"{n} is missing, and {g.name} may be it" for n, g in made.items())
-    changes = tuple(Change(n, g.name, _factor(g)) for n, g in made.items())
-    return [Finding("column_names", names, sure=0.9, changes=changes)]
-
-
-def _orders(name: str, there: list[Guess]) -> list[Guess]:
-    """Commands of the same side that speak of the same thing: thrust, rudder, revolutions."""
-    words = set(tokens_of(name))
-    alike = [
-        g for g in there if g.column == "command" and side_of(g.tokens) == side_of(frozenset(words))
+    evidence = ", ".join(f"{n} is missing, and {g.name} may be it" for n, g in unique.items())
+    changes = tuple(Change(n, g.name, _factor(g)) for n, g in unique.items())
+    return [
+        Finding("column_names", evidence, probability=config.probability_likely, changes=changes)
     ]
-    same = [g for g in alike if words & g.tokens - {"port", "starboard"}]
-    return same or alike
 
 
-def _factor(g: Guess) -> float:
+def _missing_poses(recording: Recording, vessel: Vessel) -> list[str]:
+    missing = []
+    for name, axis in POSE_AXES.items():
+        if axis in vessel.dof and name not in recording.signals:
+            missing.append(name)
+    if {"u_mps", "v_mps"} & recording.signals.keys():
+        return [name for name in missing if name == "psi_rad"]
+    return missing
+
+
+def _other_columns(recording: Recording, vessel: Vessel) -> list[Guess]:
+    """Classify the columns that are neither a pose nor an input of the vessel."""
+    known = {*POSE_AXES, *vessel.inputs}
+    signals = {
+        name: Signal(recording.t, values)
+        for name, values in recording.signals.items()
+        if name not in known
+    }
+    return guesses(Log(recording.path or vessel.file, signals), vessel.actuators)
+
+
+def _command_guesses(name: str, other: list[Guess]) -> list[Guess]:
+    """Command columns of the same side; those that share a word with the name come first."""
+    words = set(tokens_of(name))
+    side = side_of(frozenset(words))
+    same_side = [g for g in other if g.column == "command" and side_of(g.tokens) == side]
+    same_word = [g for g in same_side if words & g.tokens - SIDES]
+    return same_word or same_side
+
+
+def _factor(guess: Guess) -> float:
+    """Conversion factor that the words of a guess stand for."""
     factor = 1.0
-    for word in g.word.split(" * ") if g.word else ():
+    if not guess.word:
+        return factor
+    for word in guess.word.split(" * "):
         factor *= UNITS[word] if word in UNITS else float(word)
     return factor

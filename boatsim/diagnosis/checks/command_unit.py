@@ -1,87 +1,133 @@
-"""Commands in per cent, degrees, revolutions a minute or pulses: beyond what the vessel's drives can be told."""
+"""Check for commands in per cent, degrees, revolutions per minute or servo pulses."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.config import ChecksConfig
+from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import ROUNDING, Recording
 
-BEYOND, SURELY = (
-    1.05,
-    1.5,
-)  # times the limit: from the former on it may be another unit, from the latter it is
-FILLS = 0.1  # of the range, at least, by a command in its right unit
-PULSES = (900.0, 2100.0)  # [us] of servo pulses; 1500 is neutral and 500 on either side are full
+PULSE_HALF_RANGE = 500.0  # [us] from the neutral pulse to a full command
+PULSE_NEUTRAL = 1500.0  # [us]
+PER_CENT = "per cent of full"
+FULL_RANGE = 1.0 + 5.0 * ROUNDING  # largest share of the limit, rounding in the file included
 
 
-def look(recording: Recording, vessel: Vessel) -> list[Finding]:
-    """Command channels that pass the vessel's limits and are within them in another unit; alike channels together."""
-    groups: dict[tuple[str, float, float], list[str]] = {}
-    for name, change in _beyond(recording, vessel):
-        groups.setdefault((change[0], change[1], change[2]), []).append(name)
-    found = []
-    for (unit, factor, offset), names in groups.items():
-        alike = [*names, *_of_the_same(recording, vessel, names)]
-        evidence = "; ".join(
-            f"{n} goes from {np.nanmin(recording[n]):.4g} to {np.nanmax(recording[n]):.4g}, and {vessel.name} takes "
-            f"{vessel.commands[n].low:g} to {vessel.commands[n].high:g} {unit_of(n)}".rstrip()
-            for n in names
+class Conversion(NamedTuple):
+    """Conversion of a recorded command to the unit of the vessel."""
+
+    unit: str  # of the recorded command, in words
+    factor: float
+    offset: float = 0.0
+
+
+def check_command_unit(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    """Find command channels that exceed the vessel's limits, but not in another unit.
+
+    Args:
+        recording: The recording as written in the file.
+        vessel: The vessel with its command limits.
+        config: Thresholds of the checks.
+
+    Returns:
+        One finding "command_unit" per conversion, with all channels that it concerns.
+    """
+    groups: dict[Conversion, list[str]] = {}
+    for name, conversion in _conversions(recording, vessel, config).items():
+        groups.setdefault(conversion, []).append(name)
+    return [
+        _finding(recording, vessel, conversion, names, config)
+        for conversion, names in groups.items()
+    ]
+
+
+def _finding(
+    recording: Recording,
+    vessel: Vessel,
+    conversion: Conversion,
+    names: list[str],
+    config: ChecksConfig,
+) -> Finding:
+    evidence = []
+    certain = False
+    for name in names:
+        low = np.nanmin(recording[name])
+        high = np.nanmax(recording[name])
+        command = vessel.commands[name]
+        allowed = f"{command.low:g} to {command.high:g} {unit_of(name)}".rstrip()
+        evidence.append(
+            f"{name} ranges from {low:.4g} to {high:.4g}, but {vessel.name} accepts {allowed}"
         )
-        changes = tuple(Change(n, n, factor, offset) for n in alike)
-        limits = (max(abs(vessel.commands[n].low), abs(vessel.commands[n].high)) for n in names)
-        surely = any(
-            np.nanmax(np.abs(recording[n])) > SURELY * x for n, x in zip(names, limits, strict=True)
-        )
-        words = f"{evidence}: that {'is' if surely else 'may be'} {unit}"
-        found.append(Finding("command_unit", words, sure=0.95 if surely else 0.7, changes=changes))
+        limit = max(abs(command.low), abs(command.high))
+        certain |= bool(np.nanmax(np.abs(recording[name])) > config.command_certain_excess * limit)
+    verb = "may be"
+    probability = config.probability_possible
+    if certain:
+        verb = "is"
+        probability = config.probability_strong
+    channels = [*names, *_same_range(recording, vessel, names)]
+    return Finding(
+        "command_unit",
+        f"{'; '.join(evidence)}. The unit {verb} {conversion.unit}",
+        probability=probability,
+        changes=tuple(Change(n, n, conversion.factor, conversion.offset) for n in channels),
+    )
+
+
+def _conversions(
+    recording: Recording, vessel: Vessel, config: ChecksConfig
+) -> Mapping[str, Conversion]:
+    """Conversions of the channels that exceed their limits."""
+    found = {}
+    for name, command in vessel.commands.items():
+        limit = max(abs(command.low), abs(command.high))
+        if name not in recording.signals or not math.isfinite(limit):
+            continue
+        values = recording[name][np.isfinite(recording[name])]
+        if not len(values) or float(np.abs(values).max()) <= config.command_excess * limit:
+            continue
+        conversion = _conversion(values, name, limit, config)
+        if conversion is not None:
+            found[name] = conversion
     return found
 
 
-def _beyond(recording: Recording, vessel: Vessel) -> Iterator[tuple[str, tuple[str, float, float]]]:
-    for name, command in vessel.commands.items():
-        if name not in recording.signals or not math.isfinite(
-            limit := max(abs(command.low), abs(command.high))
-        ):
-            continue
-        values = recording[name][np.isfinite(recording[name])]
-        if (
-            len(values)
-            and float(np.abs(values).max()) > BEYOND * limit
-            and (unit := _unit(values, name, limit))
-        ):
-            yield name, unit
-
-
-def _unit(
-    values: "np.ndarray[tuple[int], np.dtype[np.float64]]", name: str, limit: float
-) -> tuple[str, float, float] | None:
-    """(unit in words, factor, offset) by which values (N,) come within a limit and fill it."""
-    low, high = float(values.min()), float(values.max())
-    if PULSES[0] <= low and high <= PULSES[1]:
-        return "pulses in us", limit / 500.0, -3.0 * limit
-    percent = ("per cent of full", limit / 100.0)
-    tried = {
-        "rad": [("degrees", UNITS["deg"]), percent],
-        "rad/s": [("revolutions a minute", UNITS["rpm"]), percent],
-        "N": [percent, ("thousandths", 1e-3)],
-    }.get(unit_of(name), [percent])
+def _conversion(values: Array, name: str, limit: float, config: ChecksConfig) -> Conversion | None:
+    """Conversion by which values (N,) come within a limit and use a fair part of it."""
+    low = float(values.min())
+    high = float(values.max())
+    shortest, longest = config.servo_pulse_range
+    if shortest <= low and high <= longest:
+        return Conversion(
+            "pulses in us", limit / PULSE_HALF_RANGE, -PULSE_NEUTRAL / PULSE_HALF_RANGE * limit
+        )
+    percent = Conversion(PER_CENT, limit / 100.0)
+    units = {
+        "rad": [Conversion("degrees", UNITS["deg"]), percent],
+        "rad/s": [Conversion("revolutions a minute", UNITS["rpm"]), percent],
+        "N": [percent, Conversion("thousandths", 1e-3)],
+    }
     largest = max(abs(low), abs(high))
-    for unit, factor in tried:
-        if FILLS * limit <= largest * factor <= (1.0 + 5.0 * ROUNDING) * limit:
-            return unit, factor, 0.0
+    for conversion in units.get(unit_of(name), [percent]):
+        converted = largest * conversion.factor
+        if config.command_min_range * limit <= converted <= FULL_RANGE * limit:
+            return conversion
     return None
 
 
-def _of_the_same(recording: Recording, vessel: Vessel, names: list[str]) -> list[str]:
-    """Further channels with the same unit and range: one logger wrote them all, be one of them but little used."""
-    ranges = {(unit_of(n), vessel.commands[n].low, vessel.commands[n].high) for n in names}
-    return [
-        n
-        for n, c in vessel.commands.items()
-        if n in recording.signals and n not in names and (unit_of(n), c.low, c.high) in ranges
-    ]
+def _same_range(recording: Recording, vessel: Vessel, names: list[str]) -> list[str]:
+    """Other channels with the same unit and limits, which the same logger wrote."""
+
+    def key(name: str) -> tuple[str, float, float]:
+        return unit_of(name), vessel.commands[name].low, vessel.commands[name].high
+
+    ranges = set(map(key, names))
+    others = [n for n in vessel.commands if n in recording.signals and n not in names]
+    return [n for n in others if key(n) in ranges]

@@ -1,82 +1,99 @@
-"""Where boats go beside where their bows point, on straight stretches ahead: no model of a boat is needed for that.
+"""Heading offset from the course over ground, on straight stretches ahead.
 
-In a turn a hull drifts outward, astern it goes stern first, and a current carries it to one side of the world whatever
-its heading. What is left on straight stretches ahead, on all headings alike, is a compass that is turned.
+No model of the vessel is needed. In a turn the hull drifts outward. Going astern, the course is
+opposite to the heading. A current sets the boat in one direction of the earth frame, whatever its
+heading. An angle between heading and course that stays the same on straight stretches ahead and on
+all headings is therefore an offset of the compass.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.notes import unit_of
 from boatsim.recordings.table import Recording
 
-STRAIGHT = 0.2  # [rad] by which the heading may change over a stretch, and over the one before it
-FAST = 0.5  # of the speed that only a tenth of the stretches pass
-FEWEST = 8  # stretches
-# of the squared way that other headings must add, so that a current is told from a compass
-SEEN = 0.03
-LEFT = 0.1  # of that, at most, may be left unexplained by an angle and a current
 
+def heading_offset(
+    recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig
+) -> float | None:
+    """Estimate the constant angle between heading and course through the water.
 
-def aside(recordings: Sequence[Recording], vessel: Vessel) -> float | None:
-    """Angle [rad] from the bow to where the boat goes through the water, to starboard; None where it can not be told.
+    A boat whose heading is off by an angle a, in a current c, moves across its course by the
+    current only: cos a Im q - sin a Re q = Im(c e^-i(psi + a)) dt, where q is the displacement
+    over dt in the frame of the recorded heading. This holds at any speed.
 
-    Whatever its speed, a boat that points a beside its way and drifts with a current c goes across that way by what c
-    does: cos a Im q - sin a Re q = Im(c e^-i(psi + a)) dt, with q the way over dt seen from the bow.
+    Args:
+        recordings: Recordings with positions and headings.
+        vessel: The vessel; its length scales the durations.
+        config: Thresholds of the checks.
+
+    Returns:
+        Angle [rad] from the bow to the course, positive to starboard; None if the recordings do
+        not determine it.
     """
-    stretches = [_stretches(r, vessel) for r in recordings]
-    way = np.concatenate([q for q, _ in stretches])
+    stretches = [_straight_stretches(r, vessel, config) for r in recordings]
+    displacement = np.concatenate([q for q, _ in stretches])
     psi = np.concatenate([p for _, p in stretches])
-    if len(way) < FEWEST:
+    if len(displacement) < config.course_min_stretches:
         return None
-    across, drift = (
-        np.column_stack([way.imag, -way.real]),
-        np.column_stack([np.cos(psi), np.sin(psi)]),
-    )
-    alone = across - drift @ np.linalg.pinv(drift, rcond=1e-6) @ across
-    sizes, axes = np.linalg.eigh(alone.T @ alone)
-    if sizes[1] < SEEN * float(np.sum(np.abs(way) ** 2)) or sizes[0] > LEFT * sizes[1]:
+    across = np.column_stack([displacement.imag, -displacement.real])
+    current = np.column_stack([np.cos(psi), np.sin(psi)])
+    without_current = across - current @ np.linalg.pinv(current, rcond=1e-6) @ across
+    sizes, axes = np.linalg.eigh(without_current.T @ without_current)
+    squared_way = float(np.sum(np.abs(displacement) ** 2))
+    if sizes[1] < config.course_min_variation * squared_way:
+        return None
+    if sizes[0] > config.course_max_residual * sizes[1]:
         return None
     c, s = axes[:, 0]
-    ahead = np.sign(np.sum(way.real * c + way.imag * s))
+    ahead = np.sign(np.sum(displacement.real * c + displacement.imag * s))
     return float(np.arctan2(ahead * s, ahead * c))
 
 
-def _stretches(recording: Recording, vessel: Vessel) -> tuple[Array, Array]:
-    """Ways over a Froude time (K,), complex and seen from the bow, and the headings there, of fast ones ahead."""
-    t, known = recording.t, np.isfinite(recording["psi_rad"])
+def _straight_stretches(
+    recording: Recording, vessel: Vessel, config: ChecksConfig
+) -> tuple[Array, Array]:
+    """Displacements (K,) over a Froude time, complex in the frame of the heading, and headings.
+
+    Only fast, straight stretches ahead are returned.
+    """
+    t = recording.t
+    known = np.isfinite(recording["psi_rad"])
     fixed = np.isfinite(recording["x_m"]) & np.isfinite(recording["y_m"])
-    if not known.any() or fixed.sum() < FEWEST:
+    if not known.any() or fixed.sum() < config.course_min_stretches:
         return np.empty(0, dtype=complex), np.empty(0)
-    at, z = t[fixed], recording["x_m"][fixed] + 1j * recording["y_m"][fixed]
-    psi, push = (
-        np.interp(at, t[known], np.unwrap(recording["psi_rad"][known])),
-        np.interp(at, t, _ahead(recording, vessel)),
-    )
-    rows, lasts = np.arange(len(at)), froude_time(vessel)
-    after, before = (
-        np.searchsorted(at, at + lasts).clip(max=len(at) - 1),
-        np.searchsorted(at, at - lasts),
-    )
+    at = t[fixed]
+    z = recording["x_m"][fixed] + 1j * recording["y_m"][fixed]
+    psi = np.interp(at, t[known], np.unwrap(recording["psi_rad"][known]))
+    thrust = np.interp(at, t, _thrust_ahead(recording, vessel))
+    duration = config.course_window * froude_time(vessel)
+    after = np.searchsorted(at, at + duration).clip(max=len(at) - 1)
+    before = np.searchsorted(at, at - duration)
     way = z[after] - z
-    straight = (np.abs(psi[after] - psi) < STRAIGHT) & (np.abs(psi - psi[before]) < STRAIGHT)
-    ahead = (push > 0.0) & (push[after] > 0.0) & (push[before] > 0.0)
-    fast = np.abs(way) > FAST * np.quantile(np.abs(way), 0.9)
-    kept = straight & ahead & fast & (at[after] - at >= 0.9 * lasts) & (rows > before)
+    turned_after = np.abs(psi[after] - psi)
+    turned_before = np.abs(psi - psi[before])
+    straight = np.maximum(turned_after, turned_before) < config.course_max_turn
+    ahead = (thrust > 0.0) & (thrust[after] > 0.0) & (thrust[before] > 0.0)
+    fast = np.abs(way) > config.course_min_speed * np.quantile(np.abs(way), 0.9)
+    complete = (at[after] - at >= 0.9 * duration) & (np.arange(len(at)) > before)
+    kept = straight & ahead & fast & complete
     middle = 0.5 * (psi + psi[after])
     return (way * np.exp(-1j * middle))[kept], middle[kept]
 
 
-def _ahead(recording: Recording, vessel: Vessel) -> Array:
-    """(N,) what thrusts are ordered ahead, in shares of full command; a vessel that has none goes ahead always."""
+def _thrust_ahead(recording: Recording, vessel: Vessel) -> Array:
+    """(N,) sum of the thrust commands, in shares of full command; ones without any command."""
     thrusts = {
         n: c for n, c in vessel.commands.items() if unit_of(n) != "rad" and n in recording.signals
     }
-    total = np.zeros(len(recording)) if thrusts else np.ones(len(recording))
+    if not thrusts:
+        return np.ones(len(recording))
+    total = np.zeros(len(recording))
     for name, command in thrusts.items():
         total += (recording[name] - command.neutral) / max(abs(command.low), abs(command.high))
     return total

@@ -1,4 +1,8 @@
-"""What a diagnosis leaves out of a log or turns round by itself: repeated and outlying fixes, positions, a rudder."""
+"""Corrections that a diagnosis applies to a log automatically, and the findings about them.
+
+Repeated fixes and outliers are ignored, positions that contradict the velocities are dropped, and
+rudder signs are aligned with the vessel.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,55 +11,78 @@ import numpy as np
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.checks.finding import Finding
-from boatsim.diagnosis.checks.position_frame import in_one_frame
-from boatsim.diagnosis.checks.position_outliers import without_outliers
-from boatsim.diagnosis.checks.reinterpretations import MIRRORED
-from boatsim.diagnosis.checks.repeated_positions import without_repeats
-from boatsim.diagnosis.checks.steering_sense import steered
-from boatsim.diagnosis.checks.wrapped_angles import unwound
+from boatsim.diagnosis.checks.position_frame import drop_rotated_positions
+from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
+from boatsim.diagnosis.checks.reinterpretations import MIRRORED, MIRRORED_WORDS
+from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
+from boatsim.diagnosis.checks.steering_sense import correct_rudder_sense
+from boatsim.diagnosis.checks.wrapped_angles import unwrap_directions
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-MENDED = {  # what a remark says -> the finding
+# phrase in a remark of a recording -> name of the finding
+FINDING_OF_REMARK = {
     "repeat each fix": "position_held",
     "leap away and come back": "outliers",
-    "off the course behind it": "begins_astray",
-    "were turned with the heading": "positions_turned",
-    "turns the other way": "rudder_sense",
+    "off the course of the following fixes": "begins_astray",
+    "were rotated with the heading": "positions_turned",
+    "turns the hull to the other side": "rudder_sense",
 }
 
 
-def opened(recording: Recording, vessel: Vessel) -> Recording:
-    """A recording as read, in one frame, with rudders counted as the vessel does."""
-    return in_one_frame(steered(unwound(recording.used(), vessel), vessel))
+def prepare_recording(recording: Recording, vessel: Vessel, config: ChecksConfig) -> Recording:
+    """Return the used part of a recording with consistent angles, rudder signs and positions.
 
+    Args:
+        recording: The recording as read.
+        vessel: The vessel that it is a recording of.
+        config: Thresholds of the checks.
 
-def thinned(recording: Recording, vessel: Vessel, lasts: float = 0.0) -> Recording:
-    """An opened recording with as many rows as are of use, without fixes that are none.
-
-    `lasts` is how long [s] all the recordings are, of which it is one.
+    Returns:
+        The prepared recording; its remarks list each correction.
     """
-    return without_outliers(without_repeats(recording.thinned(priors.rate(vessel, lasts))), vessel)
+    unwrapped = unwrap_directions(recording.used(), vessel)
+    return drop_rotated_positions(correct_rudder_sense(unwrapped, vessel, config), config)
 
 
-def lasting(recordings: Sequence[Recording]) -> float:
-    """How long [s] recordings are together."""
+def clean_recording(
+    recording: Recording, vessel: Vessel, config: ChecksConfig, duration: float = 0.0
+) -> Recording:
+    """Reduce a prepared recording to the useful rate, without repeated fixes and outliers.
+
+    Args:
+        recording: A prepared recording.
+        vessel: The vessel that it is a recording of.
+        config: Thresholds of the checks.
+        duration: Total duration [s] of all recordings of the diagnosis, which sets the rate.
+
+    Returns:
+        The cleaned recording; ignored values are nan, and its remarks list each correction.
+    """
+    reduced = recording.thinned(priors.rate(vessel, duration))
+    return drop_position_outliers(drop_repeated_positions(reduced), vessel, config)
+
+
+def total_duration(recordings: Sequence[Recording]) -> float:
+    """Return the total duration [s] of recordings."""
     return float(sum(np.ptp(r.t) for r in recordings))
 
 
-def findings(recording: Recording) -> list[Finding]:
-    """What the remarks of a recording say of what was left out."""
+def cleaning_findings(recording: Recording) -> list[Finding]:
+    """Return the findings about the corrections in the remarks of a recording."""
+    file = f"{recording.path or recording.name}: "
     found = []
     for remark in recording.remarks:
-        for words, name in MENDED.items():
-            if words in remark:
-                where = f"{recording.path or recording.name}: "
-                made = Finding(
-                    name, remark.removeprefix(where), "mended", remedy="a diagnosis allows for it"
+        for phrase, name in FINDING_OF_REMARK.items():
+            if phrase in remark:
+                finding = Finding(
+                    name,
+                    remark.removeprefix(file),
+                    "mended",
+                    remedy="a diagnosis corrects this automatically",
                 )
                 if name == "rudder_sense":
-                    made = replace(
-                        made, alternatives=(("y and the heading are counted to port", MIRRORED),)
-                    )
-                found.append(made)
+                    finding = replace(finding, alternatives=((MIRRORED_WORDS, MIRRORED),))
+                found.append(finding)
     return found

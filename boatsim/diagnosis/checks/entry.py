@@ -1,57 +1,83 @@
-"""A finding on a log as diagnosis.json and the commands say it, with the lines to write into a recording.toml."""
+"""A finding about a log in diagnosis.json and as text, with the lines for recording.toml."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from boatsim.diagnosis.checks.finding import PROBABLY, Finding, lines, to_write
+from boatsim.diagnosis.checks.finding import (
+    LOG_NOT_BOAT,
+    Finding,
+    column_lines,
+    recording_toml_lines,
+)
 from boatsim.diagnosis.report.schema import LogEntry
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import Expression
 from boatsim.recordings.table import as_written
 
 
-def sources_of(finding: Finding, path: str, vessel: Vessel) -> Mapping[str, Expression]:
-    """What the columns of a finding's file are made of so far; nothing where it is no file that says so."""
-    return as_written(Path(path), vessel.columns)[1] if Path(path).is_file() else {}
+def column_sources(path: str, vessel: Vessel) -> Mapping[str, Expression]:
+    """Return the expressions that the columns of a file are computed from.
+
+    Args:
+        path: File of the recording.
+        vessel: The vessel with its names of columns.
+
+    Returns:
+        Expression per column; empty if there is no such file.
+    """
+    if not Path(path).is_file():
+        return {}
+    return as_written(Path(path), vessel.columns)[1]
 
 
-def entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:
-    """As diagnosis.json has it."""
-    found: LogEntry = {
+def log_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:
+    """Return the entry of diagnosis.json for a finding.
+
+    Args:
+        finding: The finding.
+        sources: Expressions of the columns of its file, see `column_sources`.
+
+    Returns:
+        The entry, with the lines to write into recording.toml.
+    """
+    entry: LogEntry = {
         "run": finding.run,
         "name": finding.name,
         "kind": finding.kind,
         "evidence": finding.evidence,
-        "sure": round(finding.sure, 3),
-        "spans_s": [list(span) for span in finding.spans],
-        "lines": to_write(finding, sources),
+        "sure": round(finding.probability, 3),
+        "spans_s": list(map(list, finding.spans)),
+        "lines": recording_toml_lines(finding, sources),
         "alternatives": [
-            {"words": words, "lines": lines(changes, sources)}
+            {"words": words, "lines": column_lines(changes, sources)}
             for words, changes in finding.alternatives
         ],
     }
     if finding.remedy:
-        found["remedy"] = finding.remedy
+        entry["remedy"] = finding.remedy
     if finding.kind == "fault":
-        found["words"] = PROBABLY
-    return found
+        entry["words"] = LOG_NOT_BOAT
+    return entry
 
 
-def in_words(found: LogEntry) -> list[str]:
-    """Lines that a command prints of a finding."""
-    name = found["name"].replace("_", " ")
-    out = [f"{name} (sure to {100.0 * min(found['sure'], 0.999):.3g} %): {found['evidence']}"]
-    if found["spans_s"]:
-        out.append("  at " + ", ".join(f"{a:g} to {b:g} s" for a, b in found["spans_s"]))
-    if found["lines"]:
-        out.append(f"  write into recording.toml: {joined(found['lines'])}")
-    for other in found["alternatives"]:
-        out.append(f"  or, if {other['words']}: {joined(['[columns]', *other['lines']])}")
-    if "remedy" in found:
-        out.append(f"  {found['remedy']}")
-    return out
+def entry_text(entry: LogEntry) -> list[str]:
+    """Return the lines that a command prints for an entry of diagnosis.json."""
+    name = entry["name"].replace("_", " ")
+    percent = 100.0 * min(entry["sure"], 0.999)
+    lines = [f"{name} (probability {percent:.3g} %): {entry['evidence']}"]
+    if entry["spans_s"]:
+        spans = ", ".join(f"{begin:g} to {end:g} s" for begin, end in entry["spans_s"])
+        lines.append(f"  at {spans}")
+    if entry["lines"]:
+        lines.append(f"  write into recording.toml: {on_one_line(entry['lines'])}")
+    for other in entry["alternatives"]:
+        toml = on_one_line(["[columns]", *other["lines"]])
+        lines.append(f"  or, if {other['words']}: {toml}")
+    if "remedy" in entry:
+        lines.append(f"  {entry['remedy']}")
+    return lines
 
 
-def joined(text: Sequence[str]) -> str:
-    """Lines of TOML on one line."""
-    return " / ".join(text)
+def on_one_line(lines: Sequence[str]) -> str:
+    """Return lines of TOML joined to one line of text."""
+    return " / ".join(lines)

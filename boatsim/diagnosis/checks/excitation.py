@@ -1,79 +1,116 @@
-"""What a log can not tell, because the boat never did what would show it."""
-
-from collections.abc import Iterator
+"""Check for motions that the log lacks, so that some coefficients can not be identified."""
 
 import numpy as np
 
 from boatsim.diagnosis.checks.finding import Finding
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-# [rad] that the heading must pass for a current or wind to be told from a steady push
-HEADINGS = 1.0
-VARIES = 0.2  # of its size, by which a speed must vary for the shape of the damping to be told
-MOVES = 0.02  # of its range, from which a command is moved
+
+def check_excitation(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    """Find commands, headings and speeds that hardly vary.
+
+    Args:
+        recording: A prepared recording.
+        vessel: The vessel with its commands.
+        config: Thresholds of the checks.
+
+    Returns:
+        Findings of kind "limit", each with advice for the next log.
+    """
+    found = [
+        *_never_astern(recording, vessel),
+        *_never_moved(recording, vessel, config),
+        *_never_turned(recording, vessel, config),
+    ]
+    variation = _speed_variation(recording, vessel, config)
+    if variation is not None and variation < config.excitation_min_speed_variation:
+        found.append(
+            _limit(
+                "one_speed",
+                f"the speed stays within {100.0 * variation:.0f} % of its mean",
+                "the growth of damping with speed can not be identified; sail at other speeds",
+            )
+        )
+    return found
 
 
-def look(recording: Recording, vessel: Vessel) -> list[Finding]:
-    """By which channels moved and what speeds and headings were passed."""
+def _limit(name: str, evidence: str, remedy: str) -> Finding:
+    return Finding(name, evidence, "limit", remedy=remedy)
+
+
+def _never_astern(recording: Recording, vessel: Vessel) -> list[Finding]:
+    drives = [n for n in vessel.actuators if n in recording.signals and n not in vessel.angles]
+    reversible = [n for n in drives if vessel.commands[n].low < vessel.commands[n].neutral]
+    if not reversible:
+        return []
+    for name in reversible:
+        if not (recording[name] >= vessel.commands[name].neutral).all():
+            return []
     return [
-        Finding(name, evidence, "limit", remedy=remedy)
-        for name, evidence, remedy in _untold(recording, vessel)
+        _limit(
+            "never_astern",
+            f"{', '.join(reversible)} never go astern",
+            "weak thrust astern can not be identified; go astern once",
+        )
     ]
 
 
-def _untold(recording: Recording, vessel: Vessel) -> Iterator[tuple[str, str, str]]:
-    drives = [n for n in vessel.actuators if n in recording.signals and n not in vessel.angles]
-    astern = [n for n in drives if vessel.commands[n].low < vessel.commands[n].neutral]
-    if astern and all((recording[n] >= vessel.commands[n].neutral).all() for n in astern):
-        yield (
-            "never_astern",
-            f"{', '.join(astern)} never go astern",
-            "a weak reverse can not be told; go astern once",
-        )
-    still = [n for n in vessel.actuators if n in recording.signals and _still(recording, vessel, n)]
-    if still:
-        doing = " and ".join(still)
-        yield (
+def _never_moved(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    still = []
+    for name in vessel.actuators:
+        if name in recording.signals and _is_constant(recording, vessel, name, config):
+            still.append(name)
+    if not still:
+        return []
+    names = " and ".join(still)
+    return [
+        _limit(
             "never_moved",
-            f"{doing} never move",
-            f"what {doing} do, and how late, can not be told; move them",
+            f"{names} never move",
+            f"the effect and the delay of {names} can not be identified; move them",
         )
-    if "psi_rad" in recording.signals and "yaw" in vessel.dof:
-        passed = float(np.nanmax(recording["psi_rad"]) - np.nanmin(recording["psi_rad"]))
-        if passed < HEADINGS:
-            evidence = f"the heading stays within {np.degrees(passed):.0f} deg"
-            yield (
-                "never_turned",
-                evidence,
-                "wind or current can not be told from a steady push; turn to other headings",
-            )
-    if (varies := _speeds(recording, vessel)) is not None and varies < VARIES:
-        evidence = f"the speed stays within {100.0 * varies:.0f} % of its mean"
-        yield (
-            "one_speed",
-            evidence,
-            "how damping grows with speed can not be told; sail at other speeds",
-        )
+    ]
 
 
-def _still(recording: Recording, vessel: Vessel, name: str) -> bool:
+def _never_turned(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    if "psi_rad" not in recording.signals or "yaw" not in vessel.dof:
+        return []
+    span = float(np.nanmax(recording["psi_rad"]) - np.nanmin(recording["psi_rad"]))
+    if span >= config.excitation_min_heading_span:
+        return []
+    return [
+        _limit(
+            "never_turned",
+            f"the heading stays within {np.degrees(span):.0f} deg",
+            "wind or current can not be distinguished from a constant force of the hull; "
+            "turn to other headings",
+        )
+    ]
+
+
+def _is_constant(recording: Recording, vessel: Vessel, name: str, config: ChecksConfig) -> bool:
     command = vessel.commands[name]
-    reach = command.high - command.low if np.isfinite(command.high - command.low) else 0.0
-    return float(np.ptp(recording[name])) <= MOVES * reach
+    span = command.high - command.low
+    if not np.isfinite(span):
+        span = 0.0
+    return float(np.ptp(recording[name])) <= config.excitation_min_command_span * span
 
 
-def _speeds(recording: Recording, vessel: Vessel) -> float | None:
-    """By how much of its mean the speed varies, from one time of the boat to another; None if it is not recorded."""
+def _speed_variation(recording: Recording, vessel: Vessel, config: ChecksConfig) -> float | None:
+    """Range of the speed over its mean, each averaged over two Froude times; None if unknown."""
     if not {"x_m", "y_m"} <= recording.signals.keys():
         return None
-    there = np.isfinite(recording["x_m"]) & np.isfinite(recording["y_m"])
-    t, x, y = recording.t[there], recording["x_m"][there], recording["y_m"][there]
-    after = np.searchsorted(t, t + 2.0 * froude_time(vessel)).clip(max=len(t) - 1)
-    far = after > np.arange(len(t))
-    if int(far.sum()) < 10:
+    known = np.isfinite(recording["x_m"]) & np.isfinite(recording["y_m"])
+    t = recording.t[known]
+    x = recording["x_m"][known]
+    y = recording["y_m"][known]
+    after = np.searchsorted(t, t + config.speed_window * froude_time(vessel)).clip(max=len(t) - 1)
+    later = after > np.arange(len(t))
+    if int(later.sum()) < config.excitation_min_speed_rows:
         return None
-    speed = np.hypot(x[after] - x, y[after] - y)[far] / (t[after] - t)[far]
+    speed = np.hypot(x[after] - x, y[after] - y)[later] / (t[after] - t)[later]
     low, high = np.quantile(speed, [0.05, 0.95])
     return float((high - low) / max(float(speed.mean()), 1e-9))

@@ -1,114 +1,168 @@
-"""What was found wrong with a log: its name, the evidence, and the change of columns that would put it right."""
+"""A finding about a log: its name, the evidence, and the change of columns that corrects it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.recordings.expression import UNITS, Expression
 from boatsim.recordings.table import Recording
 
 Kind = Literal["fault", "mended", "limit"]
-PROBABLY = "probably your log, not your boat"
-CERTAIN = 0.99  # from this probability on, the verdict of a diagnosis begins with the log
-LONG_WORDS = (
-    "deg",
-    "percent",
-    "ms",
-    "us",
-    "ns",
-    "rpm",
-    "rev",
-)  # units by which a line is easier to read than a number
+LOG_NOT_BOAT = "probably your log, not your boat"
+MAX_LISTED = 5  # places that the text of a finding lists
+# units that are written into recording.toml by name instead of as a number
+UNITS_BY_NAME = ("deg", "percent", "ms", "us", "ns", "rpm", "rev")
 
 
 @dataclass(frozen=True)
 class Change:
-    """A column as it should be: `ours` is made of the column `of`, times a factor, plus an offset, all in our names."""
+    """A correction of one column: `column` = `source` times `factor` plus `offset`."""
 
-    ours: str
-    of: str
+    column: str
+    source: str  # a column of the recording before the change
     factor: float = 1.0
     offset: float = 0.0
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One fault of a log.
+    """One finding about a log.
 
-    `fault`: the file must be put right; `mended`: a diagnosis leaves those rows out by itself; `limit`: nothing is
-    wrong, but something can not be told from it.
+    Attributes:
+        name: Name of the finding in diagnosis.json.
+        evidence: The facts with numbers, for the user.
+        kind: "fault" if the file must be corrected, "mended" if a diagnosis corrects it
+            automatically, "limit" if the log is correct but does not identify some coefficients.
+        probability: Probability that the finding is true.
+        spans: Intervals [s] in which it appears; empty if it concerns the whole log.
+        changes: Changes of columns that correct it.
+        alternatives: Other changes that explain the log equally well, each with its words.
+        use: Interval [s] of the log that can be used.
+        remedy: Advice in words, if no line of recording.toml corrects it.
+        words: Description in a clause, if the name does not describe it.
+        run: File of the recording; for several recordings that of the first.
     """
 
     name: str
-    evidence: str  # in numbers
+    evidence: str
     kind: Kind = "fault"
-    sure: float = 1.0  # probability
-    spans: tuple[tuple[float, float], ...] = ()  # [s] where it shows; empty: all along
-    changes: tuple[Change, ...] = ()  # what puts it right
-    alternatives: tuple[
-        tuple[str, tuple[Change, ...]], ...
-    ] = ()  # what explains the same: its name, its changes
-    use: tuple[float, float] | None = None  # [s] the part that is sound
-    remedy: str = ""  # in words, where no line of a recording.toml does it
-    words: str = ""  # what is wrong in a clause, where the name does not say it
-    run: str = ""  # file of the recording; several: that of the first
+    probability: float = 1.0
+    spans: tuple[tuple[float, float], ...] = ()
+    changes: tuple[Change, ...] = ()
+    alternatives: tuple[tuple[str, tuple[Change, ...]], ...] = ()
+    use: tuple[float, float] | None = None
+    remedy: str = ""
+    words: str = ""
+    run: str = ""
 
     @property
-    def said(self) -> str:
-        """What is wrong, in a clause."""
+    def description(self) -> str:
+        """Description of the fault in a clause."""
         return self.words or self.name.replace("_", " ")
 
-    @property
-    def of_the_whole_log(self) -> bool:
-        """Whether a diagnosis of the log as it is would blame the boat for it."""
-        return self.kind == "fault" and bool(self.changes) and self.sure >= CERTAIN
+    def invalidates_log(self, config: ChecksConfig) -> bool:
+        """Return whether a diagnosis of the uncorrected log would attribute it to the vessel."""
+        certain = self.probability >= config.min_verdict_probability
+        return self.kind == "fault" and bool(self.changes) and certain
 
 
-def applied(recording: Recording, changes: Sequence[Change]) -> Recording:
-    """The recording with its columns changed, its commands at their own times too; what it has not got is left out."""
+def longest_part(t: Array, breaks: NDArray[np.int64]) -> tuple[float, float]:
+    """Return the longest interval of a time axis between breaks.
+
+    Args:
+        t: Times (N,) [s].
+        breaks: Rows (K,) after which the time axis is cut.
+
+    Returns:
+        First and last time of the longest part [s].
+    """
+    parts = np.split(t, breaks + 1)
+    durations = [float(np.ptp(part)) if len(part) else 0.0 for part in parts]
+    longest = parts[int(np.argmax(durations))]
+    return float(longest[0]), float(longest[-1])
+
+
+def apply_changes(recording: Recording, changes: Sequence[Change]) -> Recording:
+    """Return a recording with corrected columns.
+
+    Args:
+        recording: The recording; commands at times of their own are corrected too.
+        changes: The changes; those whose source is missing are ignored.
+    """
 
     def changed(columns: Mapping[str, Array]) -> dict[str, Array]:
-        made = {c.ours: columns[c.of] * c.factor + c.offset for c in changes if c.of in columns}
-        return {**columns, **made}
+        result = dict(columns)
+        for change in changes:
+            if change.source in columns:
+                result[change.column] = columns[change.source] * change.factor + change.offset
+        return result
 
     orders = recording.orders
     if orders is not None:
         orders = replace(orders, signals=changed(orders.signals))
-    whole = changed({"t_s": recording.t, **recording.signals})
-    t = whole.pop("t_s")
-    return replace(recording, t=t, signals=whole, orders=orders)
+    signals = changed({"t_s": recording.t, **recording.signals})
+    t = signals.pop("t_s")
+    return replace(recording, t=t, signals=signals, orders=orders)
 
 
-def lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:
-    """Lines of `[columns]`; `sources` is what our columns are made of so far."""
-    found = []
-    for c in changes:
-        source = sources.get(c.of, Expression(c.of))
-        made = Expression(
-            source.signal, c.factor * source.factor, c.factor * source.offset + c.offset
+def column_lines(changes: Sequence[Change], sources: Mapping[str, Expression]) -> list[str]:
+    """Return the lines of the table `[columns]` of recording.toml that make changes.
+
+    Args:
+        changes: The changes.
+        sources: Expressions from which the columns are computed so far.
+    """
+    lines = []
+    for change in changes:
+        source = sources.get(change.source, Expression(change.source))
+        expression = Expression(
+            source.signal,
+            change.factor * source.factor,
+            change.factor * source.offset + change.offset,
         )
-        found.append(f'{c.ours} = "{_words(made, c.ours)}"')
-    return found
+        lines.append(f'{change.column} = "{_expression_text(expression, change.column)}"')
+    return lines
 
 
-def _words(e: Expression, ours: str) -> str:
-    """The text of an expression, with the name of a unit where the factor is one, and degrees for an offset in rad."""
-    size, sign = abs(e.factor), "-" if e.factor < 0.0 else ""
-    unit = next((u for u in LONG_WORDS if abs(size / UNITS[u] - 1.0) < 1e-9), "")
-    text = f"{sign}{e.signal}" + ("" if size == 1.0 else f" * {unit or f'{size:.10g}'}")
-    if e.offset == 0.0:
+def _expression_text(expression: Expression, column: str) -> str:
+    text = expression.signal
+    if expression.factor < 0.0:
+        text = f"-{text}"
+    if abs(expression.factor) != 1.0:
+        text += f" * {_factor_text(abs(expression.factor))}"
+    if expression.offset == 0.0:
         return text
-    way, off = "-" if e.offset < 0.0 else "+", abs(e.offset)
-    return (
-        f"{text} {way} {f'{np.degrees(off):.4g} * deg' if ours.endswith('_rad') else f'{off:.12g}'}"
-    )
+    sign = "-" if expression.offset < 0.0 else "+"
+    size = abs(expression.offset)
+    if column.endswith("_rad"):
+        return f"{text} {sign} {np.degrees(size):.4g} * deg"
+    return f"{text} {sign} {size:.12g}"
 
 
-def to_write(finding: Finding, sources: Mapping[str, Expression]) -> list[str]:
-    """What is to be written into a recording.toml, line by line; of alternatives the first."""
-    written = lines(finding.changes, sources)
-    use = [f"use = [{finding.use[0]:.9g}, {finding.use[1]:.9g}]"] if finding.use else []
-    return [*use, *(["[columns]", *written] if written else [])]
+def _factor_text(factor: float) -> str:
+    for unit in UNITS_BY_NAME:
+        if abs(factor / UNITS[unit] - 1.0) < 1e-9:
+            return unit
+    return f"{factor:.10g}"
+
+
+def recording_toml_lines(finding: Finding, sources: Mapping[str, Expression]) -> list[str]:
+    """Return the lines of recording.toml that correct a finding.
+
+    Args:
+        finding: The finding; of several alternatives the first is used.
+        sources: Expressions from which the columns are computed so far.
+    """
+    lines = []
+    if finding.use:
+        begin, end = finding.use
+        lines.append(f"use = [{begin:.9g}, {end:.9g}]")
+    columns = column_lines(finding.changes, sources)
+    if columns:
+        lines += ["[columns]", *columns]
+    return lines

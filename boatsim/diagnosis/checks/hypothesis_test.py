@@ -1,19 +1,27 @@
-"""Lays a log on its vessel as it is and as it may have been meant: what sails like the boat is what was meant.
+"""Comparison of a log as recorded with its reinterpretations, each fitted to the vessel.
 
-Nothing is tried where the vessel explains the log: where the force that it leaves unexplained is a small part of what
-its drives push with, and its bow points where it goes. A meaning is accepted only if it makes the log far likelier than
-it is as written and than any other meaning makes it, all of them with coefficients refitted.
+Nothing is compared if the vessel explains the log: if the unexplained force is a small share of
+the force of the drives, and the bow points along the course. A reinterpretation is accepted only if
+the log becomes far more likely than as recorded and than under any other reinterpretation. The
+coefficients are refitted in all cases.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from boatsim.diagnosis.checks.finding import Change, Finding, applied
-from boatsim.diagnosis.checks.reinterpretations import Meaning, meanings, points_aside, turned_by
-from boatsim.diagnosis.checks.steering_sense import turned
+from boatsim.diagnosis.checks.finding import Change, Finding, apply_changes
+from boatsim.diagnosis.checks.reinterpretations import (
+    Reinterpretation,
+    heading_disagrees_with_course,
+    reinterpretations,
+    rotated_heading,
+)
+from boatsim.diagnosis.checks.steering_sense import reversed_commands
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.noise_levels import fit_noise
@@ -21,218 +29,281 @@ from boatsim.diagnosis.priors import rate
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import baseline
 from boatsim.errors import BadInput
+from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-UNEXPLAINED = 0.6  # of what the drives push with, from which meanings are tried
-FLOOR = 0.02  # of the largest push, times the length for a moment: drives that do not turn the hull
-NATS, SHARE = 60.0, 0.05  # that a meaning must gain, at least; of the rows
-# nats by which it must be ahead of what the log as written, or another meaning, would be
-CLEAR = 25.0
-# nats within which meanings are one: a boat alike on both sides can not tell a mirror from
-# exchanged drives
-TIED = 3.0
-MOST_ROWS, MOST_RUNS = 1200, 3  # that are laid on
-CROWDED = 1.5  # times the usual rows a second, from which each instrument has its own
-REFITTED = 6  # meanings, of all that are tried roughly
-ROUND = np.radians(
-    np.delete(np.arange(-165.0, 181.0, 15.0), [5, 11, 17, 23])
-)  # [rad] turns, but for quarters
-STEPS = np.arange(
-    -16.0, 17.0, 4.0
-)  # [deg] beside a turned heading, between which the best is looked for
-NEAR = np.radians(35.0)  # by which turns of the heading are no rivals
-ABOUT = 4.0  # [deg] by which a quarter turn may be missed
-ROUNDS = 2  # faults one upon the other
-LEVEL = ("surge", "sway", "yaw")
-Lay = Callable[[Recording], MappedRecording]
+PLANAR_AXES = ("surge", "sway", "yaw")
+MAX_LEAD = 50.0  # [nats] limit of an exponent
+MapRecording = Callable[[Recording], MappedRecording]
 
 
-def tried(recordings: Sequence[Recording], lay: Lay, problem: Problem) -> list[Finding]:
-    """Findings on recordings that are opened and thinned; `problem` has them on the vessel as written.
+class Score(NamedTuple):
+    """How well a log fits its vessel."""
 
-    `lay` lays one on the same program. Raises BadInput where the log can not be laid on it.
+    evidence: float  # [nats], coefficients refitted
+    unexplained: float  # unexplained force as a share of the force of the drives
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The vessel, and how recordings are mapped to it."""
+
+    problem: Problem
+    map_recording: MapRecording
+    config: ChecksConfig
+
+    def mapped(self, recordings: Sequence[Recording], changes: Sequence[Change] = ()) -> Problem:
+        """The problem with recordings whose columns are changed. Raises BadInput."""
+        changed = [apply_changes(r, changes) for r in recordings]
+        return self.problem.on(list(map(self.map_recording, changed)))
+
+    def score(self, recordings: Sequence[Recording], changes: Sequence[Change]) -> Score:
+        """The score of changed recordings; minus infinity where they can not be fitted."""
+        try:
+            problem = self.mapped(recordings, changes)
+            _, recalibrated = baseline(problem)
+        except (BadInput, np.linalg.LinAlgError, FloatingPointError):
+            return Score(-np.inf, np.inf)
+        return Score(recalibrated.evidence, unexplained_force_share(problem, recalibrated))
+
+    def is_explained(self, problem: Problem) -> bool:
+        """Whether the vessel as specified explains the recordings of a problem."""
+        nominal = fit_noise(problem, problem.nominal())
+        return unexplained_force_share(problem, nominal) < self.config.unexplained_max_share
+
+
+def compare_reinterpretations(
+    recordings: Sequence[Recording], map_recording: MapRecording, problem: Problem
+) -> list[Finding]:
+    """Return the faults of a log that a comparison on the vessel reveals.
+
+    Args:
+        recordings: Prepared and cleaned recordings.
+        map_recording: Function that maps a recording to the program of the problem.
+        problem: The problem with the vessel as specified; its configuration is used.
+
+    Returns:
+        Findings; a second fault is sought after the first is corrected.
+
+    Raises:
+        BadInput: A recording can not be mapped to the vessel.
     """
-    short = _short(recordings, problem.program.vessel)
+    config = problem.config.checks
+    vessel = problem.program.vessel
+    comparison = Comparison(problem, map_recording, config)
+    short = _shortened(recordings, vessel, config)
     with threadpool_limits(1, "blas"):
-        laid = _laid(short, lay, problem)
-        explained = unexplained(laid, fit_noise(laid, laid.nominal())) < UNEXPLAINED
-        if explained and not points_aside(recordings, problem.program.vessel):
+        explained = comparison.is_explained(comparison.mapped(short))
+        if explained and not heading_disagrees_with_course(recordings, vessel, config):
             return []
-        return _tried([_unturned(r) for r in short], lay, problem)
+        return _find_faults(list(map(_with_recorded_rudder, short)), comparison)
 
 
-def unexplained(problem: Problem, nominal: Fit) -> float:
-    """Largest share that the slow force of a fit is of what the drives push with, over surge, sway and yaw."""
+def unexplained_force_share(problem: Problem, fit: Fit) -> float:
+    """Return the largest share of the unexplained force over surge, sway and yaw.
+
+    Args:
+        problem: The problem with its recordings.
+        fit: A fit; its rms of the latent force is the unexplained force.
+
+    Returns:
+        The share, relative to the rms force of the drives; 0 for a vessel without drives.
+    """
     vessel = problem.program.vessel
     axes = axes_of(vessel)
-    pushed = np.zeros(len(axes))
-    for laid in problem.recordings:
-        held = nominal_forces.actuators(laid)[:: max(1, len(laid.times) // 100)]
-        rest = np.zeros((len(held), 2 * problem.program.module.NQ))
-        pushed = np.maximum(
-            pushed,
-            np.sqrt(np.mean(nominal_forces.along(laid, rest, held, laid.values) ** 2, axis=0)),
-        )
-    push = max((pushed[i] for i, a in enumerate(axes) if a in LEVEL[:2]), default=0.0)
-    if not push > 0.0:
+    drives = np.zeros(len(axes))
+    for recording in problem.recordings:
+        drives = np.maximum(drives, _drive_force(recording))
+    thrust = max((drives[i] for i, a in enumerate(axes) if a in PLANAR_AXES[:2]), default=0.0)
+    if not thrust > 0.0:
         return 0.0
-    shares = []
+    least_moment = 4.0 * (problem.config.checks.unexplained_min_arm * thrust * vessel.length)
+    largest = 0.0
     for i, axis in enumerate(axes):
-        if axis in LEVEL:
-            least = FLOOR * push * vessel.length
-            scale = push if axis != "yaw" else max(float(pushed[i]), 4.0 * least)
-            shares.append(float(nominal.levels.force[i]) / scale)
-    return max(shares, default=0.0)
+        if axis in PLANAR_AXES:
+            scale = max(float(drives[i]), least_moment) if axis == "yaw" else thrust
+            largest = max(largest, float(fit.levels.force[i]) / scale)
+    return largest
 
 
-def _short(recordings: Sequence[Recording], vessel: Vessel) -> list[Recording]:
-    """The first rows of the first recordings: meanings differ in all of them.
+def _drive_force(recording: MappedRecording) -> Array:
+    """(axes,) rms force of the drives on the vessel at rest, over about 100 rows."""
+    step = max(1, len(recording.times) // 100)
+    held = nominal_forces.actuators(recording)[::step]
+    rest = np.zeros((len(held), 2 * recording.program.module.NQ))
+    forces = nominal_forces.along(recording, rest, held, recording.values)
+    return np.asarray(np.sqrt(np.mean(forces**2, axis=0)))
 
-    Instruments that each have rows of their own would fill them within seconds: they are thinned to a common count.
+
+def _shortened(
+    recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig
+) -> list[Recording]:
+    """The first rows of the first recordings, which suffice because a fault concerns all rows.
+
+    Recordings in which each instrument has rows of its own are reduced to the usual rate first.
     """
-    runs = list(recordings)[:MOST_RUNS]
+    runs = list(recordings)[: config.compare_max_recordings]
     usual = rate(vessel)
-    for k, r in enumerate(runs):
-        if (crowd := len(r) / float(r.t[-1] - r.t[0]) / usual) > CROWDED:
-            runs[k] = r.thinned(usual / crowd)
-    return [
-        r.between(float(r.t[0]), float(r.t[min(len(r), MOST_ROWS // len(runs)) - 1])) for r in runs
-    ]
+    rows = config.compare_max_rows // len(runs)
+    short = []
+    for run in runs:
+        excess = len(run) / float(run.t[-1] - run.t[0]) / usual
+        if excess > config.compare_max_rate:
+            run = run.thinned(usual / excess)
+        short.append(run.between(float(run.t[0]), float(run.t[min(len(run), rows) - 1])))
+    return short
 
 
-def _unturned(recording: Recording) -> Recording:
-    """The recording with rudders as they are in its file."""
-    return applied(recording, [Change(n, n, -1.0) for n in turned(recording)])
+def _with_recorded_rudder(recording: Recording) -> Recording:
+    """The recording with the rudder signs of its file."""
+    return apply_changes(recording, [Change(n, n, -1.0) for n in reversed_commands(recording)])
 
 
-def _tried(recordings: list[Recording], lay: Lay, problem: Problem) -> list[Finding]:
+def _find_faults(recordings: list[Recording], comparison: Comparison) -> list[Finding]:
     found: list[Finding] = []
-    done: tuple[Change, ...] = ()
-    for _ in range(ROUNDS):
-        now = [applied(r, done) for r in recordings]
-        best = _best(now, lay, problem)
-        if best is None:
+    corrected: tuple[Change, ...] = ()
+    for _ in range(comparison.config.compare_max_faults):
+        current = [apply_changes(r, corrected) for r in recordings]
+        finding = _best_finding(current, comparison)
+        if finding is None:
             break
-        finding, meaning = best
         found.append(finding)
-        if {c.ours for c in meaning.changes} & {c.ours for c in done}:
+        if {c.column for c in finding.changes} & {c.column for c in corrected}:
             break
-        done = (*done, *meaning.changes)
-        again = _laid([applied(r, meaning.changes) for r in now], lay, problem)
-        if unexplained(again, fit_noise(again, again.nominal())) < UNEXPLAINED:
+        corrected = (*corrected, *finding.changes)
+        if comparison.is_explained(comparison.mapped(current, finding.changes)):
             break
     return found
 
 
-def _best(
-    recordings: list[Recording], lay: Lay, problem: Problem
-) -> tuple[Finding, Meaning] | None:
-    meant = _likeliest(meanings(recordings, problem.program.vessel), recordings, lay, problem)
-    if not meant:
+def _best_finding(recordings: list[Recording], comparison: Comparison) -> Finding | None:
+    """The finding for the best reinterpretation, if it is clearly better than all others."""
+    config = comparison.config
+    candidates = _likeliest(recordings, comparison)
+    if not candidates:
         return None
-    written = _score(recordings, (), lay, problem)
-    scored = [(m, _score(recordings, m.changes, lay, problem)) for m in meant]
-    scored = [(m, s) for m, s in scored if np.isfinite(s[0])]
-    if not scored or not np.isfinite(written[0]):
+    recorded = comparison.score(recordings, ())
+    scored = []
+    for candidate in candidates:
+        score = comparison.score(recordings, candidate.changes)
+        if np.isfinite(score.evidence):
+            scored.append((candidate, score))
+    if not scored or not np.isfinite(recorded.evidence):
         return None
-    top = max(s[0] for _, s in scored)
-    scored = _apart(scored)
-    ties = [(m, s) for m, s in scored if top - s[0] < TIED]
-    rest = max((s[0] for m, s in scored if top - s[0] >= TIED), default=-np.inf)
-    rows = sum(len(r) for r in recordings)
-    gain, ahead = top - written[0], top - max(written[0], rest)
-    meaning, (_, left) = ties[0]
-    if gain < max(NATS, SHARE * rows) or ahead < CLEAR:
+    best = max(score.evidence for _, score in scored)
+    ties = []
+    second = recorded.evidence
+    for candidate, score in _without_near_rotations(scored, config):
+        if best - score.evidence < config.compare_tie_gain:
+            ties.append((candidate, score))
+        else:
+            second = max(second, score.evidence)
+    rows = sum(map(len, recordings))
+    gain = best - recorded.evidence
+    required = max(config.compare_min_gain, config.compare_min_gain_per_row * rows)
+    if gain < required or best - second < config.compare_min_lead:
         return None
-    if meaning.name == "heading_turned":
-        meaning = _nearest(meaning, recordings, lay, problem)
-    evidence = (
-        f"{meaning.words}: laid on {problem.program.vessel.name} so, the log is likelier by {gain:.0f} nats, "
-        "coefficients refitted"
+    chosen, score = ties[0]
+    if chosen.name == "heading_turned":
+        chosen = _refined_rotation(chosen, recordings, comparison)
+    vessel = comparison.problem.program.vessel.name
+    evidence = [f"{chosen.words}. With this correction, the log is more likely by {gain:.0f} nats"]
+    evidence.append(f" on {vessel} with refitted coefficients")
+    if score.unexplained < recorded.unexplained:
+        evidence.append(
+            f". The unexplained force is {100.0 * score.unexplained:.2g} % of the force of the "
+            f"drives instead of {100.0 * recorded.unexplained:.2g} %"
+        )
+    others = [(candidate.words, candidate.changes) for candidate, _ in ties[1:]]
+    if others:
+        evidence.append(
+            f". Because this boat is symmetric, another fault fits equally well: {others[0][0]}"
+        )
+    lead = min(best - second, MAX_LEAD)
+    return Finding(
+        chosen.name,
+        "".join(evidence),
+        probability=1.0 - float(np.exp(-lead / config.compare_lead_scale)),
+        changes=chosen.changes,
+        alternatives=(*chosen.alternatives, *others),
+        words=chosen.words,
     )
-    if left < written[1]:
-        sizes = (f"{100.0 * share:.2g} %" for share in (left, written[1]))
-        evidence += ", and the force left unexplained is {} of what the drives push with instead of {}".format(
-            *sizes
-        )
-    others = [*meaning.alternatives, *((m.words, m.changes) for m, _ in ties[1:])]
-    if len(ties) > 1:
-        evidence += (
-            f"; this boat is alike on both sides, so that it fits as well that {ties[1][0].words}"
-        )
-    sure = 1.0 - float(np.exp(-min(ahead, 50.0) / 4.0))
-    found = Finding(meaning.name, evidence, sure=sure, changes=meaning.changes, words=meaning.words)
-    return replace(found, alternatives=tuple(others)), meaning
 
 
-def _apart(
-    scored: list[tuple[Meaning, tuple[float, float]]],
-) -> list[tuple[Meaning, tuple[float, float]]]:
-    """Without turns of the heading near a likelier one: a few degrees beside what was meant is no rival to it."""
-    kept: list[tuple[Meaning, tuple[float, float]]] = []
-    for m, s in sorted(scored, key=lambda x: -x[1][0]):
-        turns = [n.changes[0].offset for n, _ in kept if n.name == m.name == "heading_turned"]
-        if all(abs(np.angle(np.exp(1j * (m.changes[0].offset - a)))) > NEAR for a in turns):
-            kept.append((m, s))
+def _without_near_rotations(
+    scored: list[tuple[Reinterpretation, Score]], config: ChecksConfig
+) -> list[tuple[Reinterpretation, Score]]:
+    """Drop rotations of the heading near a better one, because they are no rivals of it."""
+    limit = np.radians(config.rotation_min_distance)
+    kept: list[tuple[Reinterpretation, Score]] = []
+    rotations: list[float] = []
+    for candidate, score in sorted(scored, key=lambda each: -each[1].evidence):
+        if candidate.name == "heading_turned":
+            angle = candidate.changes[0].offset
+            distances = np.abs(np.angle(np.exp(1j * (angle - np.array(rotations)))))
+            if not (distances > limit).all():
+                continue
+            rotations.append(angle)
+        kept.append((candidate, score))
     return sorted(kept, key=scored.index)
 
 
-def _likeliest(
-    meant: list[Meaning], recordings: list[Recording], lay: Lay, problem: Problem
-) -> list[Meaning]:
-    """Those to which coefficients are refitted: likelier than the log as written, with its own noise and forces.
+def _likeliest(recordings: list[Recording], comparison: Comparison) -> list[Reinterpretation]:
+    """The reinterpretations that are more likely than the log as recorded, before any refit.
 
-    With them the likeliest turn of the heading among many.
+    The noise levels are those of the log as recorded. If the heading may be rotated, the likeliest
+    of many rotations is included.
     """
-    written = _laid(recordings, lay, problem)
-    levels = fit_noise(written, written.nominal()).levels
-    nominal, on = written.nominal(), written.program.switches()
+    config = comparison.config
+    problem = comparison.mapped(recordings)
+    nominal = problem.nominal()
+    levels = fit_noise(problem, problem.nominal()).levels
+    on = problem.program.switches()
 
-    def roughly(m: Meaning) -> float:
+    def log_likelihood(each: Reinterpretation) -> float:
         try:
-            laid = _laid([applied(r, m.changes) for r in recordings], lay, problem)
+            changed = comparison.mapped(recordings, each.changes)
         except BadInput:
             return -np.inf
-        found = laid.likelihood(nominal.free, nominal.theta, on, levels)
-        return found if np.isfinite(found) else -np.inf
+        value = changed.likelihood(nominal.free, nominal.theta, on, levels)
+        return value if np.isfinite(value) else -np.inf
 
-    if any(m.name == "heading_turned" for m in meant):
-        meant = [*meant, max((turned_by(float(a)) for a in ROUND), key=roughly)]
-    scores = {m.words: roughly(m) for m in meant}
-    least = roughly(Meaning("as written", "", ()))
-    better = sorted((m for m in meant if scores[m.words] > least), key=lambda m: -scores[m.words])
-    return sorted(better[:REFITTED], key=meant.index)
+    candidates = reinterpretations(recordings, problem.program.vessel, config)
+    if any(each.name == "heading_turned" for each in candidates):
+        step = config.rotation_coarse_step
+        angles = np.arange(-180.0 + step, 180.0 + 0.5 * step, step)
+        rotations = np.radians(angles[angles % 90.0 != 0.0]).tolist()
+        candidates.append(max(map(rotated_heading, rotations), key=log_likelihood))
+    scores = {each.words: log_likelihood(each) for each in candidates}
+    recorded = log_likelihood(Reinterpretation("as recorded", "", ()))
+    better = [each for each in candidates if scores[each.words] > recorded]
+    better.sort(key=lambda each: -scores[each.words])
+    return sorted(better[: config.compare_max_candidates], key=candidates.index)
 
 
-def _nearest(meaning: Meaning, recordings: list[Recording], lay: Lay, problem: Problem) -> Meaning:
-    """The same to the degree: the best of some angles, and the top of the parabola through it and those beside."""
-    around = np.degrees(meaning.changes[0].offset) + STEPS
-    scores = np.array(
-        [
-            _score(recordings, turned_by(float(np.radians(a))).changes, lay, problem)[0]
-            for a in around
-        ]
-    )
-    top = int(np.clip(np.argmax(scores), 1, len(STEPS) - 2))
-    bent, slope, _ = np.polyfit(STEPS[top - 1 : top + 2], scores[top - 1 : top + 2], 2)
-    best = around[top] if not bent < 0.0 else around[top] - STEPS[top] - 0.5 * slope / bent
+def _refined_rotation(
+    rotation: Reinterpretation, recordings: list[Recording], comparison: Comparison
+) -> Reinterpretation:
+    """The rotation of the heading to a degree: the maximum of a parabola through three angles.
+
+    A result near a quarter turn is replaced by the quarter turn.
+    """
+    config = comparison.config
+    step = config.rotation_step
+    steps = step * np.arange(-config.rotation_steps, config.rotation_steps + 1)
+    angles = np.degrees(rotation.changes[0].offset) + steps
+    scores = []
+    for angle in angles:
+        changes = rotated_heading(float(np.radians(angle))).changes
+        scores.append(comparison.score(recordings, changes).evidence)
+    top = int(np.clip(np.argmax(scores), 1, len(steps) - 2))
+    near = slice(top - 1, top + 2)
+    curvature, slope, _ = np.polyfit(steps[near], scores[near], 2)
+    best = angles[top]
+    if curvature < 0.0:
+        best = angles[top] - steps[top] - 0.5 * slope / curvature
     quarter = 90.0 * np.round(best / 90.0)
-    return turned_by(float(np.radians(quarter if abs(best - quarter) < ABOUT else np.round(best))))
-
-
-def _laid(recordings: list[Recording], lay: Lay, problem: Problem) -> Problem:
-    """The same question to recordings with other columns."""
-    return problem.on([lay(r) for r in recordings])
-
-
-def _score(
-    recordings: list[Recording], changes: tuple[Change, ...], lay: Lay, problem: Problem
-) -> tuple[float, float]:
-    """Evidence of a log as it may have been meant, coefficients refitted, and what is left unexplained."""
-    try:
-        laid = _laid([applied(r, changes) for r in recordings], lay, problem)
-        _, recalibrated = baseline(laid)
-    except (BadInput, np.linalg.LinAlgError, FloatingPointError):
-        return -np.inf, np.inf
-    return recalibrated.evidence, unexplained(laid, recalibrated)
+    if abs(best - quarter) < config.rotation_quarter_tolerance:
+        best = quarter
+    return rotated_heading(float(np.radians(np.round(best))))

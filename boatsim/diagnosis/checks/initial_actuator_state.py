@@ -1,41 +1,62 @@
-"""How the actuators stood when a recording began: settled to its first commands, or still as they are at rest.
+"""State of the actuators when a recording begins: settled to the first commands, or at rest.
 
-A log often begins with the manoeuvre. A propeller that takes its time then spools up in the first rows, and were it
-taken to run already, the boat would seem to change its speed more slowly than it does.
+A log often begins with the manoeuvre. A propeller with a time constant then speeds up during the
+first rows. If it were assumed to have settled, the vessel would seem to respond more slowly.
 """
 
 from dataclasses import replace
 
 import numpy as np
 
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
 from boatsim.physics.commands import sent_row, taken
 
-# [s] ahead of the first row: actuators settle to what was in force then, however long ago
-BEFORE = 1.0
-TOLD = 6.0  # [nats] by which the recording must be likelier with actuators that begin at rest
-# of the largest speed recorded, which a boat that lies still is below when the recording begins
-SLOW = 0.2
+# [s] before the first row; the value has no effect, because actuators settle to earlier commands
+COMMAND_LEAD = 1.0
 
 
-def begun(track: MappedRecording, levels: NoiseLevels) -> MappedRecording:
-    """The track, its actuators at neutral before the first row where the boat lies still then and is likelier so."""
-    vessel = track.program.vessel
-    rest = track.orders[0].copy()
+def with_initial_actuators(
+    recording: MappedRecording, levels: NoiseLevels, config: ChecksConfig
+) -> MappedRecording:
+    """Return a recording whose actuators begin at rest, if the data show that.
+
+    Args:
+        recording: The recording mapped to its vessel.
+        levels: Noise levels.
+        config: Thresholds of the checks.
+
+    Returns:
+        The recording with neutral commands before the first row, if the vessel lies still then and
+        the recording is more likely with them. Otherwise the recording itself.
+    """
+    vessel = recording.program.vessel
+    neutral = recording.orders[0].copy()
     commands = len(vessel.commands)
-    rest[:commands] = taken(vessel, sent_row(vessel, {}))[:commands]
-    if not commands or np.array_equal(rest, track.orders[0]):
-        return track
-    given, orders = np.append(track.times[0] - BEFORE, track.given), np.vstack([rest, track.orders])
-    resting = replace(track, given=given, orders=orders)
-    on = track.program.switches()
-    settled, from_rest = (t.likelihood(t.values, on, levels) for t in (track, resting))
-    return resting if from_rest > settled + TOLD and _lies_still(resting, levels) else track
+    neutral[:commands] = taken(vessel, sent_row(vessel, {}))[:commands]
+    if not commands or np.array_equal(neutral, recording.orders[0]):
+        return recording
+    resting = replace(
+        recording,
+        given=np.append(recording.times[0] - COMMAND_LEAD, recording.given),
+        orders=np.vstack([neutral, recording.orders]),
+    )
+    on = recording.program.switches()
+    settled = recording.likelihood(recording.values, on, levels)
+    from_rest = resting.likelihood(resting.values, on, levels)
+    likelier = from_rest > settled + config.initial_rest_gain
+    if likelier and _lies_still(resting, levels, config):
+        return resting
+    return recording
 
 
-def _lies_still(track: MappedRecording, levels: NoiseLevels) -> bool:
-    """Whether the boat does when the recording begins: where it does not, a wrong vessel may ask for less thrust."""
-    nq = track.program.module.NQ
-    means, _ = track.smoothed(track.values, track.program.switches(), levels)
-    energy = means[:, nq : 2 * nq] ** 2 @ track.inertia
-    return bool(energy[0] <= SLOW**2 * energy.max())
+def _lies_still(recording: MappedRecording, levels: NoiseLevels, config: ChecksConfig) -> bool:
+    """Whether the vessel is at rest in the first row.
+
+    If it moves, a wrong model of it may make less thrust more likely.
+    """
+    nq = recording.program.module.NQ
+    on = recording.program.switches()
+    means, _ = recording.smoothed(recording.values, on, levels)
+    energy = means[:, nq : 2 * nq] ** 2 @ recording.inertia
+    return bool(energy[0] <= config.initial_rest_speed**2 * energy.max())

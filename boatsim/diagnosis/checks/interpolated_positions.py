@@ -1,93 +1,127 @@
-"""Positions that were bridged over gaps: rows on a straight line with equal steps, as no instrument gives them."""
+"""Check for positions that were interpolated over gaps: equal steps, which no instrument yields."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.checks.finding import Finding
+from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 POSE = ("x_m", "y_m", "psi_rad")
-# of the last digit, by which the difference of two equal steps is off when three places are rounded
-ROUNDED = 2.1
-TURNS = -0.5  # of white noise, fourth differences are alike by -0.8 from row to row
-LEAST = 5.0  # digits, by which fourth differences are more than those of rounding, 1.6
-CHANCE = 1e-4  # of one such run among all rows, at most
-BESIDE, RARE = 30, 1e-3  # rows on either side, by whose equal steps a run must be a rare one
-FEWEST = 2  # rows in a run
-SHOWN = 5  # places that are named
+# largest second difference of a straight line in units of the last digit: three rounded values
+ROUNDED_DIGITS = 2.1
+MAX_DECIMALS = 7
 
 
-def look(recording: Recording, _: Vessel) -> list[Finding]:
-    """Runs of rows between which nothing changes but by equal steps, where noise elsewhere forbids it."""
-    straight = bridged(recording)
+def check_interpolated_positions(
+    recording: Recording, _: Vessel, config: ChecksConfig
+) -> list[Finding]:
+    """Find runs of rows with equal steps, where the noise elsewhere rules them out.
+
+    Args:
+        recording: A prepared recording.
+        config: Thresholds of the checks.
+
+    Returns:
+        At most one finding "bridged".
+    """
+    straight = interpolated_rows(recording, config)
     if not straight.any():
         return []
     begins, ends = _runs(straight)
     t = recording.t
-    order = np.argsort(t[ends] - t[begins])[::-1][:SHOWN]
-    spans = tuple((float(t[begins[k]]), float(t[ends[k]])) for k in sorted(order.tolist()))
+    durations = t[ends] - t[begins]
+    longest = np.argsort(durations)[::-1][:MAX_LISTED]
+    spans = tuple((float(t[begins[k]]), float(t[ends[k]])) for k in sorted(longest.tolist()))
     evidence = (
-        f"{int(straight.sum())} of {len(recording)} rows in {len(begins)} places lie on straight lines with equal "
-        f"steps, to the last digit (longest {float((t[ends] - t[begins]).max()):.3g} s)"
+        f"{int(straight.sum())} of {len(recording)} rows in {len(begins)} places lie on straight "
+        f"lines with equal steps, exact to the last digit (longest {float(durations.max()):.3g} s)"
     )
-    remedy = (
-        "leave x_m, y_m and psi_rad empty in those rows: what was not measured is no measurement"
-    )
-    return [Finding("bridged", evidence, sure=0.95, spans=spans, remedy=remedy)]
+    remedy = "these values were not measured; leave x_m, y_m and psi_rad empty in those rows"
+    return [
+        Finding(
+            "bridged", evidence, probability=config.probability_strong, spans=spans, remedy=remedy
+        )
+    ]
 
 
-def bridged(recording: Recording) -> NDArray[np.bool_]:
-    """Rows (N,) that lie on such lines."""
+def interpolated_rows(recording: Recording, config: ChecksConfig) -> NDArray[np.bool_]:
+    """Return which rows were interpolated.
+
+    Args:
+        recording: A prepared recording.
+        config: Thresholds of the checks.
+
+    Returns:
+        True (N,) for rows inside a run with equal steps in all noisy columns.
+    """
     n = len(recording)
-    none = np.zeros(n, dtype=np.bool_)
+    rejected = np.zeros(n, dtype=np.bool_)
     columns = [recording[c] for c in POSE if c in recording.signals]
-    if n < 30 or len(columns) < 2 or not all(np.isfinite(c).all() for c in columns):
-        return none
-    exact, chance, used = np.ones(n - 2, dtype=np.bool_), 1.0, 0
+    complete = np.isfinite(columns).all()
+    if n < config.interpolation_min_rows or len(columns) < 2 or not complete:
+        return rejected
+    exact, chance = _equal_steps(columns, config)
+    straight = np.concatenate(([False], exact, [False]))
+    for begin, end in zip(*_runs(straight), strict=True):
+        rows = int(end - begin) + 1
+        window = config.interpolation_window
+        neighbours = np.concatenate(
+            (straight[max(begin - window, 0) : begin], straight[end + 1 : end + 1 + window])
+        )
+        by_chance = n * chance**rows > config.interpolation_max_chance
+        common = _rule_of_succession(neighbours) ** rows > config.interpolation_max_local_chance
+        if rows < config.interpolation_min_run or by_chance or common:
+            rejected[begin : end + 1] = True
+    return straight & ~rejected
+
+
+def _equal_steps(columns: list[Array], config: ChecksConfig) -> tuple[NDArray[np.bool_], float]:
+    """Rows (N - 2,) with equal steps in all noisy columns, and their probability by chance.
+
+    Columns without noise are ignored, because a smooth course has equal steps. Rows in which
+    nothing changes are repeated, not interpolated.
+    """
+    n = len(columns[0])
+    exact = np.ones(n - 2, dtype=np.bool_)
+    chance = 1.0
+    noisy = 0
     for values in columns:
-        bent, digit = np.abs(np.diff(values, 2)), _digit(values)
-        equal = bent < ROUNDED * digit
-        if not _noisy(np.diff(values, 4), digit):
-            continue  # a smooth course has equal steps of its own
-        used += 1
+        digit = _last_digit(values)
+        if not _is_noisy(np.diff(values, 4), digit, config):
+            continue
+        equal = np.abs(np.diff(values, 2)) < ROUNDED_DIGITS * digit
+        noisy += 1
         exact &= equal
         chance *= max(float(equal.mean()), 1.0 / n)
-    if used < 2:
-        return none
+    if noisy < 2:
+        return np.zeros(n - 2, dtype=np.bool_), chance
     moving = np.any([np.diff(c)[1:] != 0.0 for c in columns], axis=0)
-    exact &= moving  # what stands still is repeated, not bridged
-    straight = np.concatenate(([False], exact, [False]))
-    begins, ends = _runs(straight)
-    for begin, end in zip(begins, ends, strict=True):
-        rows = int(end - begin) + 1
-        beside = np.concatenate(
-            (straight[max(begin - BESIDE, 0) : begin], straight[end + 1 : end + 1 + BESIDE])
-        )
-        if rows < FEWEST or n * chance**rows > CHANCE or _share(beside) ** rows > RARE:
-            none[begin : end + 1] = True
-    return straight & ~none
+    return exact & moving, chance
 
 
-def _share(rows: NDArray[np.bool_]) -> float:
-    """Of rows that are true, counted as if half a one were seen besides: how likely a further one is."""
+def _rule_of_succession(rows: NDArray[np.bool_]) -> float:
+    """Probability that a further row is true (Laplace's rule, with half a success added)."""
     return (float(rows.sum()) + 0.5) / (len(rows) + 1.0)
 
 
-def _noisy(bent: Array, digit: float) -> bool:
-    """Whether fourth differences (N,) are those of noise, which turn round from row to row, and not of rounding."""
-    ends = np.quantile(bent, [0.05, 0.95])
-    inside = np.clip(bent, *ends)
+def _is_noisy(differences: Array, digit: float, config: ChecksConfig) -> bool:
+    """Whether fourth differences (N,) are those of white noise and larger than rounding."""
+    inside = np.clip(differences, *np.quantile(differences, [0.05, 0.95]))
     size = float(inside @ inside)
-    turns = size > 0.0 and float(inside[1:] @ inside[:-1]) < TURNS * size
-    return turns and float(np.median(np.abs(bent))) > LEAST * digit
+    if not size > 0.0:
+        return False
+    if not float(inside[1:] @ inside[:-1]) < config.interpolation_max_correlation * size:
+        return False
+    return float(np.median(np.abs(differences))) > config.interpolation_min_noise_digits * digit
 
 
-def _digit(values: Array) -> float:
-    """The last digit to which values (N,) are written: most of their steps are multiples of it."""
-    for places in range(1, 8):
-        unit = 10.0**-places
+def _last_digit(values: Array) -> float:
+    """Resolution to which values (N,) are written."""
+    for decimals in range(1, MAX_DECIMALS + 1):
+        unit = 10.0**-decimals
         if np.abs(values / unit - np.round(values / unit)).max() < 1e-3:
             return unit
     return 1e-8

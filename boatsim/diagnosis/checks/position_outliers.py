@@ -1,6 +1,6 @@
-"""Fixes that leap away and come back, one or several in a row: no boat moves so, and no force is to be sought for it.
+"""Outliers of positions and headings: one or several fixes that leave the course and return to it.
 
-The filter lets a single outlier pass with little weight; of several in a row it believes that it has lost the boat.
+The filter gives a single outlier little weight, but several in a row would look like motion.
 """
 
 from dataclasses import replace
@@ -8,111 +8,164 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import FINEST, froude_time, sensed_noise
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-# [s] of fixes that are away, on a boat of 1.2 m: longer ones may be where the boat is
-LONGEST = 1.5
-SURE = 10.0  # sds of a step's prediction error by which a fix leaps,
-QUICK = 1.5  # and usual accelerations that the boat may have had meanwhile
-BEFORE = 6  # fixes from which the speed is told,
-SLACK = 0.1  # of a leap by which that speed may mislead with every further step
-STAYS, LOOKED = (
-    4,
-    200,
-)  # fixes for which it must stay where it came back to; rows that are looked at
-BEHIND = 8  # fixes by whose course one is judged with which a recording begins,
-ASTRAY, FEW = 6.0, 3  # sds by which it is off; such rows at most
-NOTHING = np.zeros(0)
-# share of the prediction errors that are no leaps; of a normal variable it lies within two sds
-MOST = 0.95
+NO_VALUES = np.zeros(0)
+NOISE_FAMILIES = {
+    "x_m": "position_sd_m",
+    "y_m": "position_sd_m",
+    "psi_rad": "heading_sd_rad",
+}
 
 
-def without_outliers(recording: Recording, vessel: Vessel) -> Recording:
-    """The recording without fixes and headings that leap away and come back (nan); a remark says how many.
+def drop_position_outliers(recording: Recording, vessel: Vessel, config: ChecksConfig) -> Recording:
+    """Return the recording without outliers of positions and headings.
 
-    It begins where they lie on the course of those behind.
+    Args:
+        recording: A prepared recording.
+        vessel: The vessel; its length scales distances and durations.
+        config: Thresholds of the checks.
+
+    Returns:
+        The recording from its first row on the course; outliers are nan, and remarks count them.
     """
-    if late := begins_astray(recording, vessel):
-        kept = recording.between(float(recording.t[late]), float(recording.t[-1]))
-        where, begin = recording.path or recording.name, recording.t[late]
-        remark = f"{where}: what lies before t = {begin:g} s is off the course behind it: not used"
+    first = outlier_rows_at_start(recording, vessel, config)
+    if first:
+        kept = recording.between(float(recording.t[first]), float(recording.t[-1]))
+        remark = (
+            f"{recording.path or recording.name}: the rows before t = {recording.t[first]:g} s are "
+            "off the course of the following fixes and are not used"
+        )
         recording = replace(kept, remarks=(*kept.remarks, remark))
-    signals, remarks = dict(recording.signals), list(recording.remarks)
-    longest = LONGEST * froude_time(vessel)
-    for names, unit in ((("x_m", "y_m"), vessel.length), (("psi_rad",), 1.0)):
+    signals = dict(recording.signals)
+    remarks = list(recording.remarks)
+    duration = config.outlier_max_duration * froude_time(vessel)
+    for names, scale in ((("x_m", "y_m"), vessel.length), (("psi_rad",), 1.0)):
         if any(n not in signals for n in names):
             continue
         values = np.column_stack([signals[n] for n in names])
-        away = outlying(recording.t, values, FINEST * unit, longest)
-        if away.any():
+        outlier = outlier_rows(recording.t, values, FINEST * scale, duration, config)
+        if outlier.any():
             remarks.append(
                 f"{recording.path or recording.name}: {', '.join(names)} leap away and come back "
-                f"({int(away.sum())} of {len(recording)} rows, first at {recording.t[away][0]:g} s): not used"
+                f"({int(outlier.sum())} of {len(recording)} rows, first at "
+                f"{recording.t[outlier][0]:g} s); these values are not used"
             )
-            signals |= {n: np.where(away, np.nan, signals[n]) for n in names}
+            signals |= {n: np.where(outlier, np.nan, signals[n]) for n in names}
     return replace(recording, signals=signals, remarks=tuple(remarks))
 
 
-def begins_astray(recording: Recording, vessel: Vessel) -> int:
-    """First row from which on no fix is off the course of the `BEHIND` fixes behind it; `FEW` fixes are judged.
+def outlier_rows_at_start(recording: Recording, vessel: Vessel, config: ChecksConfig) -> int:
+    """Return the number of rows to drop because a recording begins with an outlier.
 
-    A filter starts from the first fix, so it has nothing by which to doubt that one.
+    A filter starts from the first fix and can not reject it. Each of the first fixes is compared
+    with a parabola through the fixes after it.
+
+    Args:
+        recording: A prepared recording.
+        vessel: The vessel, for the noise of its sensors.
+        config: Thresholds of the checks.
     """
-    late = 0
-    for name, family in (
-        ("x_m", "position_sd_m"),
-        ("y_m", "position_sd_m"),
-        ("psi_rad", "heading_sd_rad"),
-    ):
-        column = recording.signals.get(name, NOTHING)
-        there = np.flatnonzero(np.isfinite(column))[: FEW + BEHIND]
-        sensed = sensed_noise(vessel, [recording], family) if len(there) > BEHIND else 0.0
-        for first in range(len(there) - BEHIND):
-            rows = there[first : first + BEHIND + 1]
-            y, t = column[rows], recording.t[rows] - recording.t[rows[0]]
-            powers = np.vander(t[1:], 3)  # of a parabola, whose last coefficient is where it began
-            inverse = np.linalg.pinv(powers.T @ powers)
-            course = inverse @ (powers.T @ y[1:])
-            off = float(np.sqrt(np.sum((y[1:] - powers @ course) ** 2) / (BEHIND - 3)))
-            if abs(y[0] - course[2]) > ASTRAY * max(sensed, off) * np.sqrt(1.0 + inverse[2, 2]):
-                late = max(late, int(rows[0]) + 1)
-    return late
+    fitted = config.start_course_fixes
+    dropped = 0
+    for name, family in NOISE_FAMILIES.items():
+        column = recording.signals.get(name, NO_VALUES)
+        known = np.flatnonzero(np.isfinite(column))[: config.start_max_outliers + fitted]
+        if len(known) <= fitted:
+            continue
+        noise = sensed_noise(vessel, [recording], family)
+        for first in range(len(known) - fitted):
+            rows = known[first : first + fitted + 1]
+            t = recording.t[rows] - recording.t[rows[0]]
+            if _is_off_course(t, column[rows], noise, config):
+                dropped = max(dropped, int(rows[0]) + 1)
+    return dropped
 
 
-def outlying(t: Array, values: Array, finest: float, longest: float) -> NDArray[np.bool_]:
-    """Rows of values (N, C) that are away from where the rows before lead to, if it comes back there soon.
+def _is_off_course(t: Array, y: Array, noise: float, config: ChecksConfig) -> bool:
+    """Whether the first of some fixes is off the parabola through the others."""
+    powers = np.vander(t[1:], 3)  # the last coefficient is the value at the first fix
+    inverse = np.linalg.pinv(powers.T @ powers)
+    course = inverse @ (powers.T @ y[1:])
+    freedom = len(t) - 1 - 3
+    residual = float(np.sqrt(np.sum((y[1:] - powers @ course) ** 2) / freedom))
+    limit = config.start_min_sds * max(noise, residual) * np.sqrt(1.0 + inverse[2, 2])
+    return bool(abs(y[0] - course[2]) > limit)
 
-    `finest` is the least sd of a prediction over one step; they are away for less than `longest` s.
+
+def outlier_rows(
+    t: Array, values: Array, finest: float, duration: float, config: ChecksConfig
+) -> NDArray[np.bool_]:
+    """Return the rows that leave the course of the rows before and return to it soon.
+
+    Args:
+        t: Times (N,) [s].
+        values: Values (N, C); nan where nothing was measured.
+        finest: Least sd of a prediction over one step, in the unit of the values.
+        duration: Outliers last less than this time [s].
+        config: Thresholds of the checks.
+
+    Returns:
+        True (N,) for outliers.
     """
-    there = np.flatnonzero(np.isfinite(values).all(axis=1))
-    away = np.zeros(len(t), dtype=np.bool_)
-    if len(there) <= 2 * BEFORE:
-        return away
-    t, y, step = t[there], values[there], float(np.median(np.diff(t)))
-    if len(t) <= 2 * longest / step:
-        return away
-    expected = y[1:-1] + (y[1:-1] - y[:-2]) * ((t[2:] - t[1:-1]) / (t[1:-1] - t[:-2]))[:, None]
-    leap = SURE * max(0.5 * float(np.quantile(np.abs(y[2:] - expected).max(axis=1), MOST)), finest)
-    wide = max(1, round(0.5 * longest / step))
-    bent = np.abs(y[2 * wide :] - 2.0 * y[wide:-wide] + y[: -2 * wide]).max(axis=1)
-    quick = QUICK * float(np.median(bent)) / (wide * step) ** 2
-    k = BEFORE
+    before = config.outlier_speed_fixes
+    known = np.flatnonzero(np.isfinite(values).all(axis=1))
+    outlier = np.zeros(len(t), dtype=np.bool_)
+    if len(known) <= 2 * before:
+        return outlier
+    t = t[known]
+    y = values[known]
+    step = float(np.median(np.diff(t)))
+    if len(t) <= 2 * duration / step:
+        return outlier
+    jump = _smallest_jump(t, y, finest, config)
+    acceleration = _allowed_acceleration(y, step, duration, config)
+    k = before
     while k < len(t):
-        since = t[k - BEFORE : k] - t[k - BEFORE : k].mean()
-        middle, speed = y[k - BEFORE : k].mean(axis=0), since @ y[k - BEFORE : k] / (since @ since)
-        gap = t[k : k + LOOKED] - t[k - 1]
-        off = y[k : k + LOOKED] - middle - speed * (gap + since[-1])[:, None]
-        fits = np.abs(off).max(axis=1) < leap * (1.0 + SLACK * (gap / step - 1.0)) + quick * gap**2
+        since = t[k - before : k] - t[k - before : k].mean()
+        middle = y[k - before : k].mean(axis=0)
+        speed = since @ y[k - before : k] / (since @ since)
+        ahead = slice(k, k + config.outlier_search_rows)
+        gap = t[ahead] - t[k - 1]
+        off = y[ahead] - middle - speed * (gap + since[-1])[:, None]
+        slack = 1.0 + config.outlier_speed_slack * (gap / step - 1.0)
+        fits = np.abs(off).max(axis=1) < jump * slack + acceleration * gap**2
         back = int(np.argmax(fits))
-        was, left = (np.abs(off[i]).max() for i in (back - 1, back))
-        leaps_back = back and gap[back] < longest and was - left > max(leap, 0.5 * was)
-        if leaps_back and fits[back : back + STAYS].all():
-            away[there[k : k + back]] = True
+        if back and gap[back] < duration and _returns(off, fits, back, jump, config):
+            outlier[known[k : k + back]] = True
             share = (gap[:back] / gap[back])[:, None]
             y[k : k + back] = (1.0 - share) * y[k - 1] + share * y[k + back]
             k += back
         k += 1
-    return away
+    return outlier
+
+
+def _smallest_jump(t: Array, y: Array, finest: float, config: ChecksConfig) -> float:
+    """Deviation from a prediction over one step above which a value is an outlier."""
+    ratio = ((t[2:] - t[1:-1]) / (t[1:-1] - t[:-2]))[:, None]
+    expected = y[1:-1] + (y[1:-1] - y[:-2]) * ratio
+    errors = np.abs(y[2:] - expected).max(axis=1)
+    # for a normal variable the default quantile lies at two standard deviations
+    sd = 0.5 * float(np.quantile(errors, config.outlier_noise_quantile))
+    return config.outlier_min_sds * max(sd, finest)
+
+
+def _allowed_acceleration(y: Array, step: float, duration: float, config: ChecksConfig) -> float:
+    """Acceleration that the boat may have had, in the unit of the values per s^2."""
+    wide = max(1, round(0.5 * duration / step))
+    bend = np.abs(y[2 * wide :] - 2.0 * y[wide:-wide] + y[: -2 * wide]).max(axis=1)
+    return config.outlier_max_acceleration * float(np.median(bend)) / (wide * step) ** 2
+
+
+def _returns(
+    off: Array, fits: NDArray[np.bool_], back: int, jump: float, config: ChecksConfig
+) -> bool:
+    """Whether the values return to the course by a jump in row `back` and stay there."""
+    last = np.abs(off[back - 1]).max()
+    returned = np.abs(off[back]).max()
+    stays = fits[back : back + config.outlier_return_fixes].all()
+    return bool(last - returned > max(jump, config.outlier_min_return * last) and stays)

@@ -1,147 +1,190 @@
-"""Recorded velocities that disagree with the recorded positions: another sign or unit, late, or of another point."""
+"""Check for recorded velocities that contradict the recorded positions.
+
+Such a velocity has another sign or unit, a delay, or belongs to another point of the hull.
+"""
 
 import numpy as np
 
 from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
 from boatsim.recordings.table import Recording
 
-NEEDED, RATES = ("x_m", "y_m", "psi_rad"), ("u_mps", "v_mps", "r_radps")
-WINDOW = 1.0  # [s] over which positions are differenced, on a boat of 1.2 m
-ALIKE = 0.9  # correlation from which both show the same motion
-NEAR = 1.2  # factor by which a ratio may miss that of a unit
-HALF = 0.5  # of what is left over, at most, once a lag or a lever is taken into account
-SMALL = 0.02  # of the size, from which it counts what is left over
-LEVER = 0.1  # of the length, from which a point is another
+POSE = ("x_m", "y_m", "psi_rad")
+RATES = ("u_mps", "v_mps", "r_radps")
+SPEED_UNITS = ("kn", "kmh", "cmps")
 
 
-def look(recording: Recording, vessel: Vessel) -> list[Finding]:
-    """Each recorded rate beside the one that follows from the poses."""
-    if any(n not in recording.signals or not np.isfinite(recording[n]).all() for n in NEEDED):
+def check_recorded_rates(
+    recording: Recording, vessel: Vessel, config: ChecksConfig
+) -> list[Finding]:
+    """Compare each recorded rate with the one that follows from the poses.
+
+    Args:
+        recording: A prepared recording.
+        vessel: The vessel; its length scales lengths and durations.
+        config: Thresholds of the checks.
+
+    Returns:
+        Findings "velocity_sign", "velocity_unit", "velocity_late" and "velocity_elsewhere".
+    """
+    for name in POSE:
+        if name not in recording.signals or not np.isfinite(recording[name]).all():
+            return []
+    half = _half_window(recording, vessel, config)
+    too_short = len(recording) < 4 * half + config.rates_min_rows
+    if too_short or not set(RATES) & recording.signals.keys():
         return []
-    if (
-        len(recording) < 4 * followed_rows(recording, vessel) + 30
-        or not set(RATES) & recording.signals.keys()
-    ):
-        return []
-    followed = _rates(recording, vessel)
-    rows = followed.pop("rows").astype(np.int64)
+    differenced = _rates_of_poses(recording, half)
     found = []
-    for name, rate in followed.items():
+    for name, rate in differenced.items():
         if name in recording.signals and np.isfinite(recording[name]).all():
-            smooth = _smooth(recording[name], followed_rows(recording, vessel))[rows]
-            found += _compared(recording, name, smooth, rate, followed["r_radps"], vessel)
+            recorded = _moving_average(recording[name], half)[half : len(recording) - half]
+            step = float(np.median(np.diff(recording.t)))
+            yaw_rate = differenced["r_radps"]
+            found += _compare(name, recorded, rate, yaw_rate, step, vessel, config)
     return found
 
 
-def followed_rows(recording: Recording, vessel: Vessel) -> int:
+def _half_window(recording: Recording, vessel: Vessel, config: ChecksConfig) -> int:
     """Rows on either side over which positions are differenced."""
     step = float(np.median(np.diff(recording.t)))
-    return max(1, round(0.5 * WINDOW * froude_time(vessel) / step))
+    return max(1, round(0.5 * config.rates_window * froude_time(vessel) / step))
 
 
-def _rates(recording: Recording, vessel: Vessel) -> dict[str, Array]:
-    """u, v, r by central differences, and the rows they are of."""
-    k = followed_rows(recording, vessel)
+def _rates_of_poses(recording: Recording, k: int) -> dict[str, Array]:
+    """Rates u, v, r (N - 2 k,) by central differences over k rows on either side."""
     rows = np.arange(k, len(recording) - k)
     span = recording.t[rows + k] - recording.t[rows - k]
-    dx, dy, dpsi = ((recording[n][rows + k] - recording[n][rows - k]) / span for n in NEEDED)
-    psi = _smooth(recording["psi_rad"], k)[rows]
-    c, s = np.cos(psi), np.sin(psi)
-    return {
-        "u_mps": c * dx + s * dy,
-        "v_mps": c * dy - s * dx,
-        "r_radps": dpsi,
-        "rows": rows.astype(float),
-    }
+    dx, dy, dpsi = ((recording[n][rows + k] - recording[n][rows - k]) / span for n in POSE)
+    psi = _moving_average(recording["psi_rad"], k)[rows]
+    c = np.cos(psi)
+    s = np.sin(psi)
+    return {"u_mps": c * dx + s * dy, "v_mps": c * dy - s * dx, "r_radps": dpsi}
 
 
-def _smooth(values: Array, k: int) -> Array:
-    """Mean over k rows on either side, as a central difference takes it."""
+def _moving_average(values: Array, k: int) -> Array:
+    """Mean (N,) over k rows on either side; the first and last k values are unchanged."""
     total = np.concatenate(([0.0], np.cumsum(values)))
     mean = values.copy()
     mean[k:-k] = (total[2 * k + 1 :] - total[: -2 * k - 1])[: len(values) - 2 * k] / (2 * k + 1)
     return mean
 
 
-def _compared(
-    recording: Recording, name: str, recorded: Array, rate: Array, r: Array, vessel: Vessel
+def _compare(
+    name: str,
+    recorded: Array,
+    rate: Array,
+    yaw_rate: Array,
+    step: float,
+    vessel: Vessel,
+    config: ChecksConfig,
 ) -> list[Finding]:
-    if len(rate) < 30 or not recorded.std() > 0.0 or not rate.std() > 0.0:
+    if len(rate) < config.rates_min_rows or not recorded.std() > 0.0 or not rate.std() > 0.0:
         return []
-    like = float(np.corrcoef(recorded, rate)[0, 1])
+    correlation = float(np.corrcoef(recorded, rate)[0, 1])
     ratio = float(np.sqrt((rate @ rate) / (recorded @ recorded)))
-    if like < -ALIKE and 1.0 / 1.5 < ratio < 1.5:
-        evidence = (
-            f"{name} goes against what follows from x_m, y_m, psi_rad (correlation {like:.2f})"
-        )
-        return [Finding("velocity_sign", evidence, sure=0.99, changes=(Change(name, name, -1.0),))]
-    if like > ALIKE and name != "r_radps":
-        for unit in ("kn", "kmh", "cmps"):
-            if 1.0 / NEAR < ratio / UNITS[unit] < NEAR and not 1.0 / 1.5 < ratio < 1.5:
-                evidence = (
-                    f"{name} is {1.0 / ratio:.3g} times what follows from x_m, y_m: it is in {unit}"
+    same_size = 1.0 / config.rates_size_ratio < ratio < config.rates_size_ratio
+    if correlation < -config.rates_min_correlation and same_size:
+        return [
+            Finding(
+                "velocity_sign",
+                f"{name} has the opposite sign of the rate of x_m, y_m, psi_rad "
+                f"(correlation {correlation:.2f})",
+                probability=config.probability_evident,
+                changes=(Change(name, name, -1.0),),
+            )
+        ]
+    if correlation > config.rates_min_correlation and name != "r_radps" and not same_size:
+        found = _check_unit(name, ratio, config)
+        if found:
+            return found
+    if same_size and correlation > config.rates_min_delay_correlation:
+        found = _check_delay(name, recorded, rate, step, vessel, config)
+        if found:
+            return found
+    if name == "v_mps":
+        return _check_lever(name, recorded, rate, yaw_rate, vessel, config)
+    return []
+
+
+def _check_unit(name: str, ratio: float, config: ChecksConfig) -> list[Finding]:
+    tolerance = config.rates_unit_tolerance
+    for unit in SPEED_UNITS:
+        if 1.0 / tolerance < ratio / UNITS[unit] < tolerance:
+            return [
+                Finding(
+                    "velocity_unit",
+                    f"{name} is {1.0 / ratio:.3g} times the rate of x_m, y_m. It is in {unit}",
+                    probability=config.probability_strong,
+                    changes=(Change(name, name, UNITS[unit]),),
                 )
-                return [
-                    Finding(
-                        "velocity_unit",
-                        evidence,
-                        sure=0.95,
-                        changes=(Change(name, name, UNITS[unit]),),
-                    )
-                ]
-    late = 1.0 / 1.5 < ratio < 1.5 and like > 0.3 and _late(recording, name, recorded, rate, vessel)
-    return late or _elsewhere(name, recorded, rate, r, vessel)
+            ]
+    return []
 
 
-def _late(
-    recording: Recording, name: str, recorded: Array, rate: Array, vessel: Vessel
+def _check_delay(
+    name: str, recorded: Array, rate: Array, step: float, vessel: Vessel, config: ChecksConfig
 ) -> list[Finding]:
-    step = float(np.median(np.diff(recording.t)))
-    most = round(2.0 * froude_time(vessel) / step)
-    least = max(2, round(0.1 * froude_time(vessel) / step))
+    most = round(config.rates_max_delay * froude_time(vessel) / step)
+    least = max(2, round(config.rates_min_delay * froude_time(vessel) / step))
     if most <= least or len(rate) < 10 * most:
         return []
-    inside = slice(most, -most)
-    left = {}
+    residuals = {}
     for lag in range(-most, most + 1):
-        moved = recorded[most + lag : len(recorded) - most + lag]
-        left[lag] = float(np.mean((moved - rate[inside]) ** 2))
-    best = min(left, key=lambda k: left[k])
-    large = left[0] > SMALL * float(np.mean(rate**2))
-    if abs(best) < least or abs(best) == most or left[best] > 0.3 * left[0] or not large:
+        shifted = recorded[most + lag : len(recorded) - most + lag]
+        residuals[lag] = float(np.mean((shifted - rate[most:-most]) ** 2))
+    best = min(residuals, key=lambda lag: residuals[lag])
+    clear = residuals[best] <= config.rates_max_delay_residual * residuals[0]
+    large = residuals[0] > config.rates_min_difference * float(np.mean(rate**2))
+    if abs(best) < least or abs(best) == most or not clear or not large:
         return []
-    words = "late" if best > 0 else "early"
-    evidence = (
-        f"{name} is {abs(best) * step:.3g} s {words} beside x_m, y_m, psi_rad, which takes away "
-    )
-    evidence += f"{100.0 * (1.0 - left[best] / left[0]):.0f} % of what they differ by"
-    return [Finding("velocity_late", evidence, sure=0.9, changes=(_aside(name),))]
+    sense = "behind" if best > 0 else "ahead of"
+    removed = 100.0 * (1.0 - residuals[best] / residuals[0])
+    return [
+        Finding(
+            "velocity_late",
+            f"{name} is {abs(best) * step:.3g} s {sense} x_m, y_m, psi_rad. This delay explains "
+            f"{removed:.0f} % of their difference",
+            probability=config.probability_likely,
+            changes=(_ignore_column(name),),
+        )
+    ]
 
 
-def _elsewhere(name: str, recorded: Array, rate: Array, r: Array, vessel: Vessel) -> list[Finding]:
-    if name != "v_mps":
+def _check_lever(
+    name: str,
+    recorded: Array,
+    rate: Array,
+    yaw_rate: Array,
+    vessel: Vessel,
+    config: ChecksConfig,
+) -> list[Finding]:
+    difference = recorded - rate
+    A = np.column_stack([yaw_rate, np.ones_like(yaw_rate)])
+    (lever, _), *_ = np.linalg.lstsq(A, difference, rcond=None)
+    before = float(np.var(difference))
+    after = float(np.var(difference - A[:, 0] * lever))
+    if abs(lever) < config.rates_min_lever * vessel.length:
         return []
-    off = recorded - rate
-    A = np.column_stack([r, np.ones_like(r)])
-    (lever, _), *_ = np.linalg.lstsq(A, off, rcond=None)
-    left, before = float(np.var(off - A[:, 0] * lever)), float(np.var(off))
-    if (
-        abs(lever) < LEVER * vessel.length
-        or left > HALF * before
-        or before < SMALL * float(np.mean(rate**2))
-    ):
+    if after > config.rates_max_lever_residual * before:
         return []
-    where = "ahead of" if lever > 0.0 else "behind"
-    evidence = (
-        f"{name} is that of a point {abs(lever):.3g} m {where} the one whose x_m, y_m are recorded"
-    )
-    return [Finding("velocity_elsewhere", evidence, sure=0.9, changes=(_aside(name),))]
+    if before < config.rates_min_difference * float(np.mean(rate**2)):
+        return []
+    side = "ahead of" if lever > 0.0 else "behind"
+    return [
+        Finding(
+            "velocity_elsewhere",
+            f"{name} is the velocity of a point {abs(lever):.3g} m {side} the point of x_m, y_m",
+            probability=config.probability_likely,
+            changes=(_ignore_column(name),),
+        )
+    ]
 
 
-def _aside(name: str) -> Change:
-    """The column under a name that no fit looks at."""
+def _ignore_column(name: str) -> Change:
+    """Change that gives a column a name that is not used in a fit."""
     return Change(f"estimate_{name}", name)

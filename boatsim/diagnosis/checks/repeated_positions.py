@@ -1,6 +1,6 @@
-"""Fixes that a logger repeats until the next one comes: the repetitions are no measurements.
+"""Fixes that a logger repeats until the next one: the repetitions are not measurements.
 
-Taken for measurements they would say that the boat stood still and then leapt, ten times a second.
+If they were used, the boat would seem to stand still and then to jump, many times a second.
 """
 
 from dataclasses import replace
@@ -10,21 +10,29 @@ import numpy as np
 from boatsim.recordings.repeated_values import repeats
 from boatsim.recordings.table import Recording
 
-TOGETHER = (("x_m", "y_m"), ("psi_rad",))  # columns that come with one fix
+COLUMNS_OF_ONE_FIX = (("x_m", "y_m"), ("psi_rad",))
 
 
-def without_repeats(recording: Recording) -> Recording:
-    """The recording with repeated fixes left out (nan); a remark says how many."""
-    signals, remarks = dict(recording.signals), list(recording.remarks)
-    for names in TOGETHER:
-        there = [n for n in names if n in signals]
-        if len(there) < len(names):
+def drop_repeated_positions(recording: Recording) -> Recording:
+    """Return the recording with repeated fixes replaced by nan.
+
+    Args:
+        recording: A prepared recording.
+
+    Returns:
+        The recording; a remark per fix type counts the repetitions.
+    """
+    signals = dict(recording.signals)
+    remarks = list(recording.remarks)
+    for names in COLUMNS_OF_ONE_FIX:
+        if any(n not in signals for n in names):
             continue
-        repeated = repeats(np.column_stack([signals[n] for n in there]))
+        repeated = repeats(np.column_stack([signals[n] for n in names]))
         if repeated.any():
             remarks.append(
-                f"{recording.path or recording.name}: {', '.join(there)} repeat each fix until the next; "
-                f"{int(repeated.sum())} of {len(recording)} rows are repetitions and are not used"
+                f"{recording.path or recording.name}: {', '.join(names)} repeat each fix until the "
+                f"next. {int(repeated.sum())} of {len(recording)} rows are repetitions and are not "
+                "used"
             )
-            signals |= {n: np.where(repeated, np.nan, signals[n]) for n in there}
+            signals |= {n: np.where(repeated, np.nan, signals[n]) for n in names}
     return replace(recording, signals=signals, remarks=tuple(remarks))

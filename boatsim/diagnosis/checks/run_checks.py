@@ -1,56 +1,89 @@
-"""All looks at a log, in order: at the table as written, at the recording as it is opened, and laid on its vessel."""
+"""All checks of a log in order: of the file as written, of the prepared recording, of its content."""
 
 from dataclasses import replace
 from pathlib import Path
 
-from boatsim.diagnosis.checks import (
-    angle_unit,
-    clock,
-    column_names,
-    command_unit,
-    data_cleaning,
-    excitation,
-    interpolated_positions,
-    position_jumps,
-    position_unit,
-    recorded_rates,
-    saturation,
-    time_unit,
-)
-from boatsim.diagnosis.checks.finding import Finding, applied
+from boatsim.diagnosis.checks.angle_unit import check_angle_unit
+from boatsim.diagnosis.checks.clock import check_clock
+from boatsim.diagnosis.checks.column_names import check_column_names
+from boatsim.diagnosis.checks.command_unit import check_command_unit
+from boatsim.diagnosis.checks.data_cleaning import cleaning_findings
+from boatsim.diagnosis.checks.excitation import check_excitation
+from boatsim.diagnosis.checks.finding import Finding, apply_changes
+from boatsim.diagnosis.checks.interpolated_positions import check_interpolated_positions
+from boatsim.diagnosis.checks.position_jumps import check_position_jumps
+from boatsim.diagnosis.checks.position_unit import check_position_unit
+from boatsim.diagnosis.checks.recorded_rates import check_recorded_rates
+from boatsim.diagnosis.checks.saturation import check_saturation
+from boatsim.diagnosis.checks.time_unit import check_time_unit
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording, as_written
 
-AS_WRITTEN = (column_names, time_unit, clock, position_unit, angle_unit, command_unit)
-OPENED = (interpolated_positions, position_jumps, recorded_rates)
-LIMITS = (saturation, excitation)
+TABLE_CHECKS = (
+    check_column_names,
+    check_time_unit,
+    check_clock,
+    check_position_unit,
+    check_angle_unit,
+    check_command_unit,
+)
+RECORDING_CHECKS = (check_interpolated_positions, check_position_jumps, check_recorded_rates)
+IDENTIFIABILITY_CHECKS = (check_saturation, check_excitation)
 
 
-def at_the_table(path: Path, vessel: Vessel) -> list[Finding]:
-    """Faults of units and of the clock, of a file that may be refused for them. Raises BadInput if it is no table."""
+def check_table(path: Path, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    """Check the units and the clock of a file, which may be too faulty to be read as a recording.
+
+    Args:
+        path: The file.
+        vessel: The vessel that it is a recording of.
+        config: Thresholds of the checks.
+
+    Raises:
+        BadInput: The file is not a table.
+    """
     recording, _ = as_written(path, vessel.columns)
-    if (part := recording.notes.use) and (
-        (recording.t >= part[0]) & (recording.t <= part[1])
-    ).any():
+    use = recording.notes.use
+    if use and ((recording.t >= use[0]) & (recording.t <= use[1])).any():
         recording = recording.used()
     found: list[Finding] = []
-    for look in AS_WRITTEN:
-        new = look.look(recording, vessel)
+    for check in TABLE_CHECKS:
+        new = check(recording, vessel, config)
         for finding in new:
-            recording = applied(recording, finding.changes)
+            recording = apply_changes(recording, finding.changes)
         found += new
     return [replace(f, run=str(path)) for f in found]
 
 
-def at_the_recording(recording: Recording, thinned: Recording, vessel: Vessel) -> list[Finding]:
-    """Faults of an opened recording, and what a diagnosis leaves out of it (`thinned`)."""
-    found = data_cleaning.findings(thinned)
-    for look in OPENED:
-        found += look.look(recording, vessel)
+def check_recording(
+    recording: Recording, cleaned: Recording, vessel: Vessel, config: ChecksConfig
+) -> list[Finding]:
+    """Check a prepared recording, and list what was ignored in the cleaned one.
+
+    Args:
+        recording: The prepared recording.
+        cleaned: The same recording, cleaned.
+        vessel: The vessel that it is a recording of.
+        config: Thresholds of the checks.
+    """
+    found = cleaning_findings(cleaned)
+    for check in RECORDING_CHECKS:
+        found += check(recording, vessel, config)
     return [replace(f, run=str(recording.path or recording.name)) for f in found]
 
 
-def at_the_limits(recording: Recording, vessel: Vessel) -> list[Finding]:
-    """What can not be told from a recording."""
-    found = [f for look in LIMITS for f in look.look(recording, vessel)]
+def check_identifiability(
+    recording: Recording, vessel: Vessel, config: ChecksConfig
+) -> list[Finding]:
+    """Find coefficients that a recording can not identify, because its motions lack variety.
+
+    Args:
+        recording: A prepared recording.
+        vessel: The vessel that it is a recording of.
+        config: Thresholds of the checks.
+    """
+    found: list[Finding] = []
+    for check in IDENTIFIABILITY_CHECKS:
+        found += check(recording, vessel, config)
     return [replace(f, run=str(recording.path or recording.name)) for f in found]

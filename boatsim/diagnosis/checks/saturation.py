@@ -1,29 +1,42 @@
-"""Commands that are at their limits for long: what lies beyond can not be told."""
+"""Check for commands that stay at their limits, so that their gain can not be identified."""
 
 import math
 
 import numpy as np
 
 from boatsim.diagnosis.checks.finding import Finding
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-MUCH = 0.5  # of the rows
-AT = 1e-3  # of the range, by which a command at its limit may miss it
 
+def check_saturation(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    """Find commands that are at a limit in most rows, unless the limit is their neutral value.
 
-def look(recording: Recording, vessel: Vessel) -> list[Finding]:
-    """Channels that are at their upper or lower limit in most rows, the limit not being their rest."""
+    Args:
+        recording: A prepared recording.
+        vessel: The vessel with its command limits.
+        config: Thresholds of the checks.
+
+    Returns:
+        Findings "saturated" of kind "limit".
+    """
     found = []
-    for name, c in vessel.commands.items():
-        if name not in recording.signals or not math.isfinite(c.high - c.low):
+    for name, command in vessel.commands.items():
+        span = command.high - command.low
+        if name not in recording.signals or not math.isfinite(span):
             continue
-        for limit in (c.low, c.high):
-            at = np.abs(recording[name] - limit) <= AT * (c.high - c.low)
-            if at.mean() > MUCH and limit != c.neutral:
-                evidence = (
-                    f"{name} is at its limit {limit:g} in {100.0 * at.mean():.0f} % of the rows"
+        for limit in (command.low, command.high):
+            at_limit = np.abs(recording[name] - limit) <= config.saturation_tolerance * span
+            share = at_limit.mean()
+            if share > config.saturation_min_share and limit != command.neutral:
+                found.append(
+                    Finding(
+                        "saturated",
+                        f"{name} is at its limit {limit:g} in {100.0 * share:.0f} % of the rows",
+                        "limit",
+                        remedy="its gain and its nonlinearity can not be distinguished; "
+                        "record smaller commands too",
+                    )
                 )
-                remedy = "its gain and a law that bends it can not be told apart; record smaller commands too"
-                found.append(Finding("saturated", evidence, "limit", remedy=remedy))
     return found

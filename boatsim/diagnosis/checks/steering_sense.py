@@ -1,68 +1,86 @@
-"""Which way a recording's rudder steers: some count its angle positive to starboard, some to port."""
+"""Sign convention of a recording's rudder: its angle may be positive to starboard or to port."""
 
 from dataclasses import replace
 
 import numpy as np
 
+from boatsim.diagnosis.config import ChecksConfig
+from boatsim.physics.base import Array
+from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
-GRAVITY = 9.81  # [m/s^2]
-# sqrt(length / g): the time in which a hull at Froude number 0.14 sails half its length
-RESPONSE = 3.5
-SURE = 0.3  # correlation of rudder and turning beyond which there is no doubt
+# text of the remark about a command
+REMARK = "positive {} turns the hull to the other side; its sign is changed"
 
 
-def steered(recording: Recording, vessel: Vessel) -> Recording:
-    """The recording with rudders counted as the vessel counts them (`turns`); a remark says where a sign changed."""
+def correct_rudder_sense(recording: Recording, vessel: Vessel, config: ChecksConfig) -> Recording:
+    """Return the recording with rudder angles in the sign convention of the vessel.
+
+    Args:
+        recording: The recording, with unwrapped angles.
+        vessel: The vessel; each rudder command specifies to which side it turns.
+        config: Thresholds of the checks.
+
+    Returns:
+        The recording, with a remark for each changed sign.
+    """
     for name, command in vessel.commands.items():
-        if command.turns and name in recording.signals and "psi_rad" in recording.signals:
-            sense = turning(recording, name, vessel.length) * (
-                1.0 if command.turns == "starboard" else -1.0
+        if not command.turns or not {name, "psi_rad"} <= recording.signals.keys():
+            continue
+        duration = config.rudder_response_time * np.sqrt(vessel.length / GRAVITY)
+        correlation = steering_correlation(recording, name, duration)
+        if command.turns != "starboard":
+            correlation = -correlation
+        if correlation < -config.rudder_min_correlation:
+            remark = f"{recording.path or recording.name}: {REMARK.format(name)}"
+            recording = replace(
+                recording,
+                signals={**recording.signals, name: -recording.signals[name]},
+                remarks=(*recording.remarks, remark),
             )
-            if sense < -SURE:
-                remark = f"{recording.path or recording.name}: positive {name} turns the other way; its sign is changed"
-                signals = {**recording.signals, name: -recording.signals[name]}
-                recording = replace(
-                    recording, signals=signals, remarks=(*recording.remarks, remark)
-                )
     return recording
 
 
-def turned(recording: Recording) -> list[str]:
-    """Commands whose sign `steered` has changed, as its remarks say."""
-    return [
-        n
-        for n in recording.signals
-        for r in recording.remarks
-        if f"positive {n} turns the other way" in r
-    ]
+def reversed_commands(recording: Recording) -> list[str]:
+    """Return the commands whose sign `correct_rudder_sense` has changed, from the remarks."""
+    remarks = "\n".join(recording.remarks)
+    return [name for name in recording.signals if REMARK.format(name) in remarks]
 
 
-def turning(recording: Recording, name: str, length: float) -> float:
-    """Correlation of a command with the turning after it, given the turning before: 1 steers to starboard, -1 to port.
+def steering_correlation(recording: Recording, name: str, duration: float) -> float:
+    """Return the correlation of a command with the turn that follows, given the turn before.
 
-    Without the turning before, an unstable hull that is being checked would look as if its rudder acted backwards.
+    The turn before must be taken into account: the rudder that checks the turn of an unstable hull
+    would otherwise seem to act backwards.
+
+    Args:
+        recording: The recording with a heading.
+        name: The command.
+        duration: Response time of the hull [s].
+
+    Returns:
+        1 for a command that steers to starboard, -1 for one that steers to port.
     """
-    there = np.isfinite(recording.signals["psi_rad"])
-    t, psi, span = (
-        recording.t[there],
-        recording.signals["psi_rad"][there],
-        RESPONSE * np.sqrt(length / GRAVITY),
-    )
-    inside = (t >= t[0] + span) & (t <= t[-1] - span)
+    known = np.isfinite(recording.signals["psi_rad"])
+    t = recording.t[known]
+    psi = recording.signals["psi_rad"][known]
+    inside = (t >= t[0] + duration) & (t <= t[-1] - duration)
     now = psi[inside]
     if len(now) < 2:
         return 0.0
-    before, after = (
-        now - np.interp(t[inside] - span, t, psi),
-        np.interp(t[inside] + span, t, psi) - now,
-    )
+    before = now - np.interp(t[inside] - duration, t, psi)
+    after = np.interp(t[inside] + duration, t, psi) - now
     if not before @ before > 0.0:
         return 0.0
-    drive, gained = (
-        x - before * (x @ before) / (before @ before)
-        for x in (recording.signals[name][there][inside], after)
-    )
-    size = np.linalg.norm(drive) * np.linalg.norm(gained)
-    return float(drive @ gained / size) if size > 0.0 else 0.0
+    command = _orthogonal(recording.signals[name][known][inside], before)
+    turn = _orthogonal(after, before)
+    size = np.linalg.norm(command) * np.linalg.norm(turn)
+    if not size > 0.0:
+        return 0.0
+    return float(command @ turn / size)
+
+
+def _orthogonal(values: Array, reference: Array) -> Array:
+    """The part of values (N,) that is orthogonal to a reference (N,)."""
+    return np.asarray(values - reference * (values @ reference) / (reference @ reference))

@@ -1,30 +1,43 @@
-"""Time stamps in milli-, micro- or nanoseconds: rows lie so far apart that no boat could be followed."""
+"""Check for time stamps in milliseconds, microseconds or nanoseconds."""
 
 import numpy as np
 
 from boatsim.diagnosis.checks.finding import Change, Finding
+from boatsim.diagnosis.config import ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import UNITS
 from boatsim.recordings.table import Recording
 
-TOO_LONG = 5.0  # [s] between rows on a boat of 1.2 m, in which it sails four lengths
-USUAL = 0.1  # [s] between rows of a log, usually, and how far from it one may be, as a factor
-FAR = 100.0
+TIME_UNITS = ("ms", "us", "ns")
 
 
-def look(recording: Recording, vessel: Vessel) -> list[Finding]:
-    """Whether the rows lie as far apart as no log's do, and in another unit lie as those of a log."""
+def check_time_unit(recording: Recording, vessel: Vessel, config: ChecksConfig) -> list[Finding]:
+    """Find rows that are too far apart in seconds, but not in a smaller unit.
+
+    Args:
+        recording: The recording as written in the file.
+        vessel: The vessel; its length scales the durations.
+        config: Thresholds of the checks.
+
+    Returns:
+        At most one finding "time_unit".
+    """
     steps = np.diff(recording.t[np.isfinite(recording.t)])
     forward = steps[steps > 0.0]
-    if not len(forward) or (step := float(np.median(forward))) < TOO_LONG * froude_time(vessel):
+    if not len(forward):
         return []
-    near = {unit: abs(np.log(step * UNITS[unit] / USUAL)) for unit in ("ms", "us", "ns")}
-    unit = min(near, key=lambda u: near[u])
-    if near[unit] > np.log(FAR):
+    step = float(np.median(forward))
+    if step < config.time_max_step * froude_time(vessel):
         return []
+    deviations = [abs(np.log(step * UNITS[u] / config.time_usual_step)) for u in TIME_UNITS]
+    best = int(np.argmin(deviations))
+    if deviations[best] > np.log(config.time_step_tolerance):
+        return []
+    unit = TIME_UNITS[best]
     evidence = (
-        f"rows lie {step:.6g} s apart, too far to follow a hull of {vessel.length:g} m; in {unit} that is "
-        f"{step * UNITS[unit]:.4g} s"
+        f"rows are {step:.6g} s apart, too far for a hull of {vessel.length:g} m. In {unit} they "
+        f"are {step * UNITS[unit]:.4g} s apart"
     )
-    return [Finding("time_unit", evidence, sure=0.99, changes=(Change("t_s", "t_s", UNITS[unit]),))]
+    changes = (Change("t_s", "t_s", UNITS[unit]),)
+    return [Finding("time_unit", evidence, probability=config.probability_evident, changes=changes)]

@@ -1,4 +1,4 @@
-"""Readings of a direction that go round: 6.2 and then 0.1 rad is a small step, and the mean of the two is not 3.1."""
+"""Unwrapping of measured directions, so that rows on both sides of a full turn can be averaged."""
 
 from dataclasses import replace
 
@@ -8,9 +8,15 @@ from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
 
-def unwound(recording: Recording, vessel: Vessel) -> Recording:
-    """The recording with measured directions that never jump by a turn, so that rows may be averaged."""
-    there = [n for n in vessel.reading_angles if n in recording.signals]
-    return replace(
-        recording, signals=recording.signals | {n: np.unwrap(recording[n]) for n in there}
-    )
+def unwrap_directions(recording: Recording, vessel: Vessel) -> Recording:
+    """Return the recording with measured directions that do not jump by a full turn.
+
+    Args:
+        recording: The recording.
+        vessel: The vessel, which lists its measured directions (`reading_angles`).
+    """
+    signals = dict(recording.signals)
+    for name in vessel.reading_angles:
+        if name in signals:
+            signals[name] = np.unwrap(recording[name])
+    return replace(recording, signals=signals)
