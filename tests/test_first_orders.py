@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from boatsim.diagnosis.candidates import composed
-from boatsim.diagnosis.checks.initial_actuator_state import begun
+from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, nominal_levels
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.replay import as_written
@@ -36,7 +36,7 @@ def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recor
     levels = nominal_levels(boat, [log])
     late = log.between(3.0, 20.0)
     for recording, rows in ((log, 2), (late, 1)):  # of commands, which stay as they are
-        assert len(begun(map_recording(recording, program), levels).orders) == rows
+        assert len(with_initial_actuators(map_recording(recording, program), levels).orders) == rows
 
 
 def test_where_nothing_tells_the_actuators_have_settled(log: Recording) -> None:
@@ -44,4 +44,4 @@ def test_where_nothing_tells_the_actuators_have_settled(log: Recording) -> None:
     program, _ = composed(boat)
     still = replace(log, signals=log.signals | {n: np.zeros(len(log)) for n in boat.commands})
     laid = map_recording(still, program)
-    assert begun(laid, nominal_levels(boat, [still])) is laid
+    assert with_initial_actuators(laid, nominal_levels(boat, [still])) is laid

@@ -8,7 +8,7 @@ import pytest
 from answers import diagnosed
 from real_boat import Real, recorded
 
-from boatsim.diagnosis.checks.repeated_positions import repeats, without_repeats
+from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions, repeats
 from boatsim.recordings.table import Recording
 
 
@@ -23,7 +23,7 @@ def held(run: Recording, rows: int) -> Recording:
 def test_repetitions_are_found_and_nothing_else() -> None:
     run = recorded(Real(), 1)
     assert not repeats(np.column_stack([run["x_m"], run["y_m"]])).any()
-    found = without_repeats(held(run, 4))
+    found = drop_repeated_positions(held(run, 4))
     assert np.flatnonzero(np.isfinite(found["x_m"])).tolist() == list(range(0, len(run), 4))
     assert np.isfinite(found["psi_rad"]).all() and "x_m, y_m repeat each fix" in found.remarks[-1]
 

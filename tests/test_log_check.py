@@ -14,8 +14,8 @@ from real_boat import Real, recorded
 from typer.testing import CliRunner
 
 from boatsim.cli.commands import app
-from boatsim.diagnosis.checks.finding import Change, applied, lines
-from boatsim.diagnosis.checks.position_jumps import leaps
+from boatsim.diagnosis.checks.finding import Change, apply_changes, column_lines
+from boatsim.diagnosis.checks.position_jumps import jump_rows
 from boatsim.diagnosis.pipeline import check, diagnose, vessel_for
 from boatsim.errors import BadInput
 from boatsim.physics import vessel
@@ -254,9 +254,9 @@ def test_hard_turns_and_crash_stops_are_no_leaps() -> None:
         speed[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0
     )
     path += 0.003 * rng.standard_normal(path.shape)
-    assert not len(leaps(t, path))
+    assert not len(jump_rows(t, path))
     moved = path + np.where(t[:, None] > 30.0, [[1.0, 0.0]], 0.0)
-    assert leaps(t, moved).tolist() == [int(np.flatnonzero(t <= 30.0)[-1])]
+    assert jump_rows(t, moved).tolist() == [int(np.flatnonzero(t <= 30.0)[-1])]
 
 
 @pytest.mark.parametrize(
@@ -268,11 +268,11 @@ def test_a_line_says_what_the_change_does(change: Change) -> None:
     raw = {"heading_deg": 30.0 * t, "east": 7.0 * t}
     sources = {"psi_rad": parse("heading_deg * deg"), "y_m": parse("east * ft")}
     ours = {name: e.of(raw[e.signal]) for name, e in sources.items()}
-    line = lines([change], sources)[0]
+    line = column_lines([change], sources)[0]
     name, _, text = line.partition(" = ")
     made = parse(text.strip('"'))
-    wanted = applied(Recording("run", t, ours), [change])[change.ours]
-    assert name == change.ours and np.allclose(made.of(raw[made.signal]), wanted, atol=1e-9)
+    wanted = apply_changes(Recording("run", t, ours), [change])[change.column]
+    assert name == change.column and np.allclose(made.of(raw[made.signal]), wanted, atol=1e-9)
 
 
 def test_all_mistakes_of_a_file_are_said_at_once(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from boatsim.cli.commands import app
-from boatsim.diagnosis.checks.course_over_ground import aside
+from boatsim.diagnosis.checks.course_over_ground import heading_offset
 from boatsim.diagnosis.pipeline import check
 from boatsim.physics import vessel as vessels
 from boatsim.physics.base import Array
@@ -98,7 +98,9 @@ def test_way_and_bow_tell_a_turned_compass_from_a_current(
     rib: Vessel, current: complex, degrees: float
 ) -> None:
     log = turned(sailed(rib, current=current), degrees)
-    angle = aside([Recording("run", log["t_s"], {n: v for n, v in log.items() if n != "t_s"})], rib)
+    angle = heading_offset(
+        [Recording("run", log["t_s"], {n: v for n, v in log.items() if n != "t_s"})], rib
+    )
     assert angle is not None
     assert abs(np.angle(np.exp(1j * (angle + np.radians(degrees))))) < np.radians(4.0)
 
@@ -106,7 +108,7 @@ def test_way_and_bow_tell_a_turned_compass_from_a_current(
 def test_on_one_course_nobody_can_tell_a_current_from_a_compass(rib: Vessel) -> None:
     t: Array = np.arange(0.0, 60.0, 0.2)
     log = {"x_m": 2.0 * t, "y_m": 1.2 * t, "psi_rad": 0.0 * t, "thrust_motor_N": 0.0 * t + 500.0}
-    assert aside([Recording("run", t, log | {"steer_motor_rad": 0.0 * t})], rib) is None
+    assert heading_offset([Recording("run", t, log | {"steer_motor_rad": 0.0 * t})], rib) is None
 
 
 @pytest.mark.parametrize("imported", [False, True])

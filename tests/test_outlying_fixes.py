@@ -8,7 +8,11 @@ import pytest
 from answers import diagnosed, nothing_missing
 from real_boat import Real, recorded
 
-from boatsim.diagnosis.checks.position_outliers import begins_astray, outlying, without_outliers
+from boatsim.diagnosis.checks.position_outliers import (
+    drop_position_outliers,
+    outlier_rows,
+    outlier_rows_at_start,
+)
 from boatsim.physics import vessel
 from boatsim.recordings.table import Recording
 
@@ -31,10 +35,10 @@ def astray(run: Recording, off: float, rows: slice = BURST) -> Recording:
 def test_a_burst_of_any_length_is_found_and_nothing_else(rows: slice) -> None:
     run, boat = recorded(Real(), 1), vessel.load("trial_boat")
     assert (
-        not without_outliers(run, boat).remarks
-        and not without_outliers(recorded(Real(), 2), boat).remarks
+        not drop_position_outliers(run, boat).remarks
+        and not drop_position_outliers(recorded(Real(), 2), boat).remarks
     )
-    found = without_outliers(astray(run, 0.4, rows), boat)
+    found = drop_position_outliers(astray(run, 0.4, rows), boat)
     assert np.flatnonzero(np.isnan(found["x_m"])).tolist() == list(range(rows.start, rows.stop))
     assert np.isfinite(found["psi_rad"]).all() and "leap away and come back" in found.remarks[-1]
 
@@ -50,9 +54,9 @@ def test_what_a_boat_can_do_is_no_leap(noise: float) -> None:
         speed[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0
     )
     path += noise * rng.standard_normal(path.shape)
-    assert not outlying(t, path, FINEST, LONGEST).any()
+    assert not outlier_rows(t, path, FINEST, LONGEST).any()
     moved = path + np.where(t[:, None] > 30.0, 2.0, 0.0)
-    assert not outlying(t, moved, FINEST, LONGEST).any()
+    assert not outlier_rows(t, moved, FINEST, LONGEST).any()
 
 
 def test_a_diagnosis_is_not_misled_by_bursts(tmp_path: Path) -> None:
@@ -63,9 +67,9 @@ def test_a_diagnosis_is_not_misled_by_bursts(tmp_path: Path) -> None:
 def test_a_recording_that_begins_with_a_fix_astray_begins_a_row_later(tmp_path: Path) -> None:
     """The filter starts from the first fix: one that is off gave the hull other damping (Eastward Ho, 36 noise sds)."""
     runs, boat = [recorded(Real(), s) for s in (1, 2, 3)], vessel.load("trial_boat")
-    assert [begins_astray(r, boat) for r in runs] == [0, 0, 0]
+    assert [outlier_rows_at_start(r, boat) for r in runs] == [0, 0, 0]
     first = [astray(runs[0], 0.2, slice(0, 1)), astray(runs[1], -0.2, slice(0, 2)), runs[2]]
-    assert [begins_astray(r, boat) for r in first] == [1, 2, 0]
-    begun = without_outliers(first[1], boat)
+    assert [outlier_rows_at_start(r, boat) for r in first] == [1, 2, 0]
+    begun = drop_position_outliers(first[1], boat)
     assert begun.t[0] == runs[1].t[2] and f"before t = {begun.t[0]:g} s" in begun.remarks[0]
     nothing_missing(diagnosed(first, tmp_path, "trial_boat"))

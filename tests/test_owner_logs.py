@@ -213,7 +213,7 @@ def test_findings_are_read_from_what_check_prints() -> None:
 
     text = (
         "run.csv: probably your log, not your boat\n"
-        "  heading in degrees (sure to 99 %): psi_rad goes from 1 to 300\n"
+        "  heading in degrees (probability 99 %): psi_rad goes from 1 to 300\n"
         '    write into recording.toml: [columns] / psi_rad = "psi_rad * deg"\n'
     )
     found = findings(Said(1, text, "", 0.0))

@@ -515,7 +515,7 @@ def test_a_rudder_counted_to_port_is_turned_and_said_so(tmp_path: Path) -> None:
     )
     assert said["delta_rad"] == pytest.approx(ours["delta_rad"]) and not ours.remarks
     assert said.remarks[-1].endswith(
-        "theirs.csv: positive delta_rad turns the other way; its sign is changed"
+        "theirs.csv: positive delta_rad turns the hull to the other side; its sign is changed"
     )
 
 

@@ -4,8 +4,8 @@ import sys
 from pathlib import Path
 
 from boatsim.cli.exits import Exit, complain, say, words
-from boatsim.diagnosis.checks.entry import in_words
-from boatsim.diagnosis.checks.finding import PROBABLY
+from boatsim.diagnosis.checks.entry import entry_text
+from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.diagnosis.pipeline import check
 from boatsim.errors import shown
 
@@ -21,11 +21,11 @@ def check_logs(runs: list[Path], vessel: str | None, load: list[str]) -> int:
         if wrong or not refused:
             say(
                 [
-                    f"{shown(str(path))}: {PROBABLY if faults else 'a diagnosis allows for it' if wrong else CLEAN}"
+                    f"{shown(str(path))}: {LOG_NOT_BOAT if faults else 'a diagnosis corrects this automatically' if wrong else CLEAN}"
                 ]
             )
         for e in wrong:
-            say(f"  {line}" for line in in_words(e))
+            say(f"  {line}" for line in entry_text(e))
         for e in entries:
             if e["kind"] == "limit":
                 say([f"  can not be told: {e['evidence']}: {e.get('remedy', '')}"])

@@ -9,7 +9,7 @@ import numpy as np
 
 from boatsim.cli.exits import remark, say
 from boatsim.cli.progress import reporting
-from boatsim.diagnosis.checks.entry import in_words
+from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.config import from_settings
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnosis.pipeline import NEXT, Diagnosis, hint, open_recording
@@ -62,7 +62,7 @@ def diagnose(
         full = _unwritten(found, out)
     faults = [e for e in found.findings.answer.get("log", []) if e["kind"] == "fault"]
     for line in (
-        *(f"{e['run']}: {words.strip()}" for e in faults for words in in_words(e)),
+        *(f"{e['run']}: {words.strip()}" for e in faults for words in entry_text(e)),
         *found.remarks,
     ):
         remark(line)

@@ -18,11 +18,11 @@ from boatsim.diagnosis.candidates import (
     without_ruled_out,
 )
 from boatsim.diagnosis.checks import data_cleaning, run_checks
-from boatsim.diagnosis.checks.entry import entry, joined, sources_of
-from boatsim.diagnosis.checks.finding import PROBABLY, Finding
-from boatsim.diagnosis.checks.hypothesis_test import tried
-from boatsim.diagnosis.checks.initial_actuator_state import begun
-from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
+from boatsim.diagnosis.checks.entry import column_sources, log_entry, on_one_line
+from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
+from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
+from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
+from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
 from boatsim.diagnosis.correlation_time import timed
 from boatsim.diagnosis.covariance_inflation import widened
 from boatsim.diagnosis.experiment_design import next_experiment
@@ -83,7 +83,8 @@ class Diagnosis:
         self, recording: Recording, stated: Mapping[str, float] | None = None
     ) -> MappedRecording:
         """A further recording on the same program, with the laws that were described; `stated` is sensor noise."""
-        made = begun(map_recording(recording, self.problem.program, stated), self.problem.ambient)
+        mapped = map_recording(recording, self.problem.program, stated)
+        made = with_initial_actuators(mapped, self.problem.ambient, self.problem.config.checks)
         for w in self.ranking.description.terms if self.ranking.description else ():
             write(self.problem, w.term.name, w.term, [made])
         return made
@@ -121,10 +122,16 @@ def vessel_for(path: Path, vessel: str | None, load: Sequence[str]) -> Vessel:
     return vessels.load(same, load or notes.load, notes.settings)
 
 
-def open_recording(path: Path, vessel: str | None, load: Sequence[str]) -> tuple[Recording, Vessel]:
+def open_recording(
+    path: Path,
+    vessel: str | None,
+    load: Sequence[str],
+    config: DiagnosisConfig = DEFAULT,
+) -> tuple[Recording, Vessel]:
     """A recording read with its vessel's names of columns and command limits. Raises BadInput."""
     found = vessel_for(path, vessel, load)
-    return data_cleaning.opened(read(path, found.limits(), found.columns), found), found
+    recording = read(path, found.limits(), found.columns)
+    return data_cleaning.prepare_recording(recording, found, config.checks), found
 
 
 def diagnose(
@@ -151,7 +158,7 @@ def diagnose(
             f"reading {len(paths)} {'recording' if len(paths) == 1 else 'recordings'}",
             READ * i / len(paths),
         )
-        opened.append(open_recording(path, vessel, load))
+        opened.append(open_recording(path, vessel, load, config))
     report(LOOKING, READ)
     stated = [replace(r.notes, facts={**(facts or {}), **r.notes.facts}) for r, _ in opened]
     opened = [(replace(r, notes=notes), b) for (r, b), notes in zip(opened, stated, strict=True)]
@@ -160,12 +167,12 @@ def diagnose(
         raise BadInput(
             f"recordings of different vessels: {', '.join(sorted({b.name for b in boats}))}"
         )
-    lasts = data_cleaning.lasting([r for r, _ in opened])
-    thin = [data_cleaning.thinned(r, b, lasts) for r, b in opened]
+    duration = data_cleaning.total_duration([r for r, _ in opened])
+    thin = [data_cleaning.clean_recording(r, b, duration, config) for r, b in opened]
     seen = [
         f
         for (r, b), t in zip(opened, thin, strict=True)
-        for f in run_checks.at_the_recording(r, t, b)
+        for f in run_checks.check_recording(r, t, b, config.checks)
     ]
     named = [replace(r, name=n) for r, n in zip(thin, _names([*runs, *hold_out]), strict=True)]
     fitted, held_out, note = before_after.split(named[: len(runs)], named[len(runs) :])
@@ -196,11 +203,16 @@ def pose(
     stated, levels = noise_of(boat, fitted), nominal_levels(boat, fitted)
 
     def lay(recording: Recording) -> MappedRecording:
-        return begun(map_recording(recording, programs[recording.path], stated), levels)
+        mapped = map_recording(recording, programs[recording.path], stated)
+        return with_initial_actuators(mapped, levels, config.checks)
 
     laid = [lay(r) for r in fitted]
     laid += [
-        begun(map_recording(r, programs[r.path], stated, noise_beside(boat, fitted, r)), levels)
+        with_initial_actuators(
+            map_recording(r, programs[r.path], stated, noise_beside(boat, fitted, r)),
+            levels,
+            config.checks,
+        )
         for r in held_out
     ]
     uncertainty = priors.uncertainty(boat)
@@ -217,7 +229,10 @@ def pose(
 
 
 def check(
-    runs: Sequence[Path], vessel: str | None = None, load: Sequence[str] = ()
+    runs: Sequence[Path],
+    vessel: str | None = None,
+    load: Sequence[str] = (),
+    config: DiagnosisConfig = DEFAULT,
 ) -> tuple[dict[Path, list[LogEntry]], list[BadInput]]:
     """What is wrong with each of some files, and what can not be told from it; and those that can not be read at all.
 
@@ -233,29 +248,34 @@ def check(
     for path, boat in boats.items():
         table = []
         try:
-            found += (table := run_checks.at_the_table(path, boat))
-            opened = data_cleaning.opened(read(path, boat.limits(), boat.columns), boat)
+            found += (table := run_checks.check_table(path, boat, config.checks))
+            read_recording = read(path, boat.limits(), boat.columns)
+            opened = data_cleaning.prepare_recording(read_recording, boat, config.checks)
         except BadInput as error:
             if not table:
                 refused.append(error)
             continue
-        thinned = data_cleaning.thinned(opened, boat, data_cleaning.lasting([opened]))
+        duration = data_cleaning.total_duration([opened])
+        thinned = data_cleaning.clean_recording(opened, boat, duration, config)
         found += [
-            *run_checks.at_the_recording(opened, thinned, boat),
-            *run_checks.at_the_limits(opened, boat),
+            *run_checks.check_recording(opened, thinned, boat, config.checks),
+            *run_checks.check_identifiability(opened, boat, config.checks),
         ]
         if not table:
             thin.append(replace(thinned, name=str(path)))
     if thin:
         try:
             known: dict[Path | None, Vessel] = dict(boats.items())
-            problem, _, lay, _ = pose(thin, (), known)
-            found += [replace(f, run=str(thin[0].path)) for f in tried(thin, lay, problem)]
+            problem, _, lay, _ = pose(thin, (), known, config=config)
+            found += [
+                replace(f, run=str(thin[0].path))
+                for f in compare_reinterpretations(thin, lay, problem)
+            ]
         except BadInput as error:
             refused.append(error)
     by_file = {path: [f for f in found if f.run == str(path)] for path in runs}
     return {
-        p: [entry(f, sources_of(f, f.run, boats[p])) for f in fs] for p, fs in by_file.items()
+        p: [log_entry(f, column_sources(f.run, boats[p])) for f in fs] for p, fs in by_file.items()
     }, refused
 
 
@@ -266,12 +286,12 @@ def hint(
     for path in (*runs, *hold_out):
         try:
             boat = vessel_for(path, vessel, load)
-            found = run_checks.at_the_table(path, boat)
+            found = run_checks.check_table(path, boat, DEFAULT.checks)
         except BadInput:
             return ""
-        for made in (entry(f, sources_of(f, f.run, boat)) for f in found):
+        for made in (log_entry(f, column_sources(f.run, boat)) for f in found):
             if made["lines"]:
-                return f"; {PROBABLY}: {made['name'].replace('_', ' ')}, write into recording.toml {joined(made['lines'])}"
+                return f"; {LOG_NOT_BOAT}: {made['name'].replace('_', ' ')}, write into recording.toml {on_one_line(made['lines'])}"
     return ""
 
 
@@ -303,7 +323,7 @@ def diagnose_recordings(
             1, "blas"
         ):  # matrices are small: threads cost more, on a busy machine twentyfold
             report("laying the log on the vessel, as it may have been meant", RANKING[0] / 2)
-            seen = [*seen, *tried(fitted, lay, problem)]
+            seen = [*seen, *compare_reinterpretations(fitted, lay, problem)]
             ranking = rank(problem, candidates, held_out_tracks, report=part(report, *RANKING))
             a_fact = "time_constant_s" in fitted[0].notes.ambient
             report("choosing the correlation time of the water", RANKING[1])
@@ -326,24 +346,28 @@ def diagnose_recordings(
             f"{where}: {boat.name} can not follow this recording ({error}); are its units right?"
         ) from None
     assumptions.add(findings.answer, problem, there, candidates)
-    _add_log(findings.answer, seen, fitted[0], boats)
+    _add_log(findings.answer, seen, fitted[0], boats, config.checks)
     findings.answer["seconds"] = round(time.perf_counter() - begin, 3)
     return Diagnosis(findings, boat, problem, ranking, remarks, plan)
 
 
 def _add_log(
-    answer: Answer, seen: Sequence[Finding], first: Recording, boats: Mapping[Path | None, Vessel]
+    answer: Answer,
+    seen: Sequence[Finding],
+    first: Recording,
+    boats: Mapping[Path | None, Vessel],
+    config: ChecksConfig,
 ) -> None:
     """What is wrong with the log itself; what is certain of the whole of it comes first in the verdict."""
     named = [f if f.run else replace(f, run=str(first.path or first.name)) for f in seen]
     paths = {str(path): boat for path, boat in boats.items()}
     answer["log"] = [
-        entry(f, sources_of(f, f.run, paths.get(f.run, boats[first.path]))) for f in named
+        log_entry(f, column_sources(f.run, paths.get(f.run, boats[first.path]))) for f in named
     ]
-    if certain := [f.said for f in named if f.of_the_whole_log]:
+    if certain := [f.description for f in named if f.invalidates_log(config)]:
         rest = answer["sentence"]
         answer["sentence"] = (
-            f"{capital(PROBABLY)}: {listed(certain)}. Taken as it is: {rest[:1].lower()}{rest[1:]}"
+            f"{capital(LOG_NOT_BOAT)}: {listed(certain)}. Taken as it is: {rest[:1].lower()}{rest[1:]}"
         )
 
 

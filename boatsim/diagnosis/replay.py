@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.candidates import composed
-from boatsim.diagnosis.checks.initial_actuator_state import begun
+from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, nominal_levels
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
 from boatsim.diagnosis.noise_levels import fit_noise
@@ -55,6 +55,8 @@ def as_written(recording: Recording, boat: Vessel, told: Report = silent) -> tup
     told("compiling, or loading what was compiled before", 0.1)
     program, acting = composed(boat)
     levels = nominal_levels(boat, [recording])
-    problem = Problem([begun(map_recording(recording, program), levels)], levels, {})
+    problem = Problem(
+        [with_initial_actuators(map_recording(recording, program), levels)], levels, {}
+    )
     told("fitting the noise", 0.3)
     return problem, fit_noise(problem, replace(problem.nominal(), effects=acting))

@@ -17,8 +17,8 @@ from threadpoolctl import threadpool_limits
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import composed
-from boatsim.diagnosis.checks.data_cleaning import lasting, thinned
-from boatsim.diagnosis.checks.initial_actuator_state import begun
+from boatsim.diagnosis.checks.data_cleaning import clean_recording, total_duration
+from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.filter import map_recording, nominal_levels
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import errors, free_runs
@@ -80,8 +80,8 @@ def fitted(
     report(f"reading {len(logs) + len(held_out)} logs")
     opened = [open_recording(path, str(vessel_file), ()) for path in (*logs, *held_out)]
     boat = opened[0][1]
-    lasts = lasting([r for r, _ in opened])
-    whole = [thinned(r, boat, lasts) for r, _ in opened]
+    duration = total_duration([r for r, _ in opened])
+    whole = [clean_recording(r, boat, duration) for r, _ in opened]
     parts = [_parted(r) for r in whole[: len(logs)]]
     first = whole[: len(logs)] if held_out else [a for a, _ in parts]
     last = whole[len(logs) :] if held_out else [b for _, b in parts]
@@ -125,7 +125,7 @@ def _problems(
     """The question to the parts that are fitted, and the same to those that judge."""
     program, _ = composed(boat)
     levels = nominal_levels(boat, first)
-    laid = [begun(map_recording(r, program), levels) for r in first]
+    laid = [with_initial_actuators(map_recording(r, program), levels) for r in first]
     problem = Problem(laid, levels, priors.uncertainty(boat))
     return problem, problem.on([map_recording(r, program) for r in last])
 

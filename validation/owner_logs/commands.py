@@ -57,7 +57,7 @@ class Finding:
     allowed: bool = False  # a diagnosis allows for it by itself
 
 
-FOUND = re.compile(r"^  (?P<name>[a-z][a-z _]*) \(sure to (?P<sure>[\d.]+) %\)")
+FOUND = re.compile(r"^  (?P<name>[a-z][a-z _]*) \(probability (?P<sure>[\d.]+) %\)")
 ALLOWED = "a diagnosis allows for it"
 WRITE = "    write into recording.toml: "
 

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import pipeline, priors
-from boatsim.diagnosis.checks.position_outliers import without_outliers
+from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.coordinate_search import climbed
 from boatsim.diagnosis.filter import MappedRecording, noise_of, segments
 from boatsim.diagnosis.fit import converge, fit
@@ -438,7 +438,7 @@ def opened(
     for name, path in runs.items():
         recording = completed(name, pipeline.open_recording(path, vessel, ())[0])
         parts = [r.thinned(rate) for r in sound(recording, path, SHORTEST)]
-        found[name] = Opened(without_outliers(recording.thinned(rate), boat), parts)
+        found[name] = Opened(drop_position_outliers(recording.thinned(rate), boat), parts)
     return found, boat
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import pipeline, priors
-from boatsim.diagnosis.checks.position_outliers import without_outliers
+from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, descend
 from boatsim.diagnosis.free_runs import errors, free_runs
@@ -153,7 +153,8 @@ def opened(runs: dict[str, Path], vessel: str) -> dict[str, Recording]:
     """Recordings as the diagnosis takes them."""
     read = {n: pipeline.open_recording(path, vessel, ()) for n, path in runs.items()}
     thin = {
-        n: without_outliers(r.thinned(min(RATE, priors.rate(b))), b) for n, (r, b) in read.items()
+        n: drop_position_outliers(r.thinned(min(RATE, priors.rate(b))), b)
+        for n, (r, b) in read.items()
     }
     return {
         n: replace(r, name=n, notes=replace(r.notes, facts={**FACTS, **r.notes.facts}))

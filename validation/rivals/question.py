@@ -13,8 +13,8 @@ from boatsim.cli import diagnosis as commands
 from boatsim.control.base import wrap
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import called, library_for
-from boatsim.diagnosis.checks.position_outliers import without_outliers
-from boatsim.diagnosis.checks.repeated_positions import without_repeats
+from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
+from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
 from boatsim.diagnosis.filter import map_recording, noise_of, nominal_levels
 from boatsim.diagnosis.pipeline import open_recording
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
@@ -50,7 +50,10 @@ def asked(trial: Path) -> Question:
     """The question of one trial: rows, noise and library as the diagnosis has them, random forces left out."""
     opened = [open_recording(trial / f"run_{i}.csv", vessel_of(trial), ()) for i in (1, 2)]
     vessel = opened[0][1]
-    runs = [without_outliers(without_repeats(r.thinned(priors.rate(b))), b) for r, b in opened]
+    runs = [
+        drop_position_outliers(drop_repeated_positions(r.thinned(priors.rate(b))), b)
+        for r, b in opened
+    ]
     columns = sorted({c for r in runs for c in r.signals})
     library = library_for(vessel, (), runs[0].notes.facts, columns)
     program = Program(vessel, library.compiled)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.config import ChecksConfig
+from boatsim.diagnosis.config import DEFAULT, ChecksConfig
 from boatsim.diagnosis.priors import froude_time
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
@@ -19,7 +19,7 @@ from boatsim.recordings.table import Recording
 
 
 def heading_offset(
-    recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig
+    recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig = DEFAULT.checks
 ) -> float | None:
     """Estimate the constant angle between heading and course through the water.
 

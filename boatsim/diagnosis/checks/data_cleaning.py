@@ -17,7 +17,7 @@ from boatsim.diagnosis.checks.reinterpretations import MIRRORED, MIRRORED_WORDS
 from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
 from boatsim.diagnosis.checks.steering_sense import correct_rudder_sense
 from boatsim.diagnosis.checks.wrapped_angles import unwrap_directions
-from boatsim.diagnosis.config import ChecksConfig
+from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
 
@@ -31,7 +31,9 @@ FINDING_OF_REMARK = {
 }
 
 
-def prepare_recording(recording: Recording, vessel: Vessel, config: ChecksConfig) -> Recording:
+def prepare_recording(
+    recording: Recording, vessel: Vessel, config: ChecksConfig = DEFAULT.checks
+) -> Recording:
     """Return the used part of a recording with consistent angles, rudder signs and positions.
 
     Args:
@@ -47,15 +49,18 @@ def prepare_recording(recording: Recording, vessel: Vessel, config: ChecksConfig
 
 
 def clean_recording(
-    recording: Recording, vessel: Vessel, config: ChecksConfig, duration: float = 0.0
+    recording: Recording,
+    vessel: Vessel,
+    duration: float = 0.0,
+    config: DiagnosisConfig = DEFAULT,
 ) -> Recording:
     """Reduce a prepared recording to the useful rate, without repeated fixes and outliers.
 
     Args:
         recording: A prepared recording.
         vessel: The vessel that it is a recording of.
-        config: Thresholds of the checks.
         duration: Total duration [s] of all recordings of the diagnosis, which sets the rate.
+        config: Settings; the groups `checks` and `load` are used.
 
     Returns:
         The cleaned recording; ignored values are nan, and its remarks list each correction.

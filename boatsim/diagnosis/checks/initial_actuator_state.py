@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.config import ChecksConfig
+from boatsim.diagnosis.config import DEFAULT, ChecksConfig
 from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
 from boatsim.physics.commands import sent_row, taken
 
@@ -17,7 +17,7 @@ COMMAND_LEAD = 1.0
 
 
 def with_initial_actuators(
-    recording: MappedRecording, levels: NoiseLevels, config: ChecksConfig
+    recording: MappedRecording, levels: NoiseLevels, config: ChecksConfig = DEFAULT.checks
 ) -> MappedRecording:
     """Return a recording whose actuators begin at rest, if the data show that.
 

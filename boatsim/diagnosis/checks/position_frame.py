@@ -9,14 +9,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.config import ChecksConfig
+from boatsim.diagnosis.config import DEFAULT, ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Recording
 
 NEEDED = ("x_m", "y_m", "psi_rad", "u_mps", "v_mps")
 
 
-def drop_rotated_positions(recording: Recording, config: ChecksConfig) -> Recording:
+def drop_rotated_positions(
+    recording: Recording, config: ChecksConfig = DEFAULT.checks
+) -> Recording:
     """Return the recording without positions that were rotated with the heading.
 
     Args:

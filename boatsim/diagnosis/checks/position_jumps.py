@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boatsim.diagnosis.checks.finding import MAX_LISTED, Finding, longest_part
-from boatsim.diagnosis.config import ChecksConfig
+from boatsim.diagnosis.config import DEFAULT, ChecksConfig
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -58,7 +58,7 @@ def _check_columns(
     ]
 
 
-def jump_rows(t: Array, values: Array, config: ChecksConfig) -> NDArray[np.int64]:
+def jump_rows(t: Array, values: Array, config: ChecksConfig = DEFAULT.checks) -> NDArray[np.int64]:
     """Return the rows after which values jump by more than the steps and courses around allow.
 
     Args:

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.config import ChecksConfig
-from boatsim.diagnosis.priors import FINEST, froude_time, sensed_noise
+from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
+from boatsim.diagnosis.priors import froude_time, sensed_noise
 from boatsim.physics.base import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -22,18 +22,20 @@ NOISE_FAMILIES = {
 }
 
 
-def drop_position_outliers(recording: Recording, vessel: Vessel, config: ChecksConfig) -> Recording:
+def drop_position_outliers(
+    recording: Recording, vessel: Vessel, config: DiagnosisConfig = DEFAULT
+) -> Recording:
     """Return the recording without outliers of positions and headings.
 
     Args:
         recording: A prepared recording.
         vessel: The vessel; its length scales distances and durations.
-        config: Thresholds of the checks.
+        config: Settings; the groups `checks` and `load` are used.
 
     Returns:
         The recording from its first row on the course; outliers are nan, and remarks count them.
     """
-    first = outlier_rows_at_start(recording, vessel, config)
+    first = outlier_rows_at_start(recording, vessel, config.checks)
     if first:
         kept = recording.between(float(recording.t[first]), float(recording.t[-1]))
         remark = (
@@ -43,12 +45,13 @@ def drop_position_outliers(recording: Recording, vessel: Vessel, config: ChecksC
         recording = replace(kept, remarks=(*kept.remarks, remark))
     signals = dict(recording.signals)
     remarks = list(recording.remarks)
-    duration = config.outlier_max_duration * froude_time(vessel)
+    duration = config.checks.outlier_max_duration * froude_time(vessel)
     for names, scale in ((("x_m", "y_m"), vessel.length), (("psi_rad",), 1.0)):
         if any(n not in signals for n in names):
             continue
         values = np.column_stack([signals[n] for n in names])
-        outlier = outlier_rows(recording.t, values, FINEST * scale, duration, config)
+        finest = config.load.finest_noise * scale
+        outlier = outlier_rows(recording.t, values, finest, duration, config.checks)
         if outlier.any():
             remarks.append(
                 f"{recording.path or recording.name}: {', '.join(names)} leap away and come back "
@@ -59,7 +62,9 @@ def drop_position_outliers(recording: Recording, vessel: Vessel, config: ChecksC
     return replace(recording, signals=signals, remarks=tuple(remarks))
 
 
-def outlier_rows_at_start(recording: Recording, vessel: Vessel, config: ChecksConfig) -> int:
+def outlier_rows_at_start(
+    recording: Recording, vessel: Vessel, config: ChecksConfig = DEFAULT.checks
+) -> int:
     """Return the number of rows to drop because a recording begins with an outlier.
 
     A filter starts from the first fix and can not reject it. Each of the first fixes is compared
@@ -98,7 +103,7 @@ def _is_off_course(t: Array, y: Array, noise: float, config: ChecksConfig) -> bo
 
 
 def outlier_rows(
-    t: Array, values: Array, finest: float, duration: float, config: ChecksConfig
+    t: Array, values: Array, finest: float, duration: float, config: ChecksConfig = DEFAULT.checks
 ) -> NDArray[np.bool_]:
     """Return the rows that leave the course of the rows before and return to it soon.
 

@@ -1,4 +1,4 @@
-"""All checks of a log in order: of the file as written, of the prepared recording, of its content."""
+"""All checks of a log in order: of the file, of the prepared recording, of its identifiability."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from boatsim.diagnosis.checks.finding import PROBABLY
+from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.diagnosis.report import mean_force_section
 from boatsim.diagnosis.report.blocks import Section, as_text, safe
 from boatsim.diagnosis.report.findings import Findings
@@ -76,7 +76,7 @@ def markdown(findings: Findings, sections: Sequence[Section]) -> str:
 def _headline(f: Findings) -> str:
     """The sentence of the answer, or the names alone where that would be a paragraph."""
     said = _sentence(f)
-    if said.startswith(capital(PROBABLY)):
+    if said.startswith(capital(LOG_NOT_BOAT)):
         return f"{said.partition('. ')[0]}."
     names = [plain(e["name"]) for e in f.answer["effects"]]
     if len(said) <= LONG or not names:
@@ -92,7 +92,7 @@ def _sentence(f: Findings) -> str:
 def _verdict(f: Findings) -> str:
     """The verdict in a word or two."""
     effects, verdict = f.answer["effects"], f.answer["verdict"]
-    if str(f.answer["sentence"]).startswith(capital(PROBABLY)):
+    if str(f.answer["sentence"]).startswith(capital(LOG_NOT_BOAT)):
         return LOG_FIRST
     if verdict == "unknown" and not tried(f.answer):
         return UNTRIED

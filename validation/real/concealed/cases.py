@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from boatsim.diagnosis import pipeline, priors
-from boatsim.diagnosis.checks.position_outliers import without_outliers
-from boatsim.diagnosis.checks.repeated_positions import without_repeats
+from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
+from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
 from boatsim.physics.base import Effect
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import Recording
@@ -71,7 +71,7 @@ def planar(
             whole, boat = pipeline.open_recording(path, patched or vessel, ())
             altered = alter(whole.between(whole.t[0], whole.t[0] + seconds))
             rate = min(priors.rate(boat), hertz or priors.rate(boat))
-            thin = without_outliers(without_repeats(altered.thinned(rate)), boat)
+            thin = drop_position_outliers(drop_repeated_positions(altered.thinned(rate)), boat)
             runs.append(replace(thin, name=run))
             boats.append(boat)
         return Laid(runs[: len(fitted)], runs[len(fitted) :], boats[0])
@@ -121,7 +121,9 @@ def esso(patched: str | None, alter: Alteration) -> Laid:
         stretches = esso_osaka_pond.sound(whole, path, esso_osaka_pond.SHORTEST)
         longest = max(stretches, key=lambda r: float(r.t[-1] - r.t[0]))
         part = alter(longest.between(longest.t[0], longest.t[0] + ESSO_LONGEST))
-        found.append(replace(without_outliers(part.thinned(priors.rate(boat)), boat), name=run))
+        found.append(
+            replace(drop_position_outliers(part.thinned(priors.rate(boat)), boat), name=run)
+        )
     assert boat is not None
     return Laid(found[: len(ESSO_FITTED)], found[len(ESSO_FITTED) :], boat)
 
