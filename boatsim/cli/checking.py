@@ -28,7 +28,7 @@ def check_logs(runs: list[Path], vessel: str | None, load: list[str]) -> int:
             say(f"  {line}" for line in entry_text(e))
         for e in entries:
             if e["kind"] == "limit":
-                say([f"  can not be told: {e['evidence']}: {e.get('remedy', '')}"])
+                say([f"  can not be identified: {e['evidence']}: {e.get('remedy', '')}"])
     for error in refused:
         complain(words(error))
     sys.stdout.flush()

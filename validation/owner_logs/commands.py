@@ -78,9 +78,9 @@ def findings(said: Said) -> list[Finding]:
 
 
 def limits(said: Said) -> list[str]:
-    """What check says can not be told."""
+    """What `boatsim check` can not identify."""
     return [
-        line.strip() for line in said.out.splitlines() if line.startswith("  can not be told: ")
+        line.strip() for line in said.out.splitlines() if line.startswith("  can not be identified: ")
     ]
 
 
