@@ -80,7 +80,9 @@ def findings(said: Said) -> list[Finding]:
 def limits(said: Said) -> list[str]:
     """What `boatsim check` can not identify."""
     return [
-        line.strip() for line in said.out.splitlines() if line.startswith("  can not be identified: ")
+        line.strip()
+        for line in said.out.splitlines()
+        if line.startswith("  can not be identified: ")
     ]
 
 
