@@ -1,4 +1,4 @@
-"""Abkowitz hull: surge, sway and yaw as a polynomial in speed loss, drift, rate of turn and rudder angle."""
+"""Abkowitz hull: polynomials in speed loss, drift, yaw rate and rudder angle."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -8,16 +8,26 @@ from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
-SLOWEST = 0.3  # of the approach speed; what tests about it say of slower ships is not defined there
+SLOWEST = 0.3  # share of the approach speed; captive tests about it do not define the model below this share
 
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Model accelerations, times the body's mass and inertia, less what a rigid body turning brings along by itself.
+    """Return the force that gives the accelerations of the polynomial model.
 
-    The model's own inertia, which need not be symmetric, is solved here; nondimensional as in the source: speeds over
-    the instantaneous U, times over L / U, the rudder's sign turned so that a positive angle steers to starboard. All of
-    it goes with the speed through the water: a uniform current carries ship, water and model along.
+    The model solves its own inertia matrix, which need not be symmetric. Its accelerations are
+    multiplied by the mass and the yaw inertia of the body, and the Coriolis terms that the
+    rigid-body equations add are subtracted. Derivatives are nondimensional as in the source:
+    velocities over the instantaneous speed U, yaw rate times L / U. The sign of the rudder angle is
+    reversed so that a positive angle turns to starboard. All velocities are relative to the water.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
     """
     U = max(sqrt(m.ur * m.ur + m.vr * m.vr), SLOWEST * q.speed)
     u, v, r, d = (m.ur - q.speed) / U, m.vr / U, m.r * q.length / U, -s.angle
@@ -56,20 +66,25 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 
 def derivative(name: str) -> float:
-    """A nondimensional derivative."""
+    """Return the parameter of a nondimensional derivative with the given name."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=f"{name}', nondimensional")
 
 
 def inertia(words: str) -> float:
-    """An entry of the nondimensional inertia."""
+    """Return the parameter of one entry of the nondimensional inertia matrix."""
     return param(1.0, low=-10.0, high=10.0, unit="", words=words)
 
 
 @dataclass(frozen=True)
 class AbkowitzHull(Force):
-    """A whole manoeuvring model from captive tests; rigid body and added mass are in its own inertia.
+    """Complete manoeuvring model from captive model tests, rigid body and added mass included.
 
-    The origin of motion is that of the derivatives.
+    m11 u' = X(du, v, r, delta), and with sway and yaw coupled by inertia:
+    [m22 m23; m32 m33] [v'; r'] = [Y(du, v, r, delta); N(du, v, r, delta)]
+
+    All quantities are nondimensional: du = (u - U0) / U, v / U, r L / U. X, Y and N are polynomials
+    up to third order. The origin of motion is the reference point of the derivatives. Below 0.3 of
+    the approach speed the speed U is held, because the tests do not define the model there.
     """
 
     words: ClassVar[str] = (
@@ -77,28 +92,33 @@ class AbkowitzHull(Force):
     )
     shown_by: ClassVar[str] = "turning circles and zig-zags"
     source: ClassVar[str] = "M. A. Abkowitz, Lectures on Ship Hydrodynamics, Hy-5, Lyngby 1964"
-    roles: ClassVar = {"angle": Role("rad", "the rudder, positive turns to starboard")}
+    roles: ClassVar = {"angle": Role("rad", "rudder angle, positive turns to starboard")}
     law: ClassVar = law
 
     length: float = param(
-        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
+        UNSET, low=0.0, high=500.0, unit="m", words="length of the ship, L", follows="vessel.length"
     )
     speed: float = param(
-        1.0, low=0.01, high=50.0, unit="m/s", words="approach speed of the derivatives"
+        1.0, low=0.01, high=50.0, unit="m/s", words="approach speed of the derivatives, U0"
     )
     mass: float = param(
-        UNSET, low=0.0, high=1e12, unit="kg", words="the body's", follows="vessel.body.mass"
+        UNSET, low=0.0, high=1e12, unit="kg", words="that of the body", follows="vessel.body.mass"
     )
     yaw_inertia: float = param(
         UNSET,
         low=0.0,
         high=1e16,
         unit="kg m^2",
-        words="the body's",
+        words="that of the body",
         follows="vessel.body.yaw_inertia",
     )
     gain: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="rudder force per stated one", calibrates="thrust"
+        1.0,
+        low=0.1,
+        high=5.0,
+        unit="",
+        words="rudder force over its specified value",
+        calibrates="thrust",
     )
     m11: float = inertia("m' - X_udot'")
     m22: float = inertia("m' - Y_vdot'")

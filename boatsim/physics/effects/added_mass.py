@@ -1,4 +1,4 @@
-"""Added mass: the water a hull sets in motion when it accelerates."""
+"""Added mass: inertia of the water that accelerates with the hull, and its Coriolis force."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -24,7 +24,16 @@ from boatsim.physics.base import (
 
 @njit(inline="always")
 def inertia(q: Any) -> Mass:
-    """Sway mass acts at its own centre, ahead and below, so it couples into yaw and roll."""
+    """Return the added mass matrix of the hull.
+
+    The sway added mass acts at (sway_at, sway_below) and so couples into roll and yaw.
+
+    Args:
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Entries of the mass matrix [kg, kg m, kg m^2] about the origin of motion.
+    """
     a, z = q.sway_at, q.sway_below
     return mass(
         surge=q.surge,
@@ -41,7 +50,17 @@ def inertia(q: Any) -> Mass:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Coriolis force -C_A(nu_r) nu_r of the added mass, Munk moment included (Fossen 2021, eqs 3.46 and 6.42)."""
+    """Return the Coriolis force of the added mass, -C_A(nu_r) nu_r, Munk moment included.
+
+    Fossen 2021, equations 3.46 and 6.42. `coriolis` scales the force.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     along = q.coriolis * q.surge * m.ur  # [kg m/s] momentum of the water, linear
     across = q.coriolis * q.sway * (m.vr - q.sway_below * m.p + q.sway_at * m.r)
     down = q.coriolis * q.heave * m.wr
@@ -60,10 +79,14 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class AddedMass(Inertia, Force):
-    """Inertia of the surrounding water about the origin of motion, and its Coriolis force.
+    """Added mass of the hull about the origin of motion, and its Coriolis and centripetal force.
 
-    With `spheroid` the values of surge, sway and yaw are those of a prolate spheroid of the vessel's length and draught
-    (H. Lamb, Hydrodynamics, 1932), and roll is `roll_share` of the body's own roll inertia, about the origin.
+    tau = -M_A nu_r' - coriolis C_A(nu_r) nu_r
+
+    M_A has the entries surge = -X_udot, sway = -Y_vdot, heave = -Z_wdot [kg] and roll = -K_pdot,
+    pitch = -M_qdot, yaw = -N_rdot [kg m^2]. With `spheroid` = 1 surge, sway and yaw are those of a
+    prolate spheroid of the vessel's length and draught (H. Lamb, Hydrodynamics, 1932), and roll is
+    `roll_share` times the roll inertia of the body, about the origin.
     """
 
     alone: ClassVar = True
@@ -121,17 +144,25 @@ class AddedMass(Inertia, Force):
         calibrates="added_mass",
     )
     sway_at: float = param(
-        0.0, low=-500.0, high=500.0, unit="m", words="sway added mass acts this far ahead"
+        0.0,
+        low=-500.0,
+        high=500.0,
+        unit="m",
+        words="centre of the sway added mass, ahead of the origin",
     )
     sway_below: float = param(
-        0.0, low=-100.0, high=100.0, unit="m", words="sway added mass acts this far below"
+        0.0,
+        low=-100.0,
+        high=100.0,
+        unit="m",
+        words="centre of the sway added mass, below the origin",
     )
     yaw: float = param(
         UNSET,
         low=0.0,
         high=1e13,
         unit="kg m^2",
-        words="-N_rdot about the point where sway acts",
+        words="-N_rdot about the centre of the sway added mass",
         fit=True,
         spread=0.7,
         axis="yaw",
@@ -142,24 +173,39 @@ class AddedMass(Inertia, Force):
         low=0.0,
         high=1e13,
         unit="kg m^2",
-        words="-K_pdot about that point",
+        words="-K_pdot about the centre of the sway added mass",
         fit=True,
         spread=0.02,
         axis="roll",
         calibrates="added_mass",
     )
     coriolis: float = param(
-        1.0, low=-1.0, high=3.0, unit="", words="share of the Coriolis force that is modelled"
+        1.0, low=-1.0, high=3.0, unit="", words="factor on the Coriolis force; 1: as the theory"
     )
     spheroid: float = param(
-        0.0, low=0.0, high=1.0, unit="", words="1: surge, sway, yaw and roll by the hull's size"
+        0.0,
+        low=0.0,
+        high=1.0,
+        unit="",
+        words="1: surge, sway, yaw and roll from the size of the hull",
     )
     roll_share: float = param(
-        0.2, low=0.0, high=2.0, unit="", words="roll inertia per the body's, if by size"
+        0.2,
+        low=0.0,
+        high=2.0,
+        unit="",
+        words="roll added inertia over that of the body, for spheroid = 1",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """Values by the vessel's size, where they are wanted."""
+        """Return the added masses [kg, kg m^2] of a spheroid of the vessel's size.
+
+        Args:
+            vessel: Vessel with length, draught [m] and body.
+
+        Returns:
+            Name of the parameter -> value; empty if `spheroid` is 0.
+        """
         if not self.spheroid:
             return {}
         share, body = particulars.spheroid(vessel.length, vessel.draught), vessel.body
@@ -175,30 +221,42 @@ class AddedMass(Inertia, Force):
 
 @dataclass(frozen=True)
 class AddedMassError(Release):
-    """Added mass off by a factor in each axis: another draught, shallow water, a wrong formula."""
+    """Added mass that differs from its specified value by one factor in each axis.
 
-    words: ClassVar[str] = "the added mass is off: the hull lies deeper or shallower than stated"
+    Causes are another draught, shallow water or a formula that does not suit the hull.
+    """
+
+    words: ClassVar[str] = (
+        "the added mass differs from its specified value: the hull floats deeper or shallower"
+    )
     shown_by: ClassVar[str] = AddedMass.shown_by
     source: ClassVar[str] = AddedMass.source
 
-    surge_factor: float = factor("added_mass.surge", words="surge", axis="surge")
-    sway_factor: float = factor("added_mass.sway", words="sway", axis="sway")
-    yaw_factor: float = factor("added_mass.yaw", words="yaw", axis="yaw")
+    surge_factor: float = factor(
+        "added_mass.surge", words="factor on the surge added mass", axis="surge"
+    )
+    sway_factor: float = factor(
+        "added_mass.sway", words="factor on the sway added mass", axis="sway"
+    )
+    yaw_factor: float = factor("added_mass.yaw", words="factor on the yaw added mass", axis="yaw")
 
 
 @dataclass(frozen=True)
 class AddedMassCoriolis(Release):
-    """What the Coriolis force of the vessel's own added mass has beyond the share its model keeps."""
+    """Share of the Coriolis force of the added mass that the vessel's model omits.
+
+    It adds `fraction` to the `coriolis` factor of the vessel's added mass.
+    """
 
     words: ClassVar[str] = (
         "the water that moves with the hull turns it broadside to its course (Munk moment)"
     )
-    shown_by: ClassVar[str] = "turning while making way sideways and ahead"
+    shown_by: ClassVar[str] = "turning while moving ahead and sideways"
     source: ClassVar[str] = AddedMass.source
 
     fraction: float = shift(
         "added_mass.coriolis",
-        words="share of the force that is missing",
+        words="share of the Coriolis force that the model omits",
         unit="",
         spread=0.8,
         low=-1.0,
@@ -208,11 +266,11 @@ class AddedMassCoriolis(Release):
 
 @dataclass(frozen=True)
 class ShallowWater(Release):
-    """What a small water depth adds to the sway and yaw of a hull that has added mass, and to its cross-flow drag."""
+    """Larger sway and yaw added mass and cross-flow drag in shallow water, by one factor k."""
 
     needs: ClassVar = ("sway", "yaw")
     told_by: ClassVar = ("added_mass_error",)
-    words: ClassVar[str] = "the bottom is near: sway and yaw move more water and drag more"
+    words: ClassVar[str] = "shallow water increases the added mass and the drag in sway and yaw"
     shown_by: ClassVar[str] = "the same sway in deep and in shallow water"
     source: ClassVar[str] = (
         "assumption [A] of the checked specification of Bayless 2017, section 2 (factor k)"
@@ -223,7 +281,7 @@ class ShallowWater(Release):
         "added_mass.yaw",
         "cross_flow_drag.section_drag_coefficient",
         "cross_flow_drag.linear",
-        words="k of shallow water; 1 in deep water",
+        words="factor k; 1 in deep water",
         low=1.0,
         high=10.0,
     )

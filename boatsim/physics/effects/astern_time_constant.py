@@ -1,4 +1,4 @@
-"""Astern time constant: a craft that goes astern turns more quickly or more slowly than one that goes ahead."""
+"""Astern time constant: yaw time constant of a jet craft that differs when it goes astern."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,7 +11,21 @@ from boatsim.physics.effects.reversing_jet import ahead
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """Nomoto's r' = (K delta - r) / T with another T astern: what jet and damping give, less what they would give."""
+    """Return the yaw moment that changes the time constant T to factor T astern.
+
+    The time constant is that of the yaw equation r' = (K delta - r) / T.
+
+    It is (1 / factor - 1) times the moment of jet and yaw damping, and zero going ahead.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals of the reversing_jet on which the effect acts.
+        t: Parameters of that reversing_jet.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     if m.ur >= 0.0:
         return wrench()
     return wrench(N=(1.0 / q.factor - 1.0) * (t.yaw * ahead(s) * s.angle - q.yaw * m.r))
@@ -19,7 +33,13 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class AsternTimeConstant(Force):
-    """The steady turn stays as it is; it is reached in another time while the hull goes astern."""
+    """Yaw time constant astern over that ahead; the steady rate of turn does not change.
+
+    N = (1 / factor - 1) (N_delta cos(2 beta) delta - d_r r)  for u_r < 0
+
+    `factor` is the ratio of the time constants, `yaw` the linear yaw damping d_r [N m s] of the
+    vessel.
+    """
 
     words: ClassVar[str] = (
         "going astern the craft turns with another time constant than going ahead"
@@ -33,8 +53,20 @@ class AsternTimeConstant(Force):
     starts: ClassVar = ({"factor": 0.7}, {"factor": 1.4})
 
     factor: float = param(
-        1.0, low=0.1, high=10.0, unit="", words="astern per ahead", fit=True, spread=0.4, absent=1.0
+        1.0,
+        low=0.1,
+        high=10.0,
+        unit="",
+        words="time constant astern over time constant ahead",
+        fit=True,
+        spread=0.4,
+        absent=1.0,
     )
     yaw: float = param(
-        UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw"
+        UNSET,
+        low=0.0,
+        high=1e13,
+        unit="N m s",
+        words="linear yaw damping of the vessel",
+        follows="linear_damping.yaw",
     )

@@ -1,4 +1,4 @@
-"""Bilge keels: a plate along each bilge that moves across the water when the hull rolls."""
+"""Bilge keels: roll damping by the drag of a plate along each bilge."""
 
 from dataclasses import dataclass
 from math import hypot, pi, sqrt
@@ -9,15 +9,25 @@ from numba import njit
 from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
-FLAT_PLATE = 2.4  # drag coefficient at a large swing (Ikeda)
-SMALL_SWING = 22.5  # grows with breadth per swing: 22.5 / pi breadth / (arm amplitude)
+FLAT_PLATE = 2.4  # drag coefficient at a large amplitude (Ikeda et al. 1978)
+SMALL_SWING = (
+    22.5  # of the part 22.5 / pi breadth / (arm amplitude) of the coefficient (Ikeda et al. 1978)
+)
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Drag of both keels, whose coefficient is 2.4 + 22.5 / pi breadth / (arm amplitude flow).
+    """Return the roll moment of the drag of both keels.
 
-    The second part is in proportion to 1 / amplitude, so it is a linear damping at the frequency of roll.
+    The drag coefficient is 2.4 + (22.5 / pi) breadth / (arm amplitude flow). Its second part is
+    proportional to 1 / amplitude and so acts as a linear damping at the roll frequency.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
     """
     reach = q.density * q.length * q.breadth * q.arm * q.arm * q.flow
     linear = 8.0 / (3.0 * pi) * SMALL_SWING / pi * reach * q.breadth * q.frequency
@@ -27,10 +37,19 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class BilgeKeels(Force):
-    """Normal force of a pair of bilge keels, without what they change in the pressure on the hull."""
+    """Normal force of a pair of bilge keels, without their effect on the pressure on the hull.
+
+    K = -(B1 + B2 |p|) p
+    B2 = 2.4 rho length breadth arm^3 flow^2
+    B1 = 8 / (3 pi) (22.5 / pi) rho length breadth^2 arm^2 flow omega
+
+    `breadth`, `length` [m] are those of one keel, `arm` [m] its distance from the roll axis, `flow`
+    the ratio of the water speed at the bilge to that of the keel, omega the `frequency` of roll
+    [rad/s].
+    """
 
     told_by: ClassVar = ("quadratic_damping",)
-    words: ClassVar[str] = "bilge keels damp the roll, more so when it is large"
+    words: ClassVar[str] = "bilge keels damp the roll, the more the larger its amplitude"
     shown_by: ClassVar[str] = "a roll decay from a large heel"
     source: ClassVar[str] = (
         "Y. Ikeda, Y. Himeno, N. Tanaka 1978, in ITTC Recommended Procedure 7.5-02-07-04.5, Estimation of Roll Damping"
@@ -39,40 +58,62 @@ class BilgeKeels(Force):
     starts: ClassVar = ({"breadth": 0.01}, {"breadth": 0.04})
 
     breadth: float = param(
-        0.0, low=0.0, high=3.0, unit="m", words="of a keel", fit=True, spread=0.02, axis="roll"
+        0.0,
+        low=0.0,
+        high=3.0,
+        unit="m",
+        words="breadth of a keel",
+        fit=True,
+        spread=0.02,
+        axis="roll",
     )
     length: float = param(
-        UNSET, low=0.0, high=300.0, unit="m", words="of a keel; if not given, 0.3 of the vessel's"
+        UNSET,
+        low=0.0,
+        high=300.0,
+        unit="m",
+        words="length of a keel; default: 0.3 of the vessel's length",
     )
     arm: float = param(
         UNSET,
         low=0.0,
         high=60.0,
         unit="m",
-        words="from the roll axis; if not given, 0.8 of that to the hull's corner",
+        words="distance from the roll axis; default: 0.8 of the half diagonal of the section",
     )
     flow: float = param(
         1.0,
         low=0.5,
         high=2.0,
         unit="",
-        words="speed of the water at the bilge per that of the keel",
+        words="speed of the water at the bilge over that of the keel",
     )
     frequency: float = param(
-        UNSET, low=0.0, high=50.0, unit="rad/s", words="of roll; if not given, the vessel's own"
+        UNSET,
+        low=0.0,
+        high=50.0,
+        unit="rad/s",
+        words="roll frequency; default: the undamped frequency of the vessel",
     )
     density: float = param(
-        particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water"
+        particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="density of the water"
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """What is not given, from the vessel's size, righting arm and inertia."""
+        """Return keel length, arm and roll frequency from the data of the vessel.
+
+        Args:
+            vessel: Vessel with length, beam, draught [m] and body.
+
+        Returns:
+            `length` [m], `arm` [m] and `frequency` [rad/s].
+        """
         arm = 0.8 * hypot(0.5 * vessel.beam, vessel.draught)
         return {"length": 0.3 * vessel.length, "arm": arm, "frequency": _frequency(vessel)}
 
 
 def _frequency(vessel: Boat) -> float:
-    """Undamped frequency of roll [rad/s], 0 for a vessel that has no righting arm."""
+    """Return the undamped roll frequency [rad/s]; 0 for a vessel without a righting arm."""
     stiffness = getattr(vessel.effect("righting_arm"), "stiffness", 0.0)
     return sqrt(
         stiffness / (vessel.body.roll_inertia + getattr(vessel.effect("added_mass"), "roll", 0.0))

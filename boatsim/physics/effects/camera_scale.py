@@ -1,4 +1,4 @@
-"""Camera scale: a length in the recording is not that length in the tank."""
+"""Camera scale: recorded positions are stretched along the axes of the tank."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,7 +10,15 @@ from boatsim.physics.base import Measurement, Shown, param
 
 @njit(inline="always")
 def shown(m: Shown, q: Any) -> Shown:
-    """Recorded x = (1 + x_fraction) x about the origin of the tank, y alike."""
+    """Return the recorded motion with the scaled position.
+
+    Args:
+        m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The recorded motion.
+    """
     return Shown(
         (1.0 + q.x_fraction) * m.x,
         (1.0 + q.y_fraction) * m.y,
@@ -29,20 +37,23 @@ def shown(m: Shown, q: Any) -> Shown:
 
 @dataclass(frozen=True)
 class CameraScale(Measurement):
-    """Positions stretched along the axes of the tank."""
+    """Scale error of a camera in each axis of the tank.
+
+    x_recorded = (1 + x_fraction) x,  y_recorded = (1 + y_fraction) y
+    """
 
     of_columns: ClassVar = ("x_m", "y_m")
     ruled_out_by: ClassVar = {"position_fix": ("gnss", "inertial")}
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = (
-        "the camera's length scale is off, so recorded positions are stretched (not physics)"
+        "the length scale of the camera is wrong, so recorded positions are stretched (not physics)"
     )
     shown_by: ClassVar[str] = "the same straight run along x and along y"
     shown: ClassVar = shown
 
     x_fraction: float = param(
-        0.0, low=-0.4, high=0.4, unit="", words="x off by", fit=True, spread=0.1
+        0.0, low=-0.4, high=0.4, unit="", words="relative scale error in x", fit=True, spread=0.1
     )
     y_fraction: float = param(
-        0.0, low=-0.4, high=0.4, unit="", words="y off by", fit=True, spread=0.1
+        0.0, low=-0.4, high=0.4, unit="", words="relative scale error in y", fit=True, spread=0.1
     )

@@ -1,4 +1,4 @@
-"""Clock offset: poses and commands are stamped by clocks that differ."""
+"""Clock offset: poses and commands are stamped by two clocks that differ by a constant."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,20 +10,29 @@ from boatsim.physics.base import Measurement, param
 
 @njit(inline="always")
 def late(q: Any) -> float:
-    """The pose in row t is the pose of t - pose_late."""
+    """Return the latency: the pose in row t is that of the time t - pose_late.
+
+    Args:
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Latency of the recorded motion behind the recorded commands [s].
+    """
     return float(q.pose_late)
 
 
 @dataclass(frozen=True)
 class ClockOffset(Measurement):
-    """Recorded motion late (or early) behind the recorded commands; the boat itself is not slower."""
+    """Latency of the recorded motion behind the recorded commands.
+
+    The vessel itself responds as modelled. A negative `pose_late` [s] means that the poses are
+    stamped too early.
+    """
 
     words: ClassVar[str] = (
-        "the clock of the poses runs apart from the clock of the commands (not physics)"
+        "the clock of the poses differs from the clock of the commands (not physics)"
     )
-    shown_by: ClassVar[str] = (
-        "quick steps of thrust and steering given by hand, not by a controller"
-    )
+    shown_by: ClassVar[str] = "fast steps of thrust and steering in open loop"
     late: ClassVar = late
     starts: ClassVar = ({"pose_late": 0.2}, {"pose_late": -0.2}, {"pose_late": -0.5})
 

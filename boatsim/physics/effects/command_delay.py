@@ -1,4 +1,4 @@
-"""Command delay: what is commanded now reaches the thrusters later."""
+"""Command delay: dead time between a command and the actuator."""
 
 from dataclasses import dataclass
 from math import inf
@@ -9,15 +9,23 @@ from numba import njit
 from boatsim.physics.base import Array, Channel, Course, mean_of, param
 from boatsim.physics.kinds.channel import DELAYS
 
-SAME = 1e-9  # [s] instants this close are one
-HISTORY = 80  # commands remembered of each actuator: one every 20 ms for a delay of 1.6 s
+SAME = 1e-9  # [s] times closer than this are the same instant
+HISTORY = 80  # stored commands of each actuator: one every 20 ms for a delay of 1.6 s
 
 
 @njit(inline="always")
 def remember(x: float, memory: Array, at: int, dt: float, delay: float) -> int:
-    """Add a command held for dt to the ring of (command, duration) pairs behind memory[at]; index of the newest.
+    """Add a command held for dt to the ring buffer and return the index of the newest entry.
 
-    Commands that change too often for the ring to reach back as far as the delay are remembered by their mean.
+    The buffer holds pairs of command and duration. Commands that change too often for the buffer to
+    span the delay are merged into their mean.
+
+    Args:
+        x: Command.
+        memory: Memory of the program; the buffer begins at `memory[at]`.
+        at: Index of the buffer in `memory`.
+        dt: Time for which the command is held [s].
+        delay: Dead time [s].
     """
     newest = int(memory[at])
     held, lasted = memory[at + 1 + 2 * newest], memory[at + 2 + 2 * newest]
@@ -36,7 +44,23 @@ def remember(x: float, memory: Array, at: int, dt: float, delay: float) -> int:
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """Mean command of the time window that is `delay` old: exact, for no step reaches beyond a change."""
+    """Return the mean command of the time window that lies `delay` before the step.
+
+    The result is exact because no step extends beyond a change of the delayed command (see
+    `pause`).
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     given = mean_of(x)
     i = remember(given, memory, at, dt, q.delay)
     if q.delay <= 0.0:
@@ -66,7 +90,17 @@ def channel(
 
 @njit
 def passes(x: float, memory: Array, at: int, q: Any) -> float:
-    """The command that arrives now."""
+    """Return the command that reaches the actuator now.
+
+    Args:
+        x: Signal that enters now, assumed constant.
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect now.
+    """
     if q.delay <= 0.0:
         return x
     i, age = int(memory[at]), 0.0
@@ -80,7 +114,20 @@ def passes(x: float, memory: Array, at: int, q: Any) -> float:
 
 @njit
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """Time until the next command that is on its way arrives; one given now needs the whole delay."""
+    """Return the time until the next stored command reaches the actuator.
+
+    A command that is new now needs the whole delay.
+
+    Args:
+        x: Signal that enters now, assumed constant.
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Time [s] during which the three points of a `Course` describe the signal exactly; infinite
+        if it is constant.
+    """
     if q.delay <= 0.0:
         return inf
     i, age = int(memory[at]), 0.0
@@ -96,10 +143,10 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
 
 @dataclass(frozen=True)
 class CommandDelay(Channel):
-    """Dead time between every command and its actuator."""
+    """Dead time between every command and its actuator: y(t) = x(t - delay)."""
 
     words: ClassVar[str] = "commands take effect after a dead time"
-    shown_by: ClassVar[str] = "quick steps of thrust and steering"
+    shown_by: ClassVar[str] = "fast steps of thrust and steering"
     acts_on: ClassVar[str] = ""  # every actuator
     slots: ClassVar[int] = 1 + 2 * HISTORY
     stage: ClassVar[int] = DELAYS
@@ -113,7 +160,7 @@ class CommandDelay(Channel):
         low=0.0,
         high=60.0,
         unit="s",
-        words="command to effect",
+        words="dead time from command to effect",
         fit=True,
         spread=0.5,
         within=(0.0, 1.6),

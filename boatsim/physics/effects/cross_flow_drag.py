@@ -1,4 +1,4 @@
-"""Cross-flow drag: every section of the hull resists the water that crosses it."""
+"""Cross-flow drag: quadratic drag of the hull sections in sway and yaw."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -9,12 +9,21 @@ from numba import njit
 from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
 FRESH_WATER = 1000.0  # [kg/m^3]
-GAUSS = 0.5 / sqrt(3.0)  # two-point Gauss abscissa on an interval of length 1
+GAUSS = 0.5 / sqrt(3.0)  # two-point Gauss abscissa on an interval of unit length
 
 
 @njit(inline="always")
 def panel(a: float, b: float, v: float, r: float) -> tuple[float, float]:
-    """Integrals of w|w| and x w|w|, w = v + x r, over [a, b] in which w keeps its sign: two points are exact."""
+    """Return the integrals of w|w| and x w|w|, w = v + x r, over [a, b].
+
+    w must keep its sign in the interval. Two-point Gauss quadrature is exact for these integrands.
+
+    Args:
+        a: Begin of the interval [m].
+        b: End of the interval [m].
+        v: Cross-flow velocity at x = 0 [m/s].
+        r: Its slope along the hull [1/s].
+    """
     mid, half = 0.5 * (a + b), GAUSS * (b - a)
     w0, w1 = v + (mid - half) * r, v + (mid + half) * r
     f0, f1 = w0 * abs(w0), w1 * abs(w1)
@@ -23,9 +32,15 @@ def panel(a: float, b: float, v: float, r: float) -> tuple[float, float]:
 
 @njit(inline="always")
 def strips(v: float, r: float, q: Any) -> tuple[float, float]:
-    """Integrals of w|w| and x w|w|, w = v + x r, along the hull: in closed form, or by the trapezoidal rule.
+    """Return the integrals of w|w| and x w|w|, w = v + x r, along the hull.
 
-    Closed: split where the cross flow changes sign, Gauss on either side.
+    With `stations` = 0 the hull is split where the cross flow changes sign and each part integrated
+    exactly; otherwise the trapezoidal rule over that many stations is used.
+
+    Args:
+        v: Cross-flow velocity at x = 0 [m/s].
+        r: Its slope along the hull [1/s].
+        q: Parameters of the effect.
     """
     stern, bow = q.centre - 0.5 * q.length, q.centre + 0.5 * q.length
     if q.stations >= 2.0:
@@ -37,7 +52,7 @@ def strips(v: float, r: float, q: Any) -> tuple[float, float]:
             force += f
             moment += x * f
         return force, moment
-    turn = stern  # where the cross flow is zero, if it is inside the hull
+    turn = stern  # station at which the cross flow is zero, limited to the hull
     if r != 0.0:
         turn = min(max(-v / r, stern), bow)
     aft, aft_moment = panel(stern, turn, v, r)
@@ -47,7 +62,15 @@ def strips(v: float, r: float, q: Any) -> tuple[float, float]:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Sway and yaw, and where the sections resist vertical flow too, heave and pitch: a bow that rises moves up."""
+    """Return the drag in surge, sway and yaw, and in heave and pitch if `vertical` is set.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     across, turning = strips(m.vr, m.r, q)
     down, bowing = strips(m.wr, -m.q, q) if q.vertical > 0.0 else (0.0, 0.0)
     k = 0.5 * q.density * q.section_drag_coefficient * q.draught  # [kg/m^2]
@@ -68,11 +91,18 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class CrossFlowDrag(Force):
-    """Drag of a hull of constant section in sway and yaw together, by strips in closed form."""
+    """Drag of a hull of constant section in sway and yaw, integrated over strips.
+
+    Y = -0.5 rho T C_D integral(w|w| dx),  N = -0.5 rho T C_D integral(x w|w| dx),  w = v_r + x r
+
+    The integrals run over the length about `centre`. C_D is the `section_drag_coefficient`, T the
+    draught. `linear` [N s/m^2] adds a linear sectional damping; `vertical` scales the same drag in
+    heave and pitch; `surge_quadratic` is -X_u|u|.
+    """
 
     needs: ClassVar = ("sway", "yaw")
-    words: ClassVar[str] = "hull sections drag sideways with the square of the water crossing them"
-    shown_by: ClassVar[str] = "sway and spin at two speeds"
+    words: ClassVar[str] = "the drag of the hull sections grows with the square of the cross flow"
+    shown_by: ClassVar[str] = "sway and yaw at two speeds"
     source: ClassVar[str] = (
         "O. M. Faltinsen, Sea Loads on Ships and Offshore Structures, 1990, section 6"
     )
@@ -93,7 +123,7 @@ class CrossFlowDrag(Force):
         low=0.0,
         high=1e9,
         unit="N s^2/m^2",
-        words="-X_u|u| that goes with it",
+        words="quadratic surge damping, -X_u|u|",
         fit=True,
         spread=4.0,
     )
@@ -102,7 +132,7 @@ class CrossFlowDrag(Force):
         low=0.0,
         high=500.0,
         unit="m",
-        words="waterline length; if not given, the vessel's own",
+        words="waterline length; default: that of the vessel",
         follows="vessel.length",
     )
     draught: float = param(
@@ -110,23 +140,25 @@ class CrossFlowDrag(Force):
         low=0.0,
         high=50.0,
         unit="m",
-        words="draught; if not given, the vessel's own",
+        words="draught; default: that of the vessel",
         follows="vessel.draught",
     )
-    density: float = param(FRESH_WATER, low=0.0, high=1500.0, unit="kg/m^3", words="of the water")
+    density: float = param(
+        FRESH_WATER, low=0.0, high=1500.0, unit="kg/m^3", words="density of the water"
+    )
     vertical: float = param(
         0.0,
         low=0.0,
         high=100.0,
         unit="",
-        words="drag area of a section in heave per that in sway; 0: none",
+        words="drag area of a section in heave over that in sway; 0: no drag in heave",
     )
     stations: float = param(
         0.0,
         low=0.0,
         high=1000.0,
         unit="",
-        words="of the trapezoidal rule along the hull; 0: the exact integral",
+        words="stations of the trapezoidal rule along the hull; 0: exact integral",
     )
     centre: float = param(
         0.0, low=-250.0, high=250.0, unit="m", words="mid-length ahead of the origin of motion"

@@ -1,4 +1,4 @@
-"""Current: the water itself moves over the ground."""
+"""Current: uniform, steady velocity of the water over the ground."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,13 +10,20 @@ from boatsim.physics.base import Flow, param
 
 @njit(inline="always")
 def flow(q: Any) -> tuple[float, float]:
-    """Velocity of the water over the ground."""
+    """Return the velocity of the water over the ground.
+
+    Args:
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Velocity of the water to north and east [m/s].
+    """
     return q.north, q.east
 
 
 @dataclass(frozen=True)
 class Current(Flow):
-    """A uniform, steady current."""
+    """Uniform, steady current; all hydrodynamic forces act on the velocity relative to it."""
 
     ruled_out_by: ClassVar = {"still_water": (True,)}
     needs: ClassVar = ("surge", "sway")
@@ -25,8 +32,20 @@ class Current(Flow):
     flow: ClassVar = flow
 
     north: float = param(
-        0.0, low=-5.0, high=5.0, unit="m/s", words="water velocity along x", fit=True, spread=0.06
+        0.0,
+        low=-5.0,
+        high=5.0,
+        unit="m/s",
+        words="velocity of the water along x (north)",
+        fit=True,
+        spread=0.06,
     )
     east: float = param(
-        0.0, low=-5.0, high=5.0, unit="m/s", words="water velocity along y", fit=True, spread=0.06
+        0.0,
+        low=-5.0,
+        high=5.0,
+        unit="m/s",
+        words="velocity of the water along y (east)",
+        fit=True,
+        spread=0.06,
     )

@@ -1,4 +1,4 @@
-"""Damping: the water resists a power of the speed through it, axis by axis."""
+"""Damping: hydrodynamic resistance proportional to a power of the speed in each axis."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -18,14 +18,22 @@ from boatsim.physics.base import (
     wrench,
 )
 
-# a start too strong in one axis spoils the others, so only one of them leaves the linear law
+# a strongly nonlinear start in one axis impairs the fit of the others
 NEARLY_LINEAR = {"surge_exponent": 1.001, "sway_exponent": 1.001, "yaw_exponent": 1.001}
 ITTC = "ITTC Recommended Procedure 7.5-02-07-04.5, Estimation of Roll Damping"
 
 
 @njit(inline="always")
 def power(speed: float, exponent: float, equal: float) -> float:
-    """Speed times (|speed| / equal)^(exponent - 1), without a power where products do."""
+    """Return speed (|speed| / equal)^(exponent - 1).
+
+    Exponents 1, 2 and 3 are evaluated by products.
+
+    Args:
+        speed: Velocity of the axis [m/s or rad/s].
+        exponent: Power of the speed [-].
+        equal: Speed at which all exponents give the same force [m/s or rad/s].
+    """
     if exponent == 1.0:
         return speed
     if exponent == 2.0:
@@ -37,7 +45,17 @@ def power(speed: float, exponent: float, equal: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """-D nu_r with each speed to its power; the sway damping acts on the flow at its own place."""
+    """Return the damping force -D nu_r, each speed raised to the exponent of its axis.
+
+    The sway damping acts on the cross flow at its own place, v_r + sway_at r.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     Y = -q.sway * power(m.vr + q.sway_at * m.r, q.sway_exponent, q.sway_equal)
     return wrench(
         X=-q.surge * power(m.ur, q.surge_exponent, q.surge_equal),
@@ -50,27 +68,34 @@ def law(m: Any, q: Any) -> Wrench:
 
 
 def exponent(axis: str) -> float:
-    """The power of the speed of one axis."""
+    """Return the parameter of the exponent of the speed in one axis."""
     return param(
         1.0, low=1.0, high=3.0, unit="", words=f"power of the speed in {axis}; 1: linear", axis=axis
     )
 
 
 def equal(axis: str, unit: str) -> float:
-    """The speed at which a power law is as strong as the linear one of the same coefficient."""
+    """Return the parameter of the speed at which the power law equals the linear law."""
     return param(
         1.0,
         low=0.01,
         high=20.0,
         unit=unit,
-        words="speed at which the power does not count",
+        words="speed at which the power law equals the linear law",
         axis=axis,
     )
 
 
 @dataclass(frozen=True)
 class LinearDamping(Force):
-    """Damping of a slow or small motion: skin friction, wave making, lift of the hull at small angles."""
+    """Damping of slow or small motion: skin friction, wave making and hull lift at small angles.
+
+    X_i = -d_i nu_i (|nu_i| / e_i)^(n_i - 1)
+
+    With exponents n_i = 1 this is tau = -D nu_r, d_i = -X_u, -Y_v, -Z_w, -K_p, -M_q, -N_r.
+    `sway_by_yaw` = -Y_r and `yaw_by_sway` = -N_v are linear couplings; `sway_at` [m] is the place
+    at which the sway damping acts. e_i is the speed at which a power law equals the linear one.
+    """
 
     words: ClassVar[str] = "the water resists in proportion to the speed"
     shown_by: ClassVar[str] = "coasting down from a low speed"
@@ -104,7 +129,11 @@ class LinearDamping(Force):
         0.0, low=-1e11, high=1e11, unit="N s", words="-N_v", calibrates="damping"
     )
     sway_at: float = param(
-        0.0, low=-200.0, high=200.0, unit="m", words="the sway damping acts this far ahead"
+        0.0,
+        low=-200.0,
+        high=200.0,
+        unit="m",
+        words="place of the sway damping, ahead of the origin",
     )
     surge_exponent: float = exponent("surge")
     sway_exponent: float = exponent("sway")
@@ -161,9 +190,15 @@ CubicDamping = preset(
 
 @dataclass(frozen=True)
 class DampingError(Release):
-    """Damping is off by more than its stated uncertainty: the linear one, or what a hull without has in its place."""
+    """Damping that differs from its specified value by a factor in each axis.
 
-    words: ClassVar[str] = "the damping coefficients are off by more than their stated uncertainty"
+    The factor scales the linear damping or, for a hull without one, the equivalent coefficient of
+    its own model.
+    """
+
+    words: ClassVar[str] = (
+        "the damping coefficients differ from their values by more than their specified uncertainty"
+    )
     shown_by: ClassVar[str] = "coasting down in each axis"
 
     surge_factor: float = factor(
@@ -189,10 +224,10 @@ class DampingError(Release):
 
 @dataclass(frozen=True)
 class LateralCentreShift(Release):
-    """Centre of the linear sway damping ahead of or behind the origin of motion (skeg, trim, load)."""
+    """Shift of the centre of the linear sway damping, by skeg, trim or load."""
 
     needs: ClassVar = ("sway", "yaw")
-    words: ClassVar[str] = "the water's sideways resistance acts ahead of or behind the mass centre"
+    words: ClassVar[str] = "the lateral resistance acts ahead of or behind the mass centre"
     shown_by: ClassVar[str] = "pushing sideways, and coasting after a turn"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.4 (Y_r, N_v)"
@@ -200,7 +235,7 @@ class LateralCentreShift(Release):
 
     shift: float = shift(
         "linear_damping.sway_at",
-        words="positive forward",
+        words="shift of the centre, positive forward",
         unit="m",
         spread=0.1,
         low=-200.0,
@@ -210,7 +245,7 @@ class LateralCentreShift(Release):
 
 
 def another_power(axis: str) -> float:
-    """The power of the speed in one axis."""
+    """Return the parameter of the exponent that replaces the linear law in one axis."""
     return number(
         f"linear_damping.{axis}_exponent",
         words=axis,
@@ -224,10 +259,10 @@ def another_power(axis: str) -> float:
 
 
 def agreement(axis: str, unit: str) -> float:
-    """The speed at which both laws agree."""
+    """Return the parameter of the speed at which the power law and the linear law agree."""
     return number(
         f"linear_damping.{axis}_equal",
-        words="both laws agree",
+        words="speed at which both laws agree",
         unit=unit,
         spread=0.5,
         low=0.01,
@@ -239,11 +274,12 @@ def agreement(axis: str, unit: str) -> float:
 
 @dataclass(frozen=True)
 class DampingExponent(Release):
-    """A power law in place of the vessel's linear damping; both agree at one speed of each axis."""
+    """Power law d |x|^n sign(x) in place of the linear damping of the vessel.
 
-    words: ClassVar[str] = (
-        "damping follows another power of the speed than the first, in place of the linear one"
-    )
+    Both laws agree at one speed of each axis (`surge_equal`, `sway_equal`, `yaw_equal`).
+    """
+
+    words: ClassVar[str] = "damping follows a power of the speed other than the first"
     shown_by: ClassVar[str] = "the same motion at a large and at a small amplitude"
     source: ClassVar[str] = "Y. Huang and Z. Ji, Autonomous boat dynamics, eqs 4-6: d sign(x) |x|^a"
     strength: ClassVar = ("surge_exponent", "sway_exponent", "yaw_exponent")

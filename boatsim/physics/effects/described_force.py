@@ -1,4 +1,4 @@
-"""Described force: a law that no entry of the library is, written down as a product of what it goes with."""
+"""Described force: a force term found by symbolic regression."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -13,19 +13,35 @@ from boatsim.physics.param import code
 
 @njit(inline="always")
 def law(m: Any, q: Any, act: Any, at: Any, own: Any) -> Wrench:
-    """Coefficient times its factors times its course, along one axis of the hull or of the earth."""
+    """Return the force of the term along its axis of the hull or of the earth.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        act: Values of all actuators at the evaluated instant of the step.
+        at: Offset of that instant in `act`.
+        own: Index in `act` of the past value that the effect recalls.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return terms.along(m, q.direction, q.coefficient * terms.term(m, q, act, at, own))
 
 
 @dataclass(frozen=True)
 class DescribedForce(Described):
-    """One term of a law: a force or moment along an axis that goes with up to three factors, always or for a while."""
+    """Term found by symbolic regression: a force or moment along one axis.
 
-    words: ClassVar[str] = "a force that no entry of the library explains"
+    F = coefficient f1 f2 f3 g(t)
+
+    f1 to f3 are up to three factors of the state (`of`), g is the course in time (`acts`).
+    """
+
+    words: ClassVar[str] = "a force that no effect of the library explains"
     shown_by: ClassVar[str] = "the manoeuvre in which it was found"
     law: ClassVar = law
 
-    axis: str = "surge"  # along which of `terms.DIRECTIONS`
+    axis: str = "surge"  # one of `terms.DIRECTIONS`
     coefficient: float = param(
         0.0,
         low=-1e15,
@@ -35,18 +51,25 @@ class DescribedForce(Described):
         fit=True,
         spread=1.0,
     )
-    direction: float = code("its axis")
+    direction: float = code("code of the axis")
 
     def __post_init__(self) -> None:
         super().__post_init__()
         terms.code_of(f"{self.name}: axis", self.axis, terms.DIRECTIONS)
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """What its words are to the program. Raises BadInput for factors that the vessel has not."""
+        """Return the numeric codes of axis and factors for the compiled program.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+
+        Raises:
+            BadInput: The vessel does not have one of the factors.
+        """
         return super().rules(vessel) | {
             "direction": terms.code_of(self.name, self.axis, terms.DIRECTIONS)
         }
 
     def shape(self) -> dict[str, object]:
-        """What its table says of the law, less what has no meaning for it."""
+        """Return the settings that no fit changes, without those that have no effect."""
         return {"axis": self.axis} | super().shape()

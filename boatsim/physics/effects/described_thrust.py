@@ -1,4 +1,4 @@
-"""Described thrust: a share by which drives push more or less than stated, for a cause that no entry is."""
+"""Described thrust: a relative change of thrust found by symbolic regression."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -17,7 +17,22 @@ SENSES = {"both": 0.0, "ahead": 1.0, "astern": -1.0}
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any, act: Any, at: Any, own: Any) -> Wrench:
-    """Each drive's thrust times coefficient, factors and course, on the side and in the sense it is about."""
+    """Return the change of thrust of one drive.
+
+    It acts only on the drives of the given side and for the given sense of thrust.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals of the thruster on which the effect acts.
+        t: Parameters of that thruster.
+        act: Values of all actuators at the evaluated instant of the step.
+        at: Offset of that instant in `act`.
+        own: Index in `act` of the past value that the effect recalls.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     thrust = t.gain * s.thrust
     about = (q.where == 0.0 or q.where * t.y > 0.0) and q.way * thrust >= 0.0
     return at_mount(q.coefficient * terms.term(m, q, act, at, own) * thrust if about else 0.0, s, t)
@@ -25,15 +40,20 @@ def law(m: Any, q: Any, s: Any, t: Any, act: Any, at: Any, own: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class DescribedThrust(Described):
-    """One term of a law about the drives: their thrust is off by a share, always or for a while."""
+    """Term found by symbolic regression: a share by which the thrust of the drives changes.
 
-    words: ClassVar[str] = "a change of thrust that no entry of the library explains"
-    shown_by: ClassVar[str] = "the same command again and again"
+    dT = coefficient f1 f2 f3 g(t) T
+
+    f1 to f3 are up to three factors of the state (`of`), g is the course in time (`acts`).
+    """
+
+    words: ClassVar[str] = "a change of thrust that no effect of the library explains"
+    shown_by: ClassVar[str] = "the same command, repeated"
     rides: ClassVar[str] = "thruster"
     law: ClassVar = law
 
-    side: str = "all"  # which of `SIDES`
-    sense: str = "both"  # which of `SENSES`
+    side: str = "all"  # one of `SIDES`
+    sense: str = "both"  # one of `SENSES`
     coefficient: float = param(
         0.0,
         low=-1e9,
@@ -43,8 +63,8 @@ class DescribedThrust(Described):
         fit=True,
         spread=0.3,
     )
-    where: float = code("the side it is about")
-    way: float = code("the sense it is about")
+    where: float = code("code of the side")
+    way: float = code("code of the sense")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -52,9 +72,16 @@ class DescribedThrust(Described):
         terms.code_of(f"{self.name}: sense", self.sense, tuple(SENSES))
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """What its words are to the program. Raises BadInput for factors that the vessel has not."""
+        """Return the numeric codes of side, sense and factors for the compiled program.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+
+        Raises:
+            BadInput: The vessel does not have one of the factors.
+        """
         return super().rules(vessel) | {"where": SIDES[self.side], "way": SENSES[self.sense]}
 
     def shape(self) -> dict[str, object]:
-        """What its table says of the law, less what has no meaning for it."""
+        """Return the settings that no fit changes, without those that have no effect."""
         return {"side": self.side, "sense": self.sense} | super().shape()

@@ -1,4 +1,4 @@
-"""Dragged propeller: a thruster that works against the way adds only what exceeds its own idle drag."""
+"""Dragged propeller: thrust against the motion replaces the drag of the idle propeller."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,9 +11,15 @@ from boatsim.physics.effects.thruster import at_mount
 
 @njit(inline="always")
 def missing(thrust: float, speed: float, drag: float) -> float:
-    """What a thrust against the way of its propeller lacks: the drag D that this has when idle, or all of it below D.
+    """Return the thrust that a propeller lacks when it works against the motion [N].
 
-    Idle, the propeller drags D as part of the hull, and that ends when it turns the other way.
+    It lacks the drag D u |u| of the idle propeller, which is part of the hull's resistance and ends
+    when the propeller reverses, but at most its whole thrust.
+
+    Args:
+        thrust: Thrust of the propeller [N].
+        speed: Speed of its mount along its axis [m/s].
+        drag: Drag coefficient of the idle propeller [N s^2/m^2].
     """
     if thrust * speed >= 0.0:
         return 0.0
@@ -23,7 +29,17 @@ def missing(thrust: float, speed: float, drag: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """Each thruster for itself, at the speed of its own mount along its own axis."""
+    """Return the thrust that one thruster lacks, from the speed of its mount along its axis.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals of the thruster on which the effect acts.
+        t: Parameters of that thruster.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     along, across = m.ur - t.y * m.r, m.vr + t.x * m.r
     return at_mount(
         missing(t.gain * s.thrust, along * s.cos_angle + across * s.sin_angle, q.drag), s, t
@@ -32,12 +48,18 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class DraggedPropeller(Force):
-    """The drag of an idle propeller is part of the hull's: a thrust against the way takes its place."""
+    """Loss of thrust against the direction of motion by the drag of the idle propeller.
+
+    dT = D u_a |u_a|  if T u_a < 0 and D u_a^2 < |T|,  dT = -T  if T u_a < 0 otherwise,  else 0
+
+    u_a is the speed of the mount along the axis of the thruster, D = `drag` = 0.5 rho A C_D [N
+    s^2/m^2].
+    """
 
     words: ClassVar[str] = (
-        "a propeller that turns against the way adds only what exceeds the drag it has when idle"
+        "a propeller that works against the motion adds only the thrust beyond the drag it has when idle"
     )
-    shown_by: ClassVar[str] = "one thruster astern while the boat has way on, and from rest"
+    shown_by: ClassVar[str] = "one thruster astern at speed, and from rest"
     source: ClassVar[str] = "drag of a disc across the flow, 0.5 rho A C_D u^2"
     rides: ClassVar[str] = "thruster"
     law: ClassVar = law
@@ -47,7 +69,7 @@ class DraggedPropeller(Force):
         low=0.0,
         high=1e6,
         unit="N s^2/m^2",
-        words="of one idle propeller",
+        words="drag coefficient of one idle propeller",
         fit=True,
         spread=1.0,
     )

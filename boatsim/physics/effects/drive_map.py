@@ -1,4 +1,4 @@
-"""Drive map: what an actuator gives for the raw command that its motor controller is sent."""
+"""Drive map: static curve from the raw command of a motor controller to thrust or shaft rate."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -14,7 +14,20 @@ from boatsim.physics.kinds.channel import MAPS
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """Command plus k ((|source - neutral| - dead) / (span - dead))^n, to the side of neutral it is on."""
+    """Return the signal plus the output of the curve at the raw command.
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     off = source - q.neutral
     drive = (abs(off) - q.dead) / (q.span - q.dead)
     if drive <= 0.0:
@@ -28,9 +41,14 @@ def channel(
 
 @dataclass(frozen=True)
 class DriveMap(Channel):
-    """Thrust or rate of a drive fed by a duty, a servo pulse or revolutions; its own command adds to it."""
+    """Static curve of a drive that is fed by a duty cycle, a servo pulse or a shaft rate.
 
-    words: ClassVar[str] = "the drive follows its raw command by a curve"
+    y = sign(s) k ((|s| - dead) / (span - dead))^n,  s = source - neutral,  0 for |s| <= dead
+
+    k is `at_span`, n the `exponent`. The result is added to the drive's own command.
+    """
+
+    words: ClassVar[str] = "a curve gives the output of the drive from its raw command"
     shown_by: ClassVar[str] = "a staircase of raw commands"
     acts_on: ClassVar[str] = "thrust"
     stage: ClassVar[int] = MAPS
@@ -41,21 +59,33 @@ class DriveMap(Channel):
         low=-1e6,
         high=1e6,
         unit="",
-        words="k: what it gives, in its own unit, `span` off neutral",
+        words="k: output, in the unit of the signal, at `span` from neutral",
     )
     span: float = param(
-        1.0, low=1e-6, high=1e6, unit="", words="raw command, from neutral, at which it gives that"
+        1.0,
+        low=1e-6,
+        high=1e6,
+        unit="",
+        words="distance of the raw command from neutral at which the output is k",
     )
     neutral: float = param(
-        0.0, low=-1e6, high=1e6, unit="", words="raw command at which it stands still"
+        0.0, low=-1e6, high=1e6, unit="", words="raw command at which the drive is at rest"
     )
     dead: float = param(
-        0.0, low=0.0, high=1e6, unit="", words="from neutral, below which nothing turns"
+        0.0,
+        low=0.0,
+        high=1e6,
+        unit="",
+        words="distance from neutral within which the output is zero",
     )
-    exponent: float = param(1.0, low=0.5, high=3.0, unit="", words="n of the curve")
+    exponent: float = param(1.0, low=0.5, high=3.0, unit="", words="exponent n of the curve")
 
     def __post_init__(self) -> None:
-        """Raises BadInput for a drive that is dead over all of its span."""
+        """Check that the dead zone is smaller than the span.
+
+        Raises:
+            BadInput: The dead zone covers the whole span.
+        """
         super().__post_init__()
         if self.dead >= self.span:
             raise BadInput(
@@ -66,7 +96,7 @@ class DriveMap(Channel):
 PwmThrust = preset(
     DriveMap,
     "PwmThrust",
-    words="thrust follows the motor's duty by a curve",
+    words="a curve gives the thrust from the duty cycle of the motor",
     shown_by="a staircase of duties",
     otherwise={"span": 255.0},
 )
@@ -74,7 +104,7 @@ PwmThrust = preset(
 PulseThrust = preset(
     DriveMap,
     "PulseThrust",
-    words="thrust follows the servo pulse by a curve",
+    words="a curve gives the thrust from the width of the servo pulse",
     shown_by="a staircase of pulse widths",
     source="hobby speed controllers: neutral 1500 us, full 400 us from it",
     otherwise={"span": 400.0, "neutral": 1500.0},  # [us]
@@ -83,7 +113,7 @@ PulseThrust = preset(
 ShaftRpm = preset(
     DriveMap,
     "ShaftRpm",
-    words="the propeller's rate is given per minute",
+    words="the shaft rate is given in revolutions per minute",
     shown_by="any manoeuvre",
     acts_on="shaft",
     fixed={

@@ -1,4 +1,4 @@
-"""Extra mass: something heavy on board that the model does not know of."""
+"""Extra mass: a point mass on board that the model does not contain."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -23,7 +23,14 @@ from boatsim.physics.particulars import GRAVITY
 
 @njit(inline="always")
 def inertia(q: Any) -> Mass:
-    """A point mass on the centreline."""
+    """Return the inertia of a point mass on the centreline.
+
+    Args:
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Entries of the mass matrix [kg, kg m, kg m^2] about the origin of motion.
+    """
     first = q.mass * q.x
     second = first * q.x
     return mass(
@@ -39,7 +46,17 @@ def inertia(q: Any) -> Mass:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Its Coriolis and centripetal force over ground at its place, and its weight, which sinks and trims the hull."""
+    """Return the Coriolis and centripetal force of the point mass over ground, and its weight.
+
+    The weight sinks and trims the hull.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     v, w = m.v + q.x * m.r, m.w - q.x * m.q
     X = q.mass * (v * m.r - w * m.q)
     Y = q.mass * (w * m.p - m.u * m.r)
@@ -49,10 +66,15 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class ExtraMass(Inertia, Force):
-    """A point mass fixed to the hull on its centreline, at the height of the origin."""
+    """Point mass fixed to the hull on its centreline, at the height of the origin.
+
+    M = m [1, x; x, x^2] in sway and yaw, likewise in heave and pitch; weight m g at x
+
+    m is `mass` [kg], x the distance [m] ahead of the origin.
+    """
 
     needs: ClassVar = ("surge",)
-    words: ClassVar[str] = "the boat carries a mass that the model does not know of"
+    words: ClassVar[str] = "the boat carries a mass that the model does not contain"
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"
@@ -64,14 +86,21 @@ class ExtraMass(Inertia, Force):
     starts: ClassVar = ({"mass": 0.7, "x": 0.2}, {"mass": 0.7, "x": -0.2})
 
     mass: float = param(
-        0.0, low=0.0, high=1e9, unit="kg", words="its mass", fit=True, spread=1.5, within=(0.0, 4.6)
+        0.0,
+        low=0.0,
+        high=1e9,
+        unit="kg",
+        words="mass of the load",
+        fit=True,
+        spread=1.5,
+        within=(0.0, 4.6),
     )
     x: float = param(
         0.0,
         low=-250.0,
         high=250.0,
         unit="m",
-        words="positive forward",
+        words="place of the load, positive forward",
         fit=True,
         spread=0.3,
         within=(-0.6, 0.6),
@@ -80,14 +109,18 @@ class ExtraMass(Inertia, Force):
 
 @dataclass(frozen=True)
 class Payload(Release):
-    """Mass spread over the hull like its own; the deeper draught that comes with it is an error of the added mass."""
+    """Additional mass distributed like that of the hull; the radii of gyration do not change.
+
+    A larger draught changes the added mass as well, which is a separate effect
+    (`added_mass_error`).
+    """
 
     needs: ClassVar = (
         "surge",
         "sway",
-    )  # a hull that only rolls shows no more than the ratio of moment to inertia
+    )  # a hull that only rolls identifies the ratio of moment to inertia and nothing else
     words: ClassVar[str] = (
-        "the whole boat is heavier than stated, or all that drives and brakes it is weaker alike"
+        "the boat is heavier than specified, or all its forces are smaller by the same factor"
     )
     shown_by: ClassVar[str] = "sharp starts and stops in every axis"
     source: ClassVar[str] = ExtraMass.source
@@ -98,7 +131,7 @@ class Payload(Release):
         "body.roll_inertia",
         "body.pitch_inertia",
         "body.yaw_inertia",
-        words="more than stated",
+        words="mass beyond the specified mass",
         unit="kg",
         spread=1.5,
         low=-1e9,
@@ -107,11 +140,20 @@ class Payload(Release):
     )
 
     def changes(self, vessel: Boat) -> list[Change]:
-        """A hull that does not pitch need not state its inertia in pitch."""
+        """Return the changes of mass and of the inertias that the vessel specifies.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
         return [c for c in super().changes(vessel) if getattr(vessel.body, c.key) is not None]
 
     def weights(self, vessel: Boat) -> dict[str, float]:
-        """The hull's radii of gyration stay."""
+        """Return the inertia per mass [m^2] of each axis, so that the radii of gyration do not
+        change.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
         body = vessel.body
         inertias = (
             (f"body.{n}", getattr(body, n))
@@ -120,6 +162,13 @@ class Payload(Release):
         return {place: inertia / body.mass for place, inertia in inertias if inertia is not None}
 
     def ratios(self, vessel: Boat) -> dict[str, tuple[float, str]]:
-        """Force to mass: a heavier hull moves as one that all its forces move less."""
-        meaning = "of what the file has: no motion tells mass and forces apart, only a balance does"
+        """Return the ratio of force to mass, the only quantity that the motion identifies.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+
+        Returns:
+            Name -> (value relative to the file, meaning in words).
+        """
+        meaning = "relative to the file: motion identifies only this ratio; the mass itself needs a balance"
         return {"force_per_mass": (vessel.body.mass / (vessel.body.mass + self.mass), meaning)}

@@ -1,4 +1,4 @@
-"""Fan wind: a steady stream of air over a hull whose areas are known."""
+"""Fan wind: air drag of a hull of known areas in a steady stream of air."""
 
 from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
@@ -12,9 +12,19 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 AIR_DENSITY = 1.2  # [kg/m^3] dry air at 20 deg C, 1013 hPa
 
 
-@register_jitable  # for compiled laws; plain Python where one call needs no compiling
+@register_jitable  # compiled inside other laws; plain Python if called alone
 def pushed(along: float, across: float, density: float, q: Any, swing: float) -> Wrench:
-    """Quadratic drag in air that moves past the hull [m/s, body axes]; the moment has the terms sin g and sin 2 g."""
+    """Return the quadratic air drag of the hull and its yaw moment.
+
+    X = 0.5 rho U front a,  Y = 0.5 rho U side b,  N = (arm + swing a / U) Y
+
+    Args:
+        along: Velocity of the air past the hull, forward, a [m/s].
+        across: Velocity of the air past the hull, to starboard, b [m/s].
+        density: Density of the air [kg/m^3].
+        q: Parameters with `front`, `side` [m^2] and `arm` [m].
+        swing: Shift of the centre of pressure with a wind from astern [m].
+    """
     speed = sqrt(along * along + across * across)
     pressure = 0.5 * density * speed
     Y = pressure * q.side * across
@@ -24,7 +34,15 @@ def pushed(along: float, across: float, density: float, q: Any, swing: float) ->
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Drag in the air's velocity past the hull."""
+    """Return the air drag for the velocity of the air past the hull.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     north, east = q.speed * cos(q.toward), q.speed * sin(q.toward)
     along = m.cos_psi * north + m.sin_psi * east - m.u
     across = m.cos_psi * east - m.sin_psi * north - m.v
@@ -33,19 +51,30 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class FanWind(Force):
-    """Drag of the hull in air moving past it at a constant speed and direction."""
+    """Air drag of the hull in a stream of constant speed and direction, as from a bank of fans.
 
-    words: ClassVar[str] = "a steady wind pushes the hull downwind and swings its bow"
+    X = 0.5 rho U front a,  Y = 0.5 rho U side b,  N = arm Y
+
+    U is the speed of the air past the hull, a and b its components forward and to starboard [m/s];
+    `front` and `side` [m^2] are areas times drag coefficients, `arm` [m] is the lever of the side
+    force.
+    """
+
+    words: ClassVar[str] = "a steady wind exerts a drag and a yaw moment on the hull"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = "checked specification of Bayless 2017, section 7 (wind model [A])"
     anchored: ClassVar[str] = "the air"
     law: ClassVar = law
     of_air: ClassVar = True
 
-    speed: float = param(1.5, low=0.0, high=40.0, unit="m/s", words="air speed")
-    toward: float = param(0.0, low=-pi, high=pi, unit="rad", words="where the air goes")
-    front: float = param(0.021, low=0.0, high=5000.0, unit="m^2", words="drag area bow-on")
-    side: float = param(0.114, low=0.0, high=20000.0, unit="m^2", words="drag area beam-on")
+    speed: float = param(1.5, low=0.0, high=40.0, unit="m/s", words="speed of the air")
+    toward: float = param(0.0, low=-pi, high=pi, unit="rad", words="direction the air moves to")
+    front: float = param(0.021, low=0.0, high=5000.0, unit="m^2", words="frontal drag area")
+    side: float = param(0.114, low=0.0, high=20000.0, unit="m^2", words="lateral drag area")
     arm: float = param(
-        -0.02, low=-200.0, high=200.0, unit="m", words="side push acts this far forward"
+        -0.02,
+        low=-200.0,
+        high=200.0,
+        unit="m",
+        words="lever of the side force, ahead of the origin",
     )

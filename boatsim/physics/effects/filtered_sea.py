@@ -1,4 +1,4 @@
-"""Filtered sea: sway, yaw and roll each pushed by a noise of its own about one frequency."""
+"""Filtered sea: independent narrow-band wave forces in sway, yaw and roll."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
@@ -11,7 +11,15 @@ from boatsim.physics.noise import course, noise
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """Channels that nothing pushes cost nothing."""
+    """Return the wave force at the time of the motion; axes without a force are not computed.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     Y = K = N = 0.0
     w, z, number, count = q.frequency, q.damping, q.realisation, q.components
     if q.sway > 0.0:
@@ -25,12 +33,16 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class FilteredSea(Force):
-    """Coloured noise for waves, as controllers' authors fit it: independent from axis to axis."""
+    """Coloured noise for wave forces, as in the design of rudder controllers.
 
-    words: ClassVar[str] = (
-        "waves push sway, yaw and roll, each with a noise of its own about one frequency"
-    )
-    shown_by: ClassVar[str] = "lying across the sea without steering"
+    F(s) = sigma 2 z w0 s / (s^2 + 2 z w0 s + w0^2) applied to white noise, as a sum of cosines
+
+    sigma is the rms force of the axis, w0 the `frequency` [rad/s], z the `damping` of the shaping
+    filter. The sway force also heels the hull with the lever `arm` [m].
+    """
+
+    words: ClassVar[str] = "waves exert independent narrow-band forces in sway, yaw and roll"
+    shown_by: ClassVar[str] = "lying beam to the sea without steering"
     source: ClassVar[str] = (
         "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V: shaping filters"
     )
@@ -39,21 +51,29 @@ class FilteredSea(Force):
     sway: float = param(0.0, low=0.0, high=1e9, unit="N", words="rms sway force")
     roll: float = param(0.0, low=0.0, high=1e11, unit="N m", words="rms roll moment")
     yaw: float = param(0.0, low=0.0, high=1e11, unit="N m", words="rms yaw moment")
-    frequency: float = param(1.0, low=0.01, high=50.0, unit="rad/s", words="of the filter, w0")
-    damping: float = param(0.1, low=0.001, high=2.0, unit="", words="of the filter, z")
-    components: float = param(
-        160.0, low=1.0, high=2000.0, unit="", words="number of cosines on each axis"
+    frequency: float = param(
+        1.0, low=0.01, high=50.0, unit="rad/s", words="natural frequency of the filter, w0"
     )
-    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course")
+    damping: float = param(
+        0.1, low=0.001, high=2.0, unit="", words="damping ratio of the filter, z"
+    )
+    components: float = param(
+        160.0, low=1.0, high=2000.0, unit="", words="number of cosines in each axis"
+    )
+    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the realisation")
     arm: float = param(
         UNSET,
         low=-100.0,
         high=100.0,
         unit="m",
-        words="the vessel's roll by sway; if not given, its own if it has one",
+        words="roll moment per sway force; default: that of the vessel's linear_hull",
         follows="linear_hull.arm?",
     )
 
     def seeded(self, seed: int) -> Self:
-        """Another course for each seed."""
+        """Return the effect with a realisation that depends on the seed.
+
+        Args:
+            seed: Seed of the scenario.
+        """
         return replace(self, realisation=course(self.realisation, seed))

@@ -1,4 +1,4 @@
-"""Forward speed damping: damping of sway, roll and yaw that grows with the speed ahead."""
+"""Forward speed damping: damping of sway, roll and yaw proportional to the forward speed."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,7 +10,17 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """|u| v, |u| p and |u| r: lift of hull and fins at a small angle to the flow, astern at the hull's other end."""
+    """Return the damping by lift of hull and fins at a small angle to the flow.
+
+    Going astern the sway force acts at the opposite end of the hull.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     speed, ends = abs(m.ur), m.ur * q.at
     return wrench(
         Y=-q.sway * (speed * m.vr + ends * m.r),
@@ -21,7 +31,14 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class ForwardSpeedDamping(Force):
-    """Linear damping in proportion to the forward speed."""
+    """Linear damping of sway, roll and yaw proportional to |u_r|: lift of hull and fins.
+
+    Y = -d_v (|u_r| v_r + a u_r r),  K = -d_p |u_r| p
+    N = -d_v (a u_r v_r + a^2 |u_r| r) - d_r |u_r| r
+
+    d_v = -Y_|u|v, d_p = -K_|u|p, d_r = -N_|u|r; a is the place `at` [m] at which the sway force
+    acts.
+    """
 
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = "damping of sway, roll and yaw grows with the forward speed"
@@ -70,7 +87,7 @@ class ForwardSpeedDamping(Force):
         low=-500.0,
         high=500.0,
         unit="m",
-        words="where the sway force acts, ahead of the mass centre",
+        words="place of the sway force, ahead of the mass centre",
         calibrates="damping",
         axis="yaw",
     )

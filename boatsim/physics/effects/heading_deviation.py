@@ -1,4 +1,4 @@
-"""Heading deviation: a compass error, constant or depending on the heading."""
+"""Heading deviation: compass error that is constant or depends on the heading."""
 
 from dataclasses import dataclass
 from math import cos, sin
@@ -11,7 +11,15 @@ from boatsim.physics.base import Measurement, Shown, param, preset
 
 @njit(inline="always")
 def shown(m: Shown, q: Any) -> Shown:
-    """Recorded psi = psi + offset + cos cos(psi) + sin sin(psi); speeds are resolved along the recorded heading."""
+    """Return the recorded motion: heading with deviation, velocities along the recorded heading.
+
+    Args:
+        m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The recorded motion.
+    """
     off = q.offset + q.cos * cos(m.psi) + q.sin * sin(m.psi)
     rate = (q.sin * cos(m.psi) - q.cos * sin(m.psi)) * m.r
     c, s = cos(off), sin(off)
@@ -33,7 +41,12 @@ def shown(m: Shown, q: Any) -> Shown:
 
 @dataclass(frozen=True)
 class HeadingDeviation(Measurement):
-    """Semicircular deviation of a compass, from iron or current-carrying wires aboard."""
+    """Semicircular deviation of a compass, caused by iron or current-carrying wires on board.
+
+    psi_recorded = psi + offset + cos cos(psi) + sin sin(psi)
+
+    `cos` and `sin` [rad] are the coefficients C and B of the classical deviation formula.
+    """
 
     of_columns: ClassVar = ("psi_rad",)
     needs: ClassVar = ("surge", "yaw")
@@ -45,20 +58,26 @@ class HeadingDeviation(Measurement):
     shown: ClassVar = shown
 
     cos: float = param(
-        0.0, low=-0.6, high=0.6, unit="rad", words="error heading north", fit=True, spread=0.1
+        0.0,
+        low=-0.6,
+        high=0.6,
+        unit="rad",
+        words="deviation on heading north",
+        fit=True,
+        spread=0.1,
     )
     sin: float = param(
-        0.0, low=-0.6, high=0.6, unit="rad", words="error heading east", fit=True, spread=0.1
+        0.0, low=-0.6, high=0.6, unit="rad", words="deviation on heading east", fit=True, spread=0.1
     )
-    offset: float = param(0.0, low=-1.0, high=1.0, unit="rad", words="on every heading")
+    offset: float = param(0.0, low=-1.0, high=1.0, unit="rad", words="constant error")
 
 
 HeadingOffset = preset(
     HeadingDeviation,
     "HeadingOffset",
-    words="the recorded heading is off by a constant angle (not physics)",
+    words="the recorded heading has a constant error (not physics)",
     shown_by="a straight run ahead followed by one astern",
-    source="compass or marker mounted askew, declination not applied",
-    frees={"offset": {"words": "heading off by", "spread": 0.1}},
+    source="misaligned compass or marker, or declination not applied",
+    frees={"offset": {"words": "constant error of the heading", "spread": 0.1}},
     fixed={"cos": 0.0, "sin": 0.0},
 )

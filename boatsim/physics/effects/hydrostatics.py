@@ -1,4 +1,4 @@
-"""Hydrostatics: buoyancy holds a floating hull at its draught and trim."""
+"""Hydrostatics: linear restoring forces of buoyancy in heave, roll and pitch."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,17 +11,36 @@ from boatsim.physics.particulars import GRAVITY
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """-G (z, phi, theta) about the trim at which the displaced mass floats; what weighs more floats deeper."""
-    sunk = m.z - q.flotation * m.theta  # [m] of the centre of flotation
+    """Return the restoring force -G (z, phi, theta) about the trim of the displaced mass.
+
+    A mass beyond the displacement makes the hull float deeper.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
+    sunk = m.z - q.flotation * m.theta  # [m] sinkage of the centre of flotation
     Z = -q.heave * sunk + (q.mass - q.displacement) * GRAVITY
     return wrench(Z=Z, K=-q.roll * m.phi, M=q.flotation * q.heave * sunk - q.pitch * m.theta)
 
 
 @dataclass(frozen=True)
 class Hydrostatics(Force):
-    """Linear restoring in heave, roll and pitch of a hull on still water, origin of motion on the waterline at rest."""
+    """Linear restoring force in heave, roll and pitch on still water.
 
-    words: ClassVar[str] = "buoyancy holds the hull at its draught and rights it in roll and pitch"
+    The origin of motion lies on the waterline at rest.
+
+    Z = -heave (z - x_F theta) + (m - m_0) g,  K = -roll phi
+    M = x_F heave (z - x_F theta) - pitch theta
+
+    heave = rho g A_wp [N/m], roll = m g GM_T, pitch = m g GM_L [N m], x_F = `flotation` [m], m_0 =
+    `displacement` [kg].
+    """
+
+    words: ClassVar[str] = "buoyancy restores the draught and the attitude of the hull"
     shown_by: ClassVar[str] = "a release from heave, heel or trim"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 4.2"
@@ -53,12 +72,16 @@ class Hydrostatics(Force):
         0.0, low=-250.0, high=250.0, unit="m", words="centre of flotation ahead of the origin"
     )
     mass: float = param(
-        UNSET, low=0.0, high=1e12, unit="kg", words="the boat's", follows="vessel.body.mass"
+        UNSET, low=0.0, high=1e12, unit="kg", words="mass of the boat", follows="vessel.body.mass"
     )
     displacement: float = param(
-        UNSET, low=0.0, high=1e12, unit="kg", words="mass it floats with at z = 0"
+        UNSET, low=0.0, high=1e12, unit="kg", words="mass with which the hull floats at z = 0"
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """The hull floats as drawn with the mass that its file states."""
+        """Return the displacement: by default the hull floats at z = 0 with the mass of its file.
+
+        Args:
+            vessel: Vessel with a body.
+        """
         return {"displacement": vessel.body.mass}

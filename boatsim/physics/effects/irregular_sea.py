@@ -1,4 +1,4 @@
-"""Irregular sea: long-crested wind waves push a hull in sway, yaw and roll, all three with the same waves."""
+"""Irregular sea: long-crested wind waves that exert coherent forces in sway, yaw and roll."""
 
 from dataclasses import dataclass, replace
 from math import cos, exp, pi, sin, sqrt
@@ -10,14 +10,21 @@ from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 from boatsim.physics.noise import course, drawn
 
-LOWEST = 0.45  # of the modal frequency: below it lies less than 1e-13 of the energy
+LOWEST = 0.45  # lowest frequency over the modal one; less than 1e-13 of the energy lies below
 GRAVITY = particulars.GRAVITY
 
 
 @njit(inline="always")
 def sections(s: float, taper: float) -> tuple[float, float]:
-    """Integrals over x in [-1, 1] of (1 - taper x^2) cos(s x) and of (1 - taper x^2) x sin(s x)."""
-    if abs(s) < 0.02:  # series: the closed forms lose their digits
+    """Return the integrals of the wave slope over a hull of parabolic section areas.
+
+    They are those of (1 - taper x^2) cos(s x) and (1 - taper x^2) x sin(s x) over x in [-1, 1].
+
+    Args:
+        s: Wave number times half the length, along the hull [-].
+        taper: Taper of the section areas [-].
+    """
+    if abs(s) < 0.02:  # series, because the closed forms cancel numerically
         s2 = s * s
         return 2.0 - 2.0 / 3.0 * taper - s2 * (1.0 / 3.0 - taper / 5.0), s * (
             2.0 / 3.0 - 0.4 * taper - s2 * (1.0 / 15.0 - taper / 21.0)
@@ -34,12 +41,25 @@ def sections(s: float, taper: float) -> tuple[float, float]:
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """Sum over waves, one from each cell of the frequencies; each carries the elevation's energy of its cell."""
+    """Return the sum of the forces of all wave components.
+
+    The frequency range is divided into cells with one wave in each, at a random frequency inside
+    the cell and with the energy of the spectrum in it.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     Y = K = N = 0.0
     if q.significant_height == 0.0:
         return wrench()
-    ahead, across = cos(q.toward), sin(q.toward)  # of where the waves run: earth axes
-    run = ahead * m.x + across * m.y  # [m] the ship's way with them
+    ahead, across = cos(q.toward), sin(q.toward)  # direction of the waves in earth axes
+    run = (
+        ahead * m.x + across * m.y
+    )  # [m] distance travelled by the ship along the direction of the waves
     if q.course_kept != 0.0:
         run = ahead * q.speed * m.t
     else:
@@ -79,65 +99,77 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class IrregularSea(Force):
-    """Waves of a Bretschneider spectrum that run one way; their slope pushes, turns and heels the hull.
+    """Forces of the slope of unidirectional waves of a Bretschneider spectrum.
 
-    Sway force and yaw moment are integrals of the slope over the sections of an ellipsoid; roll follows the slope with
-    the righting moment. With `course_kept` the ship meets the waves as on her first course (north) and speed, so that
-    `toward` is the angle of encounter: 0 following, pi / 2 beam, pi head sea; else by her true heading and place.
+    Sway force and yaw moment are integrals of the wave slope over the sections of an ellipsoid; the
+    roll moment is the righting stiffness times the wave slope. With `course_kept` = 1 the ship
+    meets the waves as on her initial course (north) at `speed`, so that `toward` is the angle of
+    encounter: 0 following sea, pi / 2 beam sea, pi head sea. Otherwise her actual heading and
+    position count.
     """
 
-    words: ClassVar[str] = "wind waves push, turn and heel the hull"
-    shown_by: ClassVar[str] = "lying across the sea without steering"
+    words: ClassVar[str] = "wind waves exert sway, yaw and roll forces on the hull"
+    shown_by: ClassVar[str] = "lying beam to the sea without steering"
     source: ClassVar[str] = (
         "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix V"
     )
-    anchored: ClassVar[str] = "the ground, where the phase of its waves is counted from"
+    anchored: ClassVar[str] = "the ground, to which the phase of its waves is referred"
     law: ClassVar = law
 
     significant_height: float = param(
-        0.0, low=0.0, high=30.0, unit="m", words="four times the elevation's rms; 0: calm"
+        0.0, low=0.0, high=30.0, unit="m", words="four times the rms of the elevation; 0: calm"
     )
     modal_period: float = param(
-        7.5, low=0.2, high=40.0, unit="s", words="at the peak of the elevation's spectrum"
+        7.5, low=0.2, high=40.0, unit="s", words="period at the peak of the elevation spectrum"
     )
-    toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where the waves run to")
+    toward: float = param(
+        0.0, low=-2 * pi, high=2 * pi, unit="rad", words="direction the waves run to"
+    )
     course_kept: float = param(
-        0.0, low=0.0, high=1.0, unit="", words="1: met as on course north at `speed`"
+        0.0, low=0.0, high=1.0, unit="", words="1: encounter as on course north at `speed`"
     )
     speed: float = param(
         UNSET,
         low=-50.0,
         high=50.0,
         unit="m/s",
-        words="then; if not given, that of the vessel's speed_hold",
+        words="speed for course_kept = 1; default: that of the vessel's speed_hold",
         follows="speed_hold.speed?",
     )
-    cut: float = param(3.0, low=0.0, high=100.0, unit="rad/s", words="shorter waves are left out")
-    components: float = param(160.0, low=1.0, high=2000.0, unit="", words="number of waves")
-    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the random course")
-    sway: float = param(
-        1.0, low=0.0, high=10.0, unit="", words="scale of the sway force; 1: by the formula"
+    cut: float = param(
+        3.0, low=0.0, high=100.0, unit="rad/s", words="highest frequency; shorter waves are omitted"
     )
-    roll: float = param(1.0, low=0.0, high=10.0, unit="", words="scale of the direct roll moment")
-    yaw: float = param(1.0, low=0.0, high=10.0, unit="", words="scale of the yaw moment")
+    components: float = param(
+        160.0, low=1.0, high=2000.0, unit="", words="number of wave components"
+    )
+    realisation: float = param(1.0, low=0.0, high=1e9, unit="", words="number of the realisation")
+    sway: float = param(
+        1.0, low=0.0, high=10.0, unit="", words="factor on the sway force; 1: as the formula"
+    )
+    roll: float = param(1.0, low=0.0, high=10.0, unit="", words="factor on the direct roll moment")
+    yaw: float = param(1.0, low=0.0, high=10.0, unit="", words="factor on the yaw moment")
     flat: float = param(
-        0.0, low=0.0, high=1.0, unit="", words="1: waves long against the hull, weight times slope"
+        0.0, low=0.0, high=1.0, unit="", words="1: long waves, force = weight times wave slope"
     )
     taper: float = param(
-        1.0, low=-10.0, high=10.0, unit="", words="sections 1 - taper (2 x / L)^2; 1: ellipsoid"
+        1.0, low=-10.0, high=10.0, unit="", words="section area 1 - taper (2 x / L)^2; 1: ellipsoid"
     )
     centre_depth: float = param(
-        UNSET, low=0.0, high=50.0, unit="m", words="of buoyancy; if not given, 0.4 of the draught"
+        UNSET,
+        low=0.0,
+        high=50.0,
+        unit="m",
+        words="depth of the centre of buoyancy; default: 0.4 of the draught",
     )
     density: float = param(
-        particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water"
+        particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="density of the water"
     )
     length: float = param(
         UNSET,
         low=0.0,
         high=500.0,
         unit="m",
-        words="if not given, the vessel's own",
+        words="default: that of the vessel",
         follows="vessel.length",
     )
     draught: float = param(
@@ -145,18 +177,18 @@ class IrregularSea(Force):
         low=0.0,
         high=50.0,
         unit="m",
-        words="if not given, the vessel's own",
+        words="default: that of the vessel",
         follows="vessel.draught",
     )
     mass: float = param(
-        UNSET, low=0.0, high=1e9, unit="kg", words="the vessel's own", follows="vessel.body.mass"
+        UNSET, low=0.0, high=1e9, unit="kg", words="mass of the vessel", follows="vessel.body.mass"
     )
     stiffness: float = param(
         UNSET,
         low=0.0,
         high=1e13,
         unit="N m",
-        words="the vessel's m g GM; if not given, its own if it has one",
+        words="m g GM; default: that of the vessel's righting_arm",
         follows="righting_arm.stiffness?",
     )
     arm: float = param(
@@ -164,14 +196,22 @@ class IrregularSea(Force):
         low=-100.0,
         high=100.0,
         unit="m",
-        words="the vessel's roll by sway; if not given, its own if it has one",
+        words="roll moment per sway force; default: that of the vessel's linear_hull",
         follows="linear_hull.arm?",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """The depth of buoyancy, 0.4 of the draught."""
+        """Return the depth of the centre of buoyancy, 0.4 of the draught.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
         return {"centre_depth": 0.4 * self.draught}
 
     def seeded(self, seed: int) -> Self:
-        """Another course for each seed."""
+        """Return the effect with a realisation that depends on the seed.
+
+        Args:
+            seed: Seed of the scenario.
+        """
         return replace(self, realisation=course(self.realisation, seed))

@@ -1,4 +1,4 @@
-"""Jet steering: a deflected water jet pushes the stern aside, turns the hull and heels it."""
+"""Jet steering: side force, roll and yaw moment of a deflected water jet, linear in its angle."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,20 +10,36 @@ from boatsim.physics.base import Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Side force, roll and yaw moment in proportion to the deflection."""
+    """Return side force, roll and yaw moment proportional to the nozzle angle.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return wrench(Y=q.sway * s.angle, K=q.roll * s.angle, N=q.yaw * s.angle)
 
 
 @dataclass(frozen=True)
 class JetSteering(Force):
-    """Linear steering of a jet drive at one speed; a positive angle turns to starboard where `yaw` is positive."""
+    """Linear steering force of a water jet at one speed.
 
-    words: ClassVar[str] = "the deflected jet steers in proportion to its angle"
+    Y = Y_delta delta,  K = K_delta delta,  N = N_delta delta
+
+    A positive angle delta turns the craft to starboard if `yaw` = N_delta is positive.
+    """
+
+    words: ClassVar[str] = "the steering force of the jet is proportional to its angle"
     shown_by: ClassVar[str] = "a zig-zag"
     source: ClassVar[str] = (
         "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, eq. 15"
     )
-    roles: ClassVar = {"angle": Role("rad", "the nozzle, positive turns to starboard going ahead")}
+    roles: ClassVar = {
+        "angle": Role("rad", "nozzle angle, positive turns to starboard going ahead")
+    }
     law: ClassVar = law
 
     sway: float = param(

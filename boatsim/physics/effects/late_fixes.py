@@ -1,4 +1,4 @@
-"""Late fixes: positions that reach the log later than the headings beside them."""
+"""Late fixes: recorded positions are older than the headings in the same row."""
 
 from dataclasses import dataclass
 from math import cos, sin
@@ -11,7 +11,17 @@ from boatsim.physics.base import Measurement, Shown, param
 
 @njit(inline="always")
 def shown(m: Shown, q: Any) -> Shown:
-    """Where she was `latency` ago, in the turn that she is in; its chord is taken for its arc."""
+    """Return the recorded motion with the position `latency` earlier in a steady turn.
+
+    The chord of the turn stands for its arc.
+
+    Args:
+        m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The recorded motion.
+    """
     middle = m.psi - 0.5 * q.latency * m.r
     c, s = cos(middle), sin(middle)
     x, y = m.x - q.latency * (c * m.u - s * m.v), m.y - q.latency * (s * m.u + c * m.v)
@@ -20,18 +30,21 @@ def shown(m: Shown, q: Any) -> Shown:
 
 @dataclass(frozen=True)
 class LateFixes(Measurement):
-    """A satellite receiver reports where it was; compass and rate gyro report at once.
+    """Latency of the positions of a satellite receiver behind compass and rate gyro.
 
-    What the boat speeds up within the latency is left out: that part of a long one shows as a late command.
+    x_recorded = x - latency (u cos(psi_m) - v sin(psi_m)),  psi_m = psi - 0.5 latency r
+
+    and y likewise. Acceleration within the latency is neglected; that part of a long latency
+    appears as a delayed command.
     """
 
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("surge", "sway", "yaw")
     ruled_out_by: ClassVar = {
         "position_fix": ("camera", "tracking")
-    }  # one picture shows place and heading
+    }  # one camera image gives position and heading at the same time
     words: ClassVar[str] = (
-        "recorded positions are older than the headings beside them (not physics)"
+        "recorded positions are older than the headings in the same row (not physics)"
     )
     shown_by: ClassVar[str] = "sharp turns at full speed"
     source: ClassVar[str] = "kinematics: a steady turn over the delay"
@@ -42,7 +55,7 @@ class LateFixes(Measurement):
         low=0.0,
         high=60.0,
         unit="s",
-        words="positions older by",
+        words="latency of the positions",
         fit=True,
         spread=0.2,
         within=(0.0, 1.0),

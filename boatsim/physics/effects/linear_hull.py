@@ -1,4 +1,4 @@
-"""Linear hull: sway force and yaw moment of a displacement hull about its approach speed, from its particulars."""
+"""Linear hull: sway force and yaw moment of a displacement hull about its approach speed."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,7 +11,17 @@ from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Sway force at a depth below the mass centre; `arm` turns what accelerates the hull in sway into a roll moment."""
+    """Return sway force, yaw moment and the roll moment of a low sway force.
+
+    `arm` adds a roll moment proportional to the force that accelerates the hull in sway.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     Y = -q.sway * m.vr - q.sway_by_yaw * m.r
     N = -q.yaw_by_sway * m.vr - q.yaw * m.r + q.yaw_by_heel * m.phi
     return wrench(Y=Y, K=-q.below * Y + q.arm * (Y - q.mass * m.ur * m.r), N=N)
@@ -19,15 +29,19 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class LinearHull(Force):
-    """Linear derivatives of a hull at constant forward speed, with its sway force acting below the mass centre.
+    """Linear derivatives of a hull at constant forward speed, estimated from its main particulars.
 
-    The added mass of sway acts at the same depth, m_y z_H v' in roll. Martin's equations have that term in roll alone
-    (one-sided): as v' is the sum of all sway forces over m + m_y, each of them heels the hull with the further lever
-    `arm` = z_H m_y / (m + m_y). Where the vessel's `added_mass.sway_below` is set, the mass matrix has the coupling on
-    both sides, as energy demands, and the arm is zero.
+    Y = Y_v v_r + Y_r r,  N = N_v v_r + N_r r + N_phi phi
+    K = -z_H Y + arm (Y - m u_r r)
+
+    The sway added mass acts at the depth z_H as well, m_y z_H v' in roll. Martin's equations have
+    this term in the roll equation only. As v' is the sum of all sway forces over m + m_y, each of
+    them heels the hull with the additional lever `arm` = z_H m_y / (m + m_y). If the vessel's
+    `added_mass.sway_below` is set, the mass matrix has the coupling in both equations, as
+    conservation of energy requires, and `arm` is zero.
     """
 
-    words: ClassVar[str] = "the hull resists drifting and turning and is heeled by it"
+    words: ClassVar[str] = "drift and yaw rate cause a side force, a yaw moment and a heel"
     shown_by: ClassVar[str] = "a zig-zag at small rudder angles"
     source: ClassVar[str] = (
         "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix IV; Inoue, Hirano, Kijima 1981"
@@ -35,7 +49,7 @@ class LinearHull(Force):
     law: ClassVar = law
 
     trim: float = param(
-        0.0, low=-20.0, high=20.0, unit="m", words="draught aft less draught forward"
+        0.0, low=-20.0, high=20.0, unit="m", words="trim: draught aft less draught forward"
     )
     block: float = param(0.5, low=0.05, high=1.0, unit="", words="block coefficient")
     ahead: float = param(
@@ -48,7 +62,7 @@ class LinearHull(Force):
         -0.0076, low=-1.0, high=1.0, unit="", words="N'phi; -0.0076 for Martin's worked example"
     )
     density: float = param(
-        particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="of the water"
+        particulars.SEA_WATER, low=1.0, high=1500.0, unit="kg/m^3", words="density of the water"
     )
     speed: float = param(
         UNSET, low=-50.0, high=50.0, unit="m/s", words="approach speed", follows="speed_hold.speed"
@@ -76,14 +90,25 @@ class LinearHull(Force):
         low=-100.0,
         high=100.0,
         unit="m",
-        words="roll moment per force that accelerates in sway",
+        words="roll moment per force that accelerates the hull in sway",
     )
     mass: float = param(
-        UNSET, low=0.0, high=1e9, unit="kg", words="the vessel's own", follows="vessel.body.mass"
+        UNSET, low=0.0, high=1e9, unit="kg", words="mass of the vessel", follows="vessel.body.mass"
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """Derivatives and levers of the vessel's size, speed and added mass. Raises BadInput without that."""
+        """Return the derivatives and levers from the size, speed and added mass of the vessel.
+
+        Args:
+            vessel: Vessel with length, beam, draught [m], body and an `added_mass`.
+
+        Returns:
+            `sway` [N s/m], `sway_by_yaw`, `yaw_by_sway` [N s], `yaw` [N m s], `yaw_by_heel` [N m],
+            `below`, `arm` [m].
+
+        Raises:
+            BadInput: The vessel has no added mass.
+        """
         L, T = vessel.length, vessel.draught
         m_x, m_y, sway_below = (
             self.followed(f"added_mass.{key}", vessel) for key in ("surge", "sway", "sway_below")
