@@ -160,12 +160,12 @@ QuadraticDamping = preset(
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
     frees={
-        "surge": {"unit": "N s^2/m^2", "words": "surge", "spread": 4.0},
-        "sway": {"unit": "N s^2/m^2", "words": "sway", "spread": 40.0},
-        "yaw": {"unit": "N m s^2", "words": "yaw", "spread": 1.5},
-        "roll": {"unit": "N m s^2", "words": "roll", "spread": 0.1},
-        "heave": {"unit": "N s^2/m^2", "words": "heave", "spread": 40.0},
-        "pitch": {"unit": "N m s^2", "words": "pitch", "spread": 1.5},
+        "surge": {"unit": "N s^2/m^2", "words": "quadratic surge damping", "spread": 4.0},
+        "sway": {"unit": "N s^2/m^2", "words": "quadratic sway damping", "spread": 40.0},
+        "yaw": {"unit": "N m s^2", "words": "quadratic yaw damping", "spread": 1.5},
+        "roll": {"unit": "N m s^2", "words": "quadratic roll damping", "spread": 0.1},
+        "heave": {"unit": "N s^2/m^2", "words": "quadratic heave damping", "spread": 40.0},
+        "pitch": {"unit": "N m s^2", "words": "quadratic pitch damping", "spread": 1.5},
     },
     fixed=PLAIN | {f"{axis}_exponent": 2.0 for axis in AXES},
 )
@@ -177,12 +177,12 @@ CubicDamping = preset(
     shown_by="the same motion at a large and at a small amplitude",
     source=ITTC,
     frees={
-        "surge": {"unit": "N s^3/m^3", "words": "surge", "spread": 4.0},
-        "sway": {"unit": "N s^3/m^3", "words": "sway", "spread": 40.0},
-        "yaw": {"unit": "N m s^3", "words": "yaw", "spread": 1.5},
-        "roll": {"unit": "N m s^3", "words": "roll", "spread": 0.003},
-        "heave": {"unit": "N s^3/m^3", "words": "heave", "spread": 40.0},
-        "pitch": {"unit": "N m s^3", "words": "pitch", "spread": 1.5},
+        "surge": {"unit": "N s^3/m^3", "words": "cubic surge damping", "spread": 4.0},
+        "sway": {"unit": "N s^3/m^3", "words": "cubic sway damping", "spread": 40.0},
+        "yaw": {"unit": "N m s^3", "words": "cubic yaw damping", "spread": 1.5},
+        "roll": {"unit": "N m s^3", "words": "cubic roll damping", "spread": 0.003},
+        "heave": {"unit": "N s^3/m^3", "words": "cubic heave damping", "spread": 40.0},
+        "pitch": {"unit": "N m s^3", "words": "cubic pitch damping", "spread": 1.5},
     },
     fixed=PLAIN | {f"{axis}_exponent": 3.0 for axis in AXES},
 )
@@ -205,21 +205,23 @@ class DampingError(Release):
         "linear_damping.surge|surge_drag.linear|approach_balance.damping|mmg_hull.R_0|abkowitz_hull.X_u"
         "|mmg_low_speed_hull.X_0F",
         "surge_drag.quadratic",
-        words="surge",
+        words="factor on the surge damping",
         axis="surge",
     )
     sway_factor: float = factor(
         "linear_damping.sway|linear_hull.sway|mmg_hull.Y_v|abkowitz_hull.Y_v|mmg_low_speed_hull.C_D"
         "|cross_flow_drag.section_drag_coefficient",
-        words="sway",
+        words="factor on the sway damping",
         axis="sway",
     )
     yaw_factor: float = factor(
         "linear_damping.yaw|linear_hull.yaw|mmg_hull.N_r|abkowitz_hull.N_r|mmg_low_speed_hull.N_r",
-        words="yaw",
+        words="factor on the yaw damping",
         axis="yaw",
     )
-    roll_factor: float = factor("linear_damping.roll|roll_damping.roll", words="roll", axis="roll")
+    roll_factor: float = factor(
+        "linear_damping.roll|roll_damping.roll", words="factor on the roll damping", axis="roll"
+    )
 
 
 @dataclass(frozen=True)
@@ -248,7 +250,7 @@ def another_power(axis: str) -> float:
     """Return the parameter of the exponent that replaces the linear law in one axis."""
     return number(
         f"linear_damping.{axis}_exponent",
-        words=axis,
+        words=f"exponent of the {axis} damping",
         unit="",
         spread=0.5,
         low=1.0,

@@ -148,8 +148,9 @@ class Payload(Release):
         return [c for c in super().changes(vessel) if getattr(vessel.body, c.key) is not None]
 
     def weights(self, vessel: Boat) -> dict[str, float]:
-        """Return the inertia per mass [m^2] of each axis, so that the radii of gyration do not
-        change.
+        """Return the inertia per mass [m^2] of each axis.
+
+        The radii of gyration do not change.
 
         Args:
             vessel: Vessel on which the effect acts.

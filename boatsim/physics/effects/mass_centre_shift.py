@@ -1,4 +1,4 @@
-"""Mass centre shift: the hull's own mass lies ahead of or behind where the model has it."""
+"""Mass centre shift: the mass centre of the hull lies ahead of or behind its modelled place."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,24 +10,46 @@ from boatsim.physics.base import UNSET, Force, Inertia, Mass, Wrench, mass, para
 
 @njit(inline="always")
 def inertia(q: Any) -> Mass:
-    """First and second moment of the shifted mass about the origin of motion; the mass itself is the hull's."""
+    """Return the first and second moment of the shifted mass; the mass itself belongs to the hull.
+
+    Args:
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Entries of the mass matrix [kg, kg m, kg m^2] about the origin of motion.
+    """
     first = q.hull_mass * q.shift
     return mass(sway_yaw=first, yaw=first * q.shift)
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Coriolis force of that moment: (m x_g r^2, 0, -m x_g u r)."""
+    """Return the Coriolis and centripetal force of the first moment.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     first = q.hull_mass * q.shift
     return wrench(X=first * m.r * m.r, N=-first * m.u * m.r)
 
 
 @dataclass(frozen=True)
 class MassCentreShift(Inertia, Force):
-    """The hull's mass centre ahead of the origin of motion; thrusters and damping stay where they are."""
+    """Mass centre of the hull ahead of the origin of motion.
+
+    Thrusters and damping keep their places.
+
+    M = m [0, x_g; x_g, x_g^2] in sway and yaw,  X = m x_g r^2,  N = -m x_g u r
+
+    x_g is the `shift` [m], m the `hull_mass` [kg].
+    """
 
     needs: ClassVar = ("sway", "yaw")
-    words: ClassVar[str] = "the mass centre lies ahead of or behind where the model has it"
+    words: ClassVar[str] = "the mass centre lies ahead of or behind its modelled place"
     shown_by: ClassVar[str] = "sharp starts and stops sideways, and fast turns"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 3.3"
@@ -41,7 +63,7 @@ class MassCentreShift(Inertia, Force):
         low=-200.0,
         high=200.0,
         unit="m",
-        words="positive forward",
+        words="shift of the mass centre, positive forward",
         fit=True,
         spread=0.1,
         within=(-0.6, 0.6),
@@ -51,6 +73,6 @@ class MassCentreShift(Inertia, Force):
         low=0.0,
         high=1e9,
         unit="kg",
-        words="the hull's; if not given, the vessel's own",
+        words="mass of the hull; default: that of the vessel",
         follows="vessel.body.mass",
     )

@@ -1,4 +1,4 @@
-"""Measured relative wind: the push of the air as an anemometer on board reads it: from the bow, way made included."""
+"""Measured relative wind: air drag from the apparent wind of an anemometer on board."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -12,17 +12,34 @@ from boatsim.physics.effects.measured_wind import MeasuredWind
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Drag in the air's velocity past the hull, which is what is read."""
+    """Return the air drag for the measured velocity of the air past the hull.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return pushed(-s.speed * s.cos_comes_from, -s.speed * s.sin_comes_from, q.density, q, q.swing)
 
 
 @dataclass(frozen=True)
 class MeasuredRelativeWind(MeasuredWind):
-    """The same with the reading of an anemometer on board that nobody has turned into true wind."""
+    """Air drag from the apparent wind as measured on board, not converted to true wind.
 
-    anchored: ClassVar[str] = ""  # the reading says it all, wherever water and air go
+    X = 0.5 rho front U^2 cos g,  Y = 0.5 rho side U^2 sin g,  N = (arm + swing cos g) Y
+
+    U is the measured speed [m/s], g the direction the air moves to, from the bow. Parameters are
+    those of `measured_wind`.
+    """
+
+    anchored: ClassVar[str] = (
+        ""  # the reading is relative to the hull, so no frame of reference is needed
+    )
     law: ClassVar = law
     roles: ClassVar = {
-        "speed": Role("m/s", "the speed of the air past the hull"),
-        "comes_from": Role("rad", "where the air comes from, clockwise from the bow"),
+        "speed": Role("m/s", "speed of the air past the hull"),
+        "comes_from": Role("rad", "direction the air comes from, clockwise from the bow"),
     }

@@ -1,4 +1,4 @@
-"""Measured wind: the push of the air on a hull that carries an anemometer, or has one beside it."""
+"""Measured wind: air drag from a recorded true wind."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,7 +11,16 @@ from boatsim.physics.effects.fan_wind import AIR_DENSITY, pushed
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Drag in the true wind, less the hull's own velocity over ground."""
+    """Return the air drag for the true wind less the velocity of the hull over ground.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     north, east = -s.speed * s.cos_comes_from, -s.speed * s.sin_comes_from
     along = m.cos_psi * north + m.sin_psi * east - m.u
     across = m.cos_psi * east - m.sin_psi * north - m.v
@@ -20,14 +29,16 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class MeasuredWind(Force):
-    """Drag of the hull in a wind whose speed over ground and direction are recorded.
+    """Air drag of the hull in a wind whose speed over ground and direction are recorded.
 
-    X = rho/2 front U^2 cos g, Y = rho/2 side U^2 sin g, N = (arm + swing cos g) Y; U is the air's speed past the hull,
-    g where it goes, from the bow. `front` and `side` are areas times their coefficients: of a regression whose C_N has
-    N1 sin g + N2 sin 2 g, over length and side area, arm = N1 L / C_Y and swing = 2 N2 L / C_Y.
+    X = 0.5 rho front U^2 cos g,  Y = 0.5 rho side U^2 sin g,  N = (arm + swing cos g) Y
+
+    U is the speed of the air past the hull, g the direction it moves to, from the bow. `front` and
+    `side` are areas times drag coefficients. For a regression with C_N = N1 sin g + N2 sin 2g over
+    length L and side area: arm = N1 L / C_Y and swing = 2 N2 L / C_Y.
     """
 
-    words: ClassVar[str] = "the measured wind pushes the hull downwind and swings its bow"
+    words: ClassVar[str] = "the measured wind exerts a drag and a yaw moment on the hull"
     shown_by: ClassVar[str] = "turning through all headings while holding the thrust"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 10.1"
@@ -36,22 +47,22 @@ class MeasuredWind(Force):
     law: ClassVar = law
     of_air: ClassVar = True
     roles: ClassVar = {
-        "speed": Role("m/s", "the wind's speed over ground"),
-        "comes_from": Role("rad", "where the wind comes from, clockwise from the x axis"),
+        "speed": Role("m/s", "speed of the wind over ground"),
+        "comes_from": Role("rad", "direction the wind comes from, clockwise from the x axis"),
     }
 
     front: float = param(
-        0.021, low=0.0, high=5000.0, unit="m^2", words="drag area bow-on", calibrates="wind"
+        0.021, low=0.0, high=5000.0, unit="m^2", words="frontal drag area", calibrates="wind"
     )
     side: float = param(
-        0.114, low=0.0, high=20000.0, unit="m^2", words="drag area beam-on", calibrates="wind"
+        0.114, low=0.0, high=20000.0, unit="m^2", words="lateral drag area", calibrates="wind"
     )
     arm: float = param(
         0.0,
         low=-200.0,
         high=200.0,
         unit="m",
-        words="side push acts this far forward",
+        words="lever of the side force, ahead of the origin",
         calibrates="wind",
     )
     swing: float = param(
@@ -59,7 +70,9 @@ class MeasuredWind(Force):
         low=-200.0,
         high=200.0,
         unit="m",
-        words="further forward with the wind from astern",
+        words="additional lever with the wind from astern",
         calibrates="wind",
     )
-    density: float = param(AIR_DENSITY, low=0.5, high=2.0, unit="kg/m^3", words="of the air")
+    density: float = param(
+        AIR_DENSITY, low=0.5, high=2.0, unit="kg/m^3", words="density of the air"
+    )

@@ -1,4 +1,4 @@
-"""MMG hull: a bare hull's surge, sway and yaw as polynomials in drift and rate of turn."""
+"""MMG hull: forces of the bare hull as polynomials in drift and yaw rate."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -18,10 +18,19 @@ FASTEST = 3.0
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Polynomials of v/U and r L/U, and the Coriolis force of the added mass in surge and sway.
+    """Return the hull force of the MMG standard method and the Coriolis force of the added mass.
 
-    In yaw that force is part of N_v. A hull that hardly moves but turns takes the speed of its fastest turn for U. The
-    resistance is against the way: beyond the drift of any turn under way it goes to zero broadside on, and turns round.
+    Velocities are nondimensional with U: v / U and r L / U. In yaw the Coriolis force is part of
+    N_v. For a hull that turns almost on the spot U is at least |r| L / 3, so that r L / U stays
+    within the range of the polynomials. The resistance opposes the surge velocity; beyond 60 deg of
+    drift it decreases to zero at 90 deg and changes its sign.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
     """
     U = max(sqrt(m.ur * m.ur + m.vr * m.vr), abs(m.r) * q.length / FASTEST, 1e-9)
     v, r = m.vr / U, m.r * q.length / U
@@ -38,7 +47,7 @@ def law(m: Any, q: Any) -> Wrench:
 
 
 def derivative(name: str, axis: str) -> float:
-    """A nondimensional derivative from captive tests, known as well as these are."""
+    """Return the parameter of a nondimensional derivative from captive tests."""
     return param(
         0.0,
         low=-10.0,
@@ -52,7 +61,15 @@ def derivative(name: str, axis: str) -> float:
 
 @dataclass(frozen=True)
 class MmgHull(Force):
-    """Of a ship that goes ahead; needs added_mass with coriolis = 0. The origin of motion is midship."""
+    """Hull of a ship going ahead, MMG standard method; origin of motion midship.
+
+    X = q (-R_0 + X_vv v'^2 + X_vr v' r' + X_rr r'^2 + X_vvvv v'^4) + m_y v r
+    Y = q (Y_v v' + Y_r r' + Y_vvv v'^3 + Y_vvr v'^2 r' + Y_vrr v' r'^2 + Y_rrr r'^3) - m_x u r
+    N = q L (N_v v' + N_r r' + N_vvv v'^3 + N_vvr v'^2 r' + N_vrr v' r'^2 + N_rrr r'^3)
+
+    q = 0.5 rho L d U^2, v' = v / U, r' = r L / U. The vessel needs `added_mass` with coriolis = 0,
+    because the Coriolis force of the added mass is part of this effect.
+    """
 
     words: ClassVar[str] = "hull forces as polynomials in drift and rate of turn (MMG)"
     shown_by: ClassVar[str] = "turning circles and zig-zags"
@@ -62,12 +79,24 @@ class MmgHull(Force):
     law: ClassVar = law
 
     length: float = param(
-        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
+        UNSET,
+        low=0.0,
+        high=500.0,
+        unit="m",
+        words="main dimension of the ship",
+        follows="vessel.length",
     )
     draught: float = param(
-        UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught"
+        UNSET,
+        low=0.0,
+        high=50.0,
+        unit="m",
+        words="main dimension of the ship",
+        follows="vessel.draught",
     )
-    density: float = param(1000.0, low=0.0, high=1100.0, unit="kg/m^3", words="of the water")
+    density: float = param(
+        1000.0, low=0.0, high=1100.0, unit="kg/m^3", words="density of the water"
+    )
     m_x: float = param(
         UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge"
     )

@@ -1,4 +1,4 @@
-"""MMG hull at low speed: lift in proportion to the way through the water, and every section's cross-flow drag."""
+"""MMG hull at low speed: linear lift and cross-flow drag, from rest to going astern."""
 
 from dataclasses import dataclass
 from math import atan2, pi, sqrt
@@ -12,9 +12,17 @@ from boatsim.physics.effects.cross_flow_drag import panel
 
 @njit(inline="always")
 def cross_flow(v: float, r: float, length: float) -> tuple[float, float]:
-    """Integrals of w|w| and x w|w|, w = v + x r, from stern to bow of a hull about midship."""
+    """Return the integrals of w|w| and x w|w|, w = v + x r, over a hull about midship.
+
+    Args:
+        v: Cross-flow velocity midship [m/s].
+        r: Its slope along the hull [1/s].
+        length: Length of the hull [m].
+    """
     half = 0.5 * length
-    turn = min(max(-v / r, -half), half) if r != 0.0 else -half  # where the cross flow changes sign
+    turn = (
+        min(max(-v / r, -half), half) if r != 0.0 else -half
+    )  # station at which the cross flow changes its sign
     aft, aft_moment = panel(-half, turn, v, r)
     fore, fore_moment = panel(turn, half, v, r)
     return aft + fore, aft_moment + fore_moment
@@ -22,10 +30,18 @@ def cross_flow(v: float, r: float, length: float) -> tuple[float, float]:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Defined for any drift, from rest to astern, where polynomials of v/U and r L/U are not.
+    """Return the hull force, defined for every drift angle and at rest.
 
-    The share of the resistance astern grows with the drift angle, 0 ahead to pi astern. The added mass brings its
-    Coriolis force in surge and sway; in yaw that is part of N_v.
+    Polynomials in v / U and r L / U are not defined there. The weight of the resistance coefficient
+    astern grows linearly with the drift angle, from 0 ahead to 1 astern. In yaw the Coriolis force
+    of the added mass is part of N_v.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
     """
     U, L = sqrt(m.ur * m.ur + m.vr * m.vr), q.length
     astern = abs(atan2(m.vr, m.ur)) / pi
@@ -39,16 +55,23 @@ def law(m: Any, q: Any) -> Wrench:
 
 
 def coefficient(words: str, axis: str = "") -> float:
-    """A nondimensional number from captive tests, known as well as these are."""
+    """Return the parameter of a nondimensional coefficient from captive tests."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=words, calibrates="damping", axis=axis)
 
 
 @dataclass(frozen=True)
 class MmgLowSpeedHull(Force):
-    """Of a ship that stops, backs and turns on the spot; needs added_mass with coriolis = 0. Origin midship."""
+    """Hull of a ship that stops, backs and turns on the spot, unified MMG model; origin midship.
+
+    X = q (X_0 u U + X_vr L v r) + m_y v r,  X_0 between X_0F (ahead) and X_0A (astern)
+    Y = q (Y_v v |u| + Y_r L r u - C_D / L integral(w|w| dx)) - m_x u r,  w = v + C_rY r x
+    N = q L (N_v v u + N_r L r |u| - C_D / L^2 integral(x w|w| dx)),  w = v + C_rN r x
+
+    q = 0.5 rho L d. The vessel needs `added_mass` with coriolis = 0.
+    """
 
     words: ClassVar[str] = (
-        "hull forces from rest to astern: lift with the way and cross-flow drag (MMG, low speed)"
+        "hull forces from rest to astern: linear lift and cross-flow drag (MMG, low speed)"
     )
     shown_by: ClassVar[str] = "stopping, backing and turning on the spot"
     source: ClassVar[str] = (
@@ -57,12 +80,24 @@ class MmgLowSpeedHull(Force):
     law: ClassVar = law
 
     length: float = param(
-        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
+        UNSET,
+        low=0.0,
+        high=500.0,
+        unit="m",
+        words="main dimension of the ship",
+        follows="vessel.length",
     )
     draught: float = param(
-        UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught"
+        UNSET,
+        low=0.0,
+        high=50.0,
+        unit="m",
+        words="main dimension of the ship",
+        follows="vessel.draught",
     )
-    density: float = param(1000.0, low=0.0, high=1100.0, unit="kg/m^3", words="of the water")
+    density: float = param(
+        1000.0, low=0.0, high=1100.0, unit="kg/m^3", words="density of the water"
+    )
     m_x: float = param(
         UNSET, low=0.0, high=1e9, unit="kg", words="added mass", follows="added_mass.surge"
     )
@@ -76,8 +111,10 @@ class MmgLowSpeedHull(Force):
     Y_r: float = coefficient("Y_r'", "sway")
     N_v: float = coefficient("N_v'", "yaw")
     N_r: float = coefficient("N_r'", "yaw")
-    C_D: float = coefficient("C_D, cross-flow drag of a section")
+    C_D: float = coefficient("C_D, cross-flow drag coefficient of a section")
     C_rY: float = coefficient(
-        "C_rY, how much turning counts in the cross flow that makes sway force", "sway"
+        "C_rY, factor on the yaw rate in the cross flow of the sway force", "sway"
     )
-    C_rN: float = coefficient("C_rN, and in that which makes yaw moment", "yaw")
+    C_rN: float = coefficient(
+        "C_rN, factor on the yaw rate in the cross flow of the yaw moment", "yaw"
+    )

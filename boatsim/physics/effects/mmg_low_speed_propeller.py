@@ -1,4 +1,4 @@
-"""MMG propeller at low speed: ahead and astern on a ship that goes ahead or astern, with the side force it makes."""
+"""MMG propeller at low speed: thrust and side force in all four quadrants."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -12,7 +12,15 @@ from boatsim.physics.effects.mmg_propeller import open_water
 
 @njit(inline="always")
 def inflow(m: Any, q: Any) -> float:
-    """Speed of the water through the propeller [m/s]; the wake thins as the stern slides, and astern there is none."""
+    """Return the speed of the water through the propeller [m/s].
+
+    The wake fraction decreases with the sideways velocity of the stern; going astern there is no
+    wake.
+
+    Args:
+        m: Motion of the hull.
+        q: Parameters with the wake coefficients.
+    """
     if m.ur <= 0.0:
         return float(m.ur)
     slide = (m.vr + q.propeller_at * q.length * m.r) / max(sqrt(m.ur * m.ur + m.vr * m.vr), 1e-9)
@@ -22,9 +30,15 @@ def inflow(m: Any, q: Any) -> float:
 
 @njit(inline="always")
 def backing(shaft: float, u: float, q: Any) -> float:
-    """Thrust per density and D^2 [m^2/s^2] of a shaft that turns astern: linear in J_s, constant below `astern_from`.
+    """Return the thrust over rho D^2 [m^2/s^2] of a shaft that turns astern.
 
-    J_s = u / (n D) is negative while the ship still goes ahead, so the constant is that of a crash stop.
+    It is linear in J_s = u / (n D) and constant below `astern_from`. J_s is negative while the ship
+    still goes ahead, so the constant is that of a crash stop.
+
+    Args:
+        shaft: Shaft rate, negative [1/s].
+        u: Surge velocity through the water [m/s].
+        q: Parameters of the effect.
     """
     nD = shaft * q.diameter
     if u > q.astern_from * nD:
@@ -34,7 +48,15 @@ def backing(shaft: float, u: float, q: Any) -> float:
 
 @njit(inline="always")
 def push(m: Any, q: Any, shaft: float) -> float:
-    """Thrust on the ship per density and D^2 [m^2/s^2]; astern it is measured with what it does to the hull."""
+    """Return the thrust on the ship over rho D^2 [m^2/s^2].
+
+    Astern the measured value includes the reaction of the hull.
+
+    Args:
+        m: Motion of the hull.
+        q: Parameters of the effect.
+        shaft: Shaft rate, positive ahead [1/s].
+    """
     if shaft < 0.0:
         return backing(shaft, m.ur, q)
     return float((1.0 - q.thrust_deduction) * open_water(shaft, inflow(m, q), q))
@@ -42,9 +64,15 @@ def push(m: Any, q: Any, shaft: float) -> float:
 
 @njit(inline="always")
 def aside(m: Any, q: Any, shaft: float) -> tuple[float, float]:
-    """Side force and yaw moment per 1/2 density L d and 1/2 density L^2 d [m^2/s^2], in three ranges of J_s astern.
+    """Return side force over 0.5 rho L d and yaw moment over 0.5 rho L^2 d [m^2/s^2].
 
-    Going ahead with the shaft ahead there is none; astern with the shaft ahead it is a parabola in J_s.
+    With the shaft astern they are linear in J_s in three ranges, with the shaft ahead and the ship
+    astern they are a parabola in J_s; with both ahead they are zero.
+
+    Args:
+        m: Motion of the hull.
+        q: Parameters of the effect.
+        shaft: Shaft rate, positive ahead [1/s].
     """
     nD, u = shaft * q.diameter, m.ur
     if shaft < 0.0:
@@ -62,7 +90,16 @@ def aside(m: Any, q: Any, shaft: float) -> tuple[float, float]:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Thrust with what its suction costs the hull, and what the race does to the hull's side."""
+    """Return thrust, thrust deduction included, side force and yaw moment of the propeller.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     X = q.density * q.diameter * q.diameter * push(m, q, s.shaft)
     Y, N = aside(m, q, s.shaft)
     k = 0.5 * q.gain * q.density * q.length * q.draught  # [kg/m]
@@ -70,74 +107,101 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 
 def number(words: str) -> float:
-    """A nondimensional number from captive tests."""
+    """Return the parameter of a nondimensional coefficient from captive tests."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=words)
 
 
 @dataclass(frozen=True)
 class MmgLowSpeedPropeller(Force):
-    """One propeller on the centre line, in all four quadrants."""
+    """One propeller on the centreline, all four quadrants of ship speed and shaft rate.
+
+    n >= 0: X = (1 - t_P) rho n^2 D^4 (k0 + k1 J + k2 J |J|)
+    n < 0:  X = rho n^2 D^4 (astern_C1 + astern_C2 J_s)
+
+    J = u_P / (n D) with the inflow speed u_P behind the wake, J_s = u / (n D). Side force and yaw
+    moment of a backing propeller are linear in J_s in three ranges: below `aside_low`, between, and
+    above `aside_high`.
+    """
 
     words: ClassVar[str] = (
-        "a propeller pushes ahead or astern, and aside when it backs (MMG, low speed)"
+        "thrust of a propeller ahead and astern, with a side force when it backs (MMG, low speed)"
     )
     shown_by: ClassVar[str] = "crash stops and backing"
     source: ClassVar[str] = (
         "Y. Miyauchi, A. Maki, N. Umeda, D. M. Rachman, Y. Akimoto, J. Mar. Sci. Technol. 27, 2022"
     )
-    roles: ClassVar = {"shaft": Role("1/s", "the propeller's rate, ahead positive")}
+    roles: ClassVar = {"shaft": Role("1/s", "shaft rate, positive ahead")}
     law: ClassVar = law
 
     length: float = param(
-        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
+        UNSET,
+        low=0.0,
+        high=500.0,
+        unit="m",
+        words="main dimension of the ship",
+        follows="vessel.length",
     )
     draught: float = param(
-        UNSET, low=0.0, high=50.0, unit="m", words="of the ship", follows="vessel.draught"
+        UNSET,
+        low=0.0,
+        high=50.0,
+        unit="m",
+        words="main dimension of the ship",
+        follows="vessel.draught",
     )
     density: float = param(
         UNSET,
         low=0.0,
         high=1100.0,
         unit="kg/m^3",
-        words="of the water",
+        words="density of the water",
         follows="mmg_low_speed_hull.density",
     )
-    diameter: float = param(1.0, low=0.001, high=20.0, unit="m", words="D_P")
-    pitch_ratio: float = param(1.0, low=0.0, high=3.0, unit="", words="P / D_P")
-    thrust_deduction: float = param(0.0, low=0.0, high=1.0, unit="", words="t_P, shaft ahead")
-    wake: float = param(0.0, low=0.0, high=1.0, unit="", words="w_P0, on a straight course ahead")
-    wake_tau: float = number("tau, how much a slide of the stern thins the wake")
-    wake_C_P: float = number("C_P, and its square")
+    diameter: float = param(1.0, low=0.001, high=20.0, unit="m", words="propeller diameter, D_P")
+    pitch_ratio: float = param(1.0, low=0.0, high=3.0, unit="", words="pitch ratio, P / D_P")
+    thrust_deduction: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="thrust deduction with the shaft ahead, t_P"
+    )
+    wake: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="wake fraction on a straight course ahead, w_P0"
+    )
+    wake_tau: float = number("tau, decrease of the wake with the sideways velocity of the stern")
+    wake_C_P: float = number("C_P, decrease of the wake with its square")
     propeller_at: float = param(
-        -0.5, low=-1.0, high=1.0, unit="", words="x_P', lengths ahead of midship"
+        -0.5, low=-1.0, high=1.0, unit="", words="x_P', propeller ahead of midship, in lengths"
     )
     k0: float = number("K_T at J = 0, shaft ahead")
-    k1: float = number("of J in K_T")
-    k2: float = number("of J^2 in K_T")
+    k1: float = number("coefficient of J in K_T")
+    k2: float = number("coefficient of J^2 in K_T")
     astern_C1: float = number("thrust astern over rho n^2 D_P^4 at J_s = 0")
-    astern_C2: float = number("of J_s in it")
-    astern_from: float = number("J_s below which it is constant")
-    astern_stop: float = number("that constant")
+    astern_C2: float = number("coefficient of J_s in the value before")
+    astern_from: float = number("J_s below which the thrust astern is constant")
+    astern_stop: float = number("thrust astern over rho n^2 D_P^4 below that J_s")
     aside_low: float = number(
         "J_s below which the side force of a backing shaft has its first form"
     )
-    aside_high: float = number("J_s above which it has its last")
+    aside_high: float = number("J_s above which the side force has its last form")
     Y_low: float = number("side force over 1/2 rho L d (n D_P)^2 in the first form")
-    Y_low_J: float = number("of J_s in it")
-    Y_mid: float = number("the same in between")
-    Y_mid_J: float = number("of J_s in it")
+    Y_low_J: float = number("coefficient of J_s in the value before")
+    Y_mid: float = number("the same in the middle form")
+    Y_mid_J: float = number("coefficient of J_s in the value before")
     Y_high: float = number("the same in the last form")
     Y_braked: float = number("side force over 1/2 rho L d (n P)^2, shaft ahead and ship astern")
-    Y_braked_J: float = number("of J_s in it")
-    Y_braked_JJ: float = number("of J_s^2 in it")
+    Y_braked_J: float = number("coefficient of J_s in the value before")
+    Y_braked_JJ: float = number("coefficient of J_s^2 in the value before")
     N_low: float = number("yaw moment over 1/2 rho L^2 d (n D_P)^2 in the first form")
-    N_low_J: float = number("of J_s in it")
-    N_mid: float = number("the same in between")
-    N_mid_J: float = number("of J_s in it")
+    N_low_J: float = number("coefficient of J_s in the value before")
+    N_mid: float = number("the same in the middle form")
+    N_mid_J: float = number("coefficient of J_s in the value before")
     N_high: float = number("the same in the last form")
     N_braked: float = number("yaw moment over 1/2 rho L^2 d (n P)^2, shaft ahead and ship astern")
-    N_braked_J: float = number("of J_s in it")
-    N_braked_JJ: float = number("of J_s^2 in it")
+    N_braked_J: float = number("coefficient of J_s in the value before")
+    N_braked_JJ: float = number("coefficient of J_s^2 in the value before")
     gain: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="thrust per stated one", calibrates="thrust"
+        1.0,
+        low=0.1,
+        high=5.0,
+        unit="",
+        words="thrust over its specified value",
+        calibrates="thrust",
     )

@@ -1,4 +1,4 @@
-"""MMG rudder at low speed: a blade in the race of a propeller that may back, on a ship that may go astern."""
+"""MMG rudder at low speed: rudder force behind a propeller that may back, ship ahead or astern."""
 
 from dataclasses import dataclass
 from math import atan2, cos, pi, sin, sqrt
@@ -10,15 +10,21 @@ from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 from boatsim.physics.effects.mmg_low_speed_propeller import inflow, push
 from boatsim.physics.effects.mmg_propeller import open_water
 
-NEVER = pi  # [rad] any angle of attack
+NEVER = pi  # [rad] default: no stall at any angle of attack
 
 
 @njit(inline="always")
 def race(m: Any, q: Any, shaft: float) -> float:
-    """Speed of the water along the blade [m/s], negative from astern.
+    """Return the speed of the water along the rudder [m/s], negative from astern.
 
-    A propeller that pushes ahead washes the part of the span behind it; one that backs or brakes draws water away from
-    it; on a ship that goes astern with no push ahead the blade leads, in undisturbed water.
+    A propeller with thrust ahead accelerates the flow over the part of the span behind it. One that
+    backs or brakes draws water away from the rudder. On a ship that goes astern without thrust
+    ahead the rudder meets undisturbed water.
+
+    Args:
+        m: Motion of the hull.
+        q: Parameters of the effect.
+        shaft: Shaft rate, positive ahead [1/s].
     """
     V, washed, pulls = inflow(m, q), q.diameter / q.span, open_water(shaft, inflow(m, q), q)
     if shaft >= 0.0 and pulls > 0.0:
@@ -38,12 +44,23 @@ def race(m: Any, q: Any, shaft: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Force normal to the blade; hull and propeller straighten the flow that meets it, by the side it comes from."""
+    """Return the force normal to the rudder, with the hull force that it induces.
+
+    Hull and propeller straighten the flow that meets the rudder, by a factor for each side.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     from_starboard = m.vr + q.rudder_at * q.length * m.r >= 0.0
     straightening = q.straightening_starboard if from_starboard else q.straightening_port
     along, across = race(m, q, s.shaft), -straightening * (m.vr + q.flow_at * q.length * m.r)
     attack = s.angle - atan2(across, along)
-    attack = min(max(atan2(sin(attack), cos(attack)), -q.stall), q.stall)  # within half a turn
+    attack = min(max(atan2(sin(attack), cos(attack)), -q.stall), q.stall)  # wrapped to half a turn
     F = (
         0.5
         * q.gain
@@ -62,7 +79,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 
 def propellers(name: str) -> float:
-    """A number of the propeller in whose race the blade stands."""
+    """Return a parameter that follows the one of the same name of the propeller."""
     return param(
         UNSET,
         low=-10.0,
@@ -75,34 +92,46 @@ def propellers(name: str) -> float:
 
 @dataclass(frozen=True)
 class MmgLowSpeedRudder(Force):
-    """One rudder behind the propeller; a positive angle turns a ship that goes ahead to starboard."""
+    """One rudder behind the propeller; a positive angle turns a ship that goes ahead to starboard.
+
+    F_N = 0.5 rho A_R f_alpha (u_R^2 + v_R^2) sin(alpha_R),  alpha_R = delta - atan2(v_R, u_R)
+    X = -(1 - t_R) F_N sin(delta),  Y = -(1 + a_H) F_N cos(delta)
+    N = -(x_R + a_H x_H) F_N cos(delta)
+
+    u_R is the flow along the rudder (see the source for its cases), v_R = -gamma_R (v + l_R r).
+    """
 
     words: ClassVar[str] = (
-        "a rudder steers in the race of a propeller that may back (MMG, low speed)"
+        "a rudder in the slipstream of a propeller that may back (MMG, low speed)"
     )
     shown_by: ClassVar[str] = "turning from rest, and backing"
     source: ClassVar[str] = (
         "Y. Miyauchi, A. Maki, N. Umeda, D. M. Rachman, Y. Akimoto, J. Mar. Sci. Technol. 27, 2022"
     )
     roles: ClassVar = {
-        "angle": Role("rad", "the rudder, positive turns to starboard"),
-        "shaft": Role("1/s", "the propeller's rate, ahead positive"),
+        "angle": Role("rad", "rudder angle, positive turns to starboard"),
+        "shaft": Role("1/s", "shaft rate, positive ahead"),
     }
     law: ClassVar = law
 
     length: float = param(
-        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
+        UNSET, low=0.0, high=500.0, unit="m", words="length of the ship", follows="vessel.length"
     )
     density: float = param(
         UNSET,
         low=0.0,
         high=1100.0,
         unit="kg/m^3",
-        words="of the water",
+        words="density of the water",
         follows="mmg_low_speed_hull.density",
     )
     diameter: float = param(
-        UNSET, low=0.0, high=20.0, unit="m", words="D_P", follows="mmg_low_speed_propeller.diameter"
+        UNSET,
+        low=0.0,
+        high=20.0,
+        unit="m",
+        words="propeller diameter, D_P",
+        follows="mmg_low_speed_propeller.diameter",
     )
     thrust_deduction: float = propellers("thrust_deduction")
     wake: float = propellers("wake")
@@ -117,42 +146,79 @@ class MmgLowSpeedRudder(Force):
     astern_from: float = propellers("astern_from")
     astern_stop: float = propellers("astern_stop")
     gain: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="force per stated one", calibrates="thrust"
+        1.0,
+        low=0.1,
+        high=5.0,
+        unit="",
+        words="rudder force over its specified value",
+        calibrates="thrust",
     )
-    area: float = param(0.0, low=0.0, high=500.0, unit="m^2", words="A_R")
-    span: float = param(1.0, low=0.001, high=50.0, unit="m", words="H_R")
+    area: float = param(0.0, low=0.0, high=500.0, unit="m^2", words="rudder area, A_R")
+    span: float = param(1.0, low=0.001, high=50.0, unit="m", words="rudder span, H_R")
     slope: float = param(
-        0.0, low=0.0, high=10.0, unit="", words="f_alpha, of the normal force coefficient"
+        0.0, low=0.0, high=10.0, unit="", words="f_alpha, slope of the normal force coefficient"
     )
-    steering_deduction: float = param(0.0, low=0.0, high=1.0, unit="", words="t_R")
+    steering_deduction: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="steering resistance deduction, t_R"
+    )
     hull_share: float = param(
         0.0, low=0.0, high=2.0, unit="", words="a_H, sway force on the hull per rudder force"
     )
     hull_at: float = param(
-        0.0, low=-1.0, high=1.0, unit="", words="x_H', where it acts, lengths ahead of midship"
+        0.0,
+        low=-1.0,
+        high=1.0,
+        unit="",
+        words="x_H', place of that force ahead of midship, in lengths",
     )
     rudder_at: float = param(
-        -0.5, low=-1.0, high=1.0, unit="", words="x_R', lengths ahead of midship"
+        -0.5, low=-1.0, high=1.0, unit="", words="x_R', rudder ahead of midship, in lengths"
     )
     flow_at: float = param(
-        -1.0, low=-2.0, high=2.0, unit="", words="l_R', effective place in the flow"
+        -1.0,
+        low=-2.0,
+        high=2.0,
+        unit="",
+        words="l_R', effective longitudinal position in the flow, in lengths",
     )
     straightening_port: float = param(
-        1.0, low=0.0, high=2.0, unit="", words="gamma_R, the stern sliding to port"
+        1.0,
+        low=0.0,
+        high=2.0,
+        unit="",
+        words="gamma_R, flow straightening with the stern moving to port",
     )
     straightening_starboard: float = param(
-        1.0, low=0.0, high=2.0, unit="", words="gamma_R, sliding to starboard"
+        1.0,
+        low=0.0,
+        high=2.0,
+        unit="",
+        words="gamma_R, flow straightening with the stern moving to starboard",
     )
     epsilon: float = param(
         1.0, low=0.0, high=3.0, unit="", words="wake at the rudder over wake at the propeller"
     )
-    k_x: float = param(0.5, low=0.0, high=2.0, unit="", words="kappa epsilon, of a race ahead")
+    k_x: float = param(
+        0.5,
+        low=0.0,
+        high=2.0,
+        unit="",
+        words="kappa epsilon, slipstream of a propeller with thrust ahead",
+    )
     k_x_astern: float = param(
-        0.0, low=0.0, high=2.0, unit="", words="the same of a propeller that backs or brakes"
+        0.0,
+        low=0.0,
+        high=2.0,
+        unit="",
+        words="kappa epsilon, slipstream of a propeller that backs or brakes",
     )
     c_pr: float = param(
-        0.0, low=-2.0, high=2.0, unit="", words="C_PR, what backing takes from the flow, of u^2"
+        0.0,
+        low=-2.0,
+        high=2.0,
+        unit="",
+        words="C_PR, reduction of the flow by a backing propeller, times u^2",
     )
     stall: float = param(
-        NEVER, low=0.02, high=NEVER, unit="rad", words="angle of attack at which F_N stops growing"
+        NEVER, low=0.02, high=NEVER, unit="rad", words="angle of attack above which F_N is constant"
     )

@@ -1,4 +1,4 @@
-"""MMG rudder: a blade in the propeller's race, and what it makes the hull ahead of it do."""
+"""MMG rudder: rudder force in the propeller slipstream and the hull force it induces."""
 
 from dataclasses import dataclass
 from math import atan2, pi, sin, sqrt
@@ -9,12 +9,20 @@ from numba import njit
 from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 from boatsim.physics.effects.mmg_propeller import drift_angle, inflow, open_water
 
-NEVER = pi  # [rad] any angle of attack
+NEVER = pi  # [rad] default: no stall at any angle of attack
 
 
 @njit(inline="always")
 def race(m: Any, q: Any, shaft: float) -> float:
-    """Speed of the water along the blade [m/s]: the part of its span behind the propeller is in the race."""
+    """Return the speed of the water along the rudder [m/s].
+
+    The part of its span behind the propeller is in the slipstream.
+
+    Args:
+        m: Motion of the hull.
+        q: Parameters of the effect.
+        shaft: Shaft rate, positive ahead [1/s].
+    """
     V, washed = inflow(m, q), q.diameter / q.span
     faster = sqrt(max(V * V + 8.0 / pi * open_water(shaft, V, q), 0.0)) - V
     behind = V + q.kappa * faster
@@ -23,7 +31,18 @@ def race(m: Any, q: Any, shaft: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Force normal to the blade; hull and propeller straighten the flow that meets it."""
+    """Return the force normal to the rudder, with the hull force that it induces.
+
+    Hull and propeller straighten the flow that meets the rudder, by a factor for each side.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     across = (
         sqrt(m.ur * m.ur + m.vr * m.vr) * drift_angle(m) - q.flow_at * m.r * q.length
     )  # U beta_R
@@ -51,40 +70,68 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class MmgRudder(Force):
-    """One rudder behind the propeller; a positive angle turns the ship to starboard."""
+    """One rudder behind the propeller, MMG standard method; a positive angle turns to starboard.
 
-    words: ClassVar[str] = "a rudder steers in the propeller's race (MMG)"
+    F_N = 0.5 rho A_R f_alpha (u_R^2 + v_R^2) sin(alpha_R),  alpha_R = delta - atan2(v_R, u_R)
+    X = -(1 - t_R) F_N sin(delta),  Y = -(1 + a_H) F_N cos(delta)
+    N = -(x_R + a_H x_H) F_N cos(delta),  v_R = U gamma_R beta_R,  beta_R = beta - l_R' r'
+    u_R = epsilon sqrt(eta (u_P + kappa (sqrt(u_P^2 + 8 K_T n^2 D^2 / pi) - u_P))^2 + (1 - eta) u_P^2)
+
+    eta = D_P / H_R is the share of the span in the slipstream.
+    """
+
+    words: ClassVar[str] = "a rudder in the slipstream of a propeller (MMG)"
     shown_by: ClassVar[str] = "turning circles and zig-zags"
     source: ClassVar[str] = (
         "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015 (MMG standard method)"
     )
     roles: ClassVar = {
-        "angle": Role("rad", "the rudder, positive turns to starboard"),
-        "shaft": Role("1/s", "the propeller's rate, ahead positive"),
+        "angle": Role("rad", "rudder angle, positive turns to starboard"),
+        "shaft": Role("1/s", "shaft rate, positive ahead"),
     }
     law: ClassVar = law
 
     length: float = param(
-        UNSET, low=0.0, high=500.0, unit="m", words="of the ship", follows="vessel.length"
+        UNSET, low=0.0, high=500.0, unit="m", words="length of the ship", follows="vessel.length"
     )
     density: float = param(
-        UNSET, low=0.0, high=1100.0, unit="kg/m^3", words="of the water", follows="mmg_hull.density"
+        UNSET,
+        low=0.0,
+        high=1100.0,
+        unit="kg/m^3",
+        words="density of the water",
+        follows="mmg_hull.density",
     )
     diameter: float = param(
-        UNSET, low=0.0, high=20.0, unit="m", words="D_P", follows="mmg_propeller.diameter"
+        UNSET,
+        low=0.0,
+        high=20.0,
+        unit="m",
+        words="propeller diameter, D_P",
+        follows="mmg_propeller.diameter",
     )
     wake: float = param(
-        UNSET, low=0.0, high=1.0, unit="", words="w_P0", follows="mmg_propeller.wake"
+        UNSET,
+        low=0.0,
+        high=1.0,
+        unit="",
+        words="wake fraction on a straight course, w_P0",
+        follows="mmg_propeller.wake",
     )
     wake_C1: float = param(
-        UNSET, low=0.0, high=20.0, unit="", words="C_1", follows="mmg_propeller.wake_C1"
+        UNSET,
+        low=0.0,
+        high=20.0,
+        unit="",
+        words="C_1, decrease of the wake with the drift angle",
+        follows="mmg_propeller.wake_C1",
     )
     wake_C2_port: float = param(
         UNSET,
         low=0.0,
         high=3.0,
         unit="",
-        words="C_2, beta_P > 0",
+        words="C_2 for flow from port, beta_P > 0",
         follows="mmg_propeller.wake_C2_port",
     )
     wake_C2_starboard: float = param(
@@ -92,30 +139,54 @@ class MmgRudder(Force):
         low=0.0,
         high=3.0,
         unit="",
-        words="C_2, beta_P < 0",
+        words="C_2 for flow from starboard, beta_P < 0",
         follows="mmg_propeller.wake_C2_starboard",
     )
     propeller_at: float = param(
-        UNSET, low=-1.0, high=1.0, unit="", words="x_P'", follows="mmg_propeller.propeller_at"
+        UNSET,
+        low=-1.0,
+        high=1.0,
+        unit="",
+        words="x_P', propeller ahead of midship, in lengths",
+        follows="mmg_propeller.propeller_at",
     )
     k0: float = param(
         UNSET, low=-2.0, high=2.0, unit="", words="K_T at J = 0", follows="mmg_propeller.k0"
     )
     k1: float = param(
-        UNSET, low=-2.0, high=2.0, unit="", words="of J in K_T", follows="mmg_propeller.k1"
+        UNSET,
+        low=-2.0,
+        high=2.0,
+        unit="",
+        words="coefficient of J in K_T",
+        follows="mmg_propeller.k1",
     )
     k2: float = param(
-        UNSET, low=-2.0, high=2.0, unit="", words="of J^2 in K_T", follows="mmg_propeller.k2"
+        UNSET,
+        low=-2.0,
+        high=2.0,
+        unit="",
+        words="coefficient of J^2 in K_T",
+        follows="mmg_propeller.k2",
     )
     gain: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="force per stated one", calibrates="thrust"
+        1.0,
+        low=0.1,
+        high=5.0,
+        unit="",
+        words="rudder force over its specified value",
+        calibrates="thrust",
     )
-    area: float = param(0.0, low=0.0, high=500.0, unit="m^2", words="A_R, without the horn")
-    span: float = param(1.0, low=0.001, high=50.0, unit="m", words="H_R")
+    area: float = param(
+        0.0, low=0.0, high=500.0, unit="m^2", words="rudder area without the horn, A_R"
+    )
+    span: float = param(1.0, low=0.001, high=50.0, unit="m", words="rudder span, H_R")
     slope: float = param(
-        0.0, low=0.0, high=10.0, unit="", words="f_alpha, of the normal force coefficient"
+        0.0, low=0.0, high=10.0, unit="", words="f_alpha, slope of the normal force coefficient"
     )
-    steering_deduction: float = param(0.0, low=0.0, high=1.0, unit="", words="t_R")
+    steering_deduction: float = param(
+        0.0, low=0.0, high=1.0, unit="", words="steering resistance deduction, t_R"
+    )
     hull_share: float = param(
         0.0,
         low=0.0,
@@ -125,20 +196,28 @@ class MmgRudder(Force):
         calibrates="thrust",
     )
     hull_at: float = param(
-        0.0, low=-1.0, high=1.0, unit="", words="x_H', where it acts, lengths ahead of midship"
+        0.0,
+        low=-1.0,
+        high=1.0,
+        unit="",
+        words="x_H', place of that force ahead of midship, in lengths",
     )
     rudder_at: float = param(
-        -0.5, low=-1.0, high=1.0, unit="", words="x_R', lengths ahead of midship"
+        -0.5, low=-1.0, high=1.0, unit="", words="x_R', rudder ahead of midship, in lengths"
     )
     flow_at: float = param(
-        -1.0, low=-2.0, high=2.0, unit="", words="l_R', effective place in the flow"
+        -1.0,
+        low=-2.0,
+        high=2.0,
+        unit="",
+        words="l_R', effective longitudinal position in the flow, in lengths",
     )
     straightening_port: float = param(
         1.0,
         low=0.0,
         high=2.0,
         unit="",
-        words="gamma_R for water from port, beta_R > 0",
+        words="gamma_R, flow straightening for flow from port, beta_R > 0",
         calibrates="thrust",
     )
     straightening_starboard: float = param(
@@ -146,15 +225,19 @@ class MmgRudder(Force):
         low=0.0,
         high=2.0,
         unit="",
-        words="gamma_R for water from starboard",
+        words="gamma_R, flow straightening for flow from starboard",
         calibrates="thrust",
     )
     epsilon: float = param(
         1.0, low=0.0, high=3.0, unit="", words="wake at the rudder over wake at the propeller"
     )
     kappa: float = param(
-        0.5, low=0.0, high=2.0, unit="", words="share of the race's speed that reaches the rudder"
+        0.5,
+        low=0.0,
+        high=2.0,
+        unit="",
+        words="kappa, share of the slipstream velocity that reaches the rudder",
     )
     stall: float = param(
-        NEVER, low=0.02, high=NEVER, unit="rad", words="angle of attack at which F_N stops growing"
+        NEVER, low=0.02, high=NEVER, unit="rad", words="angle of attack above which F_N is constant"
     )

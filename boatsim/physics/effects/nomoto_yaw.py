@@ -1,4 +1,4 @@
-"""First-order yaw: the reduced model on which steering loops are designed, its numbers fixed or changing in time."""
+"""First-order yaw model of Nomoto: yaw rate follows the steering angle with one time constant."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,7 +10,16 @@ from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Inertia times (gain delta - r) / time constant; both numbers go in a straight line to their later values."""
+    """Return the yaw moment I_z (K delta - r) / T with the present K and T.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     if q.time_constant <= 0.0:
         return wrench()
     way = min(max(m.t / q.duration, 0.0), 1.0)
@@ -21,14 +30,22 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class NomotoYaw(Force):
-    """Yaw rate follows the jet's deflection with one lag, r' = (K delta - r) / T; takes the place of other yaw laws."""
+    """First-order yaw response r' = (K delta - r) / T, in place of other yaw laws.
 
-    words: ClassVar[str] = "the yaw rate follows the jet with one lag"
+    N = I_z (K delta - r) / T
+
+    K is `gain` [1/s], T the `time_constant` [s]. Both change linearly over `duration` to
+    `gain_later` and `time_constant_later`, for tests of adaptive control.
+    """
+
+    words: ClassVar[str] = "the yaw rate follows the jet angle with a first-order lag"
     shown_by: ClassVar[str] = "steering steps"
     source: ClassVar[str] = (
         "K. Nomoto et al., On the steering qualities of ships, Int. Shipbuild. Progr. 4, 1957"
     )
-    roles: ClassVar = {"angle": Role("rad", "the nozzle, positive turns to starboard going ahead")}
+    roles: ClassVar = {
+        "angle": Role("rad", "nozzle angle, positive turns to starboard going ahead")
+    }
     law: ClassVar = law
 
     gain: float = param(
@@ -44,17 +61,19 @@ class NomotoYaw(Force):
         axis="yaw",
     )
     time_constant: float = param(
-        0.0, low=0.0, high=1e4, unit="s", words="T at the start; 0: the law is not there"
+        0.0, low=0.0, high=1e4, unit="s", words="T at the start; 0: no yaw moment"
     )
     time_constant_later: float = param(
         1.0, low=1e-3, high=1e4, unit="s", words="T from `duration` on"
     )
-    duration: float = param(1.0, low=1e-3, high=1e6, unit="s", words="time in which they change")
+    duration: float = param(
+        1.0, low=1e-3, high=1e6, unit="s", words="time over which K and T change"
+    )
     inertia: float = param(
         UNSET,
         low=0.0,
         high=1e13,
         unit="kg m^2",
-        words="if not given, the rigid hull's own",
+        words="yaw inertia I_z; default: that of the rigid body",
         follows="vessel.body.yaw_inertia",
     )

@@ -1,4 +1,4 @@
-"""Planing lag: a planing craft gains and loses speed slowly until it planes."""
+"""Planing lag: a planing craft changes its speed more slowly at low speed."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,7 +10,16 @@ from boatsim.physics.base import UNSET, Reaction, Wrench, param, wrench
 
 @njit(inline="always")
 def reaction(m: Any, w: Wrench, q: Any) -> Wrench:
-    """(kappa - 1) times the surge force there is, m v r included; kappa = u / full_speed within [least, 1]."""
+    """Return (kappa - 1) times the surge force of all other effects, m v r included.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        w: Sum of the forces of the effects before this one [N, N m].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Additional force [N] and moment [N m] in body axes.
+    """
     if q.full_speed <= 0.0:
         return wrench()
     kappa = min(max(m.ur / q.full_speed, q.least), 1.0)
@@ -19,11 +28,16 @@ def reaction(m: Any, w: Wrench, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class PlaningLag(Reaction):
-    """Every change of speed is scaled down at low speed, where the wetted area is large; steady speeds stay."""
+    """Reduction of the surge acceleration at low speed, where the wetted area is large.
+
+    X = (kappa - 1) (X_others + m v r),  kappa = u / full_speed limited to [least, 1]
+
+    Steady speeds do not change, because the sum of the other forces is zero there.
+    """
 
     needs: ClassVar = ("surge",)
     words: ClassVar[str] = (
-        "the craft changes its speed more slowly the less it planes; steady speeds are right"
+        "the craft changes its speed more slowly below planing speed; steady speeds do not change"
     )
     shown_by: ClassVar[str] = "throttle steps at low and at high speed"
     source: ClassVar[str] = (
@@ -38,18 +52,18 @@ class PlaningLag(Reaction):
         low=0.0,
         high=100.0,
         unit="m/s",
-        words="speed from which nothing lags",
+        words="speed from which kappa is 1",
         fit=True,
         spread=8.0,
     )
     least: float = param(
-        0.2, low=0.02, high=1.0, unit="", words="smallest factor", fit=True, spread=0.3, absent=0.2
+        0.2, low=0.02, high=1.0, unit="", words="smallest kappa", fit=True, spread=0.3, absent=0.2
     )
     hull_mass: float = param(
         UNSET,
         low=0.0,
         high=1e9,
         unit="kg",
-        words="the hull's; if not given, the vessel's own",
+        words="mass of the hull; default: that of the vessel",
         follows="vessel.body.mass",
     )

@@ -11,7 +11,15 @@ from boatsim.physics.base import Measurement, Shown, param
 
 @njit(inline="always")
 def shown(m: Shown, q: Any) -> Shown:
-    """Position and speed of a point `forward` and `starboard` of the mass centre."""
+    """Return the recorded motion: position and velocity of a point away from the mass centre.
+
+    Args:
+        m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The recorded motion.
+    """
     c, s = cos(m.psi), sin(m.psi)
     x, y = m.x + c * q.forward - s * q.starboard, m.y + s * q.forward + c * q.starboard
     return Shown(
@@ -32,7 +40,13 @@ def shown(m: Shown, q: Any) -> Shown:
 
 @dataclass(frozen=True)
 class PositionFrameError(Measurement):
-    """Lever arm: antenna, marker or origin of the recording away from where the model has its origin."""
+    """Lever arm between the reference point of the recording and the origin of the model.
+
+    The reference point is that of an antenna or a marker.
+
+    x_recorded = x + forward cos(psi) - starboard sin(psi)
+    y_recorded = y + forward sin(psi) + starboard cos(psi)
+    """
 
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("sway", "yaw")
@@ -41,8 +55,20 @@ class PositionFrameError(Measurement):
     shown: ClassVar = shown
 
     forward: float = param(
-        0.0, low=-400.0, high=400.0, unit="m", words="ahead by", fit=True, spread=0.1
+        0.0,
+        low=-400.0,
+        high=400.0,
+        unit="m",
+        words="distance of the point ahead of the origin",
+        fit=True,
+        spread=0.1,
     )
     starboard: float = param(
-        0.0, low=-400.0, high=400.0, unit="m", words="to starboard by", fit=True, spread=0.05
+        0.0,
+        low=-400.0,
+        high=400.0,
+        unit="m",
+        words="distance of the point to starboard",
+        fit=True,
+        spread=0.05,
     )

@@ -1,4 +1,4 @@
-"""Position wander: fixes that are off by an error which comes and goes slowly."""
+"""Position wander: slowly varying error of position fixes and headings."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,22 +10,32 @@ from boatsim.physics.base import Wander, Wandering, param
 
 @njit(inline="always")
 def wander(q: Any) -> Wander:
-    """North and east alike, each for itself."""
+    """Return the noise model; north and east errors are independent and have the same rms.
+
+    Args:
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Rms of the position [m] and heading [rad] errors and their correlation time [s].
+    """
     return Wander(q.position, q.heading, q.time)
 
 
 @dataclass(frozen=True)
 class PositionWander(Wandering):
-    """Satellite fixes wander with clocks, atmosphere and reflections; a compass with its card."""
+    """First-order Gauss-Markov error of position and heading.
+
+    e' = -e / time + white noise,  rms of e = `position` [m] or `heading` [rad]
+
+    Causes are clocks, atmosphere and multipath of satellite navigation, and the card of a compass.
+    """
 
     alone: ClassVar[bool] = True
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("surge", "sway")
     ruled_out_by: ClassVar = {"position_fix": ("camera", "tracking")}
-    words: ClassVar[str] = (
-        "recorded positions wander: their error comes and goes slowly (not physics)"
-    )
-    shown_by: ClassVar[str] = "lying still, moored between two posts"
+    words: ClassVar[str] = "recorded positions have a slowly varying error (not physics)"
+    shown_by: ClassVar[str] = "moored between two posts, at rest"
     source: ClassVar[str] = (
         "J. Rankin, An error model for sensor simulation: GPS and differential GPS, IEEE PLANS 1994 (Gauss-Markov)"
     )
@@ -35,7 +45,7 @@ class PositionWander(Wandering):
         {"position": sd, "time": t} for sd in (4.0, 20.0) for t in (6.0, 20.0, 60.0)
     )
 
-    # starts and spreads of both errors are in the noise of a single fix or heading
+    # starts and spreads of both errors are relative to the noise of a single fix or heading
     position: float = param(
         0.0, low=0.0, high=100.0, unit="m", words="rms error north and east", fit=True, spread=10.0
     )
@@ -47,7 +57,7 @@ class PositionWander(Wandering):
         low=5.0,
         high=1000.0,
         unit="s",
-        words="over which the error is alike",
+        words="correlation time of the errors",
         fit=True,
         spread=20.0,
         absent=20.0,

@@ -1,4 +1,4 @@
-"""Prop walk: a turning propeller pushes the stern sideways, most of all astern."""
+"""Prop walk: side force of a turning propeller at the stern, largest astern."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,17 +10,35 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """All propellers turn the same way, so their side forces add up."""
+    """Return the side force of one propeller.
+
+    All propellers turn the same way, so their forces add up.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals of the thruster on which the effect acts.
+        t: Parameters of that thruster.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     Y = q.side_force_per_thrust * s.thrust * (q.ahead_share if s.thrust > 0.0 else 1.0)
     return wrench(Y=Y, N=t.x * Y)
 
 
 @dataclass(frozen=True)
 class PropWalk(Force):
-    """Side force in proportion to the thrust: to starboard ahead and to port astern for a positive value."""
+    """Side force at the propeller proportional to its thrust.
+
+    Y = c T  astern,  Y = ahead_share c T  ahead,  N = x Y
+
+    c = `side_force_per_thrust`: a positive value acts to starboard ahead and to port astern. x is
+    the mount.
+    """
 
     needs: ClassVar = ("sway",)
-    words: ClassVar[str] = "the propellers walk the stern sideways, most of all astern"
+    words: ClassVar[str] = "the propellers push the stern sideways, most of all astern"
     shown_by: ClassVar[str] = "straight astern, then straight ahead"
     source: ClassVar[str] = (
         "J. Brix (ed.), Manoeuvring Technical Manual, 1993; a third of it ahead is an assumption"
@@ -33,8 +51,10 @@ class PropWalk(Force):
         low=-0.6,
         high=0.6,
         unit="",
-        words="starboard force per thrust, astern",
+        words="side force to starboard over thrust, astern",
         fit=True,
         spread=0.1,
     )
-    ahead_share: float = param(1.0 / 3.0, low=0.0, high=1.0, unit="", words="of it ahead")
+    ahead_share: float = param(
+        1.0 / 3.0, low=0.0, high=1.0, unit="", words="share of that side force when going ahead"
+    )

@@ -1,4 +1,4 @@
-"""Propeller: a thrust with the square of the shaft's rate, at a place on the hull."""
+"""Propeller: thrust proportional to the square of the shaft rate, at a place on the hull."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -13,34 +13,61 @@ TOLD = Thruster.signals_type()
 
 @njit(inline="always")
 def thrust(n: float, q: Any) -> float:
-    """K n |n|, with another k astern."""
+    """Return k n |n| [N], with a coefficient for each sense of rotation.
+
+    Args:
+        n: Shaft rate [rad/s], positive ahead.
+        q: Parameters with `ahead` and `astern` [N s^2/rad^2].
+    """
     return float((q.ahead if n > 0.0 else q.astern) * n * abs(n))
 
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """T (cos a, sin a) at (x, y, z)."""
+    """Return the thrust along the axis of the propeller, at its mount.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return at_mount(q.gain * thrust(s.shaft, q), s, q)
 
 
 @njit(inline="always")
 def as_thruster(s: Any, q: Any) -> Any:
-    """What a thruster is told that pushes as much."""
+    """Return the signals of a thruster with the same thrust and angle.
+
+    Args:
+        s: Signals of the propeller.
+        q: Parameters of the propeller.
+    """
     return TOLD(thrust(s.shaft, q), s.angle, s.cos_angle, s.sin_angle)
 
 
 @dataclass(frozen=True)
 class Propeller(Force):
-    """A propeller in open water; without a steering channel its angle is a number, 0 straight ahead."""
+    """Propeller in open water at zero advance ratio.
 
-    words: ClassVar[str] = "a propeller pushes with the square of its rate"
-    shown_by: ClassVar[str] = "a staircase of rates"
+    T = k n |n|,  (X, Y) = gain T (cos a, sin a) at (x, y, z)
+
+    k is `ahead` or `astern`. Without a steering channel the angle a is a constant, 0 straight
+    ahead.
+    """
+
+    words: ClassVar[str] = (
+        "the thrust of a propeller is proportional to the square of its shaft rate"
+    )
+    shown_by: ClassVar[str] = "a staircase of shaft rates"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T at J = 0"
     )
     roles: ClassVar = {
-        "shaft": Role("rad/s", "its rate, ahead positive"),
-        "angle": Role("rad", "where it pushes, 0 ahead, positive to starboard", fixed=0.0),
+        "shaft": Role("rad/s", "shaft rate, positive ahead"),
+        "angle": Role("rad", "direction of the thrust, 0 ahead, positive to starboard", fixed=0.0),
     }
     law: ClassVar = law
     as_thruster: ClassVar = as_thruster
@@ -50,8 +77,10 @@ class Propeller(Force):
     x: float = param(
         0.0, low=-500.0, high=500.0, unit="m", words="mount ahead of the origin of motion"
     )
-    y: float = param(0.0, low=-100.0, high=100.0, unit="m", words="to starboard of it")
-    z: float = param(0.0, low=-100.0, high=100.0, unit="m", words="below it")
+    y: float = param(
+        0.0, low=-100.0, high=100.0, unit="m", words="mount to starboard of the origin"
+    )
+    z: float = param(0.0, low=-100.0, high=100.0, unit="m", words="mount below the origin")
     gain: float = param(
-        1.0, low=0.1, high=5.0, unit="", words="thrust per stated thrust", calibrates="thrust"
+        1.0, low=0.1, high=5.0, unit="", words="thrust over specified thrust", calibrates="thrust"
     )

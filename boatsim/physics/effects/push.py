@@ -1,4 +1,4 @@
-"""Push: a force on the hull that nothing it does changes, steady or swelling as a sine, always or for a while."""
+"""Push: external force on the hull, constant or sinusoidal, during a time interval."""
 
 from dataclasses import dataclass
 from math import cos, pi, sin
@@ -13,9 +13,16 @@ EVER = 1e6  # [s]
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Steady part in body axes, and one towards a bearing of the world or of the hull, between two instants.
+    """Return the force in body axes plus the force along a bearing.
 
-    On a hull whose sway accelerates it in roll, a sway force does so too.
+    On a hull whose sway force accelerates it in roll, a sway force has the same lever.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
     """
     if not q.begin <= m.t < q.end:
         return wrench()
@@ -31,9 +38,15 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class Push(Force):
-    """A disturbance of stated size and duration."""
+    """Disturbance of specified size and duration, independent of the motion of the hull.
 
-    words: ClassVar[str] = "something pushes the hull for a while"
+    F = mean + amplitude sin(frequency t + phase)  along the bearing `toward`
+    X = surge + F cos,  Y = sway + F sin,  K = roll + heel_arm Y,  N = yaw + arm F sin
+
+    The bearing is one of the earth, or of the hull with `turns_with_hull` = 1.
+    """
+
+    words: ClassVar[str] = "an external force acts on the hull during a time interval"
     shown_by: ClassVar[str] = "holding course and speed"
     law: ClassVar = law
 
@@ -41,25 +54,35 @@ class Push(Force):
     sway: float = param(0.0, low=-1e9, high=1e9, unit="N", words="to starboard")
     roll: float = param(0.0, low=-1e12, high=1e12, unit="N m", words="starboard down", axis="roll")
     yaw: float = param(0.0, low=-1e13, high=1e13, unit="N m", words="clockwise")
-    begin: float = param(0.0, low=-EVER, high=EVER, unit="s", words="it begins")
-    end: float = param(EVER, low=-EVER, high=EVER, unit="s", words="it ends")
-    mean: float = param(0.0, low=-1e7, high=1e7, unit="N", words="steady part towards a bearing")
-    amplitude: float = param(0.0, low=0.0, high=1e7, unit="N", words="of the sine towards it")
-    frequency: float = param(0.4 * pi, low=0.0, high=100.0, unit="rad/s", words="of the sine")
-    phase: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="of the sine at t = 0")
-    toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where it pushes to")
+    begin: float = param(0.0, low=-EVER, high=EVER, unit="s", words="begin of the force")
+    end: float = param(EVER, low=-EVER, high=EVER, unit="s", words="end of the force")
+    mean: float = param(0.0, low=-1e7, high=1e7, unit="N", words="constant force along the bearing")
+    amplitude: float = param(
+        0.0, low=0.0, high=1e7, unit="N", words="amplitude of the sine along the bearing"
+    )
+    frequency: float = param(
+        0.4 * pi, low=0.0, high=100.0, unit="rad/s", words="angular frequency of the sine"
+    )
+    phase: float = param(
+        0.0, low=-2 * pi, high=2 * pi, unit="rad", words="phase of the sine at t = 0"
+    )
+    toward: float = param(0.0, low=-2 * pi, high=2 * pi, unit="rad", words="bearing of the force")
     arm: float = param(
-        0.0, low=-200.0, high=200.0, unit="m", words="its side force acts this far forward"
+        0.0,
+        low=-200.0,
+        high=200.0,
+        unit="m",
+        words="lever of the force along the bearing, ahead of the origin",
     )
     turns_with_hull: float = param(
-        0.0, low=0.0, high=1.0, unit="", words="1: the bearing is one of the hull"
+        0.0, low=0.0, high=1.0, unit="", words="1: the bearing is relative to the hull"
     )
     heel_arm: float = param(
         UNSET,
         low=-100.0,
         high=100.0,
         unit="m",
-        words="roll moment per sway force; if not given, the vessel's own",
+        words="roll moment per sway force; default: that of the vessel's linear_hull",
         follows="linear_hull.arm?",
     )
 
@@ -84,8 +107,8 @@ SteadyForce = preset(
 Gust = preset(
     Push,
     "Gust",
-    words="a force that comes and goes as a sine pushes in one direction",
-    shown_by="lying still without thrust",
+    words="a sinusoidal force acts in one direction",
+    shown_by="at rest without thrust",
     source="Y. Huang and Z. Ji, Autonomous boat dynamics, eq. 7",
     fixed=ALWAYS | dict.fromkeys(("surge", "sway", "roll", "yaw"), 0.0),
 )
@@ -93,7 +116,7 @@ Gust = preset(
 
 @dataclass(frozen=True)
 class GustOffCentre(Release):
-    """A yaw moment in proportion to the side force of the vessel's own gust."""
+    """Yaw moment proportional to the side force of the vessel's own gust."""
 
     words: ClassVar[str] = (
         "the known disturbance also turns the boat: it acts away from the mass centre"
@@ -103,7 +126,7 @@ class GustOffCentre(Release):
 
     arm: float = shift(
         "gust.arm",
-        words="lever that is missing",
+        words="lever that the model omits",
         unit="m",
         spread=0.1,
         low=-200.0,

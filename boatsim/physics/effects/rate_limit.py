@@ -1,4 +1,4 @@
-"""Rate limit: a signal follows its command no faster than a rate, the last of the way as a lag where it has one."""
+"""Rate limit: limited rate of a signal, with a first-order lag near its command."""
 
 from dataclasses import dataclass
 from math import inf
@@ -9,16 +9,29 @@ from numba import njit
 from boatsim.physics.base import Array, Channel, Course, followed, mean_of, param, preset
 from boatsim.physics.effects.servo import NONE, ramp, towards
 
-SAME = 1e-9  # of a ramp: what is left of it before zero is nothing
-NEVER = 1e6  # [1/s] nothing is that quick: the command is followed at once
-INSTANT = 2.0  # [rad/s] 115 deg/s; a steering that turns faster follows its command at once
+SAME = 1e-9  # share of a ramp: a smaller distance to zero counts as zero
+NEVER = 1e6  # [1/s] rate without a limit
+INSTANT = 2.0  # [rad/s] 115 deg/s; a faster steering counts as immediate
 
 
 @njit(inline="always")
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """A ramp to the command, then its lag, then the command."""
+    """Return the ramp to the command, then the lag, then the command itself.
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     if q.rate >= q.instant:
         memory[at] = x.end
         return x
@@ -27,7 +40,20 @@ def channel(
 
 @njit(inline="always")
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """Until the ramp ends or passes zero, where laws of thrust bend; after it as far as its lag reaches."""
+    """Return the time until the ramp ends or passes zero, where thrust laws have a kink.
+
+    After the ramp it is the time over which a `Course` follows the lag.
+
+    Args:
+        x: Signal that enters now, assumed constant.
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Time [s] during which the three points of a `Course` describe the signal exactly; infinite
+        if it is constant.
+    """
     y = memory[at]
     gap = abs(x - y)
     if gap == 0.0 or q.rate >= q.instant:
@@ -40,9 +66,14 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
 
 @dataclass(frozen=True)
 class RateLimit(Channel):
-    """A handle, a rudder or a thrust that moves at one rate at most."""
+    """Rate limit of a throttle handle, a rudder or a thrust.
 
-    words: ClassVar[str] = "what is commanded is followed at one rate at most"
+    y' = rate sign(x - y)  while |x - y| > rate lag,  then  y' = (x - y) / lag
+
+    With a rate of `instant` or more the command is followed without delay.
+    """
+
+    words: ClassVar[str] = "a signal follows its command at a limited rate"
     shown_by: ClassVar[str] = "large steps of the command"
     acts_on: ClassVar[str] = ""
     slots: ClassVar[int] = 1
@@ -54,20 +85,24 @@ class RateLimit(Channel):
         low=1e-6,
         high=NEVER,
         unit="1/s",
-        words="fastest change, in the channel's unit a second",
+        words="largest rate of change, in the unit of the channel per second",
     )
     instant: float = param(
-        NEVER, low=1e-3, high=NEVER, unit="1/s", words="from which the command is followed at once"
+        NEVER,
+        low=1e-3,
+        high=NEVER,
+        unit="1/s",
+        words="rate from which the command is followed without delay",
     )
     lag: float = param(
-        0.0, low=0.0, high=60.0, unit="s", words="time constant of the last of the way"
+        0.0, low=0.0, high=60.0, unit="s", words="time constant of the lag near the command"
     )
 
 
 SteeringRateLimit = preset(
     RateLimit,
     "SteeringRateLimit",
-    words="the steering machine is slower than commanded: it turns at one rate at most",
+    words="the rate of the steering machine is limited",
     shown_by="hard-over steering reversals",
     source="J. van Amerongen, Adaptive Steering of Ships, PhD, Delft 1982 (steering machine)",
     acts_on="angle",
@@ -78,7 +113,7 @@ SteeringRateLimit = preset(
             "low": 0.0005,
             "high": 50.0,
             "unit": "rad/s",
-            "words": "fastest turning",
+            "words": "largest rate of turn of the steering",
             "spread": 2.0,
             "absent": INSTANT,
         },

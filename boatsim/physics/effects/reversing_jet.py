@@ -1,4 +1,4 @@
-"""Reversing jet: a water jet at idle whose bucket bends it ahead or astern and whose nozzle turns it aside."""
+"""Reversing jet: idling water jet with a bucket that deflects it ahead and a steering nozzle."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,31 +10,52 @@ from boatsim.physics.base import Force, Release, Role, Wrench, param, shift, wre
 
 @njit(inline="always")
 def ahead(s: Any) -> float:
-    """Share cos 2 beta: the bucket at an angle beta bends the jet by twice its own angle; negative astern."""
+    """Return the share of the jet that points astern, cos(2 beta) at bucket angle beta.
+
+    Args:
+        s: Signals with the cosine of the bucket angle.
+    """
     return 2.0 * s.cos_bucket * s.cos_bucket - 1.0
 
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Thrust and turning moment both go with the part of the jet that points astern, and with what leaks past."""
+    """Return thrust and steering moment, proportional to the jet that points astern.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     share = ahead(s) + q.leak
     return wrench(X=q.thrust * share, N=q.yaw * share * s.angle)
 
 
 @dataclass(frozen=True)
 class ReversingJet(Force):
-    """Idling water jet with a deflecting bucket; a positive nozzle angle turns to starboard going ahead."""
+    """Idling water jet with a deflecting bucket.
+
+    A positive nozzle angle turns to starboard going ahead.
+
+    X = T_0 (cos 2 beta + leak),  N = N_delta (cos 2 beta + leak) delta
+
+    T_0 is `thrust` [N] and N_delta `yaw` [N m/rad], both with the bucket up; beta is the bucket
+    angle.
+    """
 
     words: ClassVar[str] = (
-        "the idling jet pushes and turns as far as its bucket lets it point astern"
+        "thrust and steering moment of an idling jet are proportional to cos 2 beta of its bucket"
     )
     shown_by: ClassVar[str] = "circles at several bucket angles"
     source: ClassVar[str] = (
         "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, equations 2, 5 and 9"
     )
     roles: ClassVar = {
-        "angle": Role("rad", "the nozzle, positive turns to starboard going ahead"),
-        "bucket": Role("rad", "the bucket, down positive"),
+        "angle": Role("rad", "nozzle angle, positive turns to starboard going ahead"),
+        "bucket": Role("rad", "bucket angle, positive down"),
     }
     law: ClassVar = law
 
@@ -43,7 +64,7 @@ class ReversingJet(Force):
         low=0.0,
         high=1e7,
         unit="N",
-        words="at idle, bucket up",
+        words="thrust at idle, bucket up",
         calibrates="thrust",
         axis="surge",
     )
@@ -57,19 +78,22 @@ class ReversingJet(Force):
         axis="yaw",
     )
     leak: float = param(
-        0.0, low=-1.0, high=1.0, unit="", words="share of the jet that the bucket does not turn"
+        0.0, low=-1.0, high=1.0, unit="", words="share of the jet that the bucket does not deflect"
     )
 
 
 @dataclass(frozen=True)
 class JetLeak(Release):
-    """A bucket that does not close: thrust and turning moment do not vanish where the bucket should cancel them."""
+    """Share of the jet that leaks past the bucket.
+
+    Thrust and moment then do not vanish at a bucket angle of 45 deg.
+    """
 
     words: ClassVar[str] = (
-        "part of the jet leaks past the bucket and pushes ahead whatever the bucket's angle"
+        "part of the jet leaks past the bucket and gives thrust ahead at every bucket angle"
     )
     shown_by: ClassVar[str] = (
-        "nozzle steps with the bucket near 45 deg, where the jet should neither push nor turn"
+        "nozzle steps with the bucket near 45 deg, where thrust and moment should vanish"
     )
     source: ClassVar[str] = (
         "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, figures 3 and 4"
@@ -77,5 +101,5 @@ class JetLeak(Release):
     starts: ClassVar = ({"fraction": 0.1},)
 
     fraction: float = shift(
-        "reversing_jet.leak", words="of the jet", unit="", spread=0.3, low=-1.0, high=1.0
+        "reversing_jet.leak", words="share of the jet", unit="", spread=0.3, low=-1.0, high=1.0
     )

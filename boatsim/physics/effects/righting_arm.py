@@ -1,4 +1,4 @@
-"""Righting arm: buoyancy turns a heeled hull upright."""
+"""Righting arm: restoring roll moment of buoyancy."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,15 +11,26 @@ from boatsim.physics.base import UNSET, Boat, Force, Release, Wrench, factor, pa
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """K = -stiffness (phi + cubic phi^3): the righting arm curve about zero heel."""
+    """Return the restoring moment -stiffness (phi - list + cubic phi^3).
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return wrench(K=-q.stiffness * (m.phi - q.list + q.cubic * m.phi * m.phi * m.phi))
 
 
 @dataclass(frozen=True)
 class RightingArm(Force):
-    """Restoring moment in roll, m g GM at small heel."""
+    """Restoring moment in roll, m g GM at small heel, with a cubic term.
 
-    words: ClassVar[str] = "buoyancy rights the hull in proportion to its heel"
+    K = -stiffness (phi - list + cubic phi^3)
+    """
+
+    words: ClassVar[str] = "the restoring moment of buoyancy is proportional to the heel"
     shown_by: ClassVar[str] = "a roll decay"
     law: ClassVar = law
 
@@ -28,7 +39,7 @@ class RightingArm(Force):
         low=0.0,
         high=1e13,
         unit="N m",
-        words="m g GM, per rad",
+        words="roll stiffness, m g GM",
         calibrates="restoring",
         axis="roll",
     )
@@ -37,24 +48,34 @@ class RightingArm(Force):
         low=-20.0,
         high=20.0,
         unit="1/rad^2",
-        words="relative change per heel squared",
+        words="relative change of the stiffness per heel squared",
         axis="roll",
     )
     list: float = param(0.0, low=-0.5, high=0.5, unit="rad", words="heel at rest", axis="roll")
     metacentric_height: float = param(
-        0.0, low=0.0, high=50.0, unit="m", words="GM, from which the stiffness follows"
+        0.0,
+        low=0.0,
+        high=50.0,
+        unit="m",
+        words="metacentric height GM, from which the stiffness follows",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """The stiffness of the vessel's weight at the given GM."""
+        """Return the stiffness m g GM of the vessel's weight at the given metacentric height.
+
+        Args:
+            vessel: Vessel with a body.
+        """
         return {"stiffness": vessel.body.mass * particulars.GRAVITY * self.metacentric_height}
 
 
 @dataclass(frozen=True)
 class MetacentricHeightError(Release):
-    """The righting moment is off by more than its stated uncertainty."""
+    """Righting moment that differs from its specified value by a factor."""
 
-    words: ClassVar[str] = "the metacentric height is off by more than its stated uncertainty"
+    words: ClassVar[str] = (
+        "the metacentric height differs from its value by more than its specified uncertainty"
+    )
     shown_by: ClassVar[str] = "the period of a roll decay"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 4"
@@ -65,14 +86,16 @@ class MetacentricHeightError(Release):
         {"factor": 0.8},
         {"factor": 1.25},
         {"factor": 2.0},
-    )  # a period off is another
+    )  # a period off is a separate local maximum of the likelihood
 
-    factor: float = factor("righting_arm.stiffness", words="GM per stated GM", axis="roll")
+    factor: float = factor(
+        "righting_arm.stiffness", words="metacentric height over its specified value", axis="roll"
+    )
 
 
 @dataclass(frozen=True)
 class RightingArmStiffening(Release):
-    """GZ bends away from its tangent: the roll period depends on the amplitude."""
+    """Cubic term of the righting arm, so that the roll period depends on the amplitude."""
 
     words: ClassVar[str] = (
         "the righting moment is not in proportion to the heel, so the roll period changes with amplitude"
@@ -81,7 +104,7 @@ class RightingArmStiffening(Release):
 
     cubic: float = shift(
         "righting_arm.cubic",
-        words="relative change per heel squared",
+        words="relative change of the stiffness per heel squared",
         unit="1/rad^2",
         spread=3.0,
         low=-20.0,

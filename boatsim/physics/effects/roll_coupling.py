@@ -1,4 +1,4 @@
-"""Roll coupling: rolling pushes a hull aside and turns it; drifting and turning roll it."""
+"""Roll coupling: linear damping coupling of roll with sway and yaw."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,7 +10,15 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """What the linear damping matrix has outside its diagonal in the row and the column of roll."""
+    """Return the off-diagonal terms of the linear damping matrix in the row and column of roll.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return wrench(
         Y=-q.sway_by_roll * m.p,
         K=-q.roll_by_sway * m.vr - q.roll_by_yaw * m.r,
@@ -20,10 +28,15 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class RollCoupling(Force):
-    """Linear hydrodynamic coupling of roll with sway and yaw."""
+    """Linear hydrodynamic coupling of roll with sway and yaw.
 
-    words: ClassVar[str] = "rolling pushes and turns the hull, drifting and turning roll it"
-    shown_by: ClassVar[str] = "steering reversals with the roll recorded"
+    Y = Y_p p,  K = K_v v_r + K_r r,  N = N_p p
+    """
+
+    words: ClassVar[str] = (
+        "roll causes sway and yaw forces, and drift and yaw rate cause a roll moment"
+    )
+    shown_by: ClassVar[str] = "steering reversals with roll recorded"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 6.6"
     )

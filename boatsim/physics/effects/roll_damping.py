@@ -1,4 +1,4 @@
-"""Roll damping: a share of the critical one, larger with headway where the bilge is round."""
+"""Roll damping: linear damping as a share of the critical damping."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -12,15 +12,29 @@ from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """K = -roll p."""
+    """Return the roll moment -roll p.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return wrench(K=-q.roll * m.p)
 
 
 @dataclass(frozen=True)
 class RollDamping(Force):
-    """Linear roll damping from the hull's form, its righting arm and its roll inertia, water included."""
+    """Linear roll damping from the damping ratio, the roll stiffness and the total roll inertia.
 
-    words: ClassVar[str] = "the hull's roll is damped in proportion to its rate"
+    K = -2 zeta sqrt(m g GM (I_x + added inertia)) p
+
+    The damping ratio zeta is `at_rest`, for a round bilge larger at speed by the formula of the
+    source.
+    """
+
+    words: ClassVar[str] = "the roll damping is proportional to the roll rate"
     shown_by: ClassVar[str] = "a roll decay"
     source: ClassVar[str] = (
         "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix IV"
@@ -28,10 +42,18 @@ class RollDamping(Force):
     law: ClassVar = law
 
     at_rest: float = param(
-        0.09, low=0.0, high=2.0, unit="", words="per critical, without headway; 0.09: hard chine"
+        0.09,
+        low=0.0,
+        high=2.0,
+        unit="",
+        words="damping ratio without forward speed; 0.09: hard chine",
     )
     round_bilge: float = param(
-        0.0, low=0.0, high=1.0, unit="", words="1: grows with headway by the published formula"
+        0.0,
+        low=0.0,
+        high=1.0,
+        unit="",
+        words="1: damping grows with forward speed by the published formula",
     )
     roll: float = param(
         UNSET, low=0.0, high=1e13, unit="N m s", words="-K_p", calibrates="damping", axis="roll"
@@ -41,12 +63,19 @@ class RollDamping(Force):
         low=0.0,
         high=1e13,
         unit="N m",
-        words="the vessel's m g GM",
+        words="roll stiffness of the vessel, m g GM",
         follows="righting_arm.stiffness",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """The coefficient of the vessel's own stiffness, inertia, form and speed. Raises BadInput."""
+        """Return the damping coefficient of the vessel's stiffness, inertia, form and speed.
+
+        Args:
+            vessel: Vessel with body and righting arm.
+
+        Raises:
+            BadInput: The vessel lacks an effect on which the rule builds.
+        """
         inertia = vessel.body.roll_inertia + self._water(vessel)
         ratio = self.at_rest + (
             self._with_headway(vessel, self.stiffness) if self.round_bilge else 0.0
@@ -54,13 +83,13 @@ class RollDamping(Force):
         return {"roll": 2.0 * ratio * sqrt(self.stiffness * inertia)}
 
     def _with_headway(self, vessel: Boat, stiffness: float) -> float:
-        """Share of the critical damping that headway adds."""
+        """Return the damping ratio that forward speed adds."""
         block, speed = (self.followed(f"linear_hull.{key}", vessel) for key in ("block", "speed"))
         height = stiffness / (vessel.body.mass * particulars.GRAVITY)
         return particulars.roll_ratio_by_speed(vessel.length, vessel.beam, block, height, speed)
 
     def _water(self, vessel: Boat) -> float:
-        """Roll inertia of the water about the origin."""
+        """Return the roll added inertia about the origin [kg m^2]."""
         roll, sway, below = (
             self.followed(f"added_mass.{key}?", vessel) for key in ("roll", "sway", "sway_below")
         )

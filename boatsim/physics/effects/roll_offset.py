@@ -1,4 +1,4 @@
-"""Roll offset: an inclinometer mounted askew, or zeroed on a hull that had a list."""
+"""Roll offset: zero error of the roll sensor."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,25 +10,39 @@ from boatsim.physics.base import Measurement, Shown, param
 
 @njit(inline="always")
 def shown(m: Shown, q: Any) -> Shown:
-    """Recorded phi = phi + offset."""
+    """Return the recorded motion: phi plus the offset.
+
+    Args:
+        m: True motion: position [m], attitude [rad], velocities [m/s], rates [rad/s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The recorded motion.
+    """
     return Shown(m.x, m.y, m.z, m.phi + q.offset, m.theta, m.psi, m.u, m.v, m.w, m.p, m.q, m.r)
 
 
 @dataclass(frozen=True)
 class RollOffset(Measurement):
-    """The hull rolls about upright and is shown to roll about another angle.
+    """Constant error of the recorded roll angle: phi_recorded = phi + offset.
 
-    A constant moment does the same to a righting arm in proportion to the heel alone: one that bends does so about
-    upright, wherever the zero of the instrument lies.
+    For a linear righting arm a constant heeling moment looks the same. A nonlinear righting arm
+    differs, because it is symmetric about upright and not about the zero of the instrument.
     """
 
     of_columns: ClassVar = ("phi_rad",)
     needs: ClassVar = ("roll",)
-    words: ClassVar[str] = "the recorded roll is off by a constant angle (not physics)"
+    words: ClassVar[str] = "the recorded roll has a constant error (not physics)"
     shown_by: ClassVar[str] = "a roll decay from a large heel"
-    source: ClassVar[str] = "instrument not zeroed on the upright hull"
+    source: ClassVar[str] = "sensor misaligned, or set to zero on a hull with a list"
     shown: ClassVar = shown
 
     offset: float = param(
-        0.0, low=-0.5, high=0.5, unit="rad", words="roll off by", fit=True, spread=0.05
+        0.0,
+        low=-0.5,
+        high=0.5,
+        unit="rad",
+        words="constant error of the roll",
+        fit=True,
+        spread=0.05,
     )

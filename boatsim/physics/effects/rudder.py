@@ -1,4 +1,4 @@
-"""Rudder: a blade behind the propeller, linear in its angle at the approach speed."""
+"""Rudder: side force and moments linear in the rudder angle at the approach speed."""
 
 from dataclasses import dataclass
 from math import pi
@@ -9,31 +9,44 @@ from numba import njit
 from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Release, Role, Wrench, number, param, wrench
 
-NEVER = 0.5 * pi  # [rad] no rudder turns further
+NEVER = 0.5 * pi  # [rad] larger than any rudder angle: no stall
 
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Side force, heeling and yaw moment in proportion to the angle, up to that of stall."""
+    """Return side force, roll and yaw moment proportional to the angle, constant beyond stall.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     angle = min(max(s.angle, -q.stall), q.stall)
     return wrench(Y=q.sway * angle, K=q.roll * angle, N=q.yaw * angle)
 
 
 @dataclass(frozen=True)
 class Rudder(Force):
-    """Linear rudder; the signs say to which side a positive angle steers.
+    """Linear rudder; the signs of the coefficients define the sense of the angle.
 
-    With `area` given, the coefficients are those of a blade: normal force by its area, aspect ratio and inflow, more by
-    the share of it that the hull before it takes up, at its place ahead of and below the mass centre; a positive angle
-    then steers to starboard.
+    Y = Y_delta delta,  K = K_delta delta,  N = N_delta delta,  |delta| <= stall
+
+    With `area` given, the coefficients are estimated: normal force from area, aspect ratio and
+    inflow speed, increased by the share induced on the hull, acting at `at` ahead of and `below`
+    the mass centre. A positive angle then turns to starboard.
     """
 
-    words: ClassVar[str] = "the rudder steers in proportion to its angle"
+    words: ClassVar[str] = "the rudder force is proportional to the rudder angle"
     shown_by: ClassVar[str] = "a zig-zag at small rudder angles"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9; blade: Inoue et al. 1981"
     )
-    roles: ClassVar = {"angle": Role("rad", "the rudder, positive where its coefficients say")}
+    roles: ClassVar = {
+        "angle": Role("rad", "rudder angle; the signs of the coefficients define its sense")
+    }
     law: ClassVar = law
 
     sway: float = param(
@@ -58,20 +71,35 @@ class Rudder(Force):
         axis="roll",
     )
     stall: float = param(
-        NEVER, low=0.02, high=NEVER, unit="rad", words="angle from which the force grows no further"
+        NEVER,
+        low=0.02,
+        high=NEVER,
+        unit="rad",
+        words="stall angle, beyond which the force is constant",
     )
     area: float = param(
-        0.0, low=0.0, high=500.0, unit="m^2", words="of the blade; 0: coefficients as given"
+        0.0, low=0.0, high=500.0, unit="m^2", words="rudder area; 0: coefficients as given"
     )
-    aspect: float = param(1.5, low=0.1, high=10.0, unit="", words="span per chord")
+    aspect: float = param(1.5, low=0.1, high=10.0, unit="", words="aspect ratio, span over chord")
     inflow: float = param(
-        0.0, low=0.0, high=50.0, unit="m/s", words="speed of the water at the blade, V_R"
+        0.0, low=0.0, high=50.0, unit="m/s", words="speed of the water at the rudder, V_R"
     )
-    at: float = param(0.0, low=-500.0, high=500.0, unit="m", words="place ahead of the mass centre")
-    below: float = param(0.0, low=-100.0, high=100.0, unit="m", words="place below the mass centre")
+    at: float = param(
+        0.0, low=-500.0, high=500.0, unit="m", words="place of the rudder ahead of the mass centre"
+    )
+    below: float = param(
+        0.0, low=-100.0, high=100.0, unit="m", words="place of the rudder below the mass centre"
+    )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """The coefficients of a blade, where one is given. Raises BadInput on a vessel without linear_hull."""
+        """Return the coefficients of a rudder of the given area; empty if none is given.
+
+        Args:
+            vessel: Vessel with a `linear_hull`.
+
+        Raises:
+            BadInput: The vessel has no `linear_hull`.
+        """
         if not self.area:
             return {}
         density, block, arm = (
@@ -84,9 +112,9 @@ class Rudder(Force):
 
 @dataclass(frozen=True)
 class RudderStall(Release):
-    """The flow leaves the blade: its force grows no further with the angle."""
+    """Stall of the rudder: its force is constant beyond an angle."""
 
-    words: ClassVar[str] = "the rudder stalls: beyond an angle its force grows no further"
+    words: ClassVar[str] = "the rudder stalls: beyond an angle its force does not increase"
     shown_by: ClassVar[str] = "turns at small and at large rudder angles"
     source: ClassVar[str] = (
         "L. F. Whicker, L. F. Fehlner, DTMB report 933, 1958: lift of low aspect ratio surfaces"
@@ -97,7 +125,7 @@ class RudderStall(Release):
         "rudder.stall",
         "mmg_rudder.stall",
         "mmg_low_speed_rudder.stall",
-        words="angle of stall",
+        words="stall angle",
         unit="rad",
         spread=1.0,
         low=0.02,

@@ -1,4 +1,4 @@
-"""Rudder race: a rudder behind a propeller turns its race aside, at rest too."""
+"""Rudder race: rudder force in the propeller slipstream, also at rest."""
 
 from dataclasses import dataclass
 from math import copysign
@@ -11,7 +11,16 @@ from boatsim.physics.base import UNSET, Boat, Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """A force normal to the blade, in proportion to the thrust ahead: a propeller that backs washes no rudder."""
+    """Return the force normal to the rudder, proportional to the thrust ahead; none when backing.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     force = q.normal_force_per_thrust * max(s.thrust, 0.0) * s.sin_angle
     Y = q.side * force * s.cos_angle
     return wrench(X=-force * s.sin_angle, Y=Y, N=q.at * Y)
@@ -19,15 +28,17 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class RudderRace(Force):
-    """What the race of one propeller adds to the force of the vessel's rudder in open water.
+    """Additional rudder force by the slipstream of one propeller.
 
-    By momentum theory the race is faster than the boat by V_R^2 - u^2 = 8 T / (pi rho D^2), so that at any speed a
-    blade's force gains in proportion to the thrust T.
+    F_N = c max(T, 0) sin(delta),  X = -F_N sin(delta),  Y = side F_N cos(delta),  N = at Y
+
+    By momentum theory the slipstream has V_R^2 - u^2 = 8 T / (pi rho D^2), so that the force of the
+    rudder increases in proportion to the thrust T at every speed. c is `normal_force_per_thrust`.
     """
 
     needs: ClassVar = ("surge", "sway", "yaw")
     words: ClassVar[str] = (
-        "the rudder stands in the propeller's race: it steers by the thrust too, at rest as well"
+        "the rudder is in the propeller slipstream: its force grows with the thrust, also at rest"
     )
     shown_by: ClassVar[str] = "short bursts of thrust with the rudder over, from rest"
     source: ClassVar[str] = (
@@ -35,8 +46,8 @@ class RudderRace(Force):
         "the rudder in full"
     )
     roles: ClassVar = {
-        "angle": Role("rad", "the rudder, positive where its coefficients say"),
-        "thrust": Role("N", "thrust of the propeller ahead of it, ahead positive"),
+        "angle": Role("rad", "rudder angle; the signs of the coefficients define its sense"),
+        "thrust": Role("N", "thrust of the propeller ahead of the rudder, positive ahead"),
     }
     alone: ClassVar[bool] = True
     law: ClassVar = law
@@ -46,7 +57,7 @@ class RudderRace(Force):
         low=0.0,
         high=5.0,
         unit="",
-        words="at a right angle to the race",
+        words="force normal to the rudder over thrust and sine of the angle",
         fit=True,
         spread=0.7,
         calibrates="thrust",
@@ -56,17 +67,24 @@ class RudderRace(Force):
         low=-500.0,
         high=500.0,
         unit="m",
-        words="rudder ahead of the mass centre; else by its own",
+        words="rudder ahead of the mass centre; default: from the coefficients of the rudder",
     )
     side: float = param(
         UNSET,
         low=-1.0,
         high=1.0,
         unit="",
-        words="where a positive angle pushes, 1 starboard; else as the rudder's own",
+        words="side of the force at a positive angle, 1: starboard; default: as the rudder",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """Place and side as of the vessel's rudder. Raises BadInput where it has none."""
+        """Return place and sense of the vessel's rudder.
+
+        Args:
+            vessel: Vessel with a `rudder`.
+
+        Raises:
+            BadInput: The vessel has no rudder.
+        """
         sway, yaw = (self.followed(f"rudder.{axis}", vessel) for axis in ("sway", "yaw"))
         return {"at": yaw / sway if sway else -0.5 * vessel.length, "side": copysign(1.0, sway)}

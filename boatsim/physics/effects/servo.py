@@ -1,4 +1,4 @@
-"""Servo: a steering machine with a range, a rate limit and a lag."""
+"""Servo: steering machine with a range, a rate limit and a first-order lag."""
 
 from dataclasses import dataclass
 from math import exp, pi
@@ -8,32 +8,50 @@ from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, course, followed, mean_of, param
 
-NONE = 1e-4  # [s] a shorter lag is none
+NONE = 1e-4  # [s] a shorter lag counts as none
 
 
 @njit(inline="always")
 def ramp(gap: float, rate: float, lag: float) -> float:
-    """Time [s] at the largest rate until the lag alone would be as slow."""
+    """Return the time [s] at the largest rate until the lag alone would be as slow.
+
+    Args:
+        gap: Distance to the command.
+        rate: Largest rate [1/s].
+        lag: Time constant [s].
+    """
     slow = rate * lag if lag >= NONE else 0.0
     return max(abs(gap) - slow, 0.0) / rate
 
 
 @njit(inline="always")
 def towards(goal: float, memory: Array, at: int, dt: float, rate: float, lag: float) -> Course:
-    """To a goal at the largest rate, then as a first-order lag: exact for a held one."""
+    """Return the course towards a constant command: at the largest rate, then as a first-order lag.
+
+    Args:
+        goal: Command, held over the step.
+        memory: Memory of the program; the present value is `memory[at]`, which is advanced.
+        at: Index in `memory`.
+        dt: Length of the step [s].
+        rate: Largest rate [1/s].
+        lag: Time constant [s].
+
+    Returns:
+        Values at begin, middle and end with the exact mean over the step.
+    """
     y = memory[at]
     gap = goal - y
     needed = ramp(gap, rate, lag)
     turning = min(needed, dt)
     turned = rate * turning if gap > 0.0 else -rate * turning
     rest, left = gap - turned, dt - turning
-    area = 0.5 * turned * turning + turned * left  # [rad s] by which the angle is beyond y
+    area = 0.5 * turned * turning + turned * left  # [rad s] integral of the angle relative to y
     if lag >= NONE:
         decay = exp(-left / lag)
         area += rest * (left - lag * (1.0 - decay))
         rest *= decay
     elif needed <= dt:
-        # there, to the last bit: a ramp that is left over would ask for a step of its own
+        # exactly zero, so that rounding does not leave a ramp that needs another step
         rest = 0.0
     memory[at] = goal - rest
     return course(y, y + area / dt, memory[at])
@@ -43,23 +61,50 @@ def towards(goal: float, memory: Array, at: int, dt: float, rate: float, lag: fl
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """Towards the limited command."""
+    """Return the course towards the command limited to the range.
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     return towards(min(max(mean_of(x), -q.range), q.range), memory, at, dt, q.rate, q.lag)
 
 
 @njit(inline="always")
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """Until the ramp ends, then as far as the lag's course is followed."""
+    """Return the time until the ramp ends, and then the time over which a `Course` follows the lag.
+
+    Args:
+        x: Signal that enters now, assumed constant.
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Time [s] during which the three points of a `Course` describe the signal exactly; infinite
+        if it is constant.
+    """
     left = ramp(min(max(x, -q.range), q.range) - memory[at], q.rate, q.lag)
     return left if left > 0.0 else followed(q.lag if q.lag >= NONE else 0.0)
 
 
 @dataclass(frozen=True)
 class Servo(Channel):
-    """An angle follows its command through a first-order lag inside a range and a rate limit."""
+    """Steering angle that follows its command with a range, a rate limit and a first-order lag.
 
-    words: ClassVar[str] = "the steering follows with a limited rate and range"
-    shown_by: ClassVar[str] = "quick steering reversals"
+    y' = rate sign(x - y)  while |x - y| > rate lag,  then  y' = (x - y) / lag,  |x| <= range
+    """
+
+    words: ClassVar[str] = "the steering follows its command with limited rate and range"
+    shown_by: ClassVar[str] = "fast steering reversals"
     source: ClassVar[str] = (
         "J. van Amerongen, Adaptive Steering of Ships, PhD, Delft 1982 (steering machine); values: checked "
         "specification of Bayless 2017, section 4: 0.06 s, 400 deg/s [A], 0 to 45 deg (T9)"
@@ -69,8 +114,8 @@ class Servo(Channel):
     channel: ClassVar = channel
     pause: ClassVar = pause
 
-    range: float = param(pi / 4, low=0.0, high=pi, unit="rad", words="largest angle either way")
+    range: float = param(pi / 4, low=0.0, high=pi, unit="rad", words="largest angle to either side")
     rate: float = param(
-        400.0 * pi / 180.0, low=0.001, high=1e3, unit="rad/s", words="fastest turning"
+        400.0 * pi / 180.0, low=0.001, high=1e3, unit="rad/s", words="largest rate of turn"
     )
     lag: float = param(0.06, low=0.0, high=60.0, unit="s", words="time constant")

@@ -1,4 +1,4 @@
-"""Speed hold: the surge speed is kept, as linear manoeuvring models take it for granted."""
+"""Speed hold: ideal propulsion that keeps the surge speed constant."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,13 +10,26 @@ from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """-m v r - gain (u - speed), through the water: with no other surge force u stays at the speed exactly."""
+    """Return -m v r - gain (u - speed), relative to the water.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return wrench(X=-q.mass * m.vr * m.r - q.gain * (m.ur - q.speed))
 
 
 @dataclass(frozen=True)
 class SpeedHold(Force):
-    """An ideal propulsion that takes up the rigid body's Coriolis force and every deviation of the speed."""
+    """Ideal propulsion that cancels Coriolis force and speed deviation.
+
+    X = -m v_r r - gain (u_r - speed)
+
+    Without other surge forces u_r stays exactly at `speed`, as linear manoeuvring models assume.
+    """
 
     words: ClassVar[str] = "the speed ahead through the water is held constant"
     shown_by: ClassVar[str] = "turning hard at constant power"
@@ -25,13 +38,13 @@ class SpeedHold(Force):
     )
     law: ClassVar = law
 
-    speed: float = param(0.0, low=-50.0, high=50.0, unit="m/s", words="that is held")
-    gain: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="force per deviation")
+    speed: float = param(0.0, low=-50.0, high=50.0, unit="m/s", words="speed that is held")
+    gain: float = param(0.0, low=0.0, high=1e9, unit="N s/m", words="force per speed deviation")
     mass: float = param(
         UNSET,
         low=0.0,
         high=1e12,
         unit="kg",
-        words="rigid mass; if not given, the vessel's own",
+        words="mass of the rigid body; default: that of the vessel",
         follows="vessel.body.mass",
     )

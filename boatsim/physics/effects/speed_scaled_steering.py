@@ -1,4 +1,4 @@
-"""Speed-scaled steering: forces of hull and rudder belong to the speed of the water, not to the approach speed."""
+"""Speed-scaled steering: hull and rudder forces that change with the speed through the water."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,9 +10,18 @@ from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """What linear hull (by u / U0) and rudder (by its square) gain over their values at the approach speed U0.
+    """Return the change of the linear hull and rudder forces against the approach speed U0.
 
-    Astern the water meets the blade from behind and pushes it the other way; damping goes on damping.
+    Hull forces scale with u / U0, rudder forces with its square. Going astern the flow meets the
+    rudder from behind and its force changes sign; damping stays damping.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
     """
     ratio = m.ur / q.speed
     couples, damps, rudder = ratio - 1.0, abs(ratio) - 1.0, ratio * abs(ratio) - 1.0
@@ -26,16 +35,24 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class SpeedScaledSteering(Force):
-    """The change of a linear hull and rudder with the speed ahead; nothing at the approach speed itself."""
+    """Change of a linear hull and rudder with the forward speed; zero at the approach speed.
+
+    dY = hull_sway ((|e| - 1) Y_v v_r + (e - 1) Y_r r) + rudder_sway (e |e| - 1) Y_delta delta
+    dN = hull_yaw ((e - 1) N_v v_r + (|e| - 1) N_r r) + rudder_yaw (e |e| - 1) N_delta delta
+
+    e = u_r / U0.
+    """
 
     words: ClassVar[str] = (
-        "hull and rudder forces change with the speed ahead instead of staying those of the approach"
+        "hull and rudder forces change with the forward speed instead of staying constant"
     )
     shown_by: ClassVar[str] = "zig-zags in which the ship loses much of its speed"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapters 6 and 9"
     )
-    roles: ClassVar = {"angle": Role("rad", "the rudder, positive where its coefficients say")}
+    roles: ClassVar = {
+        "angle": Role("rad", "rudder angle; the signs of the coefficients define its sense")
+    }
     law: ClassVar = law
 
     hull_sway: float = param(
@@ -43,7 +60,7 @@ class SpeedScaledSteering(Force):
         low=-5.0,
         high=5.0,
         unit="",
-        words="share of the hull's sway force that goes with u",
+        words="share of the sway force of the hull that scales with u",
         fit=True,
         spread=1.0,
     )
@@ -52,7 +69,7 @@ class SpeedScaledSteering(Force):
         low=-5.0,
         high=5.0,
         unit="",
-        words="share of its yaw moment that goes with u",
+        words="share of the yaw moment of the hull that scales with u",
         fit=True,
         spread=1.0,
     )
@@ -61,7 +78,7 @@ class SpeedScaledSteering(Force):
         low=-5.0,
         high=5.0,
         unit="",
-        words="share of the rudder's sway force with u^2",
+        words="share of the sway force of the rudder that scales with u^2",
         fit=True,
         spread=1.0,
     )
@@ -70,12 +87,17 @@ class SpeedScaledSteering(Force):
         low=-5.0,
         high=5.0,
         unit="",
-        words="share of its yaw moment with u^2",
+        words="share of the yaw moment of the rudder that scales with u^2",
         fit=True,
         spread=1.0,
     )
     speed: float = param(
-        UNSET, low=0.01, high=50.0, unit="m/s", words="U0", follows="approach_balance.speed"
+        UNSET,
+        low=0.01,
+        high=50.0,
+        unit="m/s",
+        words="approach speed, U0",
+        follows="approach_balance.speed",
     )
     sway: float = param(
         UNSET, low=0.0, high=1e9, unit="N s/m", words="-Y_v", follows="linear_damping.sway"

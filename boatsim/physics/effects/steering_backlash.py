@@ -1,4 +1,4 @@
-"""Steering backlash: play in the linkage, so the thruster stays behind when the steering reverses."""
+"""Steering backlash: play in the steering linkage."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -8,12 +8,20 @@ from numba import njit
 from boatsim.physics.base import Array, Channel, Course, param
 from boatsim.physics.kinds.channel import COMMANDS
 
-LONG = 1e3  # [s] a command held for so long was given before anyone looked
+LONG = 1e3  # [s] a command held longer than this is the initial condition of a run
 
 
 @njit(inline="always")
 def pushed(y: float, x: float, half: float) -> float:
-    """The play operator: the angle moves only when the command pushes against an end of the play."""
+    """Return the output of the play operator.
+
+    It moves only when the command reaches an end of the play.
+
+    Args:
+        y: Angle so far [rad].
+        x: Command [rad].
+        half: Half of the play [rad].
+    """
     return min(max(y, x - half), x + half)
 
 
@@ -21,7 +29,22 @@ def pushed(y: float, x: float, half: float) -> float:
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """Pushed along by the command's course; where it hung in its play before anyone looked is a number of its own."""
+    """Return the angle that the command drags along through the play.
+
+    At the start of a run a parameter gives the position within the play.
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     half = 0.5 * q.width * (1.0 if dt < LONG else q.behind)
     begin = pushed(memory[at], x.begin, half)
     middle = pushed(begin, x.middle, half)
@@ -31,13 +54,18 @@ def channel(
 
 @dataclass(frozen=True)
 class SteeringBacklash(Channel):
-    """Free play between steering command and thruster angle."""
+    """Play operator between the steering command and the angle of the thruster or rudder.
+
+    y(t) = min(max(y(t-), x(t) - width / 2), x(t) + width / 2)
+
+    `behind` sets the first angle: 0 in the middle of the play, 1 as reached from straight ahead.
+    """
 
     ruled_out_by: ClassVar = {"steering_measured": (True,)}
     words: ClassVar[str] = (
-        "the steering linkage has play, so an angle stays behind when the steering reverses"
+        "the steering linkage has play, so the angle lags when the steering reverses"
     )
-    shown_by: ClassVar[str] = "small steering reversals while pushing"
+    shown_by: ClassVar[str] = "small steering reversals under thrust"
     source: ClassVar[str] = (
         "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, 1996 (play operator)"
     )
@@ -59,5 +87,5 @@ class SteeringBacklash(Channel):
         unit="",
         fit=True,
         spread=0.5,
-        words="how far the first angle is behind: 0 in the middle of the play, 1 as come from straight ahead",
+        words="position of the first angle in the play: 0 middle, 1 as reached from straight ahead",
     )

@@ -1,4 +1,4 @@
-"""Steering drag: a rudder at an angle holds the ship back."""
+"""Steering drag: resistance of a deflected rudder."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,15 +10,25 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """X = -drag delta^2: the lift's part along the ship."""
+    """Return X = -drag delta^2, the component of the rudder force along the ship.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals of the rudder on which the effect acts.
+        t: Parameters of that rudder.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return wrench(X=-q.drag * s.angle * s.angle)
 
 
 @dataclass(frozen=True)
 class SteeringDrag(Force):
-    """Resistance with the square of the rudder angle, X_delta delta."""
+    """Resistance proportional to the square of the rudder angle, X = X_delta_delta delta^2."""
 
-    words: ClassVar[str] = "the rudder brakes with the square of its angle"
+    words: ClassVar[str] = "the resistance grows with the square of the rudder angle"
     shown_by: ClassVar[str] = "large rudder angles that reverse before the ship turns"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9"

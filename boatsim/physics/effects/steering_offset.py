@@ -1,4 +1,4 @@
-"""Steering offset: thrusters or rudders do not point where the steering says."""
+"""Steering offset: constant error of the steering angles."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,7 +11,13 @@ from boatsim.physics.kinds.channel import DEEDS
 
 @njit(inline="always")
 def turned(x: float, side: float, q: Any) -> float:
-    """A constant added to the angle of each side, and gain |x|: more of every angle to starboard, less to port."""
+    """Return the angle with the offset of its side, and gain |x| added.
+
+    Args:
+        x: Steering angle [rad].
+        side: -1 port, +1 starboard, 0 on the centreline.
+        q: Parameters of the effect.
+    """
     return x + q.gain * abs(x) + (q.starboard if side > 0.0 else q.port if side < 0.0 else q.middle)
 
 
@@ -19,15 +25,31 @@ def turned(x: float, side: float, q: Any) -> float:
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """At each instant for itself."""
+    """Return the offset angle at each of the three instants.
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     return Course(turned(x.begin, side, q), turned(x.middle, side, q), turned(x.end, side, q))
 
 
 @dataclass(frozen=True)
 class SteeringOffset(Channel):
-    """A constant error of each steering angle."""
+    """Constant error of each steering angle, with an optional asymmetry.
 
-    words: ClassVar[str] = "the thrusters are mounted or trimmed at an angle"
+    y = x + offset(side) + gain |x|
+    """
+
+    words: ClassVar[str] = "the thrusters or rudders have a constant angle error"
     shown_by: ClassVar[str] = "straight runs ahead and astern"
     acts_on: ClassVar[str] = "angle"
     stage: ClassVar[int] = DEEDS
@@ -55,16 +77,25 @@ class SteeringOffset(Channel):
         spread=0.12,
     )
     gain: float = param(
-        0.0, low=-0.9, high=0.9, unit="", words="share more to starboard, less to port"
+        0.0,
+        low=-0.9,
+        high=0.9,
+        unit="",
+        words="relative increase of angles to starboard and decrease to port",
     )
 
 
 SteeringAsymmetry = preset(
     SteeringOffset,
     "SteeringAsymmetry",
-    words="the same angle steers harder to one side than to the other",
+    words="the same angle steers more strongly to one side than to the other",
     shown_by="turns with the same angle to both sides",
-    source="C. Svendsen et al., IFAC MCMC 2012: yaw rates of right turns stand out of the model",
-    frees={"gain": {"words": "share more to starboard, less to port", "spread": 0.1}},
+    source="C. Svendsen et al., IFAC MCMC 2012: yaw rates of right turns deviate from the model",
+    frees={
+        "gain": {
+            "words": "relative increase of angles to starboard and decrease to port",
+            "spread": 0.1,
+        }
+    },
     fixed={"port": 0.0, "starboard": 0.0, "middle": 0.0},
 )

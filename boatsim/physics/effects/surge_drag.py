@@ -1,4 +1,4 @@
-"""Surge drag: friction and form resistance of a hull going straight ahead or astern."""
+"""Surge drag: linear and quadratic resistance in surge."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,15 +10,26 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """X = -(linear + quadratic |u|) u."""
+    """Return the resistance -(linear + quadratic |u|) u.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return wrench(X=-(q.linear + q.quadratic * abs(m.ur)) * m.ur)
 
 
 @dataclass(frozen=True)
 class SurgeDrag(Force):
-    """Resistance in surge, linear and quadratic in the speed through the water."""
+    """Frictional and form resistance in surge.
 
-    words: ClassVar[str] = "the hull resists going ahead"
+    X = -(linear + quadratic |u_r|) u_r,  linear = -X_u,  quadratic = -X_u|u|
+    """
+
+    words: ClassVar[str] = "resistance of the hull in surge"
     shown_by: ClassVar[str] = "coasting straight ahead"
     law: ClassVar = law
 

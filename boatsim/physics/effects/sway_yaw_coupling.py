@@ -1,4 +1,4 @@
-"""Sway-yaw coupling: products of two speeds, in surge, sway and yaw, of a hull that turns and drifts with way on."""
+"""Sway-yaw coupling: forces proportional to products of two velocities."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,22 +10,37 @@ from boatsim.physics.base import Force, Wrench, param, preset, wrench
 TWICE = (
     -9.2,
     9.2,
-)  # [kg] of a boat of 4.6 kg: no hull moves more water with it than twice its own mass
+)  # [kg] bounds for a boat of 4.6 kg: no added mass exceeds twice the mass of the hull
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """X_vr v r beside the rigid hull's own, Y_ur u r and N_uv u v: these change sign with the way of the boat."""
+    """Return X_vr v r, Y_ur u r and N_uv u v.
+
+    The last two change sign with the direction of motion.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return wrench(X=q.mass * m.vr * m.r, Y=-q.sway * m.ur * m.r, N=-q.yaw * m.ur * m.vr)
 
 
 @dataclass(frozen=True)
 class SwayYawCoupling(Force):
-    """Cross terms of hull lift and added mass at a small angle to the flow; a moment alone is the Munk moment."""
+    """Cross terms of hull lift and added mass at a small angle to the flow.
+
+    X = X_vr v_r r,  Y = Y_ur u_r r,  N = N_uv u_r v_r
+
+    They are added to the Coriolis terms of the rigid body. N_uv alone is the Munk moment.
+    """
 
     needs: ClassVar = ("surge", "sway", "yaw")
     words: ClassVar[str] = (
-        "a hull with way on feels a side force when it turns and a moment when it drifts"
+        "a moving hull has a side force when it turns and a yaw moment when it drifts"
     )
     shown_by: ClassVar[str] = "the same turns at two speeds ahead, and astern"
     source: ClassVar[str] = (
@@ -50,6 +65,6 @@ SpeedLossInTurn = preset(
     source="H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015: m_y + X_vr",
     frees={
         "mass": {"words": "m_y + X_vr", "spread": 4.0}
-    },  # negative force: the hull drifts outwards
+    },  # a negative force, because the hull drifts outwards
     fixed={"sway": 0.0, "yaw": 0.0},
 )

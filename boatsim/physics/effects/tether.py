@@ -1,4 +1,4 @@
-"""Tether: a line from the stern to a fixed point pulls the boat back and drags through the water."""
+"""Tether: a line from the boat to a fixed point."""
 
 from dataclasses import dataclass
 from math import exp, log, sqrt
@@ -8,14 +8,18 @@ from numba import njit
 
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
-# [m] over which the line goes from slack to taut; a wider one can not follow a short stiff line
+# [m] width of the transition from slack to taut; a wider one does not represent a short stiff line
 SOFT = 0.02
-NEAR = 0.05  # [m] keeps the direction of the pull defined at the anchor
+NEAR = 0.05  # [m] regularises the direction of the pull at the anchor
 
 
 @njit(inline="always")
 def stretch(beyond: float) -> float:
-    """Length the line is stretched by [m], smooth where it becomes taut."""
+    """Return the elongation of the line [m], smooth where it becomes taut.
+
+    Args:
+        beyond: Distance of its ends less its length [m].
+    """
     z = beyond / SOFT
     if z > 30.0:
         return beyond
@@ -24,8 +28,16 @@ def stretch(beyond: float) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Steady and elastic pull towards the anchor, and the line's drag, all at the point where it is made fast."""
-    north = q.north - m.x - q.at * m.cos_psi  # [m] from the boat's end of the line to the anchor
+    """Return the pull towards the anchor and the drag of the line.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
+    north = q.north - m.x - q.at * m.cos_psi  # [m] from the attachment on the boat to the anchor
     east = q.east - m.y - q.at * m.sin_psi
     distance = sqrt(north * north + east * east + NEAR * NEAR)
     pull = (q.tension + q.stiffness * stretch(distance - q.length)) / distance
@@ -36,7 +48,13 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class Tether(Force):
-    """A cable or line between the boat and a fixed point: its weight pulls always, its stretch when it is taut."""
+    """Cable or line between the boat and a fixed point: constant tension, elasticity and drag.
+
+    F = tension + stiffness stretch(distance - length)  towards (north, east),  drag u at the point
+
+    The constant tension stands for the weight of the line. `at` [m] is the attachment ahead of the
+    origin.
+    """
 
     ruled_out_by: ClassVar = {"moored": (False,)}
     needs: ClassVar = ("surge", "sway")
@@ -50,7 +68,7 @@ class Tether(Force):
             {"tension": 0.05, "stiffness": 0.03, "length": 1.5, "north": north, "east": east}
             for north, east in ((3.0, 0.0), (-3.0, 0.0), (0.0, 2.5), (0.0, -2.5))
         ),
-        # a short stiff line: nothing of it shows in the slope of the evidence of a long soft one
+        # a short stiff line is a separate maximum of the likelihood, far from a long soft one
         *(
             {"tension": 0.0, "stiffness": 1.0, "length": 0.3, "north": north, "east": east}
             for north, east in ((0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5))
@@ -58,27 +76,41 @@ class Tether(Force):
     )
 
     tension: float = param(
-        0.0, low=0.0, high=1e6, unit="N", words="steady pull", fit=True, spread=0.15
+        0.0, low=0.0, high=1e6, unit="N", words="constant tension", fit=True, spread=0.15
     )
     stiffness: float = param(
-        0.0, low=0.0, high=1e6, unit="N/m", words="pull per stretch", fit=True, spread=0.5
+        0.0, low=0.0, high=1e6, unit="N/m", words="stiffness of the line", fit=True, spread=0.5
     )
     length: float = param(
-        0.0, low=0.0, high=1e4, unit="m", words="of the slack line", fit=True, spread=3.0
+        0.0, low=0.0, high=1e4, unit="m", words="length of the slack line", fit=True, spread=3.0
     )
     drag: float = param(
-        0.0, low=0.0, high=1e6, unit="N s/m", words="of the line in the water", fit=True, spread=0.5
+        0.0,
+        low=0.0,
+        high=1e6,
+        unit="N s/m",
+        words="drag coefficient of the line in the water",
+        fit=True,
+        spread=0.5,
     )
-    north: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=4.0)
-    east: float = param(0.0, low=-1e4, high=1e4, unit="m", words="anchor", fit=True, spread=3.0)
+    north: float = param(
+        0.0, low=-1e4, high=1e4, unit="m", words="anchor, to the north", fit=True, spread=4.0
+    )
+    east: float = param(
+        0.0, low=-1e4, high=1e4, unit="m", words="anchor, to the east", fit=True, spread=3.0
+    )
     at: float = param(
         UNSET,
         low=-500.0,
         high=500.0,
         unit="m",
-        words="made fast this far ahead; if not given, at the stern",
+        words="attachment ahead of the origin; default: the stern",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """The stern is half a length behind."""
+        """Return the attachment, by default at the stern, half a length behind.
+
+        Args:
+            vessel: Vessel with a length [m].
+        """
         return {"at": -0.5 * vessel.length}

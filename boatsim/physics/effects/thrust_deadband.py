@@ -1,4 +1,4 @@
-"""Thrust and shaft deadband: small commands do not turn the propeller, and larger ones lack what it takes."""
+"""Thrust and shaft deadband: commands below a threshold have no effect."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,7 +11,12 @@ from boatsim.physics.kinds.channel import COMMANDS
 
 @njit(inline="always")
 def beyond(x: float, q: Any) -> float:
-    """Nothing inside the half width, the rest of the command beyond it."""
+    """Return the part of the command beyond the dead band.
+
+    Args:
+        x: Command.
+        q: Parameters with the half `width`.
+    """
     return x - min(max(x, -q.width), q.width)
 
 
@@ -19,15 +24,33 @@ def beyond(x: float, q: Any) -> float:
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """At each instant for itself."""
+    """Return the signal beyond the dead band at each of the three instants.
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     return Course(beyond(x.begin, q), beyond(x.middle, q), beyond(x.end, q))
 
 
 @dataclass(frozen=True)
 class ThrustDeadband(Channel):
-    """Friction of motor and shaft: thrust begins at a threshold, ahead and astern alike."""
+    """Dead band by friction of motor and shaft, symmetric ahead and astern.
 
-    words: ClassVar[str] = "small thrust commands do nothing and all thrust is less by a constant"
+    y = x - min(max(x, -width), width)
+    """
+
+    words: ClassVar[str] = (
+        "small thrust commands have no effect and all thrust is reduced by a constant"
+    )
     shown_by: ClassVar[str] = "slow runs at several small thrust levels"
     acts_on: ClassVar[str] = "thrust"
     stage: ClassVar[int] = COMMANDS
@@ -35,19 +58,21 @@ class ThrustDeadband(Channel):
     channel: ClassVar = channel
     thresholds: ClassVar = {"width": (0.02, 0.1, 0.3)}
 
-    width: float = param(0.0, low=0.0, high=1e7, unit="N", words="half width", fit=True, spread=0.1)
+    width: float = param(
+        0.0, low=0.0, high=1e7, unit="N", words="half width of the dead band", fit=True, spread=0.1
+    )
 
 
 ShaftDeadband = preset(
     ThrustDeadband,
     "ShaftDeadband",
-    words="small commands do not turn the shaft and all rates are less by a constant",
+    words="small commands do not turn the shaft and all shaft rates are reduced by a constant",
     acts_on="shaft",
     frees={
         "width": {
             "high": 1e4,
             "unit": "1/s",
-            "words": "half width, in the unit of the command",
+            "words": "half width of the dead band, in the unit of the command",
             "spread": 0.1,
         }
     },

@@ -1,4 +1,4 @@
-"""Thrust imbalance: one side pushes more than the other."""
+"""Thrust imbalance: different thrust of the port and starboard sides for the same command."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -13,14 +13,30 @@ from boatsim.physics.kinds.channel import DEEDS
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """Port thrust times 1 + f, starboard times 1 - f."""
+    """Return the port signal times 1 + f, the starboard signal times 1 - f.
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     share = 1.0 - side * q.fraction
     return Course(x.begin * share, x.middle * share, x.end * share)
 
 
 @dataclass(frozen=True)
 class ThrustImbalance(Channel):
-    """Port and starboard thrust differ for the same command, ahead and astern alike."""
+    """Relative difference between port and starboard thrust, ahead and astern alike.
+
+    T_port = (1 + f) T,  T_starboard = (1 - f) T,  f = `fraction`
+    """
 
     words: ClassVar[str] = "one side pushes harder than the other for the same command"
     shown_by: ClassVar[str] = "straight runs ahead and astern with equal commands"
@@ -33,7 +49,7 @@ class ThrustImbalance(Channel):
         low=-0.6,
         high=0.6,
         unit="",
-        words="port times 1 + f, starboard times 1 - f",
+        words="f: port thrust times 1 + f, starboard thrust times 1 - f",
         fit=True,
         spread=0.15,
     )

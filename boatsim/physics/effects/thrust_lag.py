@@ -1,4 +1,4 @@
-"""Thrust lag: motor and propeller take time to follow the command."""
+"""Thrust lag: first-order lag of motor and propeller."""
 
 from dataclasses import dataclass
 from math import inf, log
@@ -8,15 +8,28 @@ from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, followed, lagged, param
 
-NONE = 1e-4  # [s] a shorter lag is none
-SAME = 1e-9  # of a command: what is left of the other way round is nothing
+NONE = 1e-4  # [s] a shorter lag counts as none
+SAME = 1e-9  # share of a command: a smaller thrust of the other sign counts as zero
 
 
 @njit(inline="always")
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """First-order lag, exact for a command whose course is a parabola."""
+    """Return the lagged signal, exact for a command that is a parabola over the step.
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     if q.time_constant < NONE:
         memory[at] = x.end
         return x
@@ -25,7 +38,20 @@ def channel(
 
 @njit(inline="always")
 def pause(x: float, memory: Array, at: int, q: Any) -> float:
-    """As far as its course is followed, and no further than until the thrust reverses, where laws of thrust bend."""
+    """Return the time over which a `Course` follows the lag, at most until the thrust reverses.
+
+    Thrust laws have a kink at zero thrust.
+
+    Args:
+        x: Signal that enters now, assumed constant.
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Time [s] during which the three points of a `Course` describe the signal exactly; infinite
+        if it is constant.
+    """
     if q.time_constant < NONE:
         return inf
     y = memory[at]
@@ -35,15 +61,21 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
 
 @dataclass(frozen=True)
 class ThrustLag(Channel):
-    """First-order lag of the thrust behind its command."""
+    """First-order lag of the thrust behind its command: time_constant y' = x - y."""
 
-    words: ClassVar[str] = "thrust builds up with a lag behind its command"
-    shown_by: ClassVar[str] = "quick steps of the thrust"
+    words: ClassVar[str] = "thrust follows its command with a first-order lag"
+    shown_by: ClassVar[str] = "fast steps of the thrust"
     acts_on: ClassVar[str] = "thrust|shaft"
     slots: ClassVar[int] = 1
     channel: ClassVar = channel
     pause: ClassVar = pause
 
     time_constant: float = param(
-        0.15, low=0.0, high=60.0, unit="s", words="time to 63 % of a step", fit=True, spread=0.6
+        0.15,
+        low=0.0,
+        high=60.0,
+        unit="s",
+        words="time constant: time to 63 % of a step",
+        fit=True,
+        spread=0.6,
     )

@@ -1,4 +1,4 @@
-"""Thrust loss with speed: a propeller pushes less the faster the water already goes its way."""
+"""Thrust loss with speed: the thrust of a propeller decreases with the speed of advance."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,15 +11,28 @@ from boatsim.physics.effects.thruster import at_mount
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
-    """Each thruster's thrust T loses (loss u + curve u |u|) |T|: falls ahead, grows when it brakes."""
+    """Return the loss of one thruster: thrust decreases ahead and increases when it brakes.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals of the thruster on which the effect acts.
+        t: Parameters of that thruster.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return at_mount(-t.gain * (q.loss + q.curve * abs(m.ur)) * m.ur * abs(s.thrust), s, t)
 
 
 @dataclass(frozen=True)
 class ThrustLossWithSpeed(Force):
-    """The thrust of a fixed command falls in proportion to the advance speed."""
+    """Thrust of a constant command that decreases with the speed of advance.
 
-    words: ClassVar[str] = "the propellers push less the faster the boat goes"
+    dT = -(loss u_r + curve u_r |u_r|) |T|
+    """
+
+    words: ClassVar[str] = "the thrust of the propellers decreases with the speed of the boat"
     shown_by: ClassVar[str] = "the same thrust command from rest and at full speed"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T(J)"
@@ -32,7 +45,7 @@ class ThrustLossWithSpeed(Force):
         low=0.0,
         high=50.0,
         unit="s/m",
-        words="share lost per speed ahead",
+        words="share of the thrust lost per speed",
         fit=True,
         spread=0.5,
         calibrates="thrust",
@@ -42,7 +55,7 @@ class ThrustLossWithSpeed(Force):
         low=-20.0,
         high=20.0,
         unit="s^2/m^2",
-        words="and per speed squared",
+        words="share of the thrust lost per speed squared",
         fit=True,
         spread=0.1,
     )

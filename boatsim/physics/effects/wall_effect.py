@@ -1,4 +1,4 @@
-"""Wall effect: the boat drags more and is drawn aside where the water between hull and wall is narrow."""
+"""Wall effect: additional damping and suction near the walls of a tank."""
 
 from dataclasses import dataclass
 from math import exp
@@ -8,18 +8,33 @@ from numba import njit
 
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
-REACH = 0.5  # [boat lengths] over which what a wall does falls to 37 %
+REACH = 0.5  # [boat lengths] distance over which the effect of a wall falls to 37 %
 
 
 @njit(inline="always")
 def nearness(at: float, low: float, high: float, reach: float) -> tuple[float, float]:
-    """Nearness exp(-distance / reach) of the high and of the low wall of a pair, no nearer than touching."""
+    """Return exp(-distance / reach) to the high and to the low wall of a pair.
+
+    Args:
+        at: Position between the walls [m].
+        low: Position of the low wall [m].
+        high: Position of the high wall [m].
+        reach: Distance over which the effect falls to 37 % [m].
+    """
     return exp(-max(high - at, 0.0) / reach), exp(-max(at - low, 0.0) / reach)
 
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Linear damping grows and a pull towards the wall appears, both falling off exponentially with the distance."""
+    """Return the additional damping and the suction, exponential in the distance from the walls.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     n, s = nearness(m.x, q.x_low, q.x_high, q.reach)
     e, w = nearness(m.y, q.y_low, q.y_high, q.reach)
     rise = q.damping_rise * (n + s + e + w)
@@ -33,14 +48,20 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class WallEffect(Force):
-    """More damping and suction near the walls of a rectangular tank, told by a recording's facts or its own table."""
+    """Additional damping and suction near the walls of a rectangular tank.
+
+    n_w = exp(-distance / reach) for each of the four walls w
+    damping times 1 + damping_rise sum(n_w),  pull n_w towards each wall
+
+    The walls are given in the facts of a recording (`walls_m`) or in the table of the effect.
+    """
 
     needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = (
-        "near the walls of the tank the boat drags more and is drawn towards them"
+        "near the walls of the tank the damping increases and the boat is drawn towards them"
     )
     shown_by: ClassVar[str] = "approaching a wall slowly and leaving it again"
-    source: ClassVar[str] = "assumption: exponential fall-off; its reach is half a boat length"
+    source: ClassVar[str] = "assumption: exponential decay with a reach of half a boat length"
     anchored: ClassVar[str] = "the walls"
     law: ClassVar = law
     strength: ClassVar = ("damping_rise", "pull")
@@ -51,43 +72,63 @@ class WallEffect(Force):
         low=0.0,
         high=20.0,
         unit="",
-        words="relative rise of the damping at a wall",
+        words="relative increase of the damping at a wall",
         fit=True,
         spread=2.0,
     )
     pull: float = param(
-        0.0, low=-1e6, high=1e6, unit="N", words="towards a wall, at it", fit=True, spread=0.1
+        0.0,
+        low=-1e6,
+        high=1e6,
+        unit="N",
+        words="force towards a wall, at the wall",
+        fit=True,
+        spread=0.1,
     )
     reach: float = param(
         UNSET,
         low=0.01,
         high=500.0,
         unit="m",
-        words="distance over which it falls to 37 %; else half the boat's length",
+        words="distance over which it falls to 37 %; default: half the length of the boat",
     )
-    x_low: float = param(
-        UNSET, low=-1e5, high=1e5, unit="m", words="wall across the x axis, at its low end"
+    x_low: float = param(UNSET, low=-1e5, high=1e5, unit="m", words="low wall across the x axis")
+    x_high: float = param(
+        UNSET, low=-1e5, high=1e5, unit="m", words="high wall across the same axis"
     )
-    x_high: float = param(UNSET, low=-1e5, high=1e5, unit="m", words="at its high end")
-    y_low: float = param(
-        UNSET, low=-1e5, high=1e5, unit="m", words="wall across the y axis, at its low end"
+    y_low: float = param(UNSET, low=-1e5, high=1e5, unit="m", words="low wall across the y axis")
+    y_high: float = param(
+        UNSET, low=-1e5, high=1e5, unit="m", words="high wall across the same axis"
     )
-    y_high: float = param(UNSET, low=-1e5, high=1e5, unit="m", words="at its high end")
     surge: float = param(
         UNSET,
         low=0.0,
         high=1e9,
         unit="N s/m",
-        words="the vessel's",
+        words="linear damping of the vessel",
         follows="linear_damping.surge?",
     )
     sway: float = param(
-        UNSET, low=0.0, high=1e9, unit="N s/m", words="the vessel's", follows="linear_damping.sway?"
+        UNSET,
+        low=0.0,
+        high=1e9,
+        unit="N s/m",
+        words="linear damping of the vessel",
+        follows="linear_damping.sway?",
     )
     yaw: float = param(
-        UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw?"
+        UNSET,
+        low=0.0,
+        high=1e13,
+        unit="N m s",
+        words="linear damping of the vessel",
+        follows="linear_damping.yaw?",
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """The reach by the boat's length."""
+        """Return the reach, half the length of the boat.
+
+        Args:
+            vessel: Vessel with a length [m].
+        """
         return {"reach": REACH * vessel.length}

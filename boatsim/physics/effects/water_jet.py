@@ -1,4 +1,4 @@
-"""Water jet: a shaft power that the throttle sets, so the thrust falls with the speed it drives."""
+"""Water jet: thrust from a shaft power that the throttle sets."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -7,14 +7,19 @@ from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
-IDLE = 1.0  # throttle of a handle nobody touches
+IDLE = 1.0  # throttle at idle
 PLANES = 2.0  # throttle at which the first branch of the power curve ends
 FLAT = 4.0  # throttle at which the second one ends
 
 
 @njit(inline="always")
 def power(throttle: float, q: Any) -> float:
-    """Shaft power per unit mass [m^2/s^3] of a throttle handle from 1 (idle) to 7 (full), three branches."""
+    """Return the shaft power per unit mass [m^2/s^3] at a throttle from 1 (idle) to 7 (full).
+
+    Args:
+        throttle: Position of the handle.
+        q: Parameters of the three branches of the curve.
+    """
     if throttle < PLANES:
         return q.m1 * max(throttle, IDLE) + q.q1
     if throttle < FLAT:
@@ -24,50 +29,88 @@ def power(throttle: float, q: Any) -> float:
 
 @njit(inline="always")
 def law(m: Any, q: Any, s: Any) -> Wrench:
-    """Thrust = power / speed ahead."""
+    """Return the thrust: power over forward speed.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+        s: Signals bound to the roles of the effect.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     return wrench(X=q.gain * q.mass * power(s.throttle, q) / max(m.ur, q.slowest))
 
 
 @dataclass(frozen=True)
 class WaterJet(Force):
-    """Thrust of a jet drive whose engine gives a power that belongs to the handle, whatever the speed."""
+    """Thrust of a jet drive with a shaft power that is set by the throttle.
 
-    words: ClassVar[str] = "a water jet pushes with the power that the throttle sets"
+    The power does not depend on the speed.
+
+    X = gain m P(throttle) / max(u_r, slowest)
+
+    P is the shaft power per unit mass [m^2/s^3]: linear below throttle 2 (m1, q1), quadratic from 2
+    to 4 (s0, s1, s2), linear above (m2, q2).
+    """
+
+    words: ClassVar[str] = "the thrust of a water jet follows from the power that the throttle sets"
     shown_by: ClassVar[str] = "throttle steps"
     source: ClassVar[str] = (
         "C. Svendsen et al., L1 adaptive manoeuvring control, IFAC MCMC 2012, eq. 10 and Table 2"
     )
-    roles: ClassVar = {"throttle": Role("", "the handle, 1 idle to 7 full")}
+    roles: ClassVar = {"throttle": Role("", "throttle handle, 1 idle to 7 full")}
     law: ClassVar = law
 
     m1: float = param(
-        12.10, low=0.0, high=1e3, unit="m^2/s^3", words="throttle below 2: per throttle"
+        12.10, low=0.0, high=1e3, unit="m^2/s^3", words="throttle below 2: power per throttle"
     )
-    q1: float = param(-11.30, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle below 2: at 0")
-    s0: float = param(-21.1, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: at 0")
+    q1: float = param(
+        -11.30,
+        low=-1e3,
+        high=1e3,
+        unit="m^2/s^3",
+        words="throttle below 2: power extrapolated to 0",
+    )
+    s0: float = param(
+        -21.1, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: power extrapolated to 0"
+    )
     s1: float = param(
-        -20.0, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: per throttle"
+        -20.0, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: power per throttle"
     )
     s2: float = param(
-        18.5, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle 2 to 4: per throttle squared"
+        18.5,
+        low=-1e3,
+        high=1e3,
+        unit="m^2/s^3",
+        words="throttle 2 to 4: power per throttle squared",
     )
     m2: float = param(
-        10.00, low=0.0, high=1e3, unit="m^2/s^3", words="throttle from 4: per throttle"
+        10.00, low=0.0, high=1e3, unit="m^2/s^3", words="throttle from 4: power per throttle"
     )
     q2: float = param(
-        154.9, low=-1e3, high=1e3, unit="m^2/s^3", words="throttle from 4: at 0; printed 164.5"
+        154.9,
+        low=-1e3,
+        high=1e3,
+        unit="m^2/s^3",
+        words="throttle from 4: power extrapolated to 0; the source prints 164.5",
     )
     slowest: float = param(
-        0.5, low=0.01, high=100.0, unit="m/s", words="below this speed the thrust rises no more"
+        0.5, low=0.01, high=100.0, unit="m/s", words="speed below which the thrust is constant"
     )
     gain: float = param(
-        1.0, low=0.0, high=20.0, unit="", words="power per stated power", calibrates="thrust"
+        1.0,
+        low=0.0,
+        high=20.0,
+        unit="",
+        words="power over its specified value",
+        calibrates="thrust",
     )
     mass: float = param(
         UNSET,
         low=0.0,
         high=1e9,
         unit="kg",
-        words="the curve is per unit mass; if not given, the vessel's own",
+        words="mass for the curve per unit mass; default: that of the vessel",
         follows="vessel.body.mass",
     )

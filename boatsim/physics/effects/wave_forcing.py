@@ -1,4 +1,4 @@
-"""Wave forcing: an irregular force about one frequency on every axis."""
+"""Wave forcing: independent narrow-band wave forces in body axes."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
@@ -8,18 +8,26 @@ from numba import njit
 from boatsim.physics.base import Swell, Unsteady, Wrench, param, wrench
 from boatsim.physics.noise import course, noise
 
-WAVES = 64.0  # components of the realisation on each axis
+WAVES = 64.0  # components of the realisation in each axis
 SURGE, SWAY, ROLL, YAW = (
     100.0,
     101.0,
     102.0,
     103.0,
-)  # channels of the noise, beyond those of other effects
+)  # channels of the noise, different from those of other effects
 
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """One realisation of the oscillators of `swell`; axes that nothing pushes cost nothing."""
+    """Return one realisation of the oscillators of `swell`; axes without a force are not computed.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     X = Y = K = N = 0.0
     if q.realisation == 0.0:
         return wrench(X=X, Y=Y, K=K, N=N)
@@ -37,18 +45,30 @@ def law(m: Any, q: Any) -> Wrench:
 
 @njit(inline="always")
 def swell(q: Any) -> Swell:
-    """The oscillators that the diagnosis follows; none where the force is zero."""
+    """Return the oscillators that the diagnosis filter tracks; none if all forces are zero.
+
+    Args:
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Rms force of each axis [N, N m], frequency [rad/s] and damping ratio of the oscillators.
+    """
     there = q.surge > 0.0 or q.sway > 0.0 or q.roll > 0.0 or q.yaw > 0.0
     return Swell(q.surge, q.sway, 0.0, q.roll, 0.0, q.yaw, q.frequency if there else 0.0, q.damping)
 
 
 @dataclass(frozen=True)
 class WaveForcing(Unsteady):
-    """Narrow-band wave forces in body axes, independent from axis to axis."""
+    """Narrow-band wave forces in body axes, independent from axis to axis.
+
+    F(s) = sigma 2 z w0 s / (s^2 + 2 z w0 s + w0^2) applied to white noise
+
+    sigma is the rms force of the axis, w0 the `frequency` [rad/s], z the `damping` of the filter.
+    """
 
     ruled_out_by: ClassVar = {"no_waves": (True,)}
-    words: ClassVar[str] = "waves push the hull to and fro about one frequency"
-    shown_by: ClassVar[str] = "lying still without thrust"
+    words: ClassVar[str] = "waves exert narrow-band forces on the hull about one frequency"
+    shown_by: ClassVar[str] = "at rest without thrust"
     source: ClassVar[str] = (
         "T. I. Fossen, Handbook of Marine Craft, 2nd ed. 2021, section 10.2: second-order wave filter"
     )
@@ -95,7 +115,7 @@ class WaveForcing(Unsteady):
         low=0.05,
         high=20.0,
         unit="rad/s",
-        words="of encounter",
+        words="frequency of encounter",
         fit=True,
         spread=1.5,
         absent=3.0,
@@ -105,17 +125,23 @@ class WaveForcing(Unsteady):
         low=0.005,
         high=0.5,
         unit="",
-        words="width of the spectrum",
+        words="damping ratio, the relative width of the spectrum",
         fit=True,
         spread=0.05,
         absent=0.08,
     )
     realisation: float = param(
-        1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still"
+        1.0, low=0.0, high=1e9, unit="", words="number of the realisation; 0: no waves"
     )
 
     def seeded(self, seed: int) -> Self:
-        """Another course for each seed, unless the water is still."""
+        """Return the effect with a realisation that depends on the seed.
+
+        Realisation 0 (no waves) does not change.
+
+        Args:
+            seed: Seed of the scenario.
+        """
         return replace(
             self, realisation=course(self.realisation, seed) if self.realisation else 0.0
         )

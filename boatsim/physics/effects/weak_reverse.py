@@ -1,4 +1,4 @@
-"""Weak reverse: a propeller made for going ahead pushes less astern."""
+"""Weak reverse: a propeller designed for going ahead gives less thrust astern."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,7 +11,12 @@ from boatsim.physics.kinds.channel import DEEDS
 
 @njit(inline="always")
 def weakened(x: float, q: Any) -> float:
-    """Astern thrust times a factor."""
+    """Return the thrust, times the factor if it is astern.
+
+    Args:
+        x: Thrust or shaft rate.
+        q: Parameters with `astern_factor`.
+    """
     return x * q.astern_factor if x < 0.0 else x
 
 
@@ -19,13 +24,29 @@ def weakened(x: float, q: Any) -> float:
 def channel(
     x: Course, side: float, source: float, memory: Array, at: int, dt: float, q: Any
 ) -> Course:
-    """At each instant for itself."""
+    """Return the signal with the factor astern at each of the three instants.
+
+    Args:
+        x: Signal that enters: its values at the begin, middle and end of the step.
+        side: -1 on the port side, +1 on the starboard side, 0 on the centreline.
+        source: Raw command that feeds the channel (`fed_by`).
+        memory: Memory of the compiled program.
+        at: Index of the first slot of this effect in `memory`.
+        dt: Length of the step [s].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        The signal that leaves the effect, over the same step.
+    """
     return Course(weakened(x.begin, q), weakened(x.middle, q), weakened(x.end, q))
 
 
 @dataclass(frozen=True)
 class WeakReverse(Channel):
-    """Astern thrust is a fraction of what was commanded."""
+    """Thrust astern as a fraction of the commanded thrust.
+
+    T = astern_factor T_command  for T_command < 0
+    """
 
     words: ClassVar[str] = "the propellers push less astern than commanded"
     words_above: ClassVar[str] = "the propellers push more astern than commanded"
@@ -41,7 +62,7 @@ class WeakReverse(Channel):
         low=0.05,
         high=1.5,
         unit="",
-        words="astern thrust per commanded thrust",
+        words="astern thrust over commanded thrust",
         fit=True,
         spread=0.3,
         absent=1.0,

@@ -1,4 +1,4 @@
-"""Wind: a steady force in earth axes on a hull whose areas nobody gave."""
+"""Wind: steady wind force in earth axes on a hull of unknown areas."""
 
 from dataclasses import dataclass
 from math import cos, pi, sin
@@ -11,7 +11,15 @@ from boatsim.physics.base import Force, Wrench, param, wrench
 
 @njit(inline="always")
 def law(m: Any, q: Any) -> Wrench:
-    """Full side force with the wind on the beam, a share of it end-on; the moment has the terms sin g and sin 2 g."""
+    """Return the wind force: the full force abeam, a share of it end-on, and its yaw moment.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     north, east = q.force * cos(q.toward), q.force * sin(q.toward)
     along = m.cos_psi * north + m.sin_psi * east
     across = m.cos_psi * east - m.sin_psi * north
@@ -21,7 +29,12 @@ def law(m: Any, q: Any) -> Wrench:
 
 @dataclass(frozen=True)
 class Wind(Force):
-    """A push in a fixed direction of the world that depends on the heading."""
+    """Steady wind force of constant direction, for a hull whose areas are not known.
+
+    X = end_on force cos g,  Y = force sin g,  N = (arm + swing cos g) Y
+
+    g is the angle between the bow and the direction `toward` of the wind.
+    """
 
     ruled_out_by: ClassVar = {"indoors": (True,)}
     needs: ClassVar = ("surge", "sway")
@@ -47,14 +60,20 @@ class Wind(Force):
         spread=0.15,
     )
     toward: float = param(
-        0.0, low=-2 * pi, high=2 * pi, unit="rad", words="where it blows to", fit=True, spread=3.0
+        0.0,
+        low=-2 * pi,
+        high=2 * pi,
+        unit="rad",
+        words="direction the wind blows to",
+        fit=True,
+        spread=3.0,
     )
     arm: float = param(
         0.0,
         low=-200.0,
         high=200.0,
         unit="m",
-        words="side force acts this far forward",
+        words="lever of the side force, ahead of the origin",
         fit=True,
         spread=0.1,
         within=(-0.6, 0.6),
@@ -64,9 +83,9 @@ class Wind(Force):
         low=-200.0,
         high=200.0,
         unit="m",
-        words="further forward with the wind from astern",
+        words="additional lever with the wind from astern",
         fit=True,
         spread=0.1,
         within=(-0.6, 0.6),
     )
-    end_on: float = param(0.5, low=0.0, high=2.0, unit="", words="end-on force per beam-on force")
+    end_on: float = param(0.5, low=0.0, high=2.0, unit="", words="force end-on over force abeam")

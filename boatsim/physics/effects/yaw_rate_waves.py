@@ -1,4 +1,4 @@
-"""Yaw-rate waves: an irregular sea that adds a narrow-band yaw rate to whatever turn the hull makes."""
+"""Yaw-rate waves: irregular sea that adds a narrow-band yaw rate to that of the hull."""
 
 from dataclasses import dataclass, replace
 from math import cos, hypot, pi, sin, sqrt
@@ -10,16 +10,21 @@ from boatsim.physics.base import UNSET, Boat, Swell, Unsteady, Wrench, param, wr
 from boatsim.physics.noise import course, drawn, line
 
 WAVES = 64  # components of the realisation
-# of the numbers drawn: beyond those of other effects, which may have the same realisation
+# index of the first random number, beyond those of other effects with the same realisation
 FIRST = 20_000
 
 
 @njit(inline="always")
 def component(k: int, q: Any) -> tuple[float, float, float]:
-    """Frequency [rad/s], amplitude [rad/s] and phase [rad] of one part of the yaw rate r_w.
+    """Return frequency [rad/s], amplitude [rad/s] and phase [rad] of one component.
 
-    It lies in the middle of its part of the line: the moment grows with the frequency, and one drawn by lot from the
-    ends of the line, which reach to zero and to infinity, would drown all others.
+    The frequency is the middle of its part of the spectrum. The moment grows with the frequency, so
+    that one sampled at random near the ends of the spectrum, which reach zero and infinity, would
+    exceed all others.
+
+    Args:
+        k: Number of the component.
+        q: Parameters of the effect.
     """
     w, weight = line((k + 0.5) / WAVES - 0.5, q.damping)
     return (
@@ -31,7 +36,15 @@ def component(k: int, q: Any) -> tuple[float, float, float]:
 
 @njit
 def law(m: Any, q: Any) -> Wrench:
-    """The moment I r_w' + d r_w under which a hull of yaw inertia I and damping d turns with r_w beside its own r."""
+    """Return the yaw moment that adds the wave yaw rate r_w to the yaw rate of the hull.
+
+    Args:
+        m: Motion of the hull: velocities [m/s], rates [rad/s], position [m], attitude [rad].
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Force [N] and moment [N m] in body axes.
+    """
     N = 0.0
     if q.realisation == 0.0 or q.rms == 0.0:
         return wrench(N=N)
@@ -43,50 +56,80 @@ def law(m: Any, q: Any) -> Wrench:
 
 @njit(inline="always")
 def swell(q: Any) -> Swell:
-    """The oscillator that the diagnosis follows: the moment is narrow-band too; none where there are no waves."""
+    """Return the narrow-band oscillator that the diagnosis filter tracks; none without waves.
+
+    Args:
+        q: Parameters of the effect, with the names and units of its class.
+
+    Returns:
+        Rms force of each axis [N, N m], frequency [rad/s] and damping ratio of the oscillators.
+    """
     moment = q.rms * hypot(q.inertia * q.frequency, q.drag)
     return Swell(0.0, 0.0, 0.0, 0.0, 0.0, moment, q.frequency if q.rms > 0.0 else 0.0, q.damping)
 
 
 @dataclass(frozen=True)
 class YawRateWaves(Unsteady):
-    """Second-order filter waves r_w = kappa s / (s^2 + 2 lambda w s + w^2) of white noise, in force form."""
+    """Wave-induced yaw rate of a second-order filter, as the moment that causes it.
 
-    words: ClassVar[str] = "waves swing the bow to and fro about one frequency"
+    r_w(s) = kappa s / (s^2 + 2 lambda_w omega_w s + omega_w^2) applied to white noise
+    N = I r_w' + d r_w
+
+    I is the yaw inertia with the added one, d the linear yaw damping of the vessel.
+    """
+
+    words: ClassVar[str] = "waves cause a narrow-band yaw rate about one frequency"
     shown_by: ClassVar[str] = "holding a heading"
     source: ClassVar[str] = "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, equation 8"
     law: ClassVar = law
     swell: ClassVar = swell
     strength: ClassVar = ("rms",)
 
-    rms: float = param(
-        0.0, low=0.0, high=10.0, unit="rad/s", words="rms of the wave's yaw rate r_w"
+    rms: float = param(0.0, low=0.0, high=10.0, unit="rad/s", words="rms of the wave yaw rate r_w")
+    frequency: float = param(
+        3.0, low=0.05, high=20.0, unit="rad/s", words="natural frequency of the filter, omega_w"
     )
-    frequency: float = param(3.0, low=0.05, high=20.0, unit="rad/s", words="of the filter, omega_w")
-    damping: float = param(0.1, low=0.005, high=0.9, unit="", words="of the filter, lambda_w")
+    damping: float = param(
+        0.1, low=0.005, high=0.9, unit="", words="damping ratio of the filter, lambda_w"
+    )
     inertia: float = param(
         UNSET,
         low=0.0,
         high=1e13,
         unit="kg m^2",
-        words="in yaw, of hull and water; if not given, the vessel's own",
+        words="yaw inertia with added inertia; default: that of the vessel",
     )
     drag: float = param(
-        UNSET, low=0.0, high=1e13, unit="N m s", words="the vessel's", follows="linear_damping.yaw"
+        UNSET,
+        low=0.0,
+        high=1e13,
+        unit="N m s",
+        words="linear yaw damping of the vessel",
+        follows="linear_damping.yaw",
     )
     realisation: float = param(
-        1.0, low=0.0, high=1e9, unit="", words="number of the random course; 0: still"
+        1.0, low=0.0, high=1e9, unit="", words="number of the realisation; 0: no waves"
     )
 
     def rules(self, vessel: Boat) -> dict[str, float]:
-        """The vessel's inertia in yaw, its water's included."""
+        """Return the yaw inertia of the vessel with its added inertia.
+
+        Args:
+            vessel: Vessel with a body.
+        """
         yaw, sway, at = (
             self.followed(f"added_mass.{key}?", vessel) for key in ("yaw", "sway", "sway_at")
         )
         return {"inertia": vessel.body.yaw_inertia + (yaw + sway * at**2)}
 
     def seeded(self, seed: int) -> Self:
-        """Another course for each seed, unless the water is still."""
+        """Return the effect with a realisation that depends on the seed.
+
+        Realisation 0 (no waves) does not change.
+
+        Args:
+            seed: Seed of the scenario.
+        """
         return replace(
             self, realisation=course(self.realisation, seed) if self.realisation else 0.0
         )
