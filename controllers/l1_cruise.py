@@ -15,10 +15,9 @@ from boatsim.physics.base import param
 THETA, SIGMA, OMEGA = (0.2025, 1.7716), (-23.17, 23.17), (0.1, 2.0)  # section 4.1; 1/s, m/s^2, 1
 SLOWEST = 0.5  # [m/s] thrust is power / speed down to here
 IDLE, FULL = 1.0, 7.0  # throttle
-LINEAR, QUADRATIC = (
-    0.1926,
-    0.0035,
-)  # [1/s], [1/m] drag per mass, Table 3: only where the filter starts
+# [1/s], [1/m] drag per mass, Table 3: only where the filter starts
+LINEAR = 0.1926
+QUADRATIC = 0.0035
 NO_LIMIT = 1e9  # [m/s^3] of the thrust's rate
 
 
@@ -28,10 +27,9 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
     for b in boats:
         q, m, s, wanted = settings[b], memory[b], sense[b], goal[b].u_mps
         u = max(s.u, SLOWEST)
-        low, high = (
-            power_of(IDLE, q.q2) / u,
-            power_of(FULL, q.q2) / u,
-        )  # [m/s^2] thrust per mass at this speed
+        # [m/s^2] thrust per mass at this speed
+        low = power_of(IDLE, q.q2) / u
+        high = power_of(FULL, q.q2) / u
         m.loop.after[0] = s.u
         if m.started == 0.0:
             m.model, m.throttle, m.started = s.u, IDLE, 1.0

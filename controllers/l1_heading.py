@@ -24,12 +24,11 @@ from boatsim.control.compiled import (
 )
 from boatsim.physics.base import param
 
-THETA_1, THETA_2, SIGMA, OMEGA = (
-    (-3.0, 3.0),
-    (-5.0, 5.0),
-    (-5.0, 5.0),
-    (0.1, 10.0),
-)  # chosen: none are published
+# chosen: none are published
+THETA_1 = (-3.0, 3.0)
+THETA_2 = (-5.0, 5.0)
+SIGMA = (-5.0, 5.0)
+OMEGA = (0.1, 10.0)
 JUMP = 1.0  # [rad/s] a reference that changes faster jumps
 STIFFNESS = 1.0  # [1/s^2] of the motion asked for, A_m = [[0, -1], [1, -1.4]]
 wrapped = lean(wrap)

@@ -109,10 +109,8 @@ class L1HeadingDiscrete(Controller):
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Commands for the next period: bucket on its way, nozzle from heading and gyro."""
         wanted, reach = goal.get("elevator_rad", 0.0), self.elevator_rate * self.period
-        before, self._elevator = (
-            self._elevator,
-            clip(wanted, self._elevator - reach, self._elevator + reach),
-        )
+        before = self._elevator
+        self._elevator = clip(wanted, self._elevator - reach, self._elevator + reach)
         adding = self._disturbance(sense.r) if self.adaptive else 0.0
         u = self._baseline(wrap(goal.get("psi_rad", 0.0) - sense.psi), sense.r) + adding
         per_angle = self._per_angle(before)

@@ -181,11 +181,9 @@ class L1JoystickAsPublished(Controller):
     def _adapt(self) -> None:
         """Euler step of the seven adaptation laws, then `constrain`."""
         surge, sway, yaw, (u1, u2, u3) = self._surge, self._sway, self._yaw, (u[0] for u in self._u)
-        surge_e, sway_e, yaw_e = (
-            self._m_surge[0] - surge,
-            self._m_sway[0] - sway,
-            self._m_yaw[0] - yaw,
-        )
+        surge_e = self._m_surge[0] - surge
+        sway_e = self._m_sway[0] - sway
+        yaw_e = self._m_yaw[0] - yaw
         sign = 1.0 if self.sigma_sign else -1.0
         self._move("theta_1", -1.0 * surge_e * surge)
         self._move("theta_23", self._product(yaw, sway, sway_e, yaw_e))

@@ -73,11 +73,9 @@ class L1JoystickBlind(AdaptiveJoystick):
         """At rest, motors untried unless they are known."""
         super().reset()
         self._check = None if self.known_astern else self._new_check()
-        self._astern, self._angle, self._scale = (
-            self.known_astern or 1.0,
-            self.known_angle,
-            self.known_scale,
-        )
+        self._astern = self.known_astern or 1.0
+        self._angle = self.known_angle
+        self._scale = self.known_scale
         self._psi = self._start = nan  # [rad] compass when the base took over, and before the check
         self._left = 0.0  # [rad] still to be turned back
         self._u = self._x = 0.0  # [m/s], [m] reckoned, beside what the stick asked for

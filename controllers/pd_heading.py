@@ -32,9 +32,8 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
     for b in boats:
         q, s, g = settings[b], sense[b], goal[b]
         follow(q, memory[b], s, g.psi_rad)
-        turn = (
-            q.stiffness * wrapped(g.psi_rad - s.psi) - (q.damping - 1.0 / q.time_constant) * s.r
-        )  # [rad/s^2]
+        # [rad/s^2]
+        turn = q.stiffness * wrapped(g.psi_rad - s.psi) - (q.damping - 1.0 / q.time_constant) * s.r
         sent[b].jet_rad = within(turn * q.time_constant / q.gain, -q.largest, q.largest)
         sent[b].throttle = g.throttle
 

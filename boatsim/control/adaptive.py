@@ -16,9 +16,8 @@ from boatsim.physics.base import Array
 
 Complex = NDArray[np.complex128]
 Loop = Callable[[Complex], Complex]  # L(s) at s = j omega, omega in rad/s; pure delays allowed
-Law = Callable[
-    [Complex], tuple[Complex, Complex]
-]  # of z: what the controller answers to position and to rate
+# of z: what the controller answers to position and to rate
+Law = Callable[[Complex], tuple[Complex, Complex]]
 HIGHEST = 1e3  # [rad/s] beyond which a continuous loop has no crossover
 
 
@@ -140,9 +139,8 @@ def held(numerator: Sequence[float], denominator: Sequence[float], period: float
     a = np.vstack([-np.asarray(denominator[1:], dtype=float) / lead, np.eye(n - 1, n)])
     c = np.concatenate([np.zeros(n - len(numerator)), np.asarray(numerator, dtype=float) / lead])
     whole = matrix_exp(np.block([[a, np.eye(n, 1)], [np.zeros((1, n + 1))]]) * period)
-    poles = np.poly(
-        whole[:n, :n]
-    )  # determinant of zI - A; that of zI - A + b c is numerator + denominator
+    # determinant of zI - A; that of zI - A + b c is numerator + denominator
+    poles = np.poly(whole[:n, :n])
     zeros = np.poly(whole[:n, :n] - np.outer(whole[:n, n], c)) - poles
     return DiscreteFilter(zeros[1:].tolist(), poles.tolist())
 
@@ -177,10 +175,8 @@ def unfiltered(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
 
     Am (n, n) [1/s], b (n,), bandwidth [rad/s]; the outputs are the n states.
     """
-    a, column = (
-        np.atleast_2d(np.asarray(am, dtype=float)),
-        np.asarray(b, dtype=float).reshape(-1, 1),
-    )
+    a = np.atleast_2d(np.asarray(am, dtype=float))
+    column = np.asarray(b, dtype=float).reshape(-1, 1)
     n = len(a)
     whole = np.block([[a, -column], [np.zeros((1, n)), np.array([[-bandwidth]])]])
     return LinearSystem(whole, np.vstack([column, [[bandwidth]]]), np.eye(n, n + 1))
@@ -336,11 +332,8 @@ class LoopChannel:
     pole: float = 0.0  # [1/s] of the predictor
     bandwidth: float = 0.0  # [rad/s] of C
     heading_gain: float = 0.0  # [1/s] position error to rate wanted
-    input_gain: tuple[float, float, float] = (
-        1.0,
-        1.0,
-        1.0,
-    )  # true over assumed: lowest, nominal, highest
+    # true over assumed: lowest, nominal, highest
+    input_gain: tuple[float, float, float] = (1.0, 1.0, 1.0)
     hold_s: float = 0.0
     servo_lag_s: float = 0.0
     pid: tuple[float, float, float] | None = None  # (kp [1/s^2], ki [1/s^3], kd [1/s])
@@ -406,9 +399,8 @@ class SampledChannel:
     def loop(self, gain: float) -> Loop:
         """L(s), z = e^{sT}, broken at the plant input, for one true-over-assumed input gain."""
         decay = exp(-self.damping * self.period)
-        rate_gain = (
-            1.0 - decay
-        ) / self.damping  # F and g of the plant over one period, zero-order hold
+        # F and g of the plant over one period, zero-order hold
+        rate_gain = (1.0 - decay) / self.damping
         place_gain = (self.period - rate_gain) / self.damping
 
         def response(s: Complex) -> Complex:

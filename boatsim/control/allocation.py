@@ -45,9 +45,8 @@ class Stick(NamedTuple):
 STICK = ("surge_mps", "sway_mps", "yaw_radps")
 
 
-HEADING = record(
-    "own", "wanted"
-)  # [rad] integrated gyro, integrated stick, both from the start heading
+# [rad] integrated gyro, integrated stick, both from the start heading
+HEADING = record("own", "wanted")
 
 
 @merged

@@ -44,9 +44,8 @@ class Controller(Checked):
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
     commands: ClassVar[tuple[str, ...]] = ()  # command channels it sets; empty: any
-    goals: ClassVar[
-        tuple[str, ...]
-    ] = ()  # keys a [[goal]] may have; empty: the vessel's command channels
+    # keys a [[goal]] may have; empty: the vessel's command channels
+    goals: ClassVar[tuple[str, ...]] = ()
     passes_on: ClassVar[bool] = False  # its goals are the commands, whatever is sensed
 
     period: float = param(

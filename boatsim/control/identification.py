@@ -69,10 +69,8 @@ class Ship:
 
     def __init__(self, law: Forgetting, yaw: Sequence[float], roll: Sequence[float]) -> None:
         """Knows a nominal ship only: (a2y, b1y, b2y) and (a1r, a2r, b1r, b2r); of the roll's noise, nothing."""
-        self._yaw, self._roll = (
-            Estimator(np.array(yaw), law),
-            Estimator(np.array([*roll, 0.0, 0.0]), law),
-        )
+        self._yaw = Estimator(np.array(yaw), law)
+        self._roll = Estimator(np.array([*roll, 0.0, 0.0]), law)
         self._left = [0.0, 0.0]  # [deg] errors of roll that were left, one period ago and two
 
     @property

@@ -22,9 +22,8 @@ from boatsim.control.compiled import CompiledController, merged, record, unlocke
 from boatsim.physics.base import param
 
 SERVO_LAG = 0.06  # [s] of steering servos; no law uses it, only the margins that are printed
-REMEMBERS = record(
-    "acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING
-)  # X [N], N [N m] applied last
+# X [N], N [N m] applied last
+REMEMBERS = record("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)
 
 
 @merged

@@ -24,9 +24,8 @@ class Row:
 
     channel: str
     input_gain: float
-    norm: (
-        float | None
-    )  # [s] L1 norm of what the low-pass leaves; None for a controller that is not L1
+    # [s] L1 norm of what the low-pass leaves; None for a controller that is not L1
+    norm: float | None
     slope: float | None  # [1/s] largest slope of the uncertainty that the norm covers
     needed: float | None  # [1/s] slope there is: the predictor's pole less the boat's own damping
     crossover: float  # [rad/s]
@@ -46,7 +45,8 @@ def table(controller: object) -> list[Row]:
             if hasattr(load_class("controller", name), "loop_channels")
         ]
         raise BadInput(
-            f"controller {asked!r} describes no loop_channels (these do: {', '.join(able) or 'none'})"
+            f"controller {asked!r} describes no loop_channels (these do: "
+            f"{', '.join(able) or 'none'})"
         )
     return [_row(channel, gain) for channel in describe() for gain in channel.input_gain]
 
@@ -101,6 +101,7 @@ def _condition(name: str, rows: list[Row]) -> str:
     value = l1_condition(norm, needed)
     verdict = "met" if value < 1.0 else "not met (it is sufficient, not necessary)"
     return (
-        f"{name}: L1 norm {norm:.3f} s covers uncertainty slopes below {1.0 / norm:.2f} 1/s; {needed:.2f} 1/s needed "
+        f"{name}: L1 norm {norm:.3f} s covers uncertainty slopes below {1.0 / norm:.2f} 1/s; "
+        f"{needed:.2f} 1/s needed "
         f"(norm x slope {value:.2f}): condition {verdict}"
     )

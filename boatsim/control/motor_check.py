@@ -81,7 +81,8 @@ class Train:
         pushes, _ = _fitted(on, np.array(self.felt))
         if pushes[0] <= 0.0 or turns[0] == 0.0:
             raise BadInput(
-                f"the motors were tried and pushed the boat ahead by {pushes[0]:.3g} m/s^2; is it free to move?"
+                f"the motors were tried and pushed the boat ahead by {pushes[0]:.3g} m/s^2; is "
+                "it free to move?"
             )
         reverse = clip(float(-turns[1] / turns[0]), 1.0 / WILDEST, WILDEST)
         variance = float(spread[0] * reverse**2 + spread[1]) / float(turns[0]) ** 2

@@ -46,7 +46,8 @@ class AsternTimeConstant(Force):
     )
     shown_by: ClassVar[str] = "nozzle steps while going astern, and the same going ahead"
     source: ClassVar[str] = (
-        "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, section 3.2: 1/T is not consistent"
+        "L. R. S. Theisen, R. Galeazzi, M. Blanke, IFAC CAMS 2013, section 3.2: 1/T is not "
+        "consistent"
     )
     rides: ClassVar[str] = "reversing_jet"
     law: ClassVar = law

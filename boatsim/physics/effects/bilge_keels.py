@@ -10,9 +10,8 @@ from boatsim.physics import particulars
 from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 FLAT_PLATE = 2.4  # drag coefficient at a large amplitude (Ikeda et al. 1978)
-SMALL_SWING = (
-    22.5  # of the part 22.5 / pi breadth / (arm amplitude) of the coefficient (Ikeda et al. 1978)
-)
+# of the part 22.5 / pi breadth / (arm amplitude) of the coefficient (Ikeda et al. 1978)
+SMALL_SWING = 22.5
 
 
 @njit(inline="always")
@@ -52,7 +51,8 @@ class BilgeKeels(Force):
     words: ClassVar[str] = "bilge keels damp the roll, the more the larger its amplitude"
     shown_by: ClassVar[str] = "a roll decay from a large heel"
     source: ClassVar[str] = (
-        "Y. Ikeda, Y. Himeno, N. Tanaka 1978, in ITTC Recommended Procedure 7.5-02-07-04.5, Estimation of Roll Damping"
+        "Y. Ikeda, Y. Himeno, N. Tanaka 1978, in ITTC Recommended Procedure 7.5-02-07-04.5, "
+        "Estimation of Roll Damping"
     )
     law: ClassVar = law
     starts: ClassVar = ({"breadth": 0.01}, {"breadth": 0.04})

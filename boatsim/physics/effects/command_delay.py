@@ -65,12 +65,11 @@ def channel(
     i = remember(given, memory, at, dt, q.delay)
     if q.delay <= 0.0:
         return x
-    left, age, total, held = (
-        dt,
-        0.0,
-        0.0,
-        given,
-    )  # age [s] at the end of the step, walking back in time
+    # age [s] at the end of the step, walking back in time
+    left = dt
+    age = 0.0
+    total = 0.0
+    held = given
     for _ in range(HISTORY):
         held = memory[at + 1 + 2 * i]
         older = age + memory[at + 2 + 2 * i]

@@ -57,7 +57,8 @@ class DraggedPropeller(Force):
     """
 
     words: ClassVar[str] = (
-        "a propeller that works against the motion adds only the thrust beyond the drag it has when idle"
+        "a propeller that works against the motion adds only the thrust beyond the drag it has "
+        "when idle"
     )
     shown_by: ClassVar[str] = "one thruster astern at speed, and from rest"
     source: ClassVar[str] = "drag of a disc across the flow, 0.5 rho A C_D u^2"

@@ -32,9 +32,8 @@ def channel(
     drive = (abs(off) - q.dead) / (q.span - q.dead)
     if drive <= 0.0:
         return x
-    share = (
-        drive if q.exponent == 1.0 else drive**q.exponent
-    )  # a power takes longer than all the rest
+    # a power takes longer than all the rest
+    share = drive if q.exponent == 1.0 else drive**q.exponent
     given = q.at_span * share if off > 0.0 else -q.at_span * share
     return Course(x.begin + given, x.middle + given, x.end + given)
 

@@ -115,10 +115,8 @@ class Payload(Release):
     (`added_mass_error`).
     """
 
-    needs: ClassVar = (
-        "surge",
-        "sway",
-    )  # a hull that only rolls identifies the ratio of moment to inertia and nothing else
+    # a hull that only rolls identifies the ratio of moment to inertia and nothing else
+    needs: ClassVar = ("surge", "sway")
     words: ClassVar[str] = (
         "the boat is heavier than specified, or all its forces are smaller by the same factor"
     )

@@ -44,7 +44,8 @@ class ForwardSpeedDamping(Force):
     words: ClassVar[str] = "damping of sway, roll and yaw grows with the forward speed"
     shown_by: ClassVar[str] = "the same turns at two forward speeds"
     source: ClassVar[str] = (
-        "M. Blanke, Ship Propulsion Losses, PhD, DTU 1981: terms Y_|u|v, K_|u|p, N_|u|r; those of a force at a place: "
+        "M. Blanke, Ship Propulsion Losses, PhD, DTU 1981: terms Y_|u|v, K_|u|p, N_|u|r; those "
+        "of a force at a place: "
         "R. T. Jones, NACA report 835, 1946"
     )
     law: ClassVar = law

@@ -30,10 +30,9 @@ def sections(s: float, taper: float) -> tuple[float, float]:
             2.0 / 3.0 - 0.4 * taper - s2 * (1.0 / 15.0 - taper / 21.0)
         )
     c, n = cos(s), sin(s)
-    even, square = (
-        n / s,
-        n / s + 2.0 * c / s**2 - 2.0 * n / s**3,
-    )  # halves of the integrals of cos and x^2 cos
+    # halves of the integrals of cos and x^2 cos
+    even = n / s
+    square = n / s + 2.0 * c / s**2 - 2.0 * n / s**3
     odd = (n - s * c) / s**2
     cube = (3.0 * s * s * n - s**3 * c + 6.0 * s * c - 6.0 * n) / s**4
     return 2.0 * (even - taper * square), 2.0 * (odd - taper * cube)
@@ -57,9 +56,8 @@ def law(m: Any, q: Any) -> Wrench:
     if q.significant_height == 0.0:
         return wrench()
     ahead, across = cos(q.toward), sin(q.toward)  # direction of the waves in earth axes
-    run = (
-        ahead * m.x + across * m.y
-    )  # [m] distance travelled by the ship along the direction of the waves
+    # [m] distance travelled by the ship along the direction of the waves
+    run = ahead * m.x + across * m.y
     if q.course_kept != 0.0:
         run = ahead * q.speed * m.t
     else:
@@ -70,15 +68,13 @@ def law(m: Any, q: Any) -> Wrench:
     modal, count = 2.0 * pi / q.modal_period, int(q.components)
     low = LOWEST * modal
     width, half = (max(q.cut, modal) - low) / count, 0.5 * q.length
-    weight = (
-        0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length
-    )  # of water, per length of hull [N]
+    # of water, per length of hull [N]
+    weight = 0.25 * pi * q.density * GRAVITY * q.draught**2 * q.length
     below = 0.0
     for k in range(count):
         w = low + width * (k + drawn(q.realisation, 2 * k))
-        above = exp(
-            -1.25 * (modal / (low + width * (k + 1))) ** 4
-        )  # share of the energy below the cell's upper end
+        # share of the energy below the cell's upper end
+        above = exp(-1.25 * (modal / (low + width * (k + 1))) ** 4)
         number = w * w / GRAVITY  # deep water
         slope = number * q.significant_height * sqrt((above - below) / 8.0)
         theta = w * m.t - number * run + 2.0 * pi * drawn(q.realisation, 2 * k + 1)

@@ -40,9 +40,8 @@ class LateFixes(Measurement):
 
     of_columns: ClassVar = ("x_m", "y_m")
     needs: ClassVar = ("surge", "sway", "yaw")
-    ruled_out_by: ClassVar = {
-        "position_fix": ("camera", "tracking")
-    }  # one camera image gives position and heading at the same time
+    # one camera image gives position and heading at the same time
+    ruled_out_by: ClassVar = {"position_fix": ("camera", "tracking")}
     words: ClassVar[str] = (
         "recorded positions are older than the headings in the same row (not physics)"
     )

@@ -44,7 +44,8 @@ class LinearHull(Force):
     words: ClassVar[str] = "drift and yaw rate cause a side force, a yaw moment and a heel"
     shown_by: ClassVar[str] = "a zig-zag at small rudder angles"
     source: ClassVar[str] = (
-        "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix IV; Inoue, Hirano, Kijima 1981"
+        "C. R. Martin, Rudder Roll Reduction for Small Ships, UBC 1993, Appendix IV; Inoue, "
+        "Hirano, Kijima 1981"
     )
     law: ClassVar = law
 
@@ -114,10 +115,9 @@ class LinearHull(Force):
             self.followed(f"added_mass.{key}", vessel) for key in ("surge", "sway", "sway_below")
         )
         d = particulars.derivatives(L, vessel.beam, T, self.trim, self.block)
-        q, x = (
-            0.5 * self.density * L * T * self.speed,
-            -self.ahead,
-        )  # x: midship seen from the mass centre
+        # x: midship seen from the mass centre
+        q = 0.5 * self.density * L * T * self.speed
+        x = -self.ahead
         below = self.above_keel - 0.5 * T
         return {
             "sway": -q * d.sway_by_sway,

@@ -35,9 +35,8 @@ class MeasuredRelativeWind(MeasuredWind):
     those of `measured_wind`.
     """
 
-    anchored: ClassVar[str] = (
-        ""  # the reading is relative to the hull, so no frame of reference is needed
-    )
+    # the reading is relative to the hull, so no frame of reference is needed
+    anchored: ClassVar[str] = ""
     law: ClassVar = law
     roles: ClassVar = {
         "speed": Role("m/s", "speed of the air past the hull"),

@@ -20,9 +20,8 @@ def cross_flow(v: float, r: float, length: float) -> tuple[float, float]:
         length: Length of the hull [m].
     """
     half = 0.5 * length
-    turn = (
-        min(max(-v / r, -half), half) if r != 0.0 else -half
-    )  # station at which the cross flow changes its sign
+    # station at which the cross flow changes its sign
+    turn = min(max(-v / r, -half), half) if r != 0.0 else -half
     aft, aft_moment = panel(-half, turn, v, r)
     fore, fore_moment = panel(turn, half, v, r)
     return aft + fore, aft_moment + fore_moment

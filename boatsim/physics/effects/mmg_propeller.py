@@ -30,9 +30,8 @@ def inflow(m: Any, q: Any) -> float:
         q: Parameters with the wake coefficients.
     """
     U = max(sqrt(m.ur * m.ur + m.vr * m.vr), 1e-9)
-    drift = (
-        drift_angle(m) - q.propeller_at * m.r * q.length / U
-    )  # drift angle at the propeller; positive: flow from port
+    # drift angle at the propeller; positive: flow from port
+    drift = drift_angle(m) - q.propeller_at * m.r * q.length / U
     C2 = q.wake_C2_port if drift > 0.0 else q.wake_C2_starboard
     return float(m.ur * (1.0 - q.wake) * (1.0 + (1.0 - exp(-q.wake_C1 * abs(drift))) * (C2 - 1.0)))
 

@@ -43,13 +43,10 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    across = (
-        sqrt(m.ur * m.ur + m.vr * m.vr) * drift_angle(m) - q.flow_at * m.r * q.length
-    )  # U beta_R
-    along, across = (
-        race(m, q, s.shaft),
-        across * (q.straightening_port if across > 0.0 else q.straightening_starboard),
-    )
+    # U beta_R
+    across = sqrt(m.ur * m.ur + m.vr * m.vr) * drift_angle(m) - q.flow_at * m.r * q.length
+    along = race(m, q, s.shaft)
+    across = across * (q.straightening_port if across > 0.0 else q.straightening_starboard)
     attack = min(max(s.angle - atan2(across, along), -q.stall), q.stall)
     F = (
         0.5

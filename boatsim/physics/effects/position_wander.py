@@ -37,7 +37,8 @@ class PositionWander(Wandering):
     words: ClassVar[str] = "recorded positions have a slowly varying error (not physics)"
     shown_by: ClassVar[str] = "moored between two posts, at rest"
     source: ClassVar[str] = (
-        "J. Rankin, An error model for sensor simulation: GPS and differential GPS, IEEE PLANS 1994 (Gauss-Markov)"
+        "J. Rankin, An error model for sensor simulation: GPS and differential GPS, IEEE PLANS "
+        "1994 (Gauss-Markov)"
     )
     wander: ClassVar = wander
     strength: ClassVar = ("position", "heading")

@@ -63,7 +63,8 @@ class Propeller(Force):
     )
     shown_by: ClassVar[str] = "a staircase of shaft rates"
     source: ClassVar[str] = (
-        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T at J = 0"
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, section 9.3: K_T "
+        "at J = 0"
     )
     roles: ClassVar = {
         "shaft": Role("rad/s", "shaft rate, positive ahead"),

@@ -81,12 +81,8 @@ class MetacentricHeightError(Release):
         "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 4"
     )
 
-    starts: ClassVar = (
-        {"factor": 0.5},
-        {"factor": 0.8},
-        {"factor": 1.25},
-        {"factor": 2.0},
-    )  # a period off is a separate local maximum of the likelihood
+    # a period off is a separate local maximum of the likelihood
+    starts: ClassVar = ({"factor": 0.5}, {"factor": 0.8}, {"factor": 1.25}, {"factor": 2.0})
 
     factor: float = factor(
         "righting_arm.stiffness", words="metacentric height over its specified value", axis="roll"
@@ -98,7 +94,8 @@ class RightingArmStiffening(Release):
     """Cubic term of the righting arm, so that the roll period depends on the amplitude."""
 
     words: ClassVar[str] = (
-        "the righting moment is not in proportion to the heel, so the roll period changes with amplitude"
+        "the righting moment is not in proportion to the heel, so the roll period changes with "
+        "amplitude"
     )
     shown_by: ClassVar[str] = "a roll decay from a large heel"
 

@@ -42,7 +42,8 @@ class Rudder(Force):
     words: ClassVar[str] = "the rudder force is proportional to the rudder angle"
     shown_by: ClassVar[str] = "a zig-zag at small rudder angles"
     source: ClassVar[str] = (
-        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9; blade: Inoue et al. 1981"
+        "T. I. Fossen, Handbook of Marine Craft Hydrodynamics, 2nd ed. 2021, chapter 9; blade: "
+        "Inoue et al. 1981"
     )
     roles: ClassVar = {
         "angle": Role("rad", "rudder angle; the signs of the coefficients define its sense")

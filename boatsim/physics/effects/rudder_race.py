@@ -42,7 +42,8 @@ class RudderRace(Force):
     )
     shown_by: ClassVar[str] = "short bursts of thrust with the rudder over, from rest"
     source: ClassVar[str] = (
-        "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015, equation 28, in its limit of a race that reaches "
+        "H. Yasukawa, Y. Yoshimura, J. Mar. Sci. Technol. 20, 2015, equation 28, in its limit "
+        "of a race that reaches "
         "the rudder in full"
     )
     roles: ClassVar = {

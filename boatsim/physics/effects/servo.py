@@ -106,7 +106,8 @@ class Servo(Channel):
     words: ClassVar[str] = "the steering follows its command with limited rate and range"
     shown_by: ClassVar[str] = "fast steering reversals"
     source: ClassVar[str] = (
-        "J. van Amerongen, Adaptive Steering of Ships, PhD, Delft 1982 (steering machine); values: checked "
+        "J. van Amerongen, Adaptive Steering of Ships, PhD, Delft 1982 (steering machine); "
+        "values: checked "
         "specification of Bayless 2017, section 4: 0.06 s, 400 deg/s [A], 0 to 45 deg (T9)"
     )
     acts_on: ClassVar[str] = "angle"

@@ -7,10 +7,8 @@ from numba import njit
 
 from boatsim.physics.base import Force, Wrench, param, preset, wrench
 
-TWICE = (
-    -9.2,
-    9.2,
-)  # [kg] bounds for a boat of 4.6 kg: no added mass exceeds twice the mass of the hull
+# [kg] bounds for a boat of 4.6 kg: no added mass exceeds twice the mass of the hull
+TWICE = (-9.2, 9.2)
 
 
 @njit(inline="always")

@@ -9,12 +9,11 @@ from boatsim.physics.base import Swell, Unsteady, Wrench, param, wrench
 from boatsim.physics.noise import course, noise
 
 WAVES = 64.0  # components of the realisation in each axis
-SURGE, SWAY, ROLL, YAW = (
-    100.0,
-    101.0,
-    102.0,
-    103.0,
-)  # channels of the noise, different from those of other effects
+# channels of the noise, different from those of other effects
+SURGE = 100.0
+SWAY = 101.0
+ROLL = 102.0
+YAW = 103.0
 
 
 @njit
@@ -70,7 +69,8 @@ class WaveForcing(Unsteady):
     words: ClassVar[str] = "waves exert narrow-band forces on the hull about one frequency"
     shown_by: ClassVar[str] = "at rest without thrust"
     source: ClassVar[str] = (
-        "T. I. Fossen, Handbook of Marine Craft, 2nd ed. 2021, section 10.2: second-order wave filter"
+        "T. I. Fossen, Handbook of Marine Craft, 2nd ed. 2021, section 10.2: second-order wave "
+        "filter"
     )
     law: ClassVar = law
     swell: ClassVar = swell

@@ -38,12 +38,14 @@ def hull(length: float, beam: float, mass: float, hulls: int, stated: float | No
     )
     if found.block > FULLEST + 1e-9:
         raise BadInput(
-            f"draught = {found.draught:g} m; a boat of {mass:g} kg, {length:g} m by {beam:g} m, lies at least "
+            f"draught = {found.draught:g} m; a boat of {mass:g} kg, {length:g} m by {beam:g} "
+            "m, lies at least "
             f"{found.draught * found.block:.3g} m deep"
         )
     if found.draught >= 0.5 * length:
         raise BadInput(
-            f"mass = {mass:g} kg; a boat of {length:g} m by {beam:g} m would lie {found.draught:.3g} m deep; "
+            f"mass = {mass:g} kg; a boat of {length:g} m by {beam:g} m would lie "
+            f"{found.draught:.3g} m deep; "
             "is the mass in kg?"
         )
     return found

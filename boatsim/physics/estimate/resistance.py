@@ -10,10 +10,9 @@ SERVICE = 0.3  # Froude number of an easy speed: waves begin to cost
 FORM = 0.2  # friction of a hull's shape beside that of a plate, 1 + k of the ITTC 1978 method
 # residuary resistance coefficient at that speed: M. Insel, A. F. Molland 1992, slender hulls
 WAVES = 4e-3
-LINEAR, LINEAR_SLENDER = (
-    0.5,
-    0.1,
-)  # part of it that goes with the first power; friction of a long hull with the 1.85th
+# part of it that goes with the first power; friction of a long hull with the 1.85th
+LINEAR = 0.5
+LINEAR_SLENDER = 0.1
 
 
 def service_speed(hull: Hull) -> float:
@@ -43,11 +42,9 @@ def coefficients(
     That is the speed reached at full `thrust` [N, at rest] where both are known, else the service speed.
     """
     if thrust is not None and top_speed is not None:
-        force, speed, rule = (
-            LEFT * thrust,
-            top_speed,
-            f"{LEFT:g} of full thrust at the top speed stated",
-        )
+        force = LEFT * thrust
+        speed = top_speed
+        rule = f"{LEFT:g} of full thrust at the top speed stated"
     else:
         (force, rule), speed = at_service(hull), service_speed(hull)
         rule = f"{rule} at {speed:.3g} m/s"

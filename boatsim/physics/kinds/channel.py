@@ -48,12 +48,10 @@ def pausing(program: Composed) -> Sequence[Station]:
 # Stages: what is wrong with a command comes before the actuator that follows it, what is wrong with
 # its deed after it
 MAPS = -3  # what makes a signal out of a raw command, at once
-DELAYS = (
-    -2
-)  # what shifts a command in time: what follows sees it arrive, and it sees commands alone
-COMMANDS = (
-    -1
-)  # what the actuator never hears of: a dead band, play in the linkage; the actuator itself is 0
+# what shifts a command in time: what follows sees it arrive, and it sees commands alone
+DELAYS = -2
+# what the actuator never hears of: a dead band, play in the linkage; the actuator itself is 0
+COMMANDS = -1
 DEEDS = 1  # what an actuator that has followed gives: weak astern, uneven, askew
 INSTANT = "1e-9"  # [s] of a signal that is asked for as it is now
 ACTUATE = Part(

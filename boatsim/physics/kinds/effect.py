@@ -39,32 +39,24 @@ class Effect(Checked):
     shown_by: ClassVar[str] = ""  # the manoeuvre that shows it best
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law
-    strength: ClassVar[
-        tuple[str, ...]
-    ] = ()  # parameters that say how strong it is; empty: all that may be fitted
-    facts: ClassVar[
-        Mapping[str, tuple[str, ...]]
-    ] = {}  # fact in a recording's notes -> the parameters it states
-    starts: ClassVar[
-        tuple[Mapping[str, float], ...]
-    ] = ()  # where a fit starts; empty: a tenth of each spread
-    thresholds: ClassVar[
-        Mapping[str, tuple[float, ...]]
-    ] = {}  # parameter -> starts in largest commands recorded
-    roles: ClassVar[
-        Mapping[str, Role]
-    ] = {}  # signals its law takes as its third argument, each with a channel
+    # parameters that say how strong it is; empty: all that may be fitted
+    strength: ClassVar[tuple[str, ...]] = ()
+    # fact in a recording's notes -> the parameters it states
+    facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    # where a fit starts; empty: a tenth of each spread
+    starts: ClassVar[tuple[Mapping[str, float], ...]] = ()
+    # parameter -> starts in largest commands recorded
+    thresholds: ClassVar[Mapping[str, tuple[float, ...]]] = {}
+    # signals its law takes as its third argument, each with a channel
+    roles: ClassVar[Mapping[str, Role]] = {}
     # those of a lower one come first in the program; else the order is that of the files
     stage: ClassVar[int] = 0
-    needs: ClassVar[
-        tuple[str, ...]
-    ] = ()  # freedoms without which it can not act, besides those of its parameters
-    ruled_out_by: ClassVar[
-        Mapping[str, tuple[object, ...]]
-    ] = {}  # fact -> what it must say for the effect not to act
-    told_by: ClassVar[
-        tuple[str, ...]
-    ] = ()  # entries that show the same: it is tried only where somebody asks for it
+    # freedoms without which it can not act, besides those of its parameters
+    needs: ClassVar[tuple[str, ...]] = ()
+    # fact -> what it must say for the effect not to act
+    ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}
+    # entries that show the same: it is tried only where somebody asks for it
+    told_by: ClassVar[tuple[str, ...]] = ()
     # only its spectrum can be fitted: the filter follows its course, a free run can not
     random: ClassVar[bool] = False
     alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
@@ -276,9 +268,8 @@ class Site(NamedTuple):
 
     number: int  # of the effect
     values: str  # V3(p[7], p[8])
-    signals: tuple[
-        str, ...
-    ] = ()  # further arguments: the bound signals, and the values of what the effect rides on
+    # further arguments: the bound signals, and the values of what the effect rides on
+    signals: tuple[str, ...] = ()
 
     def call(self, law: str, *first: str) -> str:
         """Text of a call of one of the effect's compiled functions."""
@@ -299,9 +290,8 @@ class Composed(Protocol):
     effects: tuple[Effect, ...]
     signals: tuple[str, ...]  # actuators, and readings of what is measured around the boat
     commands: tuple[str, ...]  # what the vessel takes: commands, then what is measured
-    held: Sequence[
-        str
-    ]  # what `act` holds: signals, cosine and sine of angles; for described laws sums, recalled
+    # what `act` holds: signals, cosine and sine of angles; for described laws sums, recalled
+    held: Sequence[str]
     sums: Mapping[str, Sequence[str]]  # of these, the actuators that each sum is of
 
     def sites(self, number: int) -> Sequence[Site]:
@@ -347,9 +337,8 @@ class Kind(Effect):
     """Base of the kinds: what effects of one add to the program."""
 
     parts: ClassVar[tuple[Part, ...]] = ()  # functions that this kind brings along
-    laws: ClassVar[
-        tuple[str, ...]
-    ] = ()  # its compiled functions, those that an effect may leave out being None
+    # its compiled functions, those that an effect may leave out being None
+    laws: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
