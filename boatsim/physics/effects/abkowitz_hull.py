@@ -8,7 +8,8 @@ from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
 
-SLOWEST = 0.3  # share of the approach speed; captive tests about it do not define the model below this share
+# share of the approach speed below which captive tests do not define the model
+SLOWEST = 0.3
 
 
 @njit(inline="always")

@@ -11,7 +11,7 @@ from boatsim.physics.base import UNSET, Boat, Force, Wrench, param, wrench
 
 FLAT_PLATE = 2.4  # drag coefficient at a large amplitude (Ikeda et al. 1978)
 # of the part 22.5 / pi breadth / (arm amplitude) of the coefficient (Ikeda et al. 1978)
-SMALL_SWING = 22.5
+SMALL_AMPLITUDE = 22.5
 
 
 @njit(inline="always")
@@ -29,7 +29,7 @@ def law(m: Any, q: Any) -> Wrench:
         Force [N] and moment [N m] in body axes.
     """
     reach = q.density * q.length * q.breadth * q.arm * q.arm * q.flow
-    linear = 8.0 / (3.0 * pi) * SMALL_SWING / pi * reach * q.breadth * q.frequency
+    linear = 8.0 / (3.0 * pi) * SMALL_AMPLITUDE / pi * reach * q.breadth * q.frequency
     quadratic = FLAT_PLATE * reach * q.arm * q.flow
     return wrench(K=-(linear + quadratic * abs(m.p)) * m.p)
 

@@ -13,7 +13,7 @@ GAUSS = 0.5 / sqrt(3.0)  # two-point Gauss abscissa on an interval of unit lengt
 
 
 @njit(inline="always")
-def panel(a: float, b: float, v: float, r: float) -> tuple[float, float]:
+def panel_integrals(a: float, b: float, v: float, r: float) -> tuple[float, float]:
     """Return the integrals of w|w| and x w|w|, w = v + x r, over [a, b].
 
     w must keep its sign in the interval. Two-point Gauss quadrature is exact for these integrands.
@@ -31,7 +31,7 @@ def panel(a: float, b: float, v: float, r: float) -> tuple[float, float]:
 
 
 @njit(inline="always")
-def strips(v: float, r: float, q: Any) -> tuple[float, float]:
+def hull_integrals(v: float, r: float, q: Any) -> tuple[float, float]:
     """Return the integrals of w|w| and x w|w|, w = v + x r, along the hull.
 
     With `stations` = 0 the hull is split where the cross flow changes sign and each part integrated
@@ -55,8 +55,8 @@ def strips(v: float, r: float, q: Any) -> tuple[float, float]:
     turn = stern  # station at which the cross flow is zero, limited to the hull
     if r != 0.0:
         turn = min(max(-v / r, stern), bow)
-    aft, aft_moment = panel(stern, turn, v, r)
-    fore, fore_moment = panel(turn, bow, v, r)
+    aft, aft_moment = panel_integrals(stern, turn, v, r)
+    fore, fore_moment = panel_integrals(turn, bow, v, r)
     return aft + fore, aft_moment + fore_moment
 
 
@@ -71,8 +71,8 @@ def law(m: Any, q: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    across, turning = strips(m.vr, m.r, q)
-    down, bowing = strips(m.wr, -m.q, q) if q.vertical > 0.0 else (0.0, 0.0)
+    across, turning = hull_integrals(m.vr, m.r, q)
+    down, bowing = hull_integrals(m.wr, -m.q, q) if q.vertical > 0.0 else (0.0, 0.0)
     k = 0.5 * q.density * q.section_drag_coefficient * q.draught  # [kg/m^2]
     even = q.linear * q.length * (m.vr + q.centre * m.r)
     even_moment = (

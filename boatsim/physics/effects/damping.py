@@ -246,7 +246,7 @@ class LateralCentreShift(Release):
     )
 
 
-def another_power(axis: str) -> float:
+def replaced_exponent(axis: str) -> float:
     """Return the parameter of the exponent that replaces the linear law in one axis."""
     return number(
         f"linear_damping.{axis}_exponent",
@@ -260,7 +260,7 @@ def another_power(axis: str) -> float:
     )
 
 
-def agreement(axis: str, unit: str) -> float:
+def agreement_speed(axis: str, unit: str) -> float:
     """Return the parameter of the speed at which the power law and the linear law agree."""
     return number(
         f"linear_damping.{axis}_equal",
@@ -296,9 +296,9 @@ class DampingExponent(Release):
         )
     )
 
-    surge_exponent: float = another_power("surge")
-    sway_exponent: float = another_power("sway")
-    yaw_exponent: float = another_power("yaw")
-    surge_equal: float = agreement("surge", "m/s")
-    sway_equal: float = agreement("sway", "m/s")
-    yaw_equal: float = agreement("yaw", "rad/s")
+    surge_exponent: float = replaced_exponent("surge")
+    sway_exponent: float = replaced_exponent("sway")
+    yaw_exponent: float = replaced_exponent("yaw")
+    surge_equal: float = agreement_speed("surge", "m/s")
+    sway_equal: float = agreement_speed("sway", "m/s")
+    yaw_equal: float = agreement_speed("yaw", "rad/s")

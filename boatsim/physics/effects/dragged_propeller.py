@@ -10,7 +10,7 @@ from boatsim.physics.effects.thruster import at_mount
 
 
 @njit(inline="always")
-def missing(thrust: float, speed: float, drag: float) -> float:
+def thrust_deficit(thrust: float, speed: float, drag: float) -> float:
     """Return the thrust that a propeller lacks when it works against the motion [N].
 
     It lacks the drag D u |u| of the idle propeller, which is part of the hull's resistance and ends
@@ -42,7 +42,7 @@ def law(m: Any, q: Any, s: Any, t: Any) -> Wrench:
     """
     along, across = m.ur - t.y * m.r, m.vr + t.x * m.r
     return at_mount(
-        missing(t.gain * s.thrust, along * s.cos_angle + across * s.sin_angle, q.drag), s, t
+        thrust_deficit(t.gain * s.thrust, along * s.cos_angle + across * s.sin_angle, q.drag), s, t
     )
 
 

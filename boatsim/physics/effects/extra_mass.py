@@ -169,5 +169,7 @@ class Payload(Release):
         Returns:
             Name -> (value relative to the file, meaning in words).
         """
-        meaning = "relative to the file: motion identifies only this ratio; the mass itself needs a balance"
+        meaning = (
+            "relative to the file: motion identifies only this ratio; weigh the boat for its mass"
+        )
         return {"force_per_mass": (vessel.body.mass / (vessel.body.mass + self.mass), meaning)}

@@ -13,7 +13,7 @@ AIR_DENSITY = 1.2  # [kg/m^3] dry air at 20 deg C, 1013 hPa
 
 
 @register_jitable  # compiled inside other laws; plain Python if called alone
-def pushed(along: float, across: float, density: float, q: Any, swing: float) -> Wrench:
+def air_drag(along: float, across: float, density: float, q: Any, swing: float) -> Wrench:
     """Return the quadratic air drag of the hull and its yaw moment.
 
     X = 0.5 rho U front a,  Y = 0.5 rho U side b,  N = (arm + swing a / U) Y
@@ -46,7 +46,7 @@ def law(m: Any, q: Any) -> Wrench:
     north, east = q.speed * cos(q.toward), q.speed * sin(q.toward)
     along = m.cos_psi * north + m.sin_psi * east - m.u
     across = m.cos_psi * east - m.sin_psi * north - m.v
-    return pushed(along, across, AIR_DENSITY, q, 0.0)
+    return air_drag(along, across, AIR_DENSITY, q, 0.0)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Role, Wrench
-from boatsim.physics.effects.fan_wind import pushed
+from boatsim.physics.effects.fan_wind import air_drag
 from boatsim.physics.effects.measured_wind import MeasuredWind
 
 
@@ -22,7 +22,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    return pushed(-s.speed * s.cos_comes_from, -s.speed * s.sin_comes_from, q.density, q, q.swing)
+    return air_drag(-s.speed * s.cos_comes_from, -s.speed * s.sin_comes_from, q.density, q, q.swing)
 
 
 @dataclass(frozen=True)

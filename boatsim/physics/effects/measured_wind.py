@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Force, Role, Wrench, param
-from boatsim.physics.effects.fan_wind import AIR_DENSITY, pushed
+from boatsim.physics.effects.fan_wind import AIR_DENSITY, air_drag
 
 
 @njit(inline="always")
@@ -24,7 +24,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     north, east = -s.speed * s.cos_comes_from, -s.speed * s.sin_comes_from
     along = m.cos_psi * north + m.sin_psi * east - m.u
     across = m.cos_psi * east - m.sin_psi * north - m.v
-    return pushed(along, across, q.density, q, q.swing)
+    return air_drag(along, across, q.density, q, q.swing)
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Wrench, param, wrench
-from boatsim.physics.effects.cross_flow_drag import panel
+from boatsim.physics.effects.cross_flow_drag import panel_integrals
 
 
 @njit(inline="always")
-def cross_flow(v: float, r: float, length: float) -> tuple[float, float]:
+def hull_integrals(v: float, r: float, length: float) -> tuple[float, float]:
     """Return the integrals of w|w| and x w|w|, w = v + x r, over a hull about midship.
 
     Args:
@@ -22,8 +22,8 @@ def cross_flow(v: float, r: float, length: float) -> tuple[float, float]:
     half = 0.5 * length
     # station at which the cross flow changes its sign
     turn = min(max(-v / r, -half), half) if r != 0.0 else -half
-    aft, aft_moment = panel(-half, turn, v, r)
-    fore, fore_moment = panel(turn, half, v, r)
+    aft, aft_moment = panel_integrals(-half, turn, v, r)
+    fore, fore_moment = panel_integrals(turn, half, v, r)
     return aft + fore, aft_moment + fore_moment
 
 
@@ -44,8 +44,8 @@ def law(m: Any, q: Any) -> Wrench:
     """
     U, L = sqrt(m.ur * m.ur + m.vr * m.vr), q.length
     astern = abs(atan2(m.vr, m.ur)) / pi
-    across, _ = cross_flow(m.vr, q.C_rY * m.r, L)
-    _, turning = cross_flow(m.vr, q.C_rN * m.r, L)
+    across, _ = hull_integrals(m.vr, q.C_rY * m.r, L)
+    _, turning = hull_integrals(m.vr, q.C_rN * m.r, L)
     k = 0.5 * q.density * L * q.draught  # [kg/m]
     X = (q.X_0F + (q.X_0A - q.X_0F) * astern) * m.ur * U + q.X_vr * L * m.vr * m.r
     Y = q.Y_v * m.vr * abs(m.ur) + q.Y_r * L * m.r * m.ur - q.C_D * across / L

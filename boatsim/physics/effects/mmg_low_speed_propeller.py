@@ -29,7 +29,7 @@ def inflow(m: Any, q: Any) -> float:
 
 
 @njit(inline="always")
-def backing(shaft: float, u: float, q: Any) -> float:
+def astern_thrust(shaft: float, u: float, q: Any) -> float:
     """Return the thrust over rho D^2 [m^2/s^2] of a shaft that turns astern.
 
     It is linear in J_s = u / (n D) and constant below `astern_from`. J_s is negative while the ship
@@ -47,7 +47,7 @@ def backing(shaft: float, u: float, q: Any) -> float:
 
 
 @njit(inline="always")
-def push(m: Any, q: Any, shaft: float) -> float:
+def propeller_thrust(m: Any, q: Any, shaft: float) -> float:
     """Return the thrust on the ship over rho D^2 [m^2/s^2].
 
     Astern the measured value includes the reaction of the hull.
@@ -58,12 +58,12 @@ def push(m: Any, q: Any, shaft: float) -> float:
         shaft: Shaft rate, positive ahead [1/s].
     """
     if shaft < 0.0:
-        return backing(shaft, m.ur, q)
+        return astern_thrust(shaft, m.ur, q)
     return float((1.0 - q.thrust_deduction) * open_water(shaft, inflow(m, q), q))
 
 
 @njit(inline="always")
-def aside(m: Any, q: Any, shaft: float) -> tuple[float, float]:
+def side_force(m: Any, q: Any, shaft: float) -> tuple[float, float]:
     """Return side force over 0.5 rho L d and yaw moment over 0.5 rho L^2 d [m^2/s^2].
 
     With the shaft astern they are linear in J_s in three ranges, with the shaft ahead and the ship
@@ -100,13 +100,13 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    X = q.density * q.diameter * q.diameter * push(m, q, s.shaft)
-    Y, N = aside(m, q, s.shaft)
+    X = q.density * q.diameter * q.diameter * propeller_thrust(m, q, s.shaft)
+    Y, N = side_force(m, q, s.shaft)
     k = 0.5 * q.gain * q.density * q.length * q.draught  # [kg/m]
     return wrench(X=q.gain * X, Y=k * Y, N=k * q.length * N)
 
 
-def number(words: str) -> float:
+def coefficient(words: str) -> float:
     """Return the parameter of a nondimensional coefficient from captive tests."""
     return param(0.0, low=-10.0, high=10.0, unit="", words=words)
 
@@ -165,38 +165,44 @@ class MmgLowSpeedPropeller(Force):
     wake: float = param(
         0.0, low=0.0, high=1.0, unit="", words="wake fraction on a straight course ahead, w_P0"
     )
-    wake_tau: float = number("tau, decrease of the wake with the sideways velocity of the stern")
-    wake_C_P: float = number("C_P, decrease of the wake with its square")
+    wake_tau: float = coefficient(
+        "tau, decrease of the wake with the sideways velocity of the stern"
+    )
+    wake_C_P: float = coefficient("C_P, decrease of the wake with its square")
     propeller_at: float = param(
         -0.5, low=-1.0, high=1.0, unit="", words="x_P', propeller ahead of midship, in lengths"
     )
-    k0: float = number("K_T at J = 0, shaft ahead")
-    k1: float = number("coefficient of J in K_T")
-    k2: float = number("coefficient of J^2 in K_T")
-    astern_C1: float = number("thrust astern over rho n^2 D_P^4 at J_s = 0")
-    astern_C2: float = number("coefficient of J_s in the value before")
-    astern_from: float = number("J_s below which the thrust astern is constant")
-    astern_stop: float = number("thrust astern over rho n^2 D_P^4 below that J_s")
-    aside_low: float = number(
+    k0: float = coefficient("K_T at J = 0, shaft ahead")
+    k1: float = coefficient("coefficient of J in K_T")
+    k2: float = coefficient("coefficient of J^2 in K_T")
+    astern_C1: float = coefficient("thrust astern over rho n^2 D_P^4 at J_s = 0")
+    astern_C2: float = coefficient("coefficient of J_s in the value before")
+    astern_from: float = coefficient("J_s below which the thrust astern is constant")
+    astern_stop: float = coefficient("thrust astern over rho n^2 D_P^4 below that J_s")
+    aside_low: float = coefficient(
         "J_s below which the side force of a backing shaft has its first form"
     )
-    aside_high: float = number("J_s above which the side force has its last form")
-    Y_low: float = number("side force over 1/2 rho L d (n D_P)^2 in the first form")
-    Y_low_J: float = number("coefficient of J_s in the value before")
-    Y_mid: float = number("the same in the middle form")
-    Y_mid_J: float = number("coefficient of J_s in the value before")
-    Y_high: float = number("the same in the last form")
-    Y_braked: float = number("side force over 1/2 rho L d (n P)^2, shaft ahead and ship astern")
-    Y_braked_J: float = number("coefficient of J_s in the value before")
-    Y_braked_JJ: float = number("coefficient of J_s^2 in the value before")
-    N_low: float = number("yaw moment over 1/2 rho L^2 d (n D_P)^2 in the first form")
-    N_low_J: float = number("coefficient of J_s in the value before")
-    N_mid: float = number("the same in the middle form")
-    N_mid_J: float = number("coefficient of J_s in the value before")
-    N_high: float = number("the same in the last form")
-    N_braked: float = number("yaw moment over 1/2 rho L^2 d (n P)^2, shaft ahead and ship astern")
-    N_braked_J: float = number("coefficient of J_s in the value before")
-    N_braked_JJ: float = number("coefficient of J_s^2 in the value before")
+    aside_high: float = coefficient("J_s above which the side force has its last form")
+    Y_low: float = coefficient("side force over 1/2 rho L d (n D_P)^2 in the first form")
+    Y_low_J: float = coefficient("coefficient of J_s in the value before")
+    Y_mid: float = coefficient("the same in the middle form")
+    Y_mid_J: float = coefficient("coefficient of J_s in the value before")
+    Y_high: float = coefficient("the same in the last form")
+    Y_braked: float = coefficient(
+        "side force over 1/2 rho L d (n P)^2, shaft ahead and ship astern"
+    )
+    Y_braked_J: float = coefficient("coefficient of J_s in the value before")
+    Y_braked_JJ: float = coefficient("coefficient of J_s^2 in the value before")
+    N_low: float = coefficient("yaw moment over 1/2 rho L^2 d (n D_P)^2 in the first form")
+    N_low_J: float = coefficient("coefficient of J_s in the value before")
+    N_mid: float = coefficient("the same in the middle form")
+    N_mid_J: float = coefficient("coefficient of J_s in the value before")
+    N_high: float = coefficient("the same in the last form")
+    N_braked: float = coefficient(
+        "yaw moment over 1/2 rho L^2 d (n P)^2, shaft ahead and ship astern"
+    )
+    N_braked_J: float = coefficient("coefficient of J_s in the value before")
+    N_braked_JJ: float = coefficient("coefficient of J_s^2 in the value before")
     gain: float = param(
         1.0,
         low=0.1,

@@ -7,14 +7,14 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import UNSET, Force, Role, Wrench, param, wrench
-from boatsim.physics.effects.mmg_low_speed_propeller import inflow, push
+from boatsim.physics.effects.mmg_low_speed_propeller import inflow, propeller_thrust
 from boatsim.physics.effects.mmg_propeller import open_water
 
 NEVER = pi  # [rad] default: no stall at any angle of attack
 
 
 @njit(inline="always")
-def race(m: Any, q: Any, shaft: float) -> float:
+def slipstream_speed(m: Any, q: Any, shaft: float) -> float:
     """Return the speed of the water along the rudder [m/s], negative from astern.
 
     A propeller with thrust ahead accelerates the flow over the part of the span behind it. One that
@@ -32,7 +32,7 @@ def race(m: Any, q: Any, shaft: float) -> float:
         return float(q.epsilon * sqrt(max(washed * behind * behind + (1.0 - washed) * V * V, 0.0)))
     if m.ur < 0.0:
         return float(m.ur)
-    drawn = q.k_x_astern * sqrt(8.0 / pi * abs(push(m, q, shaft)))
+    drawn = q.k_x_astern * sqrt(8.0 / pi * abs(propeller_thrust(m, q, shaft)))
     a = q.epsilon * V + (drawn if shaft >= 0.0 else -drawn)
     square = (
         washed * a * abs(a)
@@ -58,7 +58,10 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     """
     from_starboard = m.vr + q.rudder_at * q.length * m.r >= 0.0
     straightening = q.straightening_starboard if from_starboard else q.straightening_port
-    along, across = race(m, q, s.shaft), -straightening * (m.vr + q.flow_at * q.length * m.r)
+    along, across = (
+        slipstream_speed(m, q, s.shaft),
+        -straightening * (m.vr + q.flow_at * q.length * m.r),
+    )
     attack = s.angle - atan2(across, along)
     attack = min(max(atan2(sin(attack), cos(attack)), -q.stall), q.stall)  # wrapped to half a turn
     F = (
@@ -78,7 +81,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     )
 
 
-def propellers(name: str) -> float:
+def propeller_value(name: str) -> float:
     """Return a parameter that follows the one of the same name of the propeller."""
     return param(
         UNSET,
@@ -133,18 +136,18 @@ class MmgLowSpeedRudder(Force):
         words="propeller diameter, D_P",
         follows="mmg_low_speed_propeller.diameter",
     )
-    thrust_deduction: float = propellers("thrust_deduction")
-    wake: float = propellers("wake")
-    wake_tau: float = propellers("wake_tau")
-    wake_C_P: float = propellers("wake_C_P")
-    propeller_at: float = propellers("propeller_at")
-    k0: float = propellers("k0")
-    k1: float = propellers("k1")
-    k2: float = propellers("k2")
-    astern_C1: float = propellers("astern_C1")
-    astern_C2: float = propellers("astern_C2")
-    astern_from: float = propellers("astern_from")
-    astern_stop: float = propellers("astern_stop")
+    thrust_deduction: float = propeller_value("thrust_deduction")
+    wake: float = propeller_value("wake")
+    wake_tau: float = propeller_value("wake_tau")
+    wake_C_P: float = propeller_value("wake_C_P")
+    propeller_at: float = propeller_value("propeller_at")
+    k0: float = propeller_value("k0")
+    k1: float = propeller_value("k1")
+    k2: float = propeller_value("k2")
+    astern_C1: float = propeller_value("astern_C1")
+    astern_C2: float = propeller_value("astern_C2")
+    astern_from: float = propeller_value("astern_from")
+    astern_stop: float = propeller_value("astern_stop")
     gain: float = param(
         1.0,
         low=0.1,

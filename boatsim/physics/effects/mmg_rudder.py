@@ -13,7 +13,7 @@ NEVER = pi  # [rad] default: no stall at any angle of attack
 
 
 @njit(inline="always")
-def race(m: Any, q: Any, shaft: float) -> float:
+def slipstream_speed(m: Any, q: Any, shaft: float) -> float:
     """Return the speed of the water along the rudder [m/s].
 
     The part of its span behind the propeller is in the slipstream.
@@ -45,7 +45,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     """
     # U beta_R
     across = sqrt(m.ur * m.ur + m.vr * m.vr) * drift_angle(m) - q.flow_at * m.r * q.length
-    along = race(m, q, s.shaft)
+    along = slipstream_speed(m, q, s.shaft)
     across = across * (q.straightening_port if across > 0.0 else q.straightening_starboard)
     attack = min(max(s.angle - atan2(across, along), -q.stall), q.stall)
     F = (
@@ -72,7 +72,8 @@ class MmgRudder(Force):
     F_N = 0.5 rho A_R f_alpha (u_R^2 + v_R^2) sin(alpha_R),  alpha_R = delta - atan2(v_R, u_R)
     X = -(1 - t_R) F_N sin(delta),  Y = -(1 + a_H) F_N cos(delta)
     N = -(x_R + a_H x_H) F_N cos(delta),  v_R = U gamma_R beta_R,  beta_R = beta - l_R' r'
-    u_R = epsilon sqrt(eta (u_P + kappa (sqrt(u_P^2 + 8 K_T n^2 D^2 / pi) - u_P))^2 + (1 - eta) u_P^2)
+    u_R = epsilon sqrt(eta (u_P + kappa du)^2 + (1 - eta) u_P^2)
+    du = sqrt(u_P^2 + 8 K_T n^2 D_P^2 / pi) - u_P
 
     eta = D_P / H_R is the share of the span in the slipstream.
     """

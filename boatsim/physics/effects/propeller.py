@@ -8,7 +8,7 @@ from numba import njit
 from boatsim.physics.base import Force, Role, Wrench, param
 from boatsim.physics.effects.thruster import Thruster, at_mount
 
-TOLD = Thruster.signals_type()
+ThrusterSignals = Thruster.signals_type()
 
 
 @njit(inline="always")
@@ -45,7 +45,7 @@ def as_thruster(s: Any, q: Any) -> Any:
         s: Signals of the propeller.
         q: Parameters of the propeller.
     """
-    return TOLD(thrust(s.shaft, q), s.angle, s.cos_angle, s.sin_angle)
+    return ThrusterSignals(thrust(s.shaft, q), s.angle, s.cos_angle, s.sin_angle)
 
 
 @dataclass(frozen=True)

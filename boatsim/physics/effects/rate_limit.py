@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from numba import njit
 
 from boatsim.physics.base import Array, Channel, Course, followed, mean_of, param, preset
-from boatsim.physics.effects.servo import NONE, ramp, towards
+from boatsim.physics.effects.servo import NONE, approach_command, ramp_time
 
 SAME = 1e-9  # share of a ramp: a smaller distance to zero counts as zero
 NEVER = 1e6  # [1/s] rate without a limit
@@ -35,7 +35,7 @@ def channel(
     if q.rate >= q.instant:
         memory[at] = x.end
         return x
-    return towards(mean_of(x), memory, at, dt, q.rate, q.lag)
+    return approach_command(mean_of(x), memory, at, dt, q.rate, q.lag)
 
 
 @njit(inline="always")
@@ -58,7 +58,7 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
     gap = abs(x - y)
     if gap == 0.0 or q.rate >= q.instant:
         return inf
-    left = ramp(gap, q.rate, q.lag)
+    left = ramp_time(gap, q.rate, q.lag)
     if left <= 0.0:
         return followed(q.lag if q.lag >= NONE else 0.0)
     return min(left, abs(y) / q.rate) if x * y < 0.0 and abs(y) > SAME * gap else left

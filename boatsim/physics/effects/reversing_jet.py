@@ -9,7 +9,7 @@ from boatsim.physics.base import Force, Release, Role, Wrench, param, shift, wre
 
 
 @njit(inline="always")
-def ahead(s: Any) -> float:
+def jet_share(s: Any) -> float:
     """Return the share of the jet that points astern, cos(2 beta) at bucket angle beta.
 
     Args:
@@ -30,7 +30,7 @@ def law(m: Any, q: Any, s: Any) -> Wrench:
     Returns:
         Force [N] and moment [N m] in body axes.
     """
-    share = ahead(s) + q.leak
+    share = jet_share(s) + q.leak
     return wrench(X=q.thrust * share, N=q.yaw * share * s.angle)
 
 

@@ -12,7 +12,7 @@ NONE = 1e-4  # [s] a shorter lag counts as none
 
 
 @njit(inline="always")
-def ramp(gap: float, rate: float, lag: float) -> float:
+def ramp_time(gap: float, rate: float, lag: float) -> float:
     """Return the time [s] at the largest rate until the lag alone would be as slow.
 
     Args:
@@ -25,7 +25,9 @@ def ramp(gap: float, rate: float, lag: float) -> float:
 
 
 @njit(inline="always")
-def towards(goal: float, memory: Array, at: int, dt: float, rate: float, lag: float) -> Course:
+def approach_command(
+    goal: float, memory: Array, at: int, dt: float, rate: float, lag: float
+) -> Course:
     """Return the course towards a constant command: at the largest rate, then as a first-order lag.
 
     Args:
@@ -41,7 +43,7 @@ def towards(goal: float, memory: Array, at: int, dt: float, rate: float, lag: fl
     """
     y = memory[at]
     gap = goal - y
-    needed = ramp(gap, rate, lag)
+    needed = ramp_time(gap, rate, lag)
     turning = min(needed, dt)
     turned = rate * turning if gap > 0.0 else -rate * turning
     rest, left = gap - turned, dt - turning
@@ -75,7 +77,7 @@ def channel(
     Returns:
         The signal that leaves the effect, over the same step.
     """
-    return towards(min(max(mean_of(x), -q.range), q.range), memory, at, dt, q.rate, q.lag)
+    return approach_command(min(max(mean_of(x), -q.range), q.range), memory, at, dt, q.rate, q.lag)
 
 
 @njit(inline="always")
@@ -92,7 +94,7 @@ def pause(x: float, memory: Array, at: int, q: Any) -> float:
         Time [s] during which the three points of a `Course` describe the signal exactly; infinite
         if it is constant.
     """
-    left = ramp(min(max(x, -q.range), q.range) - memory[at], q.rate, q.lag)
+    left = ramp_time(min(max(x, -q.range), q.range) - memory[at], q.rate, q.lag)
     return left if left > 0.0 else followed(q.lag if q.lag >= NONE else 0.0)
 
 

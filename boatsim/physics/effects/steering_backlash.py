@@ -12,7 +12,7 @@ LONG = 1e3  # [s] a command held longer than this is the initial condition of a 
 
 
 @njit(inline="always")
-def pushed(y: float, x: float, half: float) -> float:
+def play_operator(y: float, x: float, half: float) -> float:
     """Return the output of the play operator.
 
     It moves only when the command reaches an end of the play.
@@ -46,9 +46,9 @@ def channel(
         The signal that leaves the effect, over the same step.
     """
     half = 0.5 * q.width * (1.0 if dt < LONG else q.behind)
-    begin = pushed(memory[at], x.begin, half)
-    middle = pushed(begin, x.middle, half)
-    memory[at] = pushed(middle, x.end, half)
+    begin = play_operator(memory[at], x.begin, half)
+    middle = play_operator(begin, x.middle, half)
+    memory[at] = play_operator(middle, x.end, half)
     return Course(begin, middle, memory[at])
 
 

@@ -10,7 +10,7 @@ from boatsim.physics.kinds.channel import DEEDS
 
 
 @njit(inline="always")
-def turned(x: float, side: float, q: Any) -> float:
+def with_offset(x: float, side: float, q: Any) -> float:
     """Return the angle with the offset of its side, and gain |x| added.
 
     Args:
@@ -39,7 +39,9 @@ def channel(
     Returns:
         The signal that leaves the effect, over the same step.
     """
-    return Course(turned(x.begin, side, q), turned(x.middle, side, q), turned(x.end, side, q))
+    return Course(
+        with_offset(x.begin, side, q), with_offset(x.middle, side, q), with_offset(x.end, side, q)
+    )
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ NEAR = 0.05  # [m] regularises the direction of the pull at the anchor
 
 
 @njit(inline="always")
-def stretch(beyond: float) -> float:
+def elongation(beyond: float) -> float:
     """Return the elongation of the line [m], smooth where it becomes taut.
 
     Args:
@@ -40,7 +40,7 @@ def law(m: Any, q: Any) -> Wrench:
     north = q.north - m.x - q.at * m.cos_psi  # [m] from the attachment on the boat to the anchor
     east = q.east - m.y - q.at * m.sin_psi
     distance = sqrt(north * north + east * east + NEAR * NEAR)
-    pull = (q.tension + q.stiffness * stretch(distance - q.length)) / distance
+    pull = (q.tension + q.stiffness * elongation(distance - q.length)) / distance
     X = pull * (m.cos_psi * north + m.sin_psi * east) - q.drag * m.ur
     Y = pull * (m.cos_psi * east - m.sin_psi * north) - q.drag * (m.vr + q.at * m.r)
     return wrench(X=X, Y=Y, N=q.at * Y)
@@ -50,7 +50,7 @@ def law(m: Any, q: Any) -> Wrench:
 class Tether(Force):
     """Cable or line between the boat and a fixed point: constant tension, elasticity and drag.
 
-    F = tension + stiffness stretch(distance - length)  towards (north, east),  drag u at the point
+    F = tension + stiffness max(distance - length, 0)  towards (north, east),  less drag times u
 
     The constant tension stands for the weight of the line. `at` [m] is the attachment ahead of the
     origin.

@@ -10,7 +10,7 @@ from boatsim.physics.kinds.channel import COMMANDS
 
 
 @njit(inline="always")
-def beyond(x: float, q: Any) -> float:
+def outside_deadband(x: float, q: Any) -> float:
     """Return the part of the command beyond the dead band.
 
     Args:
@@ -38,7 +38,9 @@ def channel(
     Returns:
         The signal that leaves the effect, over the same step.
     """
-    return Course(beyond(x.begin, q), beyond(x.middle, q), beyond(x.end, q))
+    return Course(
+        outside_deadband(x.begin, q), outside_deadband(x.middle, q), outside_deadband(x.end, q)
+    )
 
 
 @dataclass(frozen=True)

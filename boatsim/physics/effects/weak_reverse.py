@@ -10,7 +10,7 @@ from boatsim.physics.kinds.channel import DEEDS
 
 
 @njit(inline="always")
-def weakened(x: float, q: Any) -> float:
+def scaled_astern(x: float, q: Any) -> float:
     """Return the thrust, times the factor if it is astern.
 
     Args:
@@ -38,7 +38,7 @@ def channel(
     Returns:
         The signal that leaves the effect, over the same step.
     """
-    return Course(weakened(x.begin, q), weakened(x.middle, q), weakened(x.end, q))
+    return Course(scaled_astern(x.begin, q), scaled_astern(x.middle, q), scaled_astern(x.end, q))
 
 
 @dataclass(frozen=True)
