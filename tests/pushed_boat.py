@@ -7,7 +7,7 @@ import numpy as np
 from scipy.integrate import odeint
 
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import map_recording, nominal_levels
+from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import baseline
 from boatsim.physics import vessel
@@ -78,7 +78,7 @@ def laid(*recordings: Recording) -> tuple[Problem, Fit]:
     program = Program(BOAT, library_for(BOAT).compiled)
     problem = Problem(
         [map_recording(r, program) for r in recordings],
-        nominal_levels(BOAT, recordings),
+        prior_levels(BOAT, recordings),
         {"damping": 0.05, "thrust": 0.05},
     )
     return problem, baseline(problem)[1]

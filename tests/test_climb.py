@@ -5,9 +5,9 @@ import pytest
 from jet_craft import Craft, sailed
 
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.coordinate_search import climbed
-from boatsim.diagnosis.filter import map_recording, nominal_levels
-from boatsim.diagnosis.fit import learnt
+from boatsim.diagnosis.coordinate_search import maximize
+from boatsim.diagnosis.filter import map_recording, prior_levels
+from boatsim.diagnosis.fit import broyden_update
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -21,7 +21,7 @@ def hill(x: Array) -> float:
 
 
 def test_a_climb_ends_near_the_top_and_says_how_high_it_is() -> None:
-    best, x = climbed(hill, np.zeros(3), 0.5, 0.3)
+    best, x = maximize(hill, np.zeros(3), 0.5, 0.3)
     assert best == pytest.approx(hill(x)) and best > -0.3
     assert x == pytest.approx(TOP, abs=0.15)
 
@@ -33,14 +33,14 @@ def test_at_the_top_each_coordinate_is_looked_at_once() -> None:
         asked.append(x.copy())
         return hill(x)
 
-    climbed(score, TOP, 0.5, 0.01)
+    maximize(score, TOP, 0.5, 0.01)
     assert len(asked) == 1 + 3 * len(
         TOP
     )  # where it begins; then a step on either side and the parabola's top
 
 
 def test_what_never_rises_is_left_where_it_is() -> None:
-    best, x = climbed(lambda x: -np.inf if x.any() else 1.0, np.zeros(2), 0.5, 0.3)
+    best, x = maximize(lambda x: -np.inf if x.any() else 1.0, np.zeros(2), 0.5, 0.3)
     assert best == 1.0 and not x.any()
 
 
@@ -51,11 +51,11 @@ def test_derivatives_learnt_from_a_step_agree_with_it_and_stay_across_it() -> No
         rng.standard_normal((7, 3)),
         np.array([0.2, -0.1, 0.4]),
     )
-    found = learnt(J, true @ step, step)
+    found = broyden_update(J, true @ step, step)
     assert found @ step == pytest.approx(true @ step)
     across = np.array([1.0, 2.0, 0.0])  # at right angles to the step
     assert found @ across == pytest.approx(J @ across)
-    assert (learnt(J, np.zeros(7), np.zeros(3)) == J).all()
+    assert (broyden_update(J, np.zeros(7), np.zeros(3)) == J).all()
 
 
 def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shorter_steps_do() -> (
@@ -71,8 +71,8 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
         values = laid.values.copy()
         # 15 /s at 5 m/s; at rest the craft has less than 1 /s
         values[program.index("cubic_damping", "surge")] = 90.0
-        levels = nominal_levels(boat, [run])
-        said.append(laid.likelihood(values, program.switches(("cubic_damping",)), levels))
+        levels = prior_levels(boat, [run])
+        said.append(laid.log_likelihood(values, program.switches(("cubic_damping",)), levels))
     assert np.isfinite(said).all() and said[0] == pytest.approx(said[1], abs=3.0)
 
 
@@ -83,7 +83,7 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     del run.signals["u_mps"]
     program = Program(boat, library_for(boat).entries)
     laid = map_recording(run, program)
-    means, covariances = laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))
+    means, covariances = laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))
     assert laid.rates[0] == pytest.approx(24.0, abs=1.5)  # of noisy fixes a second apart
     speed, sd = (
         means[0, program.module.NQ],
@@ -91,7 +91,7 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     )
     assert speed == pytest.approx(24.0, abs=4.0 * sd) and sd < 0.5
     laid.rates[:] = 0.0
-    assert laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))[0][
+    assert laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))[0][
         0, 4
     ] == pytest.approx(speed, abs=0.1 * sd)  # however wrong the guess
 
@@ -105,5 +105,5 @@ def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> N
     program = Program(boat, library_for(boat).entries)
     laid = map_recording(run, program)
     assert laid.rates[:2] == pytest.approx([24.0 * np.cos(2.0), 24.0 * np.sin(2.0)], abs=0.5)
-    means, _ = laid.smoothed(laid.values, program.switches(), nominal_levels(boat, [run]))
+    means, _ = laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))
     assert np.hypot(*means[0, 4:6]) == pytest.approx(24.0, abs=0.3)

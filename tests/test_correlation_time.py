@@ -10,7 +10,7 @@ import pytest
 from real_boat import Real, recorded
 
 from boatsim.diagnosis import correlation_time, pipeline, priors
-from boatsim.diagnosis.filter import map_recording, nominal_levels
+from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
 from boatsim.physics import vessel
@@ -86,7 +86,7 @@ def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> N
 @pytest.mark.slow
 def test_what_a_recordings_notes_state_is_a_fact(tmp_path: Path) -> None:
     assert (
-        nominal_levels(vessel.load("trial_boat"), [Recording("r", np.zeros(1), {})]).time_constant
+        prior_levels(vessel.load("trial_boat"), [Recording("r", np.zeros(1), {})]).time_constant
         == 1.0
     )
     run = replace(recorded(Real(power=(1.15, 0.85)), 1), notes=Notes())

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from test_described import diagnosed, halved, nothing, replays
 
 from boatsim.diagnosis.candidates import composed
-from boatsim.diagnosis.filter import MAX_STEP
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.locate.nominal_forces import actuators
 from boatsim.diagnosis.report.described_terms import factors, over_words, unit_of
 from boatsim.diagnosis.symbolic.grammar import neighbours
@@ -104,20 +104,20 @@ def test_a_law_that_looks_back_keeps_the_fourth_order() -> None:
 def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
     boat = vessel.load("trial_boat", extra=LAWS)
     commands, row = np.repeat(commanded(13), 5, axis=0)[:61], 0.1  # 6 s
-    twin = Twin(boat, MAX_STEP).rollout(np.zeros(6), commands[:-1], row)
-    engine, seen = Engine(boat, step=MAX_STEP), []
+    twin = Twin(boat, DEFAULT.filter.free_run_step).rollout(np.zeros(6), commands[:-1], row)
+    engine, seen = Engine(boat, step=DEFAULT.filter.free_run_step), []
     engine.reset(commands=dict(zip(boat.commands, commands[0].tolist(), strict=True)))
     for sent in commands:
         seen.append((engine.state.x, engine.state.y, engine.state.psi))
         engine.command(dict(zip(boat.commands, sent.tolist(), strict=True)))
-        engine.advance(round(row / MAX_STEP))
+        engine.advance(round(row / DEFAULT.filter.free_run_step))
     program, on = composed(replace(boat, found=tuple(law.get("name", law["use"]) for law in LAWS)))
     times, out = row * np.arange(61), np.full((1, 61, 6), np.nan)
     program.module.free_runs(
         times,
         times,
         commands,
-        MAX_STEP,
+        DEFAULT.filter.free_run_step,
         program.body,
         program.values(),
         program.switches(on),
@@ -128,9 +128,9 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
     )
     np.testing.assert_allclose(twin[:, :3], seen, atol=1e-9)
     np.testing.assert_allclose(out[0, :, :3], seen, atol=1e-6)
-    without = Twin(vessel.load("trial_boat", extra=LAWS[-1:]), MAX_STEP).rollout(
-        np.zeros(6), commands[:-1], row
-    )
+    without = Twin(
+        vessel.load("trial_boat", extra=LAWS[-1:]), DEFAULT.filter.free_run_step
+    ).rollout(np.zeros(6), commands[:-1], row)
     assert np.abs(without - twin)[:, :3].max() > 0.02
 
 

@@ -13,8 +13,8 @@ from scipy.stats import multivariate_normal
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import NoiseLevels, map_recording, nominal_levels, segments
-from boatsim.diagnosis.problem import scale_of
+from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels, segments
+from boatsim.diagnosis.problem import froude_scale
 from boatsim.diagnosis.report import before_after
 from boatsim.diagnosis.report.answer import key_of
 from boatsim.errors import BadInput
@@ -75,12 +75,12 @@ def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model()
     y = rec["phi_rad"][[r // 3 for r in rows]]
     S = big[np.ix_(rows, rows)] + 1e-6 * np.eye(len(rows))
     dense = multivariate_normal(mean[rows], S).logpdf(y)
-    got = found.likelihood(values, on, levels) - 0.5 * len(rows) * np.log(2 * np.pi)
+    got = found.log_likelihood(values, on, levels) - 0.5 * len(rows) * np.log(2 * np.pi)
     # the filter linearises to third order in h, and holds the force over a sample
     assert got == pytest.approx(dense, abs=0.3)
     gain = np.linalg.solve(S, big[rows]).T
     smoothed = mean + gain @ (y - mean[rows])
-    means, covariances = found.smoothed(values, on, levels)
+    means, covariances = found.smooth(values, on, levels)
     assert means[:, 0] == pytest.approx(smoothed[0::3], abs=2e-4)
     variance = np.diag(big - gain @ big[rows])[2::3]
     assert np.sqrt(covariances[5:-5, 2, 2]) == pytest.approx(np.sqrt(variance)[5:-5], rel=0.05)
@@ -94,7 +94,7 @@ def test_one_outlier_moves_neither_states_nor_evidence_much():
     levels = NoiseLevels(np.array([3.0]), 1.5, {"roll_sd_rad": 1e-3})
     program = Program(boat)
     laid = (map_recording(r, program) for r in (clean, spoilt))
-    first, second = (t.smoothed(t.values, program.switches(), levels)[0] for t in laid)
+    first, second = (t.smooth(t.values, program.switches(), levels)[0] for t in laid)
     assert np.abs(first[:, 0] - second[:, 0]).max() < 2e-3
 
 
@@ -108,7 +108,7 @@ def test_evidence_has_no_step_where_a_measurement_becomes_an_outlier():
         spoilt = replace(spoilt, signals={"phi_rad": spoilt["phi_rad"].copy()})
         spoilt["phi_rad"][20] += off
         laid = map_recording(spoilt, program)
-        return laid.likelihood(laid.values, program.switches(), levels)
+        return laid.log_likelihood(laid.values, program.switches(), levels)
 
     off = np.linspace(0.004, 0.02, 161)  # through the gate, which is at 5 sd
     found = np.array([likelihood(x) for x in off])
@@ -152,15 +152,15 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
     joystick,
 ):
     recording = driven(joystick.vessel)
-    laid, levels = map_recording(recording, joystick), nominal_levels(joystick.vessel, [recording])
+    laid, levels = map_recording(recording, joystick), prior_levels(joystick.vessel, [recording])
     nothing, delayed = joystick.switches(), joystick.switches(["command_delay"])
     split = laid.values.copy()
     split[joystick.index("command_delay", "delay")] = 1e-5
     by_step = []
     for step in (laid.step, laid.step / 2, 1e-3):
         laid.step = step
-        by_step.append(laid.likelihood(laid.values, nothing, levels))
-        assert laid.likelihood(split, delayed, levels) == pytest.approx(by_step[-1], abs=0.02)
+        by_step.append(laid.log_likelihood(laid.values, nothing, levels))
+        assert laid.log_likelihood(split, delayed, levels) == pytest.approx(by_step[-1], abs=0.02)
     assert by_step == pytest.approx([by_step[-1]] * 3, abs=0.02)  # nats; 240 rows
 
 
@@ -484,11 +484,13 @@ def test_froude_scaled_priors_are_those_of_the_small_boat():
     small, large = vessel.load("trial_boat"), vessel.load("kvlcc2_roll")
     length = large.length / small.length
     assert all(
-        scale_of(unit, small) == pytest.approx(1.0)
+        froude_scale(unit, small) == pytest.approx(1.0)
         for unit in ("N", "N s^2/m^2", "N m", "m/s", "s", "")
     )
-    assert scale_of("m/s", large) == pytest.approx(length**0.5)
-    assert scale_of("N", large) == pytest.approx(
+    assert froude_scale("m/s", large) == pytest.approx(length**0.5)
+    assert froude_scale("N", large) == pytest.approx(
         large.body.mass / small.body.mass
     )  # weight has no other scale
-    assert scale_of("N s^2/m^2", large) == pytest.approx(large.body.mass / small.body.mass / length)
+    assert froude_scale("N s^2/m^2", large) == pytest.approx(
+        large.body.mass / small.body.mass / length
+    )

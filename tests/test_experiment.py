@@ -15,8 +15,8 @@ from boatsim.diagnosis.candidates import absent, library_for
 from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, menu
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import laid
-from boatsim.diagnosis.filter import NoiseLevels, map_recording, nominal_levels
-from boatsim.diagnosis.fit import converge, descend, fit
+from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels
+from boatsim.diagnosis.fit import converge, fit, gauss_newton
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.screening import screen
 from boatsim.physics import vessel
@@ -95,10 +95,10 @@ def tie(case: str) -> tuple[Problem, Fit, Fit]:
     boat = program().vessel
     problem = Problem(
         [map_recording(first, program())],
-        nominal_levels(boat, [first]),
+        prior_levels(boat, [first]),
         {"damping": 0.05, "thrust": 0.05},
     )
-    nominal = descend(problem, problem.nominal(), 4, 0.1)
+    nominal = gauss_newton(problem, problem.nominal(), 4, 0.1)
     winner, other = (converge(problem, f) for f in screen(problem, nominal, [name, rival]).values())
     return problem, winner, other
 

@@ -7,7 +7,7 @@ import pytest
 
 from boatsim.diagnosis.candidates import composed
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
-from boatsim.diagnosis.filter import map_recording, nominal_levels
+from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.replay import as_written
 from boatsim.recordings.table import Recording
@@ -33,10 +33,13 @@ def test_a_log_from_rest_is_replayed_as_it_was(log: Recording) -> None:
 def test_a_log_from_under_way_begins_with_actuators_that_have_settled(log: Recording) -> None:
     boat = scenario.load("otter/turn").vessel
     program, _ = composed(boat)
-    levels = nominal_levels(boat, [log])
+    levels = prior_levels(boat, [log])
     late = log.between(3.0, 20.0)
     for recording, rows in ((log, 2), (late, 1)):  # of commands, which stay as they are
-        assert len(with_initial_actuators(map_recording(recording, program), levels).orders) == rows
+        assert (
+            len(with_initial_actuators(map_recording(recording, program), levels).command_values)
+            == rows
+        )
 
 
 def test_where_nothing_tells_the_actuators_have_settled(log: Recording) -> None:
@@ -44,4 +47,4 @@ def test_where_nothing_tells_the_actuators_have_settled(log: Recording) -> None:
     program, _ = composed(boat)
     still = replace(log, signals=log.signals | {n: np.zeros(len(log)) for n in boat.commands})
     laid = map_recording(still, program)
-    assert with_initial_actuators(laid, nominal_levels(boat, [still])) is laid
+    assert with_initial_actuators(laid, prior_levels(boat, [still])) is laid

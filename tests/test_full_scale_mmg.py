@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from boatsim.diagnosis import priors
-from boatsim.diagnosis.problem import scale_of
+from boatsim.diagnosis.problem import froude_scale
 from boatsim.physics import vessel
 from boatsim.physics.effects.mmg_hull import MmgHull
 from boatsim.recordings.table import Recording
@@ -23,7 +23,7 @@ TIME = RATIO**0.5  # Froude's law
 
 def grows(unit: str) -> float:
     """How much larger a number of this unit is on the ship, in the same water."""
-    return scale_of(unit, SHIP) / scale_of(unit, MODEL)
+    return froude_scale(unit, SHIP) / froude_scale(unit, MODEL)
 
 
 def test_every_number_of_the_ship_is_the_models_by_froudes_law() -> None:

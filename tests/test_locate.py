@@ -12,7 +12,7 @@ from scipy.linalg import expm
 from scipy.stats import kstest
 
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import map_recording, nominal_levels
+from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.locate.missing_force import BAND, force_left, intervals, missing_force
 from boatsim.diagnosis.locate.periodicity import rhythm
 from boatsim.diagnosis.locate.region_candidates import walls_of
@@ -361,7 +361,7 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
     program = Program(ship)
     problem = Problem(
         [map_recording(rec, program)],
-        nominal_levels(ship, [rec]),
+        prior_levels(ship, [rec]),
         {"damping": 0.05, "restoring": 0.02},
     )
     found = baseline(problem)[1]

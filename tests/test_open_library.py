@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from boatsim.diagnosis import pipeline
-from boatsim.diagnosis.priors import sensed_noise, tolerated_force
+from boatsim.diagnosis.priors import assumed_disturbance, sensed_noise
 from boatsim.diagnosis.search.evidence import price, together
 from boatsim.diagnosis.search.generalization import grew, misfit
 from boatsim.physics import vessel
@@ -91,12 +91,13 @@ def test_an_error_has_grown_where_it_is_beyond_its_scatter_and_five_percent() ->
 def test_tolerated_forces_go_with_the_weight_and_their_moments_with_the_hull() -> None:
     boat, ship = vessel.load("trial_boat"), vessel.load("eastward_ho")
     force, moment = (
-        tolerated_force(ship)[axis] / tolerated_force(boat)[axis] for axis in ("surge", "yaw")
+        assumed_disturbance(ship)[axis] / assumed_disturbance(boat)[axis]
+        for axis in ("surge", "yaw")
     )
     assert force == pytest.approx(ship.body.mass / boat.body.mass)
     assert moment == pytest.approx(force * ship.length / boat.length)
-    assert tolerated_force(ship)["roll"] == pytest.approx(
-        tolerated_force(ship)["sway"] * ship.draught
+    assert assumed_disturbance(ship)["roll"] == pytest.approx(
+        assumed_disturbance(ship)["sway"] * ship.draught
     )
 
 

@@ -7,7 +7,8 @@ import numpy as np
 from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
-from boatsim.diagnosis.filter import MAX_STEP, body_of, map_recording, noise_beside
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.filter import body_of, map_recording, relative_noise
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.program import Program
@@ -35,14 +36,14 @@ def test_thinned_rows_keep_every_command_at_its_own_time() -> None:
     run, states = quick()
     boat = vessel.load("trial_boat")
     laid = map_recording(run.thinned(5.0), Program(boat))
-    assert len(laid.times) == ROWS // 10 + 1 and len(laid.given) == ROWS // 2 + 1
+    assert len(laid.times) == ROWS // 10 + 1 and len(laid.command_times) == ROWS // 2 + 1
     n, out = len(laid.times), np.full((1, len(laid.times), 6), np.nan)
     there = np.rint(laid.times / (EVERY / 2)).astype(int)
     laid.program.module.free_runs(
         laid.times,
-        laid.given,
-        laid.orders,
-        MAX_STEP,
+        laid.command_times,
+        laid.command_values,
+        DEFAULT.filter.free_run_step,
         body_of(laid.values),
         laid.values,
         laid.program.switches(),
@@ -100,7 +101,7 @@ def test_how_noisy_an_unseen_log_is_does_not_hang_on_those_fitted() -> None:
         n: exact[n] + sd * rng.standard_normal(ROWS) for n, sd in (("x_m", 0.01), ("y_m", 0.01))
     }
     camera = replace(exact, signals=exact.signals | noisy)
-    assert noise_beside(boat, [camera], camera) == {}
-    there = noise_beside(boat, [camera], exact)
+    assert relative_noise(boat, [camera], camera) == {}
+    there = relative_noise(boat, [camera], exact)
     assert set(there) == {"position_sd_m"} and there["position_sd_m"] < 0.1
-    assert noise_beside(boat, [exact], camera)["position_sd_m"] > 10.0
+    assert relative_noise(boat, [exact], camera)["position_sd_m"] > 10.0

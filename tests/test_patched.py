@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from boatsim.diagnosis.candidates import composed
-from boatsim.diagnosis.filter import MAX_STEP
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array, Release
 from boatsim.simulate.engine import Engine
@@ -92,7 +92,7 @@ def test_engine_and_filter_agree_over_six_seconds(
         times,
         times,
         commands,
-        MAX_STEP,
+        DEFAULT.filter.free_run_step,
         program.body,
         program.values(),
         program.switches(acting),

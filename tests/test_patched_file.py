@@ -9,7 +9,8 @@ import pytest
 from alike import few
 
 from boatsim.diagnosis.candidates import composed
-from boatsim.diagnosis.filter import MAX_STEP, MappedRecording, NoiseLevels, axes_of, body_of
+from boatsim.diagnosis.config import DEFAULT
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, axes_of, body_of
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report import patched_vessel
 from boatsim.errors import BadInput
@@ -60,9 +61,9 @@ def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
     start[0, nq] = getattr(problem.program.vessel.effect("speed_hold"), "speed", 0.5)
     problem.program.module.free_runs(
         track.times,
-        track.given,
-        track.orders,
-        MAX_STEP,
+        track.command_times,
+        track.command_values,
+        DEFAULT.filter.free_run_step,
         body_of(values),
         values,
         problem.program.switches(acting),

@@ -11,7 +11,7 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import Sets
 from boatsim.diagnosis.search.evidence import worth
 from boatsim.diagnosis.search.pruning import there
-from boatsim.diagnosis.search.screening import Begin, checked, screen
+from boatsim.diagnosis.search.screening import Linearisation, recheck, screen
 from boatsim.physics.base import Array
 
 
@@ -33,7 +33,9 @@ def test_a_start_promises_what_least_squares_gains_by_a_multiple_of_it_beside_al
         rng.standard_normal(50),
         rng.standard_normal(50),
     )
-    begin = Begin(known, np.zeros(4), 0.0, white, np.linalg.inv(np.eye(4) + known.T @ known))
+    begin = Linearisation(
+        known, np.zeros(4), 0.0, white, np.linalg.inv(np.eye(4) + known.T @ known)
+    )
 
     def cost(A: Array) -> float:
         """Of the best fit, with the priors of what was free before."""
@@ -54,13 +56,13 @@ def test_a_look_that_the_filter_bears_out_stays_and_from_one_that_it_does_not_it
     problem, base = weak
     look = screen(problem, base, ["weak_reverse"])["weak_reverse"]
     assert look.evidence > base.evidence + 10.0
-    assert checked(problem, base, look) is look
+    assert recheck(problem, base, look) is look
     own = np.array([f.effect == "weak_reverse" for f in look.free])
     mean = np.array([f.mean for f in look.free])
     wild = replace(
         look, theta=np.where(own, mean - 2.5 * (look.theta - mean), look.theta)
     )  # strong, the wrong way
-    honest = checked(problem, base, wild)
+    honest = recheck(problem, base, wild)
     assert honest is not wild and honest.theta[own] == pytest.approx(
         look.theta[own], abs=0.2
     )  # from the wrong side

@@ -39,7 +39,7 @@ def likelihood(x: Array, every: float, rms: float) -> float:
     families = {"position_sd_m": NOISE, "heading_sd_rad": 0.01}
     levels = NoiseLevels(np.full(3, 1e-9), 1.0, families)
     laid.start[0] = x[0]
-    return float(laid.likelihood(values, program.switches(["position_wander"]), levels))
+    return float(laid.log_likelihood(values, program.switches(["position_wander"]), levels))
 
 
 def test_likelihood_is_that_of_the_normal_distribution_written_out() -> None:
@@ -75,7 +75,7 @@ def test_added_mass_does_not_calm_the_water() -> None:
     _, laid = laid_at_rest(x, 0.2)
     levels = NoiseLevels(np.full(3, 0.05), 1.0, {"position_sd_m": 0.003, "heading_sd_rad": 0.01})
     on = program.switches(["extra_mass"])
-    still, moved = (laid.likelihood(v, on, levels) for v in (values, heavier))
+    still, moved = (laid.log_likelihood(v, on, levels) for v in (values, heavier))
     assert (
         moved < still
     )  # a boat that lies in calmer water than assumed: 10 nats for twice the mass, were it a force

@@ -28,8 +28,8 @@ from boatsim.diagnosis.experiment_design.next_experiment import (
     plans,
     question,
 )
-from boatsim.diagnosis.filter import axes_of, map_recording, nominal_levels
-from boatsim.diagnosis.problem import Problem, scale_of
+from boatsim.diagnosis.filter import axes_of, map_recording, prior_levels
+from boatsim.diagnosis.problem import Problem, froude_scale
 from boatsim.diagnosis.search.ranking import Ranking, rank
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
@@ -85,7 +85,7 @@ def drawn(truth: str, rng: np.random.Generator) -> Boat:
     kind = next(type(e) for e in program().candidates if e.name == truth)
     for name, about in kind.params().items():
         if about.fit:
-            spread = about.spread * scale_of(about.unit, boat)
+            spread = about.spread * froude_scale(about.unit, boat)
             away = (
                 rng.choice((-1.0, 1.0)) * STRENGTH
                 if name in (kind.strength or kind.params())
@@ -168,7 +168,7 @@ def diagnosed(recordings: Sequence[Recording]) -> tuple[Problem, Ranking]:
     uncertainty = priors.uncertainty(boat)
     problem = Problem(
         [map_recording(r, program()) for r in recordings],
-        nominal_levels(boat, recordings),
+        prior_levels(boat, recordings),
         uncertainty,
     )
     return problem, rank(problem, tuple(e.name for e in program().candidates))

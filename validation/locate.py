@@ -32,7 +32,7 @@ from rich.table import Table
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import axes_of, map_recording, noise_of, nominal_levels
+from boatsim.diagnosis.filter import axes_of, map_recording, prior_levels, shared_noise
 from boatsim.diagnosis.locate.missing_force import BAND, missing_force
 from boatsim.diagnosis.locate.regions import LIKELY, Region, regions
 from boatsim.diagnosis.pipeline import open_recording
@@ -68,11 +68,11 @@ def problem_of(trial: Path) -> Problem:
     opened = [open_recording(trial / f"run_{k}.csv", None, ()) for k in RUNS]
     recordings, boat = [r.thinned(priors.rate(b)) for r, b in opened], opened[0][1]
     program = Program(boat, library_for(boat).compiled)
-    tracks = [map_recording(r, program, noise_of(boat, recordings)) for r in recordings]
+    tracks = [map_recording(r, program, shared_noise(boat, recordings)) for r in recordings]
     uncertainty = priors.uncertainty(boat)
     return Problem(
         tracks,
-        nominal_levels(boat, recordings),
+        prior_levels(boat, recordings),
         uncertainty | recordings[0].notes.coefficient_uncertainty,
     )
 

@@ -1,44 +1,65 @@
-"""How far the recorded commands go: what the thresholds of a threshold law are measured by.
+"""Largest recorded commands, which scale the thresholds of candidate effects.
 
-A dead band, play or a stall shows only between nothing and the largest command that was given; starts, spreads and
-bounds that go with the size of a boat miss it on one with stronger engines.
+A dead band, play or a stall shows only between zero and the largest command of a recording. Starting
+points, priors and bounds that scale with the size of a hull would miss it on one with stronger
+engines.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 
+from boatsim.diagnosis.config import DEFAULT, LoadConfig
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.physics.base import Channel, Effect, Release
 from boatsim.physics.vessel import Vessel
 
-LARGEST = 98.0  # percentile of the size of a command: a stray row does not count
 
+def excursion(
+    recordings: Sequence[MappedRecording], effect: Effect, config: LoadConfig = DEFAULT.load
+) -> float:
+    """Return the largest recorded command of the channels on which a candidate acts.
 
-def excursion(tracks: Sequence[MappedRecording], effect: Effect) -> float:
-    """Largest recorded command of what an entry acts on, in that channel's unit; 0 where there is none."""
-    vessel = tracks[0].program.vessel
+    Args:
+        recordings: Recordings mapped to programs of one vessel.
+        effect: A candidate effect.
+        config: Percentile that counts as the largest command.
+
+    Returns:
+        Size of the command in the unit of its channel; 0 where there is none.
+    """
+    vessel = recordings[0].program.vessel
     order = list(vessel.commands)
-    columns = [order.index(n) for n in bound(vessel, effect) if n in order]
-    sizes = [abs(t.commands[:, columns]) for t in tracks] if columns else []
-    return float(np.percentile(np.concatenate(sizes), LARGEST)) if sizes else 0.0
+    columns = [order.index(name) for name in channels_of(vessel, effect) if name in order]
+    if not columns:
+        return 0.0
+    sizes = np.concatenate([abs(mapped.commands[:, columns]) for mapped in recordings])
+    return float(np.percentile(sizes, config.command_percentile))
 
 
-def bound(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
-    """Channels on which an entry acts: an actuator's, or those of the vessel's effect whose numbers it releases.
+def channels_of(vessel: Vessel, effect: Effect) -> tuple[str, ...]:
+    """Return the channels on which a candidate acts.
 
-    Of several that such an effect takes, those in the unit of the entry's thresholds: a rudder's angle, not its shaft.
+    These are the actuators of a channel effect, or the inputs of the vessel's effects whose numbers a
+    release changes. Of several inputs those in the unit of the release's thresholds are returned: the
+    angle of a rudder and not its shaft.
+
+    Args:
+        vessel: Vessel of the recordings.
+        effect: A candidate effect.
     """
     if isinstance(effect, Channel):
         return vessel.targets(effect)
     if not isinstance(effect, Release):
         return ()
-    units = {type(effect).params()[n].unit for n in type(effect).thresholds}
-    owners = (vessel.effect(c.owner) for c in effect.changes(vessel) if c.owner != "body")
-    signals = (
-        (type(owner).roles[role], n)
-        for owner in owners
-        if owner
-        for role, n in vessel.bindings(owner).items()
-    )
-    return tuple(n for role, n in signals if isinstance(n, str) and role.unit in units)
+    kind = type(effect)
+    units = {kind.params()[name].unit for name in kind.thresholds}
+    channels = []
+    for change in effect.changes(vessel):
+        owner = vessel.effect(change.owner) if change.owner != "body" else None
+        if owner is None:
+            continue
+        for role, name in vessel.bindings(owner).items():
+            if isinstance(name, str) and type(owner).roles[role].unit in units:
+                channels.append(name)
+    return tuple(channels)

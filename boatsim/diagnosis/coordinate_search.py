@@ -4,37 +4,49 @@ from collections.abc import Callable
 
 import numpy as np
 
+from boatsim.diagnosis.config import DEFAULT, FitConfig
 from boatsim.physics.base import Array
 
-ROUNDS = 8  # over all coordinates, at most
-FINEST = 0.3  # of the first step: what a coordinate is still tried by when it hardly moves
-REACH = 2.0  # steps that a coordinate may go at a time
+FLAT = -1e-9  # second difference of the score above which it has no maximum along a coordinate
 
 
-def climbed(
-    score: Callable[[Array], float], x: Array, step: float, enough: float
+def maximize(
+    score: Callable[[Array], float],
+    x: Array,
+    step: float,
+    enough: float,
+    config: FitConfig = DEFAULT.fit,
 ) -> tuple[float, Array]:
-    """The highest score found from `x` on, and where.
+    """Return the highest score that is found, and where.
 
-    A coordinate is looked at again only if the score has risen by more than `enough` since it was looked at last: most
-    are where they belong after one round. The step of each follows how far it went.
+    A coordinate is revisited only if the score has risen by more than `enough` since its last visit:
+    most of them are at their maximum after one round. The step along each follows its last move.
+
+    Args:
+        score: Function of the coordinates (n,).
+        x: (n,) the start.
+        step: First step along every coordinate.
+        enough: Smaller rises of the score are ignored.
+        config: Number of rounds, and bounds of the steps.
     """
-    best, steps, since = score(x), np.full(len(x), step), np.full(len(x), -np.inf)
-    for _ in range(ROUNDS):
-        due = [j for j in range(len(x)) if best > since[j] + enough]
+    best, steps, visited = score(x), np.full(len(x), step), np.full(len(x), -np.inf)
+    for _ in range(config.search_rounds):
+        due = [j for j in range(len(x)) if best > visited[j] + enough]
         if not due:
             break
         for j in due:
-            since[j], before = best, x[j]
-            best, x = _along(score, x, best, j, steps[j])
-            steps[j] = np.clip(abs(x[j] - before), FINEST * step, REACH * step)
+            visited[j] = best
+            before = x[j]
+            best, x = _along(score, x, best, j, steps[j], config.search_reach)
+            finest, longest = config.search_finest * step, config.search_reach * step
+            steps[j] = np.clip(abs(x[j] - before), finest, longest)
     return best, x
 
 
 def _along(
-    score: Callable[[Array], float], x: Array, best: float, j: int, step: float
+    score: Callable[[Array], float], x: Array, best: float, j: int, step: float, reach: float
 ) -> tuple[float, Array]:
-    """The best of x, a step on either side of it along one coordinate, and the top of the parabola through these."""
+    """The best of x, a step to either side along a coordinate, and the parabola's maximum."""
 
     def moved(by: float) -> tuple[float, Array]:
         there = x.copy()
@@ -43,7 +55,8 @@ def _along(
 
     above, below = moved(step), moved(-step)
     bend = above[0] - 2.0 * best + below[0]
-    uphill = step if above[0] > below[0] else -step
-    top = 0.5 * step * (below[0] - above[0]) / bend if bend < -1e-9 else uphill
-    options = [(best, x), moved(float(np.clip(top, -REACH * step, REACH * step))), above, below]
-    return max(options, key=lambda o: o[0])
+    top = step if above[0] > below[0] else -step
+    if bend < FLAT:
+        top = 0.5 * step * (below[0] - above[0]) / bend
+    options = [(best, x), moved(float(np.clip(top, -reach * step, reach * step))), above, below]
+    return max(options, key=lambda option: option[0])

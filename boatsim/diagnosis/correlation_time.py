@@ -1,9 +1,10 @@
-"""Chooses the latent force's correlation time by one rule for every vessel, from the fitted recordings alone.
+"""Chooses the correlation time of the latent force by one rule, from the fitted recordings alone.
 
-What is judged in the end is a free run. The correlation time decides how much of a misfit the coefficients have to
-explain and how much is left to the latent force, of which a free run knows nothing; the evidence of a model that lacks
-something prefers to leave much to it. So each half of the recordings is predicted by a fit to the other half, what was
-named included. The usual value of a hull of this length is halved, or doubled, as long as that predicts clearly better.
+A model is judged by free runs. The correlation time decides how much of a misfit the coefficients
+have to explain and how much is attributed to the latent force, which a free run omits; the evidence
+of an incomplete model prefers to attribute much to it. Therefore each half of the recordings is
+predicted by a fit to the other half, identified effects included. The usual value for a hull of this
+length is halved, or doubled, as long as that predicts clearly better.
 """
 
 from collections.abc import Sequence
@@ -12,99 +13,148 @@ from math import log, sqrt
 
 import numpy as np
 
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import fit
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.search.generalization import WORSE
 from boatsim.physics.base import Array
 
-EXACT = 1e-12  # [m, rad] an error of a free run is at least: of a log that never moves it is none
-STEPS = 2  # halvings or doublings at most
-# standard errors over the free runs by which errors must fall: where they swing as much, it says
-# nothing
-SURE = 2.0
+EXACT = 1e-12  # [m, rad] lower bound of an error, so that its logarithm is finite
 
 
-def timed(problem: Problem, found: Fit) -> Problem:
-    """The same question with the correlation time that suits a hypothesis: itself if that is the one it has."""
+def with_correlation_time(problem: Problem, found: Fit) -> Problem:
+    """Return the problem with the correlation time that suits a hypothesis.
+
+    Args:
+        problem: Recordings and priors.
+        found: A converged fit.
+
+    Returns:
+        The same object if the correlation time stays.
+    """
     seconds = correlation_time(problem, found)
     if seconds == problem.ambient.time_constant:
         return problem
-    return Problem(
-        problem.recordings,
-        problem.ambient.lasting(seconds),
-        problem.uncertainty,
-        problem.horizon,
-        problem.config,
-    )
+    return replaced(problem, problem.recordings, seconds, problem.horizon)
+
+
+def replaced(
+    problem: Problem, recordings: Sequence[MappedRecording], seconds: float, horizon: float
+) -> Problem:
+    """Return a problem with the priors of another one.
+
+    Args:
+        problem: Problem with the priors.
+        recordings: Recordings of the new problem.
+        seconds: Its correlation time [s].
+        horizon: Its length of free runs [s].
+    """
+    ambient = problem.ambient.with_time_constant(seconds)
+    return Problem(recordings, ambient, problem.uncertainty, horizon, problem.config)
 
 
 def correlation_time(problem: Problem, found: Fit) -> float:
-    """The correlation time [s] for a hypothesis."""
+    """Return the correlation time of the latent force for a hypothesis [s].
+
+    Args:
+        problem: Recordings and priors.
+        found: A converged fit; without effects it attributes nothing to the latent force that
+            coefficients could explain, and the usual value stays.
+    """
     usual = problem.ambient.time_constant
     if not found.effects:
-        return usual  # it leaves nothing to the latent force that coefficients could explain
+        return usual
     at_usual = halves_errors(problem, found, usual)
     for factor in (0.5, 2.0):
-        seconds, errors = usual, at_usual
-        for _ in range(STEPS):
-            further = halves_errors(problem, found, factor * seconds)
-            if not clearly_less(further, errors):
+        seconds, before = usual, at_usual
+        for _ in range(problem.config.fit.correlation_time_steps):
+            after = halves_errors(problem, found, factor * seconds)
+            if not clearly_less(after, before, problem.config):
                 break
-            seconds, errors = factor * seconds, further
+            seconds, before = factor * seconds, after
         if seconds != usual:
             return seconds
     return usual
 
 
 def halves(
-    tracks: Sequence[MappedRecording],
+    recordings: Sequence[MappedRecording],
 ) -> tuple[list[MappedRecording], list[MappedRecording]]:
-    """Every second recording and the others; of a single one its halves in time."""
-    if len(tracks) > 1:
-        return list(tracks[0::2]), list(tracks[1::2])
-    middle = len(tracks[0].times) // 2
-    return [part(tracks[0], 0, middle)], [part(tracks[0], middle, len(tracks[0].times))]
+    """Return every second recording and the others, or the halves in time of a single one.
 
-
-def part(track: MappedRecording, begin: int, end: int) -> MappedRecording:
-    """Some rows of a recording."""
-    times, measured, commands = (
-        np.ascontiguousarray(x[begin:end]) for x in (track.times, track.measured, track.commands)
-    )
-    first = max(int(np.searchsorted(track.given, times[0], side="right")) - 1, 0)
-    given, orders = track.given[first:].copy(), track.orders[first:].copy()
-    return replace(
-        track, times=times, measured=measured, commands=commands, given=given, orders=orders
-    )
-
-
-def clearly_less(errors: Array, before: Array) -> bool:
-    """Whether the errors of free runs (S,) are clearly less than they were, in the mean of their logs.
-
-    Those over which nothing was recorded (nan) say nothing.
+    Args:
+        recordings: At least one recording.
     """
-    ratio = np.log(errors / before)
+    if len(recordings) > 1:
+        return list(recordings[0::2]), list(recordings[1::2])
+    whole = recordings[0]
+    count = len(whole.times)
+    return [rows_of(whole, 0, count // 2)], [rows_of(whole, count // 2, count)]
+
+
+def rows_of(mapped: MappedRecording, begin: int, end: int) -> MappedRecording:
+    """Return some rows of a recording.
+
+    Args:
+        mapped: The recording.
+        begin: First row.
+        end: Row after the last one.
+    """
+    times = np.ascontiguousarray(mapped.times[begin:end])
+    first = max(int(np.searchsorted(mapped.command_times, times[0], side="right")) - 1, 0)
+    return replace(
+        mapped,
+        times=times,
+        measured=np.ascontiguousarray(mapped.measured[begin:end]),
+        commands=np.ascontiguousarray(mapped.commands[begin:end]),
+        command_times=mapped.command_times[first:].copy(),
+        command_values=mapped.command_values[first:].copy(),
+    )
+
+
+def clearly_less(after: Array, before: Array, config: DiagnosisConfig = DEFAULT) -> bool:
+    """Whether errors of free runs have clearly fallen, in the mean of their logarithms.
+
+    Args:
+        after: (S,) errors; those over which nothing was recorded are nan and ignored.
+        before: (S,) errors to compare with.
+        config: Standard errors and ratio that are required.
+    """
+    ratio = np.log(after / before)
     ratio = ratio[~np.isnan(ratio)]
     if not len(ratio):
         return False
-    scatter = SURE * float(np.std(ratio, ddof=1)) / sqrt(len(ratio)) if len(ratio) > 1 else 0.0
-    return bool(np.mean(ratio) < min(-log(WORSE), -scatter))
+    scatter = 0.0
+    if len(ratio) > 1:
+        deviation = float(np.std(ratio, ddof=1))
+        scatter = config.fit.correlation_time_certainty * deviation / sqrt(len(ratio))
+    return bool(np.mean(ratio) < min(-log(config.validate.worse), -scatter))
 
 
 def halves_errors(problem: Problem, start: Fit, seconds: float) -> Array:
-    """Error of each free run (S,), that of every half by a fit of the other half.
+    """Return the error of each free run (S,) in a half that is predicted by a fit to the other half.
 
-    It is the geometric mean of the rms of position [m] and of heading or roll [rad]; nan where one was not recorded.
+    Args:
+        problem: Recordings and priors.
+        start: Start of the fits.
+        seconds: Correlation time [s].
+
+    Returns:
+        Geometric mean of the rms of position [m] and of heading or roll [rad]; nan where one was not
+        recorded.
     """
-    ambient = problem.ambient.lasting(seconds)
-    begin = replace(start, levels=start.levels.lasting(seconds), evidence=-np.inf)
+    levels = start.levels.with_time_constant(seconds)
+    begin = replace(start, levels=levels, evidence=-np.inf)
     first, second = halves(problem.recordings)
-    horizon = min(problem.horizon, *(float(np.ptp(t.times)) for t in (*first, *second)))
-    stretches = []
+    durations = [float(np.ptp(mapped.times)) for mapped in (*first, *second)]
+    horizon = min(problem.horizon, *durations)
+    runs = []
     for fitted, held_out in ((first, second), (second, first)):
-        rest = Problem(fitted, ambient, problem.uncertainty, horizon, problem.config)
-        stretches += free_runs(rest, {"": fit(rest, begin)}, held_out, horizon)
-    found = [np.maximum([f[""] for f in errors([s]).values()], EXACT) for s in stretches]
-    return np.array([np.exp(np.mean(np.log(each))) for each in found])
+        half = replaced(problem, fitted, seconds, horizon)
+        runs += free_runs(half, {"": fit(half, begin)}, held_out, horizon)
+    found = []
+    for run in runs:
+        by_family = np.maximum([error[""] for error in errors([run]).values()], EXACT)
+        found.append(np.exp(np.mean(np.log(by_family))))
+    return np.array(found)

@@ -1,8 +1,9 @@
-"""How far off fitted values may be where what is left over is not as random as the filter takes it to be.
+"""Inflates the covariance of a fit where its errors are more correlated than the filter assumes.
 
-A law that is nearly right leaves errors alike from row to row; each row then counts as evidence of its own and the
-spreads come out too small. How the stretches of the recordings disagree about a value tells how far off it may be
-(H. White, Maximum likelihood estimation of misspecified models, Econometrica 50, 1982: the sandwich estimator).
+A law that is nearly right leaves errors that are alike from row to row. Each row then counts as
+independent evidence, and the covariance comes out too small. How much stretches of the recordings
+disagree about a value shows its real uncertainty (H. White, Maximum likelihood estimation of
+misspecified models, Econometrica 50, 1982: the sandwich estimator).
 """
 
 from collections.abc import Iterator
@@ -11,38 +12,45 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from boatsim.diagnosis.fit import jacobian
+from boatsim.diagnosis.fit import TINY, jacobian
 from boatsim.diagnosis.problem import Fit, Problem
 
-STRETCH = 4.0  # time constants of the latent force, beyond which errors are independent
-FEWEST = 10  # stretches from which a disagreement can be told
 
+def inflate_covariance(problem: Problem, found: Fit) -> Fit:
+    """Return a fit with the sandwich covariance where that is larger than its own.
 
-def widened(problem: Problem, found: Fit) -> Fit:
-    """A fit whose spreads are as wide as its stretches disagree; never narrower than they were."""
-    blocks = list(stretches(problem, STRETCH * found.levels.time_constant))
-    if len(blocks) < FEWEST or not found.free:
+    Args:
+        problem: Recordings and priors.
+        found: A converged fit.
+    """
+    config = problem.config.fit
+    blocks = list(stretches(problem, config.stretch * found.levels.time_constant))
+    if len(blocks) < config.fewest_stretches or not found.free:
         return found
     on = problem.program.switches(found.effects)
-    problem.likelihood(found.free, found.theta, on, found.levels)
-    white = problem.white()
-    J = jacobian(problem, found.free, found.theta, on, found.levels, white)
-    pulls = np.array(
-        [J[rows].T @ white[rows] for rows in blocks]
-    )  # (blocks, F) of each on every value
+    passes = problem.filter(found.free, found.theta, on, found.levels)
+    white = passes.whitened
+    J = jacobian(problem, found.free, found.theta, on, found.levels, passes)
+    gradients = np.array([J[rows].T @ white[rows] for rows in blocks])  # (blocks, F)
     sd = np.array([f.sd for f in found.free])
     inverse = found.covariance / np.outer(sd, sd)
-    sandwich = inverse @ (np.eye(len(sd)) + pulls.T @ pulls) @ inverse
-    wider = np.sqrt(np.maximum(np.diag(sandwich) / np.maximum(np.diag(inverse), 1e-300), 1.0))
+    sandwich = inverse @ (np.eye(len(sd)) + gradients.T @ gradients) @ inverse
+    ratio = np.diag(sandwich) / np.maximum(np.diag(inverse), TINY)
+    wider = np.sqrt(np.maximum(ratio, 1.0))
     return replace(found, covariance=found.covariance * np.outer(wider, wider))
 
 
 def stretches(problem: Problem, seconds: float) -> Iterator[NDArray[np.intp]]:
-    """Rows of the whitened errors of all runs, stretch by stretch."""
+    """Yield the rows of the whitened errors of all recordings, stretch by stretch.
+
+    Args:
+        problem: Problem with the recordings.
+        seconds: Duration of a stretch [s].
+    """
     before = 0
-    for track in problem.recordings:
-        number = ((track.times - track.times[0]) / seconds).astype(int)
-        rows = np.repeat(number, track.measured.shape[1])
+    for mapped in problem.recordings:
+        number = ((mapped.times - mapped.times[0]) / seconds).astype(int)
+        rows = np.repeat(number, mapped.measured.shape[1])
         for block in range(int(number[-1]) + 1):
             yield before + np.flatnonzero(rows == block)
-        before += track.measured.size
+        before += mapped.measured.size

@@ -1,4 +1,4 @@
-"""What a diagnosis writes down of what no entry of the library explains."""
+"""Results of the symbolic description of a force that no candidate explains."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,13 +10,13 @@ from boatsim.physics.described_laws import Described
 
 @dataclass(frozen=True)
 class Curve:
-    """A term over what it goes with, where the recordings show it: means over bins that hold anything."""
+    """A term over the variable on which it depends: means over the bins that contain rows."""
 
-    over: str  # what the curve is drawn over: a factor, "time" or "product"
+    over: str  # variable of the abscissa: a factor, "time" or "product"
     x: Array  # (B,) [SI]
-    law: Array  # (B,) force [N], moment [N m] or share of the thrust by the law,
-    sd: Array  # (B,) its standard deviation,
-    found: Array  # (B,) and what the recordings call for there, every other cause taken out
+    law: Array  # (B,) force [N], moment [N m] or share of the thrust by the term
+    sd: Array  # (B,) standard deviation of `law`
+    found: Array  # (B,) the same required by the recordings, with all other causes subtracted
 
 
 @dataclass(frozen=True)
@@ -25,20 +25,20 @@ class Written:
 
     term: Described  # with its coefficient
     sd: float  # of the coefficient
-    gain: float  # [nats] on top of the other terms and entries
-    # free runs over unseen recordings get better by it; an event of a run acts in no other
+    gain: float  # [nats] beyond the other terms and effects
+    # whether free runs over held-out recordings get better by it; an event of one run never does
     carries: bool
     curve: Curve | None = None
 
 
 @dataclass(frozen=True)
 class Description:
-    """The terms, and the fit in which those stand that carry over, and the events of the recordings fitted."""
+    """The terms, and the fit with those that hold for further recordings."""
 
     terms: tuple[Written, ...]
     fit: Fit
-    left_over: float  # [nats] that a force beyond the tolerated one gains beside all of the terms
+    left_over: float  # [nats] that a force beyond the assumed level gains in addition to all terms
 
     def effects(self) -> Mapping[str, Described]:
-        """What a boat that sails elsewhere has of it, by the names of the slots."""
+        """Return the terms that hold for further recordings, by the names of their effects."""
         return {w.term.name: w.term for w in self.terms if w.carries}

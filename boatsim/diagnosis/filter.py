@@ -1,208 +1,258 @@
-"""Recordings on a vessel's compiled filter: likelihood of parameters, smoothed states, missing force, free runs.
+"""Recordings mapped to a vessel's compiled Kalman filter: likelihoods, smoothed states, free runs.
 
-The model has one slowly varying latent force per freedom (Ornstein-Uhlenbeck, after Kristensen et al. 2004, grey-box
-modelling). It stands for whatever is not modelled, so that parameter estimates are not bent to absorb it.
+The model has one slowly varying latent force per degree of freedom, an Ornstein-Uhlenbeck process
+(grey-box modelling, Kristensen et al. 2004). It represents whatever is not modelled, so that the
+estimates of parameters are not biased to absorb it.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from boatsim.diagnosis import priors
+from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
 from boatsim.errors import BadInput
 from boatsim.physics.base import Unsteady, Wandering
 from boatsim.physics.commands import taken_rows
+from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.program import Program
-from boatsim.physics.signals import AXES, NOISE, Array, signals_of
+from boatsim.physics.signals import AXES, NOISE, Array, Signal, signals_of
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.table import FEWEST_ROWS, HUGE, Recording
 
-FEWEST_IN_PART = FEWEST_ROWS // 3  # rows: the shortest recording is split into thirds
-# [s] largest integration step of a free run: that of the engine, so that lags are averaged alike
-MAX_STEP = 0.02
-FIT_STEP = 0.17  # [s] the same in the filter of a boat of 1.2 m, which is corrected at every sample
-# tolerated forces by which actuators on their way, or a hand's push, may act when a recording
-# begins
-START = 3.0
-# [rad] of phase by which Runge-Kutta is off when an oscillation of the hull has died out
-LATE = 0.007
-# of critical damping: an oscillation that dies out more slowly is corrected before it has
-RINGING = 0.01
-ROUNDS, NEAR = (
-    4,
-    0.1,
-)  # times that a recording is smoothed, until the rates it begins with move by less of their sd
-# a step of the filter in time constants of the hull's quickest motion there: less than
-# Runge-Kutta's 2.8
-AT_REST = 0.7
-GRAVITY = 9.81  # [m/s^2]
-FASTEST = 10.0  # Froude number that no boat reaches: positions are in another unit
-# [kg], [m], [kg m^2] numbers of the body at the end of a track's values, as in `Program.body`
+# rows: the shortest recording allowed is split into thirds
+FEWEST_IN_PART = FEWEST_ROWS // 3
+# numbers of the body at the end of a run's parameter values, [kg], [m], [kg m^2], as in
+# `Program.body`
 BODY = ("mass", "centre_ahead", "centre_below", "roll_inertia", "pitch_inertia", "yaw_inertia")
-# times as noisy: recordings are of instruments unlike each other, not of one by chance
-UNLIKE = 3.0
-# of `Mass`, the last of a pass' constants: its diagonal, axis by axis, comes first
+# entries of the mass matrix at the end of the constants of a compiled pass; its diagonal comes first
 MASS_ENTRIES = 12
-NOTHING = (
-    np.zeros((1, 1)),
-    np.zeros((1, 1, 1)),
-    np.zeros((1, 1, 1)),
-    np.zeros((1, 1)),
-)  # where no pass is kept
+# variance added to the mean square of recorded speeds, so that it is positive [m^2/s^2, rad^2/s^2]
+LEAST_RATE_VARIANCE = 1e-8
 
 
 @dataclass(frozen=True)
 class NoiseLevels:
-    """How noisy sensors and water are: one set for all recordings of a diagnosis."""
+    """Levels of sensor noise and of the latent force, the same for all recordings of a diagnosis."""
 
     force: Array  # (NQ,) rms of the latent force [N, N m]
-    time_constant: float  # [s] of the latent force
+    time_constant: float  # [s] correlation time of the latent force
     sensors: Mapping[str, float]  # standard deviation by noise family
-    # (NQ,) least rms of the force when a recording begins
-    begins: Array = field(default_factory=lambda: np.zeros(1))
+    # (NQ,) lower bound of the rms of the latent force when a recording begins
+    initial_force: Array = field(default_factory=lambda: np.zeros(1))
 
-    def lasting(self, seconds: float) -> "NoiseLevels":
-        """The same slow force with another correlation time: what it does to the motion over long times stays."""
-        return replace(
-            self, force=self.force * np.sqrt(self.time_constant / seconds), time_constant=seconds
-        )
+    def with_time_constant(self, seconds: float) -> "NoiseLevels":
+        """Return the levels with another correlation time and the same effect on slow motion.
+
+        Args:
+            seconds: Correlation time of the latent force [s].
+        """
+        force = self.force * np.sqrt(self.time_constant / seconds)
+        return replace(self, force=force, time_constant=seconds)
 
 
-@dataclass
+@dataclass(frozen=True)
+class InitialState:
+    """Prior of the filter's state at the first row: positions, earth-axes rates, latent forces."""
+
+    mean: Array  # (3 NQ,)
+    covariance: Array  # (3 NQ, 3 NQ) without sensor noise and latent forces
+    # (NQ,) earth-axes rates about which the first interval is linearised
+    rates: Array
+
+
+@dataclass(frozen=True, eq=False)
+class FilterPass:
+    """Result of one pass of the Kalman filter over a recording; its arrays are read-only."""
+
+    log_likelihood: float
+    whitened: Array  # (N C,) prediction errors in standard deviations, 0 where nothing was recorded
+    gains: Array  # (N, C, n)
+    # (N, C) inverse standard deviations of the prediction errors, less for outliers, 0 where missing
+    scale: Array
+    transitions: Array  # (N, 3 NQ, 3 NQ) linearised transitions of motion and latent force
+    steps: Array  # (N,) integration steps [s]
+
+    @property
+    def log_density(self) -> float:
+        """Log of the density that the pass assigned to measurements equal to its predictions."""
+        return float(np.sum(np.log(self.scale[self.scale > 0.0])))
+
+
+class SmoothedStates(NamedTuple):
+    """Smoothed states of a recording and their covariances.
+
+    The errors of rows i < j have the covariance gains[i] @ ... @ gains[j - 1] @ covariances[j].
+    """
+
+    means: Array  # (N, n)
+    covariances: Array  # (N, n, n)
+    gains: Array  # (N, n, n) of the Rauch-Tung-Striebel smoother
+
+
+class HullMotion(NamedTuple):
+    """Time scales of the nominal hull at rest."""
+
+    decay_rate: float  # [1/s] of the fastest motion
+    largest_step: float  # [s] with which Runge-Kutta follows its oscillations
+
+
+@dataclass(frozen=True, eq=False)
 class MappedRecording:
-    """One recording laid on a program: what was measured and commanded, and this run's own parameter values."""
+    """A recording mapped to a program: measurements, commands and the parameter values of this run."""
 
     name: str
     program: Program
     times: Array  # (N,) s
     measured: Array  # (N, C), nan where missing
     families: tuple[str, ...]  # noise family of each channel
-    signals: tuple[str, ...]
-    codes: Array  # (C,) integers
+    signals: tuple[str, ...]  # column of each channel
+    codes: Array  # (C,) integers: index of a position, or NQ + index of a body-axes rate
     commands: Array  # (N, K) mean until the next row
-    values: Array  # nominal parameters of this run, then the body's `BODY`
-    noise_scale: Mapping[str, float]  # this recording's sensor noise per common one, by family
-    # what the recording's notes state besides
+    values: Array  # nominal parameters of this run, then the numbers `BODY` of the hull
+    noise_scale: Mapping[str, float]  # this recording's sensor noise in shared levels, by family
     facts: Mapping[str, Any] = field(default_factory=dict)
-    # (M,) s, when commands change; empty: at its rows
-    given: Array = field(default_factory=lambda: np.zeros(0))
-    # (M, K) what they are from then on
-    orders: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    # (NQ,) of the hull as written, with its water, axis by axis [kg, kg m^2]
-    inertia: Array = field(init=False)
-    start: Array = field(init=False)  # (n,) first state
-    spread: Array = field(init=False)  # (n, n) its covariance without sensor noise
-    # (NQ,) it begins at, of earth axes: the filter is linearised about them first
-    rates: Array = field(init=False)
+    # (M,) s, times at which commands change; empty: at the rows
+    command_times: Array = field(default_factory=lambda: np.zeros(0))
+    # (M, K) commands from then on
+    command_values: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    # initial state, where it is not estimated from the measurements
+    specified_initial: InitialState | None = None
+    # [s] integration step, where it does not follow from the hull's motion
+    specified_step: float | None = None
+    config: FilterConfig = DEFAULT.filter
 
     def __post_init__(self) -> None:
-        if not len(self.given):
-            self.given, self.orders = changes(self.times, self.commands)
-        self.rate, smooth = quickest(self.program, self.values, self.commands[0])
-        usual = FIT_STEP * priors.froude_time(self.program.vessel)
-        self.step = min(usual, AT_REST / max(self.rate, 1e-9), smooth)
-        self.inertia = inertia_of(self.program, self.values, self.program.switches())
-        nq = self.program.module.NQ
-        self.start, self.spread, self.rates = (
-            np.zeros(3 * nq),
-            np.zeros((3 * nq, 3 * nq)),
-            np.zeros(nq),
-        )
-        self._gains = np.zeros((*self.measured.shape, self.program.module.NZ))
-        self._linear = np.zeros((len(self.times), 3 * nq, 3 * nq))
-        self._steps = np.full(len(self.times), self.step)
-        self._scale, self._white = np.zeros(self.measured.shape), np.zeros(self.measured.shape)
-        self._begin(nq)
+        if not len(self.command_times):
+            times, values = command_changes(self.times, self.commands)
+            object.__setattr__(self, "command_times", times)
+            object.__setattr__(self, "command_values", values)
 
-    def _begin(self, nq: int) -> None:
-        """Where the recording begins, and how fast, by the positions that it shows and, of others, by their rates."""
-        axes = axes_of(self.program.vessel)
-        for c, code in enumerate(self.codes):
-            good = np.isfinite(self.measured[:, c])
-            if code < nq and good.any():
-                y, t = self.measured[good, c], self.times[good]
-                self.start[code] = y[0]
-                gap = np.searchsorted(t, t + max(1.0, 4 * float(np.median(np.diff(t))))).clip(
-                    max=len(t) - 1
-                )
-                far = gap > np.arange(len(t))
-                speed = (y[gap] - y)[far] / (t[gap] - t)[far]
-                self.spread[nq + code, nq + code] = (
-                    float(np.mean(speed**2)) + 1e-8 if far.any() else 1.0
-                )
-                self.rates[code] = speed[0] if far.any() else 0.0
-            elif code >= nq and code - nq not in self.codes and good.any():
-                y, i = self.measured[good, c], code - nq
-                self.rates[i], self.spread[code, code] = y[0], float(np.mean(y**2)) + 1e-8
-        level = [i for i, axis in enumerate(axes) if axis in ("surge", "sway")]
-        if (
-            len(level) == 2 and "yaw" in axes and not set(level) & set(self.codes.tolist())
-        ):  # from the hull's axes
-            (u, v), psi = self.rates[level], self.start[axes.index("yaw")]
-            self.rates[level] = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
-        for i in (
-            level
-        ):  # earth-axes velocities share one spread: the heading at the start is anybody's guess
-            self.spread[nq + i, nq + i] = max(self.spread[nq + j, nq + j] for j in level)
+    @cached_property
+    def initial(self) -> InitialState:
+        """Prior of the state at the first row."""
+        return self.specified_initial or _estimated_initial(self)
+
+    @cached_property
+    def inertia(self) -> Array:
+        """(NQ,) mass or moment of inertia of the nominal hull with added mass [kg, kg m^2]."""
+        return inertia_of(self.program, self.values, self.program.switches())
+
+    @cached_property
+    def step(self) -> float:
+        """Largest integration step of the filter [s]."""
+        if self.specified_step is not None:
+            return self.specified_step
+        config, motion = self.config, self._motion
+        usual = config.filter_step * priors.froude_time(self.program.vessel)
+        stable = config.decay_step / max(motion.decay_rate, 1e-9)
+        return min(usual, stable, motion.largest_step)
+
+    @cached_property
+    def _motion(self) -> HullMotion:
+        return hull_motion(self.program, self.values, self.commands[0], self.config)
 
     @property
     def stiff(self) -> bool:
-        """Whether a motion of the hull dies out within a sample: its damping then moves the filter's gains most."""
-        return self.rate * float(np.median(np.diff(self.times))) > 1.0
+        """Whether a motion of the hull decays within a sample.
 
-    def likelihood(
-        self, values: Array, on: Array, levels: NoiseLevels, fresh: bool = True
-    ) -> float:
-        """Log likelihood of parameters; not `fresh`: linearised where the last fresh one was, for other levels."""
-        return self._pass(values, on, levels, True, None, fresh)
-
-    def whitened(self, values: Array, on: Array, levels: NoiseLevels) -> Array:
-        """Whitened prediction errors (N * C,) with gains, outliers and scale of the last `likelihood`."""
-        self._pass(values, on, levels, False, None)
-        return self._white.ravel().copy()
-
-    @property
-    def tightness(self) -> float:
-        """How little the last full pass allowed its measurements: log of the density that it expected at the best."""
-        return float(np.sum(np.log(self._scale[self._scale > 0.0])))
-
-    @property
-    def white(self) -> Array:
-        """Whitened prediction errors (N * C,) of the last pass."""
-        return self._white.ravel().copy()
-
-    def smoothed(self, values: Array, on: Array, levels: NoiseLevels) -> tuple[Array, Array]:
-        """Smoothed states (N, n) and their covariances (N, n, n)."""
-        means, covariances, _ = self.smoothed_with_gains(values, on, levels)
-        return means, covariances
-
-    def smoothed_with_gains(
-        self, values: Array, on: Array, levels: NoiseLevels
-    ) -> tuple[Array, Array, Array]:
-        """`smoothed` with the smoother's gains G (N, n, n): the errors of rows i < j covary by G_i ... G_j-1 P_j.
-
-        Linearised about the rates it finds for the first row, where the filter has but a guess of them.
+        The damping of such a hull influences the gains of the filter most.
         """
-        n, dim, nq = len(self.times), self.program.module.NZ, self.program.module.NQ
-        keep = (
-            np.zeros((n, dim)),
-            np.zeros((n, dim, dim)),
-            np.zeros((n, dim, dim)),
-            np.zeros((n, dim)),
+        return self._motion.decay_rate * float(np.median(np.diff(self.times))) > 1.0
+
+    def filter(
+        self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass | None = None
+    ) -> FilterPass:
+        """Return a full pass of the extended Kalman filter.
+
+        Args:
+            values: Parameter values of the run, as `values` of the recording.
+            on: (effects,) 1 for the effects that act, else 0.
+            levels: Levels of sensor noise and latent force.
+            about: Pass whose linearisation is used again, for other noise levels; None: linearise.
+        """
+        n, channels = self.measured.shape
+        whitened = np.zeros((n, channels))
+        gains = np.zeros((n, channels, self.program.module.NZ))
+        scale = np.zeros((n, channels))
+        if about is None:
+            state = len(self.initial.mean)
+            transitions = np.zeros((n, state, state))
+            steps = np.full(n, self.step)
+        else:
+            transitions = _writable(about.transitions)
+            steps = _writable(about.steps)
+        arrays = _PassArrays(transitions, steps, gains, scale, whitened)
+        found = self._run(values, on, levels, arrays, fresh=about is None)
+        return FilterPass(
+            found,
+            _read_only(whitened.ravel()),
+            _read_only(gains),
+            _read_only(scale),
+            _read_only(transitions),
+            _read_only(steps),
         )
-        means, covariances, transitions, predicted = keep
-        gains, rates = np.zeros_like(transitions), self.rates
-        for _ in range(ROUNDS):
-            self._pass(values, on, levels, True, keep, rates=rates)
+
+    def log_likelihood(
+        self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass | None = None
+    ) -> float:
+        """Return the log likelihood of `filter` with the same arguments."""
+        return self.filter(values, on, levels, about).log_likelihood
+
+    def whitened(self, values: Array, on: Array, levels: NoiseLevels, about: FilterPass) -> Array:
+        """Return the whitened prediction errors (N C,) with the gains of another pass.
+
+        Args:
+            values: Parameter values of the run.
+            on: (effects,) 1 for the effects that act, else 0.
+            levels: Levels of sensor noise and latent force.
+            about: Pass whose gains, scale and integration steps are used.
+        """
+        whitened = np.zeros(self.measured.shape)
+        arrays = _PassArrays(
+            _writable(about.transitions),
+            _writable(about.steps),
+            _writable(about.gains),
+            _writable(about.scale),
+            whitened,
+        )
+        self._run(values, on, levels, arrays, full=False)
+        return _read_only(whitened.ravel())
+
+    def smooth(self, values: Array, on: Array, levels: NoiseLevels) -> SmoothedStates:
+        """Return smoothed states, linearised about the rates that are found for the first row.
+
+        Args:
+            values: Parameter values of the run.
+            on: (effects,) 1 for the effects that act, else 0.
+            levels: Levels of sensor noise and latent force.
+        """
+        n, channels = self.measured.shape
+        size, state, nq = self.program.module.NZ, len(self.initial.mean), self.program.module.NQ
+        arrays = _PassArrays(
+            np.zeros((n, state, state)),
+            np.full(n, self.step),
+            np.zeros((n, channels, size)),
+            np.zeros((n, channels)),
+            np.zeros((n, channels)),
+        )
+        means, covariances = np.zeros((n, size)), np.zeros((n, size, size))
+        transitions, predicted = np.zeros((n, size, size)), np.zeros((n, size))
+        gains, rates = np.zeros_like(transitions), self.initial.rates
+        force, _ = self.latent_force_rms(values, on, levels)
+        for _ in range(self.config.smoother_passes):
+            keep = means, covariances, transitions, predicted
+            self._run(values, on, levels, arrays, rates=rates, keep=keep)
             self.program.module.smooth(
                 means,
                 covariances,
                 transitions,
                 predicted,
                 gains,
-                self.jolts(values, on, levels)[0] ** 2,
+                force**2,
                 self.times,
                 levels.time_constant,
                 values,
@@ -210,18 +260,27 @@ class MappedRecording:
             )
             before, rates = rates, means[0, nq : 2 * nq].copy()
             sd = np.sqrt(np.maximum(np.diag(covariances[0])[nq : 2 * nq], 0.0))
-            if (np.abs(rates - before) <= NEAR * sd).all():
+            if (np.abs(rates - before) <= self.config.smoother_tolerance * sd).all():
                 break
-        return means, covariances, gains
+        return SmoothedStates(means, covariances, gains)
 
     def free_runs(
         self, values: Array, on: Array, levels: NoiseLevels, horizon: float
     ) -> list[tuple[int, Array]]:
-        """Free runs of `horizon` s, each started at its smoothed state: (first row, channels (M, 2 NQ) as recorded).
+        """Return free runs, each from a smoothed state with the recorded commands alone.
 
-        Starts lie every horizon from the first row; a rest shorter than the horizon is left out.
+        They start every horizon from the first row; a remainder shorter than the horizon is omitted.
+
+        Args:
+            values: Parameter values of the run.
+            on: (effects,) 1 for the effects that act, else 0.
+            levels: Levels of sensor noise and latent force.
+            horizon: Length of each free run [s].
+
+        Returns:
+            First row and channels (M, 2 NQ), as the recording would show them, of each free run.
         """
-        means, _ = self.smoothed(values, on, levels)
+        means = self.smooth(values, on, levels).means
         starts, ends = segments(self.times, horizon)
         if not starts:
             return []
@@ -230,9 +289,9 @@ class MappedRecording:
         states = np.ascontiguousarray(means[starts, : 2 * nq])
         self.program.module.free_runs(
             self.times,
-            self.given,
-            self.orders,
-            MAX_STEP,
+            self.command_times,
+            self.command_values,
+            self.config.free_run_step,
             body_of(values),
             values,
             on,
@@ -241,72 +300,87 @@ class MappedRecording:
             states,
             out,
         )
-        found = [
+        runs = [
             (a, out[i, a : b + 1].copy()) for i, (a, b) in enumerate(zip(starts, ends, strict=True))
         ]
-        for effect in self.program.effects:
-            if isinstance(effect, Wandering) and on[self.program.effects.index(effect)]:
-                lasts = values[self.program.index(effect.name, "time")]
-                self._add_wander(found, means, lasts, 2 if self._swells(values, on) else 0)
-        return found
+        oscillators = 2 if self._oscillates(values, on) else 0
+        for effect, acts in zip(self.program.effects, on, strict=True):
+            if isinstance(effect, Wandering) and acts:
+                decay_time = values[self.program.index(effect.name, "time")]
+                self._add_sensor_error(runs, means, decay_time, oscillators)
+        return runs
 
-    def _add_wander(
-        self, runs: list[tuple[int, Array]], means: Array, lasts: float, swells: int
+    def _add_sensor_error(
+        self, runs: list[tuple[int, Array]], means: Array, decay_time: float, oscillators: int
     ) -> None:
-        """What is expected of an instrument's error after the start of each run: it dies out."""
+        """Add the expected error of a wandering instrument, which decays from the start of a run."""
         nq = self.program.module.NQ
-        first = (3 + swells) * nq
-        for a, shown in runs:
-            since = self.times[a : a + len(shown)] - self.times[a]
-            shown[:, :nq] += means[a, first : first + nq] * np.exp(-since / lasts)[:, None]
+        first = (3 + oscillators) * nq
+        for a, channels in runs:
+            since = self.times[a : a + len(channels)] - self.times[a]
+            channels[:, :nq] += means[a, first : first + nq] * np.exp(-since / decay_time)[:, None]
 
-    def _swells(self, values: Array, on: Array) -> bool:
-        """Whether the filter follows an oscillating force."""
-        acting = (
-            e for i, e in enumerate(self.program.effects) if isinstance(e, Unsteady) and on[i]
-        )
-        return any(
-            values[self.program.index(e.name, n)] > 0.0 for e in acting for n in type(e).strength
-        )
+    def _oscillates(self, values: Array, on: Array) -> bool:
+        """Whether the filter's state contains an oscillating force."""
+        for effect, acts in zip(self.program.effects, on, strict=True):
+            if isinstance(effect, Unsteady) and acts:
+                places = [self.program.index(effect.name, n) for n in type(effect).strength]
+                if (values[places] > 0.0).any():
+                    return True
+        return False
 
-    def jolts(self, values: Array, on: Array, levels: NoiseLevels) -> tuple[Array, Array]:
-        """Rms of the latent force on a hull of these values (NQ,), and that of the first row.
+    def latent_force_rms(
+        self, values: Array, on: Array, levels: NoiseLevels
+    ) -> tuple[Array, Array]:
+        """Return the rms of the latent force on a hull with these parameters.
 
-        It is what would shake the hull as written as much: were it the force itself, any mass added would calm the
-        water, and be believed for that alone.
+        It causes the same accelerations as the given level on the nominal hull. If the force itself
+        were kept, added mass would reduce the accelerations and gain evidence for that alone.
+
+        Args:
+            values: Parameter values of the run.
+            on: (effects,) 1 for the effects that act, else 0.
+            levels: Levels of sensor noise and latent force.
+
+        Returns:
+            Rms (NQ,) [N, N m], and rms (NQ,) at the first row.
         """
         force = np.asarray(levels.force * inertia_of(self.program, values, on) / self.inertia)
-        return force, np.maximum(force, levels.begins)
+        return force, np.maximum(force, levels.initial_force)
 
-    def _pass(
+    def _run(
         self,
         values: Array,
         on: Array,
         levels: NoiseLevels,
-        full: bool,
-        keep: tuple[Array, ...] | None,
+        arrays: "_PassArrays",
+        *,
+        full: bool = True,
         fresh: bool = True,
         rates: Array | None = None,
+        keep: tuple[Array, ...] | None = None,
     ) -> float:
+        """Run the compiled filter, which fills or uses `arrays`; return the log likelihood."""
         nq = self.program.module.NQ
-        noise = np.array([(levels.sensors[f] * self.noise_scale[f]) ** 2 for f in self.families])
-        covariance = self.spread.copy()
+        sds = [levels.sensors[f] * self.noise_scale[f] for f in self.families]
+        noise = np.array([sd**2 for sd in sds])
+        covariance = self.initial.covariance.copy()
         for c, code in enumerate(self.codes):
             if code < nq:
                 covariance[code, code] = noise[c]
-        force, begins = self.jolts(values, on, levels)
+        force, initial_force = self.latent_force_rms(values, on, levels)
         for i in range(nq):
-            covariance[2 * nq + i, 2 * nq + i] = begins[i] ** 2
+            covariance[2 * nq + i, 2 * nq + i] = initial_force[i] ** 2
             if covariance[nq + i, nq + i] == 0.0:
                 covariance[nq + i, nq + i] = 1.0
-        means, covariances, transitions, predicted = keep or NOTHING
-        rates = self.rates if rates is None else rates
+        if rates is None:
+            rates = self.initial.rates
         found = self.program.module.kalman(
             self.times,
             self.measured,
             self.codes,
-            self.given,
-            self.orders,
+            self.command_times,
+            self.command_values,
             self.step,
             body_of(values),
             values,
@@ -314,160 +388,271 @@ class MappedRecording:
             force**2,
             levels.time_constant,
             noise,
-            self.start,
+            self.initial.mean,
             covariance,
             rates,
             full,
             fresh,
-            self._linear,
-            self._steps,
-            self._gains,
-            self._scale,
-            self._white,
+            *arrays,
             keep is not None,
-            means,
-            covariances,
-            transitions,
-            predicted,
+            *(keep or _nothing_kept()),
         )
         return float(found)
 
 
+class _PassArrays(NamedTuple):
+    """Arrays that a pass of the compiled filter fills or uses, in the order of its arguments."""
+
+    transitions: Array
+    steps: Array
+    gains: Array
+    scale: Array
+    whitened: Array
+
+
+def _nothing_kept() -> tuple[Array, ...]:
+    """Placeholders for the arrays of a smoothing pass."""
+    return np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))
+
+
+def _read_only(array: Array) -> Array:
+    """Return a read-only view."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
+def _writable(view: Array) -> Array:
+    """Return the array under a read-only view.
+
+    Compiled functions accept writable arrays only; those that get it do not change it.
+    """
+    assert isinstance(view.base, np.ndarray)
+    return view.base
+
+
+def _estimated_initial(mapped: MappedRecording) -> InitialState:
+    """Estimate the initial state from measured positions and, where there are none, rates."""
+    axes = axes_of(mapped.program.vessel)
+    nq = mapped.program.module.NQ
+    mean, covariance, rates = np.zeros(3 * nq), np.zeros((3 * nq, 3 * nq)), np.zeros(nq)
+    for c, code in enumerate(mapped.codes):
+        recorded = np.isfinite(mapped.measured[:, c])
+        if not recorded.any():
+            continue
+        y, t = mapped.measured[recorded, c], mapped.times[recorded]
+        rate = nq + code
+        if code < nq:
+            mean[code] = y[0]
+            speed = _speeds(t, y)
+            covariance[rate, rate] = 1.0
+            if len(speed):
+                covariance[rate, rate] = float(np.mean(speed**2)) + LEAST_RATE_VARIANCE
+                rates[code] = speed[0]
+        elif code - nq not in mapped.codes:
+            rates[code - nq] = y[0]
+            covariance[code, code] = float(np.mean(y**2)) + LEAST_RATE_VARIANCE
+    level = [i for i, axis in enumerate(axes) if axis in ("surge", "sway")]
+    by_rates = not set(level) & set(mapped.codes.tolist())
+    if len(level) == 2 and "yaw" in axes and by_rates:  # from body axes to earth axes
+        (u, v), psi = rates[level], mean[axes.index("yaw")]
+        rates[level] = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
+    # earth-axes velocities share one variance, because the initial heading is arbitrary
+    for i in level:
+        covariance[nq + i, nq + i] = max(covariance[nq + j, nq + j] for j in level)
+    return InitialState(mean, covariance, rates)
+
+
+def _speeds(t: Array, y: Array) -> Array:
+    """Rates of change of a signal over a second or four rows, whichever is longer."""
+    gap = np.searchsorted(t, t + max(1.0, 4 * float(np.median(np.diff(t)))))
+    gap = gap.clip(max=len(t) - 1)
+    far = gap > np.arange(len(t))
+    return np.asarray((y[gap] - y)[far] / (t[gap] - t)[far])
+
+
 def body_of(values: Array) -> Array:
-    """Mass and inertias of a boat, the last of a track's values."""
+    """Return mass, mass centre and inertias, the last of a run's parameter values."""
     return values[-len(BODY) :]
 
 
 def segments(times: Array, horizon: float) -> tuple[list[int], list[int]]:
-    """Rows at which free runs start and end: every horizon from the first row, shorter rests left out."""
+    """Return the rows at which free runs start and end.
+
+    Args:
+        times: (N,) times of the rows [s].
+        horizon: Length of each free run [s]; a shorter remainder is omitted.
+    """
     starts, ends = [], []
     begin = float(times[0])
     step = float(np.median(np.diff(times)))
     while begin + horizon <= times[-1] + 0.5 * step:
-        a, b = int(np.argmin(abs(times - begin))), int(np.argmin(abs(times - begin - horizon)))
-        if b > a:
-            starts.append(a)
-            ends.append(b)
+        first = int(np.argmin(abs(times - begin)))
+        last = int(np.argmin(abs(times - begin - horizon)))
+        if last > first:
+            starts.append(first)
+            ends.append(last)
         begin += horizon
     return starts, ends
 
 
 def axes_of(vessel: Vessel) -> tuple[str, ...]:
-    """Names of the freedoms in the filter's order."""
-    return tuple(a for a in AXES if a in vessel.dof)
+    """Return the degrees of freedom of a vessel in the order of the filter."""
+    return tuple(axis for axis in AXES if axis in vessel.dof)
 
 
 def map_recording(
     recording: Recording,
     program: Program,
-    stated: Mapping[str, float] | None = None,
-    beside: Mapping[str, float] | None = None,
+    shared_noise: Mapping[str, float] | None = None,
+    noise_ratio: Mapping[str, float] | None = None,
+    config: DiagnosisConfig = DEFAULT,
 ) -> MappedRecording:
-    """Lay a recording on a program; `stated` is the sensor noise all recordings share, where its own differs.
+    """Return a recording mapped to a program.
 
-    `beside` is how many times noisier than theirs its own instruments are, by family, where nobody states it. Raises
-    BadInput if a column is missing that the vessel moves or is steered by, or if too few rows are left.
+    Args:
+        recording: Measured signals and commands.
+        program: Compiled effects of the vessel.
+        shared_noise: Sensor noise (sd by family) that all recordings share; None: this one's own.
+        noise_ratio: Noise of this recording in shared levels, by family, where it is not specified.
+        config: Settings of the diagnosis.
+
+    Raises:
+        BadInput: A column is missing that the vessel needs, or too few rows remain.
     """
     vessel = program.vessel
     axes = axes_of(vessel)
-    where = _called(recording)
+    where = _name_of(recording)
     found = [s for s in signals_of(vessel.dof) if s.column in recording.signals]
-    needed = ["psi_rad"] if "yaw" in axes else []
-    missing = [n for n in needed if n not in recording.signals] or _unfed(recording, vessel)
-    if missing or all(s.rate for s in found):
-        column = (missing or [signals_of(vessel.dof)[0].column])[0]
-        raise BadInput(
-            f"{where}: column {column} is missing, without which {vessel.name} can not be followed"
-        )
+    _check_columns(recording, vessel, found)
     if len(recording) < FEWEST_IN_PART:
         raise BadInput(
-            f"{where}: {recording.name} has {len(recording)} rows to use; at least {FEWEST_IN_PART} are needed"
+            f"{where}: {recording.name} has {len(recording)} rows to use; at least "
+            f"{FEWEST_IN_PART} are needed"
         )
-    codes = np.array([axes.index(s.axis) + s.rate * len(axes) for s in found])
     measured = np.column_stack([recording.signals[s.column] for s in found])
     own = checked_noise(recording)
-    scale = {
-        f: own.get(f, common) / common for f, common in (stated or NOISE | own).items()
-    } | dict(beside or {})
-    commands = (
-        taken_rows(vessel, recording.signals, len(recording))
-        if vessel.inputs
-        else np.zeros((len(recording), 1))
-    )
+    shared = shared_noise or NOISE | own
+    scale = {family: own.get(family, sd) / sd for family, sd in shared.items()}
+    commands = np.zeros((len(recording), 1))
+    if vessel.inputs:
+        commands = taken_rows(vessel, recording.signals, len(recording))
     facts = facts_of(vessel, recording)
-    laid = MappedRecording(
+    mapped = MappedRecording(
         recording.name,
         program,
         np.ascontiguousarray(recording.t),
         np.ascontiguousarray(measured),
         tuple(s.noise for s in found),
         tuple(s.column for s in found),
-        codes,
+        np.array([axes.index(s.axis) + s.rate * len(axes) for s in found]),
         np.ascontiguousarray(commands),
-        stated_values(program, facts),
-        scale,
+        parameter_values(program, facts),
+        scale | dict(noise_ratio or {}),
         facts,
-        *_orders_of(recording, vessel),
+        *_commands_at_own_times(recording, vessel),
+        config=config.filter,
     )
-    nq = len(axes)
-    if "surge" in axes and (speed := float(np.sqrt(laid.spread[nq, nq]))) > FASTEST * np.sqrt(
-        GRAVITY * vessel.length
-    ):
+    if "surge" in axes:
+        speed = float(np.sqrt(mapped.initial.covariance[len(axes), len(axes)]))
+        if speed > config.load.fastest_froude * np.sqrt(GRAVITY * vessel.length):
+            raise BadInput(
+                f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of "
+                f"{vessel.length:g} m; are they in m?"
+            )
+    return mapped
+
+
+def _check_columns(recording: Recording, vessel: Vessel, found: Sequence[Signal]) -> None:
+    """Raise BadInput for a column that is missing."""
+    missing = []
+    if "yaw" in vessel.dof and "psi_rad" not in recording.signals:
+        missing = ["psi_rad"]
+    missing = missing or _missing_inputs(recording, vessel)
+    if not missing and all(s.rate for s in found):
+        missing = [signals_of(vessel.dof)[0].column]
+    if missing:
         raise BadInput(
-            f"{where}: x_m, y_m move at {speed:.3g} m/s, far beyond a hull of {vessel.length:g} m; are they in m?"
+            f"{_name_of(recording)}: column {missing[0]} is missing, without which "
+            f"{vessel.name} can not be followed"
         )
-    return laid
 
 
-def changes(times: Array, commands: Array) -> tuple[Array, Array]:
-    """Commands (M, K) with the times (M,) from which each is in force, those left out that repeat the one before."""
+def command_changes(times: Array, commands: Array) -> tuple[Array, Array]:
+    """Return the times (M,) [s] at which commands change, and the commands (M, K) from then on."""
     new = np.append(True, (np.diff(commands, axis=0) != 0.0).any(axis=1))
     return np.ascontiguousarray(times[new]), np.ascontiguousarray(commands[new])
 
 
-def _orders_of(recording: Recording, vessel: Vessel) -> tuple[Array, Array]:
-    """Commands at their own times where a recording has them more often than in its rows, else empty."""
+def _commands_at_own_times(recording: Recording, vessel: Vessel) -> tuple[Array, Array]:
+    """Commands at their own times where a recording has them more often than rows, else empty."""
     if recording.orders is None or not vessel.inputs:
         return np.zeros(0), np.zeros((0, 0))
     t, signals = recording.orders.t, recording.orders.signals
-    return changes(t, taken_rows(vessel, signals, len(t)))
+    return command_changes(t, taken_rows(vessel, signals, len(t)))
 
 
-def quickest(program: Program, values: Array, command: Array) -> tuple[float, float]:
-    """Of the nominal hull at rest: rate at which its quickest motion dies out [1/s], step that follows its swings [s].
+def hull_motion(
+    program: Program, values: Array, command: Array, config: FilterConfig
+) -> HullMotion:
+    """Return the time scales of the nominal hull at rest.
 
-    Runge-Kutta's phase is off by (w h)^5 / 120 a step.
+    The phase of Runge-Kutta is off by (w h)^5 / 120 per step.
+
+    Args:
+        program: Compiled effects of the vessel.
+        values: Parameter values of the run.
+        command: (K,) commands in force.
+        config: Settings of the filter.
     """
     code, on = program.module, program.switches()
     nq = code.NQ
-    k, act, memory = np.zeros(code.K), np.zeros(program.held_size), np.zeros(program.memory_size)
-    code.constants(body_of(values), values, on, k)
-    code.settle(command, memory, values, on, act)
+    constants, memory = np.zeros(code.K), np.zeros(program.memory_size)
+    actuators = np.zeros(program.held_size)
+    code.constants(body_of(values), values, on, constants)
+    code.settle(command, memory, values, on, actuators)
     slopes = np.zeros((nq, 2 * nq))
-    code.slopes(0.0, np.zeros(2 * nq), act, values, on, k, np.zeros(nq), slopes)
+    rest = np.zeros(2 * nq)
+    code.slopes(0.0, rest, actuators, values, on, constants, np.zeros(nq), slopes)
     if not np.isfinite(slopes).all():
-        return 0.0, np.inf
+        return HullMotion(0.0, np.inf)
     whole = np.block([[np.zeros((nq, nq)), np.eye(nq)], [slopes]])
-    swings = [x for x in np.linalg.eigvals(whole) if x.imag > 0.0]
-    smooth = [(120.0 * LATE * max(-x.real / x.imag, RINGING)) ** 0.25 / x.imag for x in swings]
-    return float(np.abs(np.linalg.eigvals(slopes[:, nq:])).max()), float(
-        min(smooth, default=np.inf)
-    )
+    largest_step = np.inf
+    for x in np.linalg.eigvals(whole):
+        if x.imag > 0.0:
+            damping = max(-x.real / x.imag, config.least_damping_ratio)
+            step = (120.0 * config.phase_error * damping) ** 0.25 / x.imag
+            largest_step = min(largest_step, float(step))
+    decay_rate = float(np.abs(np.linalg.eigvals(slopes[:, nq:])).max())
+    return HullMotion(decay_rate, largest_step)
 
 
 def inertia_of(program: Program, values: Array, on: Array) -> Array:
-    """Mass or moment of inertia with which each freedom answers to a force of its own (NQ,) [kg, kg m^2]."""
+    """Return the mass or moment of inertia (NQ,) of each degree of freedom [kg, kg m^2].
+
+    Args:
+        program: Compiled effects of the vessel.
+        values: Parameter values of a run.
+        on: (effects,) 1 for the effects that act, else 0.
+    """
     code = program.module
-    k = np.zeros(code.K)
-    code.constants(body_of(values), values, on, k)
-    whole = k[-MASS_ENTRIES:][[AXES.index(axis) for axis in axes_of(program.vessel)]]
-    return np.asarray(1.0 / whole if code.CLOSED else whole)
+    constants = np.zeros(code.K)
+    code.constants(body_of(values), values, on, constants)
+    order = [AXES.index(axis) for axis in axes_of(program.vessel)]
+    diagonal = constants[-MASS_ENTRIES:][order]
+    if code.CLOSED:  # the constants hold the inverse
+        diagonal = 1.0 / diagonal
+    return np.asarray(diagonal)
 
 
-def stated_values(program: Program, facts: Mapping[str, Any]) -> Array:
-    """Parameters of a program, those that a recording's facts state (`Effect.facts`) put in, then its body's numbers.
+def parameter_values(program: Program, facts: Mapping[str, Any]) -> Array:
+    """Return the parameters of all effects, with specified facts put in, then the body's numbers.
 
-    Every random force is silenced: the filter finds its course, a free run knows none.
+    Stochastic forces have no fixed realisation here: the filter estimates it, a free run omits it.
+
+    Args:
+        program: Compiled effects of the vessel.
+        facts: Facts of the run by name (`Effect.facts`).
     """
     values = np.append(program.values(), program.body)
     for effect in program.effects:
@@ -479,100 +664,140 @@ def stated_values(program: Program, facts: Mapping[str, Any]) -> Array:
     return values
 
 
-def _unfed(recording: Recording, vessel: Vessel) -> list[str]:
-    """What laws take and the recording has not got: readings, and actuators without a command (PWM feeds thrust)."""
-    there = recording.signals
-    idle = [
-        n
-        for n in vessel.actuators
-        if n not in there and not any(_feeds(vessel, n, m) for m in there)
-    ]
-    return idle + [n for n in vessel.readings if n not in there]
+def _missing_inputs(recording: Recording, vessel: Vessel) -> list[str]:
+    """Readings that are not recorded, and actuators whose command is not (PWM drives thrust)."""
+    missing = []
+    for actuator in vessel.actuators:
+        driven = any(_drives(vessel, command, actuator) for command in recording.signals)
+        if actuator not in recording.signals and not driven:
+            missing.append(actuator)
+    return missing + [name for name in vessel.readings if name not in recording.signals]
 
 
-def _feeds(vessel: Vessel, actuator: str, command: str) -> bool:
-    """Whether a channel effect of the vessel turns this command into that actuator."""
-    return any(vessel.feeding_command(e, actuator) == command for e in vessel.effects)
+def _drives(vessel: Vessel, command: str, actuator: str) -> bool:
+    """Whether a channel effect of the vessel converts this command into that actuator."""
+    return any(vessel.feeding_command(effect, actuator) == command for effect in vessel.effects)
 
 
-def noise_of(vessel: Vessel, recordings: Sequence[Recording]) -> dict[str, float]:
-    """Sensor noise by family that recordings share: what the first states, else the vessel, else what is in the data.
-
-    Raises BadInput.
-    """
-    told = {str(family): sd for family, sd in vessel.diagnosis.noise.items()} | checked_noise(
-        recordings[0]
-    )
-    return NOISE | {f: x for f in NOISE if (x := priors.sensed_noise(vessel, recordings, f))} | told
-
-
-def noise_beside(
-    vessel: Vessel, recordings: Sequence[Recording], recording: Recording
+def shared_noise(
+    vessel: Vessel, recordings: Sequence[Recording], config: DiagnosisConfig = DEFAULT
 ) -> dict[str, float]:
-    """How many times noisier than in others a recording's instruments are, by family, where it is many times or few.
+    """Return the sensor noise that recordings share, as standard deviations by family.
 
-    An exact log and one by a camera must not be taken for equally good: a free run starts where its recording says.
+    The notes of the first recording take precedence, then the vessel file, then the data.
+
+    Args:
+        vessel: Vessel of the recordings.
+        recordings: Recordings that are fitted.
+        config: Settings of the diagnosis.
+
+    Raises:
+        BadInput: The notes specify a noise level out of range.
     """
-    families = [
-        f for f in NOISE if f not in recording.notes.noise and f not in vessel.diagnosis.noise
-    ]
-    pairs = {
-        f: [priors.sensed_noise(vessel, rs, f) for rs in ([recording], recordings)]
-        for f in families
-    }
-    ratios = {f: own / common for f, (own, common) in pairs.items() if own and common}
-    return {f: r for f, r in ratios.items() if not 1.0 / UNLIKE < r < UNLIKE}
+    noise = dict(NOISE)
+    for family in NOISE:
+        sensed = priors.sensed_noise(vessel, recordings, family, config.load)
+        if sensed:
+            noise[family] = sensed
+    noise |= {str(family): sd for family, sd in vessel.diagnosis.noise.items()}
+    return noise | checked_noise(recordings[0])
+
+
+def relative_noise(
+    vessel: Vessel,
+    recordings: Sequence[Recording],
+    recording: Recording,
+    config: DiagnosisConfig = DEFAULT,
+) -> dict[str, float]:
+    """Return the sensor noise of a recording relative to others, by family, where they differ a lot.
+
+    An exact log and one made by a camera must not be given the same noise, because a free run starts
+    at the state that its recording shows.
+
+    Args:
+        vessel: Vessel of the recordings.
+        recordings: Recordings that are fitted.
+        recording: Recording that is compared with them.
+        config: Settings of the diagnosis.
+    """
+    ratios = {}
+    limit = config.load.noise_ratio
+    for family in NOISE:
+        if family in recording.notes.noise or family in vessel.diagnosis.noise:
+            continue
+        own = priors.sensed_noise(vessel, [recording], family, config.load)
+        common = priors.sensed_noise(vessel, recordings, family, config.load)
+        if own and common and not 1.0 / limit < own / common < limit:
+            ratios[family] = own / common
+    return ratios
 
 
 def checked_noise(recording: Recording) -> dict[str, float]:
-    """What a recording's notes state of its instruments. Raises BadInput."""
-    told = recording.notes.noise
-    if wrong := [n for n, sd in told.items() if not 0 < sd < HUGE]:
-        raise BadInput(
-            f"{_called(recording)}: noise {wrong[0]} = {told[wrong[0]]:g}; allowed is more than 0, at most {HUGE:g}"
-        )
-    return told
+    """Return the sensor noise that a recording's notes specify, by family.
+
+    Raises:
+        BadInput: A level is out of range.
+    """
+    noise = recording.notes.noise
+    for family, sd in noise.items():
+        if not 0 < sd < HUGE:
+            raise BadInput(
+                f"{_name_of(recording)}: noise {family} = {sd:g}; allowed is more than 0, at most "
+                f"{HUGE:g}"
+            )
+    return noise
 
 
 def facts_of(vessel: Vessel, recording: Recording) -> dict[str, Any]:
-    """What is known of a run besides its columns: the vessel's word, unless the recording's notes say otherwise."""
+    """Return the facts of a run: those of the vessel, overridden by the recording's notes."""
     return {**vessel.diagnosis.facts, **recording.notes.facts}
 
 
-def _called(recording: Recording) -> str:
+def _name_of(recording: Recording) -> str:
     """The file of a recording, or its name."""
     return str(recording.path or recording.name)
 
 
-def nominal_levels(vessel: Vessel, recordings: Sequence[Recording]) -> NoiseLevels:
-    """What is known before any fit: ambient force as the first recording states it or by rule, noise.
+def prior_levels(
+    vessel: Vessel, recordings: Sequence[Recording], config: DiagnosisConfig = DEFAULT
+) -> NoiseLevels:
+    """Return the noise levels before any fit.
 
-    Raises BadInput.
+    The notes of the first recording take precedence over the rules of the configuration.
+
+    Args:
+        vessel: Vessel of the recordings.
+        recordings: Recordings that are fitted.
+        config: Settings of the diagnosis.
+
+    Raises:
+        BadInput: The notes specify a level out of range.
     """
     axes, recording = axes_of(vessel), recordings[0]
-    given = recording.notes.ambient.get("force_rms", {})
-    if not isinstance(given, Mapping):
-        named = recording.notes.ambient.get("axes", axes)
-        if len(named) != len(given):
+    where, notes = _name_of(recording), recording.notes.ambient
+    specified = notes.get("force_rms", {})
+    if not isinstance(specified, Mapping):
+        named = notes.get("axes", axes)
+        if len(named) != len(specified):
             raise BadInput(
-                f"{_called(recording)}: ambient.force_rms = {given}; allowed are {len(named)} numbers, of "
+                f"{where}: ambient.force_rms = {specified}; allowed are {len(named)} numbers, of "
                 f"{', '.join(named)} in turn"
             )
-        given = dict(zip(named, given, strict=True))
-    ambient = priors.tolerated_force(vessel)
-    force = np.array([float(given.get(a, ambient[a])) for a in axes])
-    time_constant = float(
-        recording.notes.ambient.get("time_constant_s", priors.time_constant(vessel))
-    )
+        specified = dict(zip(named, specified, strict=True))
+    by_rule = priors.assumed_disturbance(vessel, config.load)
+    force = np.array([float(specified.get(axis, by_rule[axis])) for axis in axes])
     for axis, rms in zip(axes, force.tolist(), strict=True):
         if not 0 < rms < HUGE:
             raise BadInput(
-                f"{_called(recording)} on {vessel.name}: ambient force in {axis} = {rms:g}, what is tolerated; allowed "
-                f"is more than 0, at most {HUGE:g}"
+                f"{where} on {vessel.name}: ambient force in {axis} = {rms:g}, what is tolerated; "
+                f"allowed is more than 0, at most {HUGE:g}"
             )
+    usual = priors.time_constant(vessel, config.load)
+    time_constant = float(notes.get("time_constant_s", usual))
     if not 0 < time_constant < HUGE:
         raise BadInput(
-            f"{_called(recording)}: ambient time_constant_s = {time_constant:g}; allowed is more than 0, "
+            f"{where}: ambient time_constant_s = {time_constant:g}; allowed is more than 0, "
             f"at most {HUGE:g}"
         )
-    return NoiseLevels(force, time_constant, noise_of(vessel, recordings), START * force)
+    noise = shared_noise(vessel, recordings, config)
+    return NoiseLevels(force, time_constant, noise, config.filter.initial_force * force)

@@ -1,80 +1,129 @@
-"""Fits a hypothesis (which suspects act) inside the filter and scores it by its Laplace evidence."""
+"""Fits one hypothesis with the filter and computes its Laplace evidence."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import erf, log, sqrt
 
 import numpy as np
 
 from boatsim.diagnosis.filter import NoiseLevels
-from boatsim.diagnosis.noise_levels import FINE, ROUGH, fit_force, force_prior
-from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
+from boatsim.diagnosis.noise_levels import fit_force, force_prior
+from boatsim.diagnosis.problem import FilterPasses, Fit, FreeParameter, Problem
 from boatsim.physics.base import Array
 
-SETTLED = 0.3  # [nats] a refit that gains less changes nothing
-HALVINGS = 6  # of the way from a start at which the boat runs away to the boat with nothing missing
-# share of what a step promised that it must gain for derivatives to be learnt from it
-TRUSTED = 0.5
-# a step damped this much goes but part of the way, so that it does as promised says nothing
-SHORT = 0.1
 TINY = 1e-300  # variance of what is known exactly
+ON_BOUND = 1e-12  # distance from a bound at which a parameter is held there
+# of a step: damping at first, least damping after a failed attempt, and its growth per attempt
+FIRST_DAMPING = 1e-3
+LEAST_DAMPING = 1e-2
+DAMPING_GROWTH = 10.0
+LOST = 1e-6  # [nats] that a step may lose by rounding
 
 
-def fit(problem: Problem, found: Fit, settled: bool = False) -> Fit:
-    """Parameters (unless settled), then force levels with the spectra of random forces, then parameters again."""
+def fit(problem: Problem, found: Fit, converged: bool = False) -> Fit:
+    """Return a hypothesis with its parameters and its noise levels fitted.
+
+    Parameters are fitted first, then the levels of the latent force with the spectra of stochastic
+    forces, then the parameters again.
+
+    Args:
+        problem: Recordings and priors.
+        found: The start.
+        converged: The parameters have been fitted to the present noise levels.
+    """
+    config = problem.config.fit
     variance = np.diag(found.covariance)
-    new = any(
-        f.searched and v == f.sd**2 for f, v in zip(found.free, variance, strict=True)
-    )  # never fitted
-    if not new and not settled:
-        found = descend(problem, found, iterations=4, enough=SETTLED)
-    found = fit_force(problem, found, FINE if new else ROUGH)
-    return descend(problem, found, iterations=3, enough=0.1)
+    new = False
+    for parameter, v in zip(found.free, variance, strict=True):
+        new = new or bool(parameter.searched and v == parameter.sd**2)  # never fitted
+    if not new and not converged:
+        found = gauss_newton(problem, found, config.first_steps, config.refit_gain)
+    found = fit_force(problem, found, config.fine_gain if new else config.rough_gain)
+    return gauss_newton(problem, found, config.last_steps, config.step_gain)
 
 
-def converge(problem: Problem, found: Fit, most: int = 8) -> Fit:
-    """Refit until parameters and force levels agree, so that a later gain is not the gain of a refit."""
-    for i in range(most):
-        again = fit(problem, found, settled=i > 0)
+def converge(problem: Problem, found: Fit) -> Fit:
+    """Return a hypothesis refitted until its parameters and its noise levels agree.
+
+    A later gain of evidence is then not merely the gain of a refit.
+
+    Args:
+        problem: Recordings and priors.
+        found: The start.
+    """
+    config = problem.config.fit
+    for i in range(config.most_refits):
+        again = fit(problem, found, converged=i > 0)
         gain = again.evidence - found.evidence
         if gain > 0:
             found = again
-        if gain < SETTLED:
+        if gain < config.refit_gain:
             break
     return found
 
 
-def reduced(problem: Problem, found: Fit, without: str) -> Fit:
-    """The start of a fit without one of the suspects, nearer to nothing missing where the boat would run away."""
-    effects = tuple(n for n in found.effects if n != without)
+def remove_effect(problem: Problem, found: Fit, name: str) -> Fit:
+    """Return the start of a fit without one of the effects.
+
+    The parameters are moved towards zero effect where the simulated boat would diverge.
+
+    Args:
+        problem: Recordings and priors.
+        found: A fit.
+        name: Name of one of its effects.
+    """
+    effects = tuple(n for n in found.effects if n != name)
     free = problem.parameters(effects)
     known = {(f.effect, f.name): x for f, x in zip(found.free, found.theta, strict=True)}
-    theta, nothing = (
-        np.array([known[f.effect, f.name] for f in free]),
-        np.array([f.mean for f in free]),
-    )
+    theta = np.array([known[f.effect, f.name] for f in free])
+    nothing = np.array([f.mean for f in free])
     on = problem.program.switches(effects)
-    for _ in range(HALVINGS):
-        if np.isfinite(problem.likelihood(free, theta, on, found.levels)):
+    for _ in range(problem.config.fit.halvings):
+        if np.isfinite(problem.log_likelihood(free, theta, on, found.levels)):
             break
         theta = 0.5 * (theta + nothing)
-    return Fit(effects, free, theta, np.diag([f.sd**2 for f in free]), found.levels, -np.inf)
+    return unfitted(effects, free, theta, found.levels)
 
 
-class Space:
+def unfitted(
+    effects: tuple[str, ...], free: tuple[FreeParameter, ...], theta: Array, levels: NoiseLevels
+) -> Fit:
+    """Return a hypothesis at a starting point, with the prior covariance and no evidence yet.
+
+    Args:
+        effects: Names of the candidates that act.
+        free: Its free parameters.
+        theta: (F,) their values.
+        levels: Levels of sensor noise and latent force.
+    """
+    covariance = np.diag([f.sd**2 for f in free])
+    return Fit(effects, free, theta, covariance, levels, -np.inf)
+
+
+class ParameterSpace:
     """Bounds and priors of free parameters, for steps in units of the prior sd."""
 
     def __init__(self, free: Sequence[FreeParameter]) -> None:
-        self.mean, self.sd, self.low, self.high = (
-            np.array([getattr(f, a) for f in free], dtype=float)
-            for a in ("mean", "sd", "low", "high")
-        )
+        self.mean = np.array([f.mean for f in free], dtype=float)
+        self.sd = np.array([f.sd for f in free], dtype=float)
+        self.low = np.array([f.low for f in free], dtype=float)
+        self.high = np.array([f.high for f in free], dtype=float)
 
     def clipped(self, theta: Array) -> Array:
-        """Within the bounds."""
+        """Return parameters (F,) within the bounds."""
         return np.asarray(np.clip(theta, self.low, self.high))
 
-    def stepped(self, theta: Array, J: Array, g: Array, damping: float) -> Array:
-        """After a damped Gauss-Newton step along gradient g by theta / sd; what wants out of a bound stays at it."""
+    def damped_step(self, theta: Array, J: Array, g: Array, damping: float) -> Array:
+        """Return the parameters after a damped Gauss-Newton step.
+
+        A parameter whose step leads out of a bound stays at the bound.
+
+        Args:
+            theta: (F,) parameters before the step.
+            J: (rows, F) derivatives of the whitened errors by theta / sd.
+            g: (F,) gradient of the score by theta / sd.
+            damping: Damping of the step.
+        """
         A = J.T @ J
         free = np.diag(A) > 0.0
         step = np.zeros(len(g))
@@ -84,139 +133,210 @@ class Space:
                 break
             B = A[np.ix_(free, free)] + np.eye(int(free.sum())) * (1.0 + 10.0 * damping)
             step[free] = np.linalg.solve(B, g[free])
-            stuck = (step < 0) & (theta <= self.low + 1e-12) | (step > 0) & (
-                theta >= self.high - 1e-12
-            )
+            at_low = (step < 0) & (theta <= self.low + ON_BOUND)
+            at_high = (step > 0) & (theta >= self.high - ON_BOUND)
+            stuck = at_low | at_high
             if not (free & stuck).any():
                 break
             free &= ~stuck
         return self.clipped(theta + self.sd * step)
 
-    def promised(self, J: Array, g: Array, before: Array, after: Array) -> float:
-        """Gain of the score that the quadratic model promises for a step."""
+    def predicted_gain(self, J: Array, g: Array, before: Array, after: Array) -> float:
+        """Return the gain of the score that the quadratic model predicts for a step.
+
+        Args:
+            J: (rows, F) derivatives of the whitened errors by theta / sd.
+            g: (F,) gradient of the score by theta / sd.
+            before: (F,) parameters before the step.
+            after: (F,) parameters after the step.
+        """
         s = (after - before) / self.sd
         return float(g @ s - 0.5 * (s @ s + np.sum((J @ s) ** 2)))
 
     def covariance(self, information: Array) -> Array:
-        """(F, F) from the information in units of the prior sd."""
+        """Return the covariance (F, F) from the information (F, F) in units of the prior sd."""
         return np.asarray(np.linalg.inv(information) * np.outer(self.sd, self.sd), dtype=np.float64)
 
 
-def as_promised(gain: float, promised: float) -> bool:
-    """Whether a step did what the quadratic model said: the next one would gain next to nothing."""
-    return abs(gain - promised) < 0.1 + 0.02 * abs(promised)
+def agrees_with_prediction(problem: Problem, gain: float, predicted: float) -> bool:
+    """Whether a step gained what the quadratic model predicted, so that the next gains little.
+
+    Args:
+        problem: Problem whose configuration holds the tolerance.
+        gain: Gain of the score [nats].
+        predicted: Predicted gain [nats].
+    """
+    config = problem.config.fit
+    return abs(gain - predicted) < config.agreement + config.agreement_share * abs(predicted)
 
 
 def log_prior(free: Sequence[FreeParameter], theta: Array) -> float:
-    """Log prior density up to what all hypotheses share; half a normal distribution has twice the density."""
+    """Return the log prior density, up to a constant that all hypotheses share.
+
+    Half of a normal distribution, of a parameter with its mean at a bound, has twice the density.
+
+    Args:
+        free: Free parameters.
+        theta: (F,) their values.
+    """
     found = 0.0
     for f, x in zip(free, theta, strict=True):
         found += np.log(2.0) * (f.mean in (f.low, f.high)) - 0.5 * ((float(x) - f.mean) / f.sd) ** 2
     return found
 
 
-def cut_off(free: Sequence[FreeParameter], theta: Array, covariance: Array) -> float:
-    """Log of the share of a posterior that lies within bounds where priors are one-sided: a half for what is at one."""
+def log_truncation(free: Sequence[FreeParameter], theta: Array, covariance: Array) -> float:
+    """Return the log of the share of a posterior that lies within one-sided bounds.
+
+    Args:
+        free: Free parameters.
+        theta: (F,) their fitted values.
+        covariance: (F, F) their covariance.
+    """
     found = 0.0
     for f, x, variance in zip(free, theta, np.diag(covariance), strict=True):
         if f.mean in (f.low, f.high):
-            found += log(
-                0.5 + 0.5 * erf(abs(float(x) - f.mean) / sqrt(2.0 * max(float(variance), TINY)))
-            )
+            distance = abs(float(x) - f.mean) / sqrt(2.0 * max(float(variance), TINY))
+            found += log(0.5 + 0.5 * erf(distance))
     return found
 
 
-def descend(problem: Problem, found: Fit, iterations: int, enough: float) -> Fit:
-    """Gauss-Newton on prior and whitened prediction errors from `found`, bounds kept; covariance and evidence.
+@dataclass(frozen=True)
+class _Point:
+    """A point of the parameter space with the filter passes there."""
 
-    Derivatives are taken where it begins, and after a step learnt from what it changed (Broyden 1965): only where one
-    does not do as these promised are they taken anew.
+    theta: Array
+    passes: FilterPasses
+    score: float  # log likelihood plus log prior
+
+
+@dataclass(frozen=True)
+class _Hypothesis:
+    """What stays the same while parameters are fitted."""
+
+    problem: Problem
+    free: tuple[FreeParameter, ...]
+    on: Array
+    levels: NoiseLevels
+    space: ParameterSpace
+
+    def at(self, theta: Array) -> _Point:
+        """Run the filter at a point."""
+        passes = self.problem.filter(self.free, theta, self.on, self.levels)
+        return _Point(theta, passes, passes.log_likelihood + log_prior(self.free, theta))
+
+
+def gauss_newton(problem: Problem, start: Fit, iterations: int, enough: float) -> Fit:
+    """Maximise prior and likelihood over the parameters of a hypothesis by Gauss-Newton steps.
+
+    Derivatives are computed at the start and then updated from each step (Broyden 1965). They are
+    computed again only where a step does not gain what they predicted.
+
+    Args:
+        problem: Recordings and priors.
+        start: The start; its noise levels are kept.
+        iterations: Largest number of steps.
+        enough: A smaller gain ends the search [nats].
+
+    Returns:
+        The fit with its covariance and its evidence.
     """
-    free, levels, space = found.free, found.levels, Space(found.free)
-    on = problem.program.switches(found.effects)
-    theta = space.clipped(found.theta)
-
-    def score(x: Array) -> float:
-        return problem.likelihood(free, x, on, levels) + log_prior(free, x)
-
-    def derived(white: Array) -> tuple[Array, Array]:
-        """Derivatives of the errors at theta, and what the score has of slope besides, by the gains."""
-        if not problem.stiff:
-            return jacobian(problem, free, theta, on, levels, white), np.zeros(len(free))
-        J, g = slopes(problem, free, score, best, theta, space)
-        return J, g + J.T @ white + (theta - space.mean) / space.sd
-
-    best, damping = score(theta), 1e-3
-    J, besides, known = np.zeros((1, len(free))), np.zeros(len(free)), False
+    config = problem.config.fit
+    on = problem.program.switches(start.effects)
+    space = ParameterSpace(start.free)
+    hypothesis = _Hypothesis(problem, start.free, on, start.levels, space)
+    here = hypothesis.at(space.clipped(start.theta))
+    damping, known = FIRST_DAMPING, False
+    J, rest = np.zeros((1, len(start.free))), np.zeros(len(start.free))
     for _ in range(iterations):
-        white = problem.white()  # at theta: the last pass was a full one there
         if not known:
-            J, besides = derived(white)
-        g = besides - J.T @ white - (theta - space.mean) / space.sd
-        step, gain = None, 0.0
-        for _ in range(5):
-            trial = space.stepped(theta, J, g, damping)
-            value = score(trial)
-            if np.isfinite(value) and value > best - 1e-6:
-                step, gain = trial, value - best
+            J, rest = _derivatives(hypothesis, here)
+        g = rest - J.T @ here.passes.whitened - (here.theta - space.mean) / space.sd
+        further, gain = None, 0.0
+        for _ in range(config.most_dampings):
+            trial = hypothesis.at(space.damped_step(here.theta, J, g, damping))
+            if np.isfinite(trial.score) and trial.score > here.score - LOST:
+                further, gain = trial, trial.score - here.score
                 break
-            damping = max(damping, 1e-2) * 10.0
-        if step is None:
-            score(theta)
+            damping = max(damping, LEAST_DAMPING) * DAMPING_GROWTH
+        if further is None:
             if not known:
                 break
-            known = False  # what the last steps taught was wrong
+            known = False  # the updates of the derivatives were wrong
             continue
-        promised = space.promised(J, g, theta, step)
-        kept = damping < SHORT and as_promised(gain, promised)
-        moved = (step - theta) / space.sd
-        theta, best, damping = step, best + gain, damping / 10.0
-        if (gain < enough or kept) and (not known or promised < enough):
+        predicted = space.predicted_gain(J, g, here.theta, further.theta)
+        agrees = agrees_with_prediction(problem, gain, predicted)
+        agrees = damping < config.short_step_damping and agrees
+        step = (further.theta - here.theta) / space.sd
+        before = here
+        here = replace(further, score=before.score + gain)
+        damping /= DAMPING_GROWTH
+        if (gain < enough or agrees) and (not known or predicted < enough):
             break
-        known = gain > TRUSTED * promised
+        known = gain > config.broyden_share * predicted
         if known:
-            J = learnt(J, problem.white() - white, moved)
-    if known:  # spreads are those of derivatives taken, not learnt
-        J, _ = derived(problem.white())
-    information = np.eye(len(free)) + J.T @ J
-    information[np.diag_indices(len(free))] += _curvature(problem, free, theta, on, levels)
+            change = here.passes.whitened - before.passes.whitened
+            J = broyden_update(J, change, step)
+    if known:  # the covariance needs exact derivatives
+        J, _ = _derivatives(hypothesis, here)
+    information = np.eye(len(start.free)) + J.T @ J
+    information[np.diag_indices(len(start.free))] += _curvature(hypothesis, here)
     covariance = space.covariance(information)
-    evidence = best - 0.5 * float(np.linalg.slogdet(information)[1]) + force_prior(problem, levels)
-    return Fit(
-        found.effects, free, theta, covariance, levels, evidence + cut_off(free, theta, covariance)
-    )
+    evidence = here.score - 0.5 * float(np.linalg.slogdet(information)[1])
+    evidence += force_prior(problem, start.levels)
+    evidence += log_truncation(start.free, here.theta, covariance)
+    return replace(start, theta=here.theta, covariance=covariance, evidence=evidence)
 
 
-def learnt(J: Array, change: Array, step: Array) -> Array:
-    """Derivatives by theta / sd that agree with the change of the errors over a step, and else differ least from J."""
+def broyden_update(J: Array, change: Array, step: Array) -> Array:
+    """Return derivatives that agree with the change over a step, and otherwise differ least from J.
+
+    Args:
+        J: (rows, F) derivatives of the whitened errors by theta / sd.
+        change: (rows,) change of the errors over the step.
+        step: (F,) the step in units of the prior sd.
+    """
     length = float(step @ step)
     return J + np.outer((change - J @ step) / length, step) if length > 0.0 else J
 
 
-def slopes(
-    problem: Problem,
-    free: Sequence[FreeParameter],
-    score: Callable[[Array], float],
-    best: float,
-    theta: Array,
-    space: Space,
-) -> tuple[Array, Array]:
-    """Derivatives by theta / sd of the whitened errors (rows, F) and of the score (F,), gains and all.
+def _derivatives(hypothesis: _Hypothesis, here: _Point) -> tuple[Array, Array]:
+    """Derivatives of the whitened errors, and the rest of the gradient that they do not explain."""
+    if not hypothesis.problem.stiff:
+        J = jacobian(
+            hypothesis.problem,
+            hypothesis.free,
+            here.theta,
+            hypothesis.on,
+            hypothesis.levels,
+            here.passes,
+        )
+        return J, np.zeros(len(hypothesis.free))
+    J, g = _full_derivatives(hypothesis, here)
+    space = hypothesis.space
+    return J, g + J.T @ here.passes.whitened + (here.theta - space.mean) / space.sd
 
-    On a stiff hull damping moves the gains more than the errors: with gains held the score would seem to rise where it
-    falls. Forward differences of a hundredth of the prior sd; the curvature, known from the errors, is taken out.
+
+def _full_derivatives(hypothesis: _Hypothesis, here: _Point) -> tuple[Array, Array]:
+    """Derivatives by theta / sd of the whitened errors (rows, F) and of the score (F,).
+
+    The gains of the filter change, too. On a stiff hull, damping changes the gains more than the
+    errors: with the gains held the score would seem to rise where it falls. The curvature, which
+    follows from the errors, is subtracted from the forward differences.
     """
-    white = problem.white()
-    J, g = np.zeros((len(white), len(theta))), np.zeros(len(theta))
-    for j, f in enumerate(free):
+    space, white = hypothesis.space, here.passes.whitened
+    size = hypothesis.problem.config.fit.derivative_step
+    J, g = np.zeros((len(white), len(here.theta))), np.zeros(len(here.theta))
+    for j, f in enumerate(hypothesis.free):
         if f.searched:
             continue
-        h = 0.01 if theta[j] + 0.01 * space.sd[j] <= space.high[j] else -0.01
-        moved = theta.copy()
+        h = size if here.theta[j] + size * space.sd[j] <= space.high[j] else -size
+        moved = here.theta.copy()
         moved[j] += h * space.sd[j]
-        rise = (score(moved) - best) / h
+        there = hypothesis.at(moved)
+        rise = (there.score - here.score) / h
         if np.isfinite(rise):
-            J[:, j] = (problem.white() - white) / h
+            J[:, j] = (there.passes.whitened - white) / h
             g[j] = rise + 0.5 * h * (1.0 + float(J[:, j] @ J[:, j]))
     return J, g
 
@@ -227,45 +347,63 @@ def jacobian(
     theta: Array,
     on: Array,
     levels: NoiseLevels,
-    white: Array,
-    only: int = 0,
+    about: FilterPasses,
+    white: Array | None = None,
+    first: int = 0,
 ) -> Array:
-    """Derivative of the whitened errors by theta / sd, forward differences of a hundredth of the prior sd.
+    """Return the derivative of the whitened errors by theta / sd, with the gains held.
 
-    Gains are those of the last full pass. Columns before `only` are left out.
+    Args:
+        problem: Recordings and priors.
+        free: Free parameters.
+        theta: (F,) their values.
+        on: (effects,) 1 for the effects that act, else 0.
+        levels: Levels of sensor noise and latent force.
+        about: Passes whose gains are used.
+        white: (rows,) whitened errors at theta; None: those of `about`.
+        first: Parameters before this one are omitted.
+
+    Returns:
+        (rows, F - first) forward differences.
     """
-    J = np.zeros((len(white), len(free) - only))
-    for j, f in enumerate(free[only:], only):
+    if white is None:
+        white = about.whitened
+    size = problem.config.fit.derivative_step
+    J = np.zeros((len(white), len(free) - first))
+    for j, f in enumerate(free[first:], first):
         if f.searched:
             continue
         moved = theta.copy()
-        h = 0.01 * f.sd if theta[j] + 0.01 * f.sd <= f.high else -0.01 * f.sd
+        h = size * f.sd if theta[j] + size * f.sd <= f.high else -size * f.sd
         moved[j] += h
-        column = (problem.whitened(free, moved, on, levels) - white) * (f.sd / h)
-        if np.isfinite(column).all():  # otherwise the boat runs away there
-            J[:, j - only] = column
+        errors = problem.whitened(free, moved, on, levels, about)
+        column = (errors - white) * (f.sd / h)
+        if np.isfinite(column).all():  # otherwise the simulated boat diverges there
+            J[:, j - first] = column
     return J
 
 
-def _curvature(
-    problem: Problem, free: Sequence[FreeParameter], theta: Array, on: Array, levels: NoiseLevels
-) -> Array:
-    """Information on parameters without a gradient, by second differences of the likelihood half a prior sd wide."""
+def _curvature(hypothesis: _Hypothesis, here: _Point) -> Array:
+    """Information on parameters without a gradient, by second differences of the likelihood."""
+    problem, free, theta = hypothesis.problem, hypothesis.free, here.theta
+    size = problem.config.fit.curvature_step
     found = np.zeros(len(free))
-    searched = [j for j, f in enumerate(free) if f.searched]
-    if not searched:
-        return found
-    middle = problem.likelihood(free, theta, on, levels)
-    for j in searched:
-        f, moved = free[j], theta.copy()
-        h = 0.5 * f.sd
-        centre = (
-            float(np.clip(theta[j], f.low + h, f.high - h)) if f.high - f.low > 2 * h else theta[j]
-        )
+    for j, f in enumerate(free):
+        if not f.searched:
+            continue
+        h = size * f.sd
+        centre = theta[j]
+        if f.high - f.low > 2 * h:
+            centre = float(np.clip(theta[j], f.low + h, f.high - h))
         around = []
         for x in (centre - h, centre, centre + h):
+            if x == theta[j]:
+                around.append(here.passes.log_likelihood)
+                continue
+            moved = theta.copy()
             moved[j] = x
-            around.append(middle if x == theta[j] else problem.likelihood(free, moved, on, levels))
-        found[j] = max(0.0, (2.0 * around[1] - around[0] - around[2]) / 0.25)
-    problem.likelihood(free, theta, on, levels)
+            found_there = problem.log_likelihood(free, moved, hypothesis.on, hypothesis.levels)
+            around.append(found_there)
+        below, middle, above = around
+        found[j] = max(0.0, (2.0 * middle - below - above) / size**2)
     return found

@@ -1,4 +1,4 @@
-"""Free runs: what a boat does from a recorded state with the recorded commands alone, and how far off it is."""
+"""Free runs: simulations from a recorded state with the recorded commands alone, and their errors."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,7 +9,8 @@ from boatsim.diagnosis.filter import MappedRecording, segments
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
-MODELS = ("recorded", "nominal", "recalibrated", "patched")  # what a free run compares
+# channels of a free run in a diagnosis
+MODELS = ("recorded", "nominal", "recalibrated", "patched")
 FAMILIES = {
     "position_rms_m": ("x_m", "y_m"),
     "heading_rms_rad": ("psi_rad",),
@@ -19,64 +20,97 @@ FAMILIES = {
 
 @dataclass(frozen=True)
 class FreeRun:
-    """A stretch of unseen recording, and what each boat does from its first row with the recorded commands alone."""
+    """A stretch of a recording, and the simulation of each model from its first row."""
 
     run: str  # name of the recording
     start_s: float
     t: Array  # (M,) s
-    channels: dict[
-        str, dict[str, Array]
-    ]  # one of `MODELS` -> x_m, y_m, psi_rad, phi_rad (those there are), each (M,)
+    # one of `MODELS` -> those of x_m, y_m, psi_rad, phi_rad that were recorded, each (M,)
+    channels: dict[str, dict[str, Array]]
+
+    def deviations(self, model: str, signals: Sequence[str]) -> list[Array]:
+        """Return the differences (M,) between a model and the recording.
+
+        Args:
+            model: Name of the model.
+            signals: Columns; those that were not recorded are omitted.
+        """
+        simulated, recorded = self.channels[model], self.channels["recorded"]
+        return [simulated[name] - recorded[name] for name in signals if name in recorded]
 
 
 def free_runs(
-    problem: Problem, fits: Mapping[str, Fit], tracks: Sequence[MappedRecording], horizon: float
+    problem: Problem,
+    fits: Mapping[str, Fit],
+    recordings: Sequence[MappedRecording],
+    horizon: float,
 ) -> list[FreeRun]:
-    """Free runs of all models over recordings, each started at its own smoothed state every `horizon` s."""
-    nq = problem.program.module.NQ
-    out = []
-    for track in tracks:
-        runs = {
-            name: track.free_runs(
-                problem.values(track, f.free, f.theta),
-                problem.program.switches(f.effects),
-                f.levels,
-                horizon,
-            )
-            for name, f in fits.items()
-        }
-        for i, (begin, end) in enumerate(zip(*segments(track.times, horizon), strict=True)):
-            channels: dict[str, dict[str, Array]] = {"recorded": {}, **{name: {} for name in fits}}
-            for c, code in enumerate(track.codes):
-                if code < nq:
-                    channels["recorded"][track.signals[c]] = track.measured[begin : end + 1, c]
-                    for name in fits:
-                        channels[name][track.signals[c]] = runs[name][i][1][:, code]
-            t = track.times[begin : end + 1]
-            out.append(FreeRun(track.name, float(t[0]), t, channels))
-    return out
+    """Return free runs of several models over recordings.
+
+    Each starts at its own smoothed state, every horizon.
+
+    Args:
+        problem: Problem with the program and the priors.
+        fits: Fits by the name of the model.
+        recordings: Recordings mapped to a program of the same vessel.
+        horizon: Length of each free run [s].
+    """
+    found = []
+    for mapped in recordings:
+        runs = {}
+        for name, fit in fits.items():
+            values = problem.values(mapped, fit.free, fit.theta)
+            on = problem.program.switches(fit.effects)
+            runs[name] = mapped.free_runs(values, on, fit.levels, horizon)
+        for i, (begin, end) in enumerate(zip(*segments(mapped.times, horizon), strict=True)):
+            simulated = {name: own[i][1] for name, own in runs.items()}
+            found.append(_free_run(mapped, begin, end, simulated))
+    return found
 
 
-def errors(stretches: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
-    """Rms error per family of signals and model over all stretches."""
+def _free_run(
+    mapped: MappedRecording, begin: int, end: int, simulated: Mapping[str, Array]
+) -> FreeRun:
+    """A stretch of a recording with the simulated channels (M, 2 NQ) of each model."""
+    channels: dict[str, dict[str, Array]] = {name: {} for name in ("recorded", *simulated)}
+    for c, code in enumerate(mapped.codes):
+        if code < mapped.program.module.NQ:
+            signal = mapped.signals[c]
+            channels["recorded"][signal] = mapped.measured[begin : end + 1, c]
+            for name, states in simulated.items():
+                channels[name][signal] = states[:, code]
+    t = mapped.times[begin : end + 1]
+    return FreeRun(mapped.name, float(t[0]), t, channels)
+
+
+def errors(runs: Sequence[FreeRun]) -> dict[str, dict[str, float]]:
+    """Return the rms error of free runs by family of signals and model.
+
+    Args:
+        runs: Free runs with the same models.
+    """
     found: dict[str, dict[str, float]] = {}
+    if not runs:
+        return found
+    models = [model for model in runs[0].channels if model != "recorded"]
     for family, signals in FAMILIES.items():
-        if not stretches or not any(s in stretches[0].channels["recorded"] for s in signals):
+        if not any(signal in runs[0].channels["recorded"] for signal in signals):
             continue
         found[family] = {}
-        for model in (m for m in stretches[0].channels if m != "recorded"):
-            off = [
-                (s.channels[model][n] - s.channels["recorded"][n]).ravel()
-                for s in stretches
-                for n in signals
-                if n in s.channels["recorded"]
-            ]
+        for model in models:
+            off: list[Array] = []
+            for run in runs:
+                off += run.deviations(model, signals)
             found[family][model] = float(np.sqrt(mean_square(off)))
     return found
 
 
 def mean_square(off: Sequence[Array]) -> float:
-    """Of errors where anything was recorded; nan if nothing was."""
-    errors_there = np.concatenate(off)
-    errors_there = errors_there[~np.isnan(errors_there)]
-    return float(np.mean(errors_there**2)) if len(errors_there) else float("nan")
+    """Return the mean square of deviations, without those that are nan; nan if there are none.
+
+    Args:
+        off: Arrays of deviations.
+    """
+    deviations = np.concatenate(off)
+    deviations = deviations[~np.isnan(deviations)]
+    return float(np.mean(deviations**2)) if len(deviations) else float("nan")

@@ -1,148 +1,188 @@
-"""Fits how noisy sensors and water are: sensor noise, level and correlation time of the latent force."""
+"""Fits the levels of sensor noise, and the level and correlation time of the latent force."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.coordinate_search import climbed
+from boatsim.diagnosis.coordinate_search import maximize
 from boatsim.diagnosis.filter import NoiseLevels
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
 from boatsim.physics.base import Array, Wandering
 
-FORCE_PRIOR = (0.3, 1.5)  # sd of log rms of the latent force below and above the ambient level
-SENSOR_PRIOR = 0.4  # sd of log noise about the stated one
-ROUGH, FINE = (
-    2.0,
-    0.3,
-)  # [nats] that levels are near enough their best, once more and for a first fit
-LEAST = 1 / 10  # of the tolerated force, which a level is at least: no law is better than that
-QUIETEST = (
-    1 / 10
-)  # of the stated or sensed noise, which a sensor is off by at least: no log is better than that
-LOOSER = 10  # times that the force is raised e-fold until the filter follows a recording
-TIME_PRIOR = 0.7  # sd of log time constant
+# first steps along a coordinate, in logarithms of levels and prior sds of parameters
+FORCE_STEP = 0.5
+NOISE_STEP = 0.6
+FINE_NOISE_STEP = 0.4
+TIME_STEP = 0.7
+# start of the fit of sensor noise: log of the force above the prior level, and the largest distance
+# of the log of the noise from the specified level
+FORCE_START = 0.7
+NOISE_START_RANGE = 1.2
+# sum of the squared binomial coefficients of a third difference, and the median of a squared normal
+THIRD_DIFFERENCE = 20.0
+CHI_SQUARE_MEDIAN = 0.455
+FEWEST_ROWS = 8  # of a signal from which its noise is estimated
 
 
 def force_prior(problem: Problem, levels: NoiseLevels) -> float:
-    """Log prior of the latent force: near the ambient level, more is likelier than less."""
+    """Return the log prior of the latent force: near the assumed level, and rather more than less.
+
+    Args:
+        problem: Problem with the assumed levels.
+        levels: Levels of a hypothesis.
+    """
+    config = problem.config.fit
     over = np.log(levels.force / problem.ambient.force)
-    return float(
-        np.sum(-0.5 * np.where(over > 0, over / FORCE_PRIOR[1], over / FORCE_PRIOR[0]) ** 2)
-    )
+    deviation = np.where(over > 0, over / config.force_sd_above, over / config.force_sd_below)
+    return float(np.sum(-0.5 * deviation**2))
 
 
 def _forces(problem: Problem, logs: Array) -> Array:
-    """Levels of the latent force from their logarithms: however calm the water, a model is no better than so much."""
-    return np.maximum(np.exp(logs), LEAST * problem.ambient.force)
+    """Levels of the latent force from their logarithms, with the lower bound."""
+    return np.maximum(np.exp(logs), problem.config.fit.least_force * problem.ambient.force)
 
 
-def _sensors(families: Sequence[str], logs: Array, stated: Array) -> dict[str, float]:
-    """Noise of each family from its logarithm: however exact a log seems, so much of the stated one is left."""
-    return dict(
-        zip(families, np.maximum(np.exp(logs), QUIETEST * np.exp(stated)).tolist(), strict=True)
-    )
+def _sensors(
+    problem: Problem, families: Sequence[str], logs: Array, specified: Array
+) -> dict[str, float]:
+    """Noise of each family from its logarithm, with the lower bound."""
+    least = problem.config.fit.least_noise * np.exp(specified)
+    return dict(zip(families, np.maximum(np.exp(logs), least).tolist(), strict=True))
 
 
-def fit_force(problem: Problem, found: Fit, enough: float = ROUGH) -> Fit:
-    """A hypothesis with the latent-force level of each axis refitted, and with it the spectra it has (`searched`).
+def _families(problem: Problem) -> list[str]:
+    """Noise families of all recorded channels."""
+    return sorted({family for mapped in problem.recordings for family in mapped.families})
 
-    Where the error of an instrument wanders, the noise of the instruments with them: it was fitted without that error.
+
+def _noise_prior(problem: Problem, logs: Array, specified: Array) -> float:
+    """Sum of the squared deviations of the log noise in prior sds."""
+    return float(np.sum(((logs - specified) / problem.config.fit.noise_sd) ** 2))
+
+
+def fit_force(problem: Problem, found: Fit, enough: float | None = None) -> Fit:
+    """Return a hypothesis with the level of the latent force of each axis refitted.
+
+    The spectra of its stochastic forces are fitted together with it. Where the error of an instrument
+    drifts, so is the noise of the instruments, which was fitted without that error.
+
+    Args:
+        problem: Recordings and priors.
+        found: The start.
+        enough: Accuracy [nats]; None: that of levels which are fitted again.
     """
+    if enough is None:
+        enough = problem.config.fit.rough_gain
     on = problem.program.switches(found.effects)
     searched = [j for j, f in enumerate(found.free) if f.searched]
-    low = np.array([found.free[j].low for j in searched])
-    high = np.array([found.free[j].high for j in searched])
-    mean = np.array([found.free[j].mean for j in searched])
-    sd = np.array([found.free[j].sd for j in searched])
-    wanders = any(
-        isinstance(e, Wandering) and e.name in found.effects for e in problem.program.candidates
-    )
-    families = sorted({f for t in problem.recordings for f in t.families}) if wanders else []
-    stated = np.log([problem.ambient.sensors[f] for f in families])
+    free = [found.free[j] for j in searched]
+    low, high = np.array([f.low for f in free]), np.array([f.high for f in free])
+    mean, sd = np.array([f.mean for f in free]), np.array([f.sd for f in free])
+    acting = [e for e in problem.program.candidates if e.name in found.effects]
+    drifts = any(isinstance(e, Wandering) for e in acting)
+    families = _families(problem) if drifts else []
+    specified = np.log([problem.ambient.sensors[f] for f in families])
     k, n = len(searched), len(searched) + len(families)
 
     def placed(x: Array) -> tuple[NoiseLevels, Array]:
         theta = found.theta.copy()
         theta[searched] = np.clip(x[:k] * sd, low, high)
-        sensors = _sensors(families, x[k:n], stated)
+        sensors = dict(found.levels.sensors) | _sensors(problem, families, x[k:n], specified)
         force = _forces(problem, x[n:])
-        return replace(
-            found.levels, force=force, sensors={**found.levels.sensors, **sensors}
-        ), theta
+        return replace(found.levels, force=force, sensors=sensors), theta
+
+    about = problem.filter(found.free, found.theta, on, found.levels)
 
     def score(x: Array) -> float:
         levels, theta = placed(x)
-        prior = -0.5 * float(
-            np.sum(((theta[searched] - mean) / sd) ** 2)
-            + np.sum(((x[k:n] - stated) / SENSOR_PRIOR) ** 2)
-        )
-        return (
-            problem.likelihood(found.free, theta, on, levels, fresh=False)
-            + force_prior(problem, levels)
-            + prior
-        )
+        deviation = float(np.sum(((theta[searched] - mean) / sd) ** 2))
+        prior = -0.5 * (deviation + _noise_prior(problem, x[k:n], specified))
+        likelihood = problem.log_likelihood(found.free, theta, on, levels, about)
+        return likelihood + force_prior(problem, levels) + prior
 
-    problem.likelihood(found.free, found.theta, on, found.levels)
     noise = np.log([found.levels.sensors[f] for f in families])
     begin = np.concatenate([found.theta[searched] / sd, noise, np.log(found.levels.force)])
-    levels, theta = placed(climbed(score, begin, 0.5, enough)[1])
+    _, x = maximize(score, begin, FORCE_STEP, enough, problem.config.fit)
+    levels, theta = placed(x)
     return replace(found, levels=levels, theta=theta)
 
 
 def fit_noise(problem: Problem, found: Fit) -> Fit:
-    """A hypothesis with sensor noise and latent-force levels fitted, parameters as they are."""
-    families = sorted({f for t in problem.recordings for f in t.families})
-    n = len(problem.ambient.force)
+    """Return a hypothesis with sensor noise and latent force fitted and its parameters kept.
+
+    Args:
+        problem: Recordings and priors.
+        found: The start.
+    """
+    config, prior_levels = problem.config.fit, problem.ambient
+    families = _families(problem)
+    n = len(prior_levels.force)
     on = problem.program.switches(found.effects)
-    stated = np.log([problem.ambient.sensors[f] for f in families])
-    rough = np.log([_roughness(problem, f) or problem.ambient.sensors[f] for f in families])
+    specified = np.log([prior_levels.sensors[f] for f in families])
+    rough = np.log([_roughness(problem, f) or prior_levels.sensors[f] for f in families])
 
     def levels(x: Array) -> NoiseLevels:
-        sensors = {**problem.ambient.sensors, **_sensors(families, x[n:], stated)}
-        return replace(problem.ambient, force=_forces(problem, x[:n]), sensors=sensors)
+        sensors = dict(prior_levels.sensors) | _sensors(problem, families, x[n:], specified)
+        return replace(prior_levels, force=_forces(problem, x[:n]), sensors=sensors)
 
-    def score(x: Array, fresh: bool = False) -> float:
-        prior = -0.5 * float(np.sum(((x[n:] - stated) / SENSOR_PRIOR) ** 2))
-        likelihood = problem.likelihood(found.free, found.theta, on, levels(x), fresh)
-        return likelihood + force_prior(problem, levels(x)) + prior
+    def prior(x: Array) -> float:
+        return -0.5 * _noise_prior(problem, x[n:], specified)
 
-    x = np.concatenate(
-        [np.log(problem.ambient.force) + 0.7, np.clip(rough, stated - 1.2, stated + 1.2)]
-    )
-    for _ in range(LOOSER):  # where the boat as written runs away from what was recorded
-        if np.isfinite(score(x, fresh=True)):
+    def maximized(x: Array, about: FilterPasses, step: float, enough: float) -> Array:
+        def score(x: Array) -> float:
+            likelihood = problem.log_likelihood(found.free, found.theta, on, levels(x), about)
+            return likelihood + force_prior(problem, levels(x)) + prior(x)
+
+        return maximize(score, x, step, enough, config)[1]
+
+    low, high = specified - NOISE_START_RANGE, specified + NOISE_START_RANGE
+    x = np.concatenate([np.log(prior_levels.force) + FORCE_START, np.clip(rough, low, high)])
+    about = problem.filter(found.free, found.theta, on, levels(x))
+    for _ in range(config.force_raises):  # where the simulated boat diverges from the recording
+        begin = about.log_likelihood + force_prior(problem, levels(x)) + prior(x)
+        if np.isfinite(begin):
             break
         x[:n] += 1.0
-    _, x = climbed(score, x, 0.6, ROUGH)
-    score(x, fresh=True)
-    return replace(found, levels=levels(climbed(score, x, 0.4, FINE)[1]))
+        about = problem.filter(found.free, found.theta, on, levels(x))
+    x = maximized(x, about, NOISE_STEP, config.rough_gain)
+    about = problem.filter(found.free, found.theta, on, levels(x))
+    return replace(found, levels=levels(maximized(x, about, FINE_NOISE_STEP, config.fine_gain)))
 
 
 def fit_time_constant(problem: Problem, found: Fit) -> NoiseLevels:
-    """Latent-force levels with their correlation time, for the band that locates a mismatch in time."""
+    """Return the levels of the latent force with its correlation time, which locate it in time.
+
+    Args:
+        problem: Recordings and priors.
+        found: A fit, whose parameters are kept.
+    """
+    config = problem.config.fit
     on = problem.program.switches(found.effects)
+    usual = np.log(problem.ambient.time_constant)
+    about = problem.filter(found.free, found.theta, on, found.levels)
 
     def levels(x: Array) -> NoiseLevels:
-        lasting = found.levels.lasting(float(np.exp(x[1])))
-        return replace(lasting, force=lasting.force * np.exp(x[0]))
+        other = found.levels.with_time_constant(float(np.exp(x[1])))
+        return replace(other, force=other.force * np.exp(x[0]))
 
     def score(x: Array) -> float:
-        prior = -0.5 * ((x[1] - np.log(problem.ambient.time_constant)) / TIME_PRIOR) ** 2
-        likelihood = problem.likelihood(found.free, found.theta, on, levels(x), fresh=False)
+        prior = -0.5 * ((x[1] - usual) / config.correlation_time_sd) ** 2
+        likelihood = problem.log_likelihood(found.free, found.theta, on, levels(x), about)
         return likelihood + force_prior(problem, levels(x)) + float(prior)
 
-    problem.likelihood(found.free, found.theta, on, found.levels)
     begin = np.array([0.0, np.log(found.levels.time_constant)])
-    return levels(climbed(score, begin, 0.7, FINE)[1])
+    return levels(maximize(score, begin, TIME_STEP, config.fine_gain, config)[1])
 
 
 def _roughness(problem: Problem, family: str) -> float:
-    """Noise sd of a sensor from third differences of its signal, robust to outliers; 0 if it never varies."""
+    """Noise sd of a sensor from third differences of its signal, robust to outliers, or 0."""
     found = []
-    for t in problem.recordings:
-        for c, f in enumerate(t.families):
-            y = t.measured[np.isfinite(t.measured[:, c]), c]
-            if f == family and len(y) > 8:
-                found.append(np.diff(y, 3) ** 2 / 20.0)
-    return float(np.sqrt(np.median(np.concatenate(found)) / 0.455)) if found else 0.0
+    for mapped in problem.recordings:
+        for c, own in enumerate(mapped.families):
+            y = mapped.measured[np.isfinite(mapped.measured[:, c]), c]
+            if own == family and len(y) > FEWEST_ROWS:
+                found.append(np.diff(y, 3) ** 2 / THIRD_DIFFERENCE)
+    if not found:
+        return 0.0
+    return float(np.sqrt(np.median(np.concatenate(found)) / CHI_SQUARE_MEDIAN))

@@ -23,22 +23,22 @@ from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT, Finding
 from boatsim.diagnosis.checks.hypothesis_test import compare_reinterpretations
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
 from boatsim.diagnosis.config import DEFAULT, ChecksConfig, DiagnosisConfig
-from boatsim.diagnosis.correlation_time import timed
-from boatsim.diagnosis.covariance_inflation import widened
+from boatsim.diagnosis.correlation_time import with_correlation_time
+from boatsim.diagnosis.covariance_inflation import inflate_covariance
 from boatsim.diagnosis.experiment_design import next_experiment
 from boatsim.diagnosis.filter import (
     MappedRecording,
     axes_of,
     map_recording,
-    noise_beside,
-    noise_of,
-    nominal_levels,
+    prior_levels,
+    relative_noise,
+    shared_noise,
 )
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.locate import missing_force as locate
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.locate.mean_force import mean_left
-from boatsim.diagnosis.problem import Problem, check_taken_up
+from boatsim.diagnosis.problem import Problem, check_uncertainty
 from boatsim.diagnosis.report import assumptions, before_after
 from boatsim.diagnosis.report.answer import compose, meanings
 from boatsim.diagnosis.report.findings import Findings, Missing
@@ -200,7 +200,7 @@ def pose(
     }
     there = {path: library_for(b, library, facts, columns) for path, b in known.items()}
     programs = {path: Program(b, there[path].compiled) for path, b in known.items()}
-    stated, levels = noise_of(boat, fitted), nominal_levels(boat, fitted)
+    stated, levels = shared_noise(boat, fitted), prior_levels(boat, fitted)
 
     def lay(recording: Recording) -> MappedRecording:
         mapped = map_recording(recording, programs[recording.path], stated)
@@ -209,16 +209,16 @@ def pose(
     laid = [lay(r) for r in fitted]
     laid += [
         with_initial_actuators(
-            map_recording(r, programs[r.path], stated, noise_beside(boat, fitted, r)),
+            map_recording(r, programs[r.path], stated, relative_noise(boat, fitted, r)),
             levels,
             config.checks,
         )
         for r in held_out
     ]
     uncertainty = priors.uncertainty(boat)
-    check_taken_up(boat, uncertainty, f"{boat.file.parent.name}/{boat.file.name}: diagnosis")
+    check_uncertainty(boat, uncertainty, f"{boat.file.parent.name}/{boat.file.name}: diagnosis")
     for r in (*fitted, *held_out):
-        check_taken_up(
+        check_uncertainty(
             boats[r.path],
             r.notes.coefficient_uncertainty,
             f"{r.path or r.name} by its recording.toml",
@@ -327,7 +327,10 @@ def diagnose_recordings(
             ranking = rank(problem, candidates, held_out_tracks, report=part(report, *RANKING))
             a_fact = "time_constant_s" in fitted[0].notes.ambient
             report("choosing the correlation time of the water", RANKING[1])
-            if not a_fact and (again := timed(problem, ranking.best)) is not problem:
+            if (
+                not a_fact
+                and (again := with_correlation_time(problem, ranking.best)) is not problem
+            ):
                 report("selecting once more, with that time", RANKING[1])
                 problem, ranking = again, rank(again, candidates, held_out_tracks, ranking.best)
             before, ranking = (
@@ -415,7 +418,7 @@ def _described(
     if found is None:
         return ranking
     named = tuple(n for n in ranking.named if n.name in found.fit.effects)
-    best = ranking.best if found.fit is ranking.best else widened(problem, found.fit)
+    best = ranking.best if found.fit is ranking.best else inflate_covariance(problem, found.fit)
     terms = (
         replace(w, sd=best.value(w.term.name, "coefficient")[1]) if w.carries else w
         for w in found.terms

@@ -1,10 +1,11 @@
-"""What is to be fitted: recordings on one program, the coefficients and suspects that are free, and a fit of them."""
+"""The estimation problem: mapped recordings, free parameters with their priors, and a fit of them."""
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -12,72 +13,18 @@ import numpy as np
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.command_range import excursion
 from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig
-from boatsim.diagnosis.filter import BODY, MappedRecording, NoiseLevels
+from boatsim.diagnosis.filter import BODY, FilterPass, MappedRecording, NoiseLevels
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array, Channel, Effect, Param, Release, Wandering
+from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 
-
-@dataclass(frozen=True)
-class FreeParameter:
-    """A parameter to fit, and what it does to which numbers of a boat.
-
-    A nuisance scales the run's own value: `relative` is true and its mean is 1. A release scales, shifts or sets
-    several.
-    """
-
-    effect: str
-    name: str
-    at: tuple[int, ...]  # positions in a track's values
-    mean: float
-    sd: float
-    low: float
-    high: float
-    relative: bool = False
-    # moves the spectrum of a random force, not the expected motion: no gradient there
-    searched: bool = False
-    how: str = "sets"  # or "scales" or "shifts"
-    weights: tuple[float, ...] = (1.0,)  # of a shift, one for each position
-
-    def act(self, p: Array, x: float) -> None:
-        """Put its value into a boat's numbers."""
-        for at, weight in zip(self.at, self.weights, strict=True):
-            p[at] = (
-                p[at] * x
-                if self.how == "scales"
-                else p[at] + weight * x
-                if self.how == "shifts"
-                else x
-            )
-
-
-@dataclass(frozen=True)
-class Fit:
-    """A converged hypothesis."""
-
-    effects: tuple[str, ...]  # candidates that act, in the order in which they were added
-    free: tuple[FreeParameter, ...]
-    theta: Array  # (F,) fitted values
-    covariance: Array  # (F, F)
-    levels: NoiseLevels
-    evidence: float  # log of the Laplace evidence [nats]
-
-    def value(self, effect: str, name: str) -> tuple[float, float]:
-        """Fitted value and standard deviation of one parameter."""
-        i = next(
-            i
-            for i, f in enumerate(self.free)
-            if f.effect == effect and f.name == name and not f.relative
-        )
-        return float(self.theta[i]), float(np.sqrt(self.covariance[i, i]))
-
-
-SIDES = {
-    "port": -1,
-    "middle": 0,
-    "starboard": 1,
-}  # parameters of a channel effect that belong to one side
-MASS, LENGTH = 4.6, 1.2  # [kg], [m] the boat for which the effects state their priors
+# side of the actuator to which a parameter of a channel effect belongs, by its name
+SIDES = {"port": -1, "middle": 0, "starboard": 1}
+# [kg], [m] mass and length of the hull for which effects specify their priors
+REFERENCE_MASS = 4.6
+REFERENCE_LENGTH = 1.2
+# dimensions of a unit: powers of mass, length and time
 SYMBOLS = {
     "N": (1, 1, -2),
     "kg": (1, 0, 0),
@@ -89,170 +36,336 @@ SYMBOLS = {
 }
 
 
-def scale_of(unit: str, vessel: Vessel) -> float:
-    """How much larger a quantity of this unit is on a vessel than on the reference boat, by Froude's law."""
-    above, _, below = unit.partition("/")
+@dataclass(frozen=True)
+class FreeParameter:
+    """A parameter to fit, its prior, and how it changes the parameter values of a run.
+
+    A coefficient of the nominal model scales the run's own value: `relative` is true and the prior
+    mean is 1. A release scales, shifts or sets several numbers.
+    """
+
+    effect: str
+    name: str
+    at: tuple[int, ...]  # places in the parameter values of a run
+    mean: float
+    sd: float
+    low: float
+    high: float
+    relative: bool = False
+    # without a gradient: it changes the spectrum of a stochastic force, not the expected motion
+    searched: bool = False
+    how: str = "sets"  # or "scales" or "shifts"
+    weights: tuple[float, ...] = (1.0,)  # of a shift, one for each place
+
+    def apply(self, values: Array, x: float) -> None:
+        """Put a value of the parameter into the parameter values of a run.
+
+        Args:
+            values: Parameter values of a run, changed in place.
+            x: Value of this parameter.
+        """
+        for at, weight in zip(self.at, self.weights, strict=True):
+            if self.how == "scales":
+                values[at] *= x
+            elif self.how == "shifts":
+                values[at] += weight * x
+            else:
+                values[at] = x
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A converged hypothesis: which effects act, and the posterior of its free parameters."""
+
+    effects: tuple[str, ...]  # candidates that act, in the order in which they were added
+    free: tuple[FreeParameter, ...]
+    theta: Array  # (F,) fitted values
+    covariance: Array  # (F, F)
+    levels: NoiseLevels
+    evidence: float  # log of the Laplace evidence [nats]
+
+    def value(self, effect: str, name: str) -> tuple[float, float]:
+        """Return the fitted value and the standard deviation of a parameter.
+
+        Args:
+            effect: Name of an effect of this fit.
+            name: Name of one of its fitted parameters.
+        """
+        names = [("" if f.relative else f.effect, f.name) for f in self.free]
+        i = names.index((effect, name))
+        return float(self.theta[i]), float(np.sqrt(self.covariance[i, i]))
+
+
+@dataclass(frozen=True)
+class FilterPasses:
+    """Filter passes over all recordings of a problem for one hypothesis."""
+
+    passes: tuple[FilterPass, ...]
+
+    @cached_property
+    def log_likelihood(self) -> float:
+        """Log likelihood of all recordings."""
+        return sum(one.log_likelihood for one in self.passes)
+
+    @cached_property
+    def whitened(self) -> Array:
+        """Whitened prediction errors of all recordings, one after the other."""
+        return np.concatenate([one.whitened for one in self.passes])
+
+    @property
+    def log_density(self) -> float:
+        """Log of the density assigned to measurements equal to the predictions."""
+        return sum(one.log_density for one in self.passes)
+
+
+def froude_scale(unit: str, vessel: Vessel) -> float:
+    """Return how much larger a quantity is on a vessel than on the reference hull, by Froude's law.
+
+    Args:
+        unit: Unit of the quantity, such as "N s/m".
+        vessel: Vessel whose mass and length set the scale.
+    """
+    numerator, _, denominator = unit.partition("/")
     powers = np.zeros(3)
-    for part, sign in ((above, 1), (below, -1)):
+    for part, sign in ((numerator, 1), (denominator, -1)):
         for factor in part.split():
             symbol, _, power = factor.partition("^")
             powers += sign * int(power or 1) * np.array(SYMBOLS[symbol])
-    length = vessel.length / LENGTH
-    return float((vessel.body.mass / MASS) ** powers[0] * length ** (powers[1] + 0.5 * powers[2]))
+    mass, length = vessel.body.mass / REFERENCE_MASS, vessel.length / REFERENCE_LENGTH
+    return float(mass ** powers[0] * length ** (powers[1] + 0.5 * powers[2]))
 
 
-def check_taken_up(vessel: Vessel, stated: Mapping[str, float], where: str) -> None:
-    """Every stated uncertainty is one of coefficients that the vessel has. Raises BadInput."""
-    params = [
-        p for e in vessel.effects for p in type(e).params().values() if p.axis in ("", *vessel.dof)
-    ]
-    kinds = sorted({p.calibrates for p in params} - {""})
-    for kind, sd in stated.items():
-        if kind not in kinds:
-            near = get_close_matches(kind, kinds, n=1, cutoff=0.5)
-            raise BadInput(
-                f"{where}: coefficient_uncertainty.{kind} = {sd:g}, but {vessel.name} has no coefficient of {kind}"
-                f"{f'; did you mean {near[0]!r}' if near else ''}; allowed are {', '.join(kinds) or 'none'}"
-            )
+def check_uncertainty(vessel: Vessel, specified: Mapping[str, float], where: str) -> None:
+    """Check that a vessel has coefficients of each kind for which an uncertainty is specified.
+
+    Args:
+        vessel: Vessel of the recordings.
+        specified: Relative standard deviation by kind of coefficient.
+        where: File that specifies them, for the message.
+
+    Raises:
+        BadInput: The vessel has no coefficient of a kind.
+    """
+    found = set()
+    for effect in vessel.effects:
+        for param in type(effect).params().values():
+            if param.axis in ("", *vessel.dof):
+                found.add(param.calibrates)
+    kinds = sorted(found - {""})
+    for kind, sd in specified.items():
+        if kind in kinds:
+            continue
+        near = get_close_matches(kind, kinds, n=1, cutoff=0.5)
+        hint = f"; did you mean {near[0]!r}" if near else ""
+        raise BadInput(
+            f"{where}: coefficient_uncertainty.{kind} = {sd:g}, but {vessel.name} has no "
+            f"coefficient of {kind}{hint}; allowed are {', '.join(kinds) or 'none'}"
+        )
 
 
-class _Acts(NamedTuple):
+class _Target(NamedTuple):
+    """Places in the parameter values of a run that a parameter changes, and their weights."""
+
     at: tuple[int, ...]
     weights: tuple[float, ...]
 
 
+@dataclass(frozen=True, eq=False)
 class Problem:
-    """Recordings, a program with all suspects compiled in, and what may be fitted."""
+    """Mapped recordings, a program with all candidates compiled in, and what may be fitted."""
 
-    def __init__(
-        self,
-        tracks: Sequence[MappedRecording],
-        ambient: NoiseLevels,
-        uncertainty: dict[str, float],
-        horizon: float | None = None,
-        config: DiagnosisConfig = DEFAULT,
-    ) -> None:
-        """`uncertainty` is the relative sd of coefficients by kind ("damping", "thrust", ...).
+    recordings: Sequence[MappedRecording]
+    ambient: NoiseLevels  # prior levels
+    uncertainty: Mapping[str, float]  # relative prior sd of coefficients, by kind
+    specified_horizon: float | None = None  # [s] length of free runs, if not the usual one
+    config: DiagnosisConfig = DEFAULT
+    # prior sd of the coefficients of described terms, by the name of the effect
+    spreads: dict[str, float] = field(default_factory=dict)
+    program: Program = field(init=False)
+    horizon: float = field(init=False)  # [s] length of free runs
+    # coefficients of the vessel's own effects that are refitted with every hypothesis
+    nominal_coefficients: tuple[FreeParameter, ...] = field(init=False)
+    # (to, from) places in the parameter values of a run: unset parameters inherit the vessel's value
+    links: tuple[tuple[int, int], ...] = field(init=False)
 
-        `horizon` is the length [s] of the free runs by which it is judged, if not the usual one.
+    def __post_init__(self) -> None:
+        program = self.recordings[0].program
+        usual = priors.horizon(program.vessel, self.config.load)
+        object.__setattr__(self, "program", program)
+        object.__setattr__(self, "horizon", self.specified_horizon or usual)
+        object.__setattr__(self, "nominal_coefficients", self._nominal_coefficients())
+        object.__setattr__(self, "links", self._links())
+
+    def on(self, recordings: Sequence[MappedRecording]) -> "Problem":
+        """Return the same problem with other recordings.
+
+        Args:
+            recordings: Recordings mapped to a program of the same vessel.
         """
-        self.recordings, self.ambient, self.uncertainty = list(tracks), ambient, uncertainty
-        self.program = tracks[0].program
-        self.config = config
-        self.horizon = horizon or priors.horizon(self.program.vessel)
-        self.nuisances = self._nuisances()
-        self.links = self._links()
-        self.spreads: dict[
-            str, float
-        ] = {}  # prior sd of the coefficient of each law that the diagnosis describes
-
-    def on(self, tracks: Sequence[MappedRecording]) -> "Problem":
-        """The same question to other recordings."""
         other = copy(self)
-        other.recordings = list(tracks)
+        object.__setattr__(other, "recordings", recordings)
         return other
 
     def parameters(self, effects: Sequence[str]) -> tuple[FreeParameter, ...]:
-        """Coefficients of the nominal, then everything that the suspects let be fitted, in their order."""
-        free = list(self.nuisances)
+        """Return the nominal coefficients, then the parameters of effects, in their order.
+
+        Args:
+            effects: Names of the candidates that act.
+        """
+        free = list(self.nominal_coefficients)
         candidates = {e.name: e for e in self.program.candidates}
-        for effect in (candidates[n] for n in effects):
-            for name, about in type(effect).params().items():
-                axis_is_free = not about.axis or about.axis in self.program.vessel.dof
-                if (
-                    about.fit
-                    and axis_is_free
-                    and self._on_board(effect, name)
-                    and (acts := self._acts(effect, name))
-                ):
-                    sd = self.spreads.get(effect.name, about.spread * self.scale(effect, name))
-                    low, high = self._bounds(about)
-                    free.append(
-                        FreeParameter(
-                            effect.name,
-                            name,
-                            acts.at,
-                            about.absent,
-                            sd,
-                            low,
-                            high,
-                            False,
-                            type(effect).random,
-                            about.how,
-                            acts.weights,
-                        )
-                    )
+        for name in effects:
+            free += self._parameters_of(candidates[name])
         return tuple(free)
 
-    def values(self, track: MappedRecording, free: Sequence[FreeParameter], theta: Array) -> Array:
-        """A run's numbers with the free ones put in."""
-        p = track.values.copy()
-        for f, x in zip(free, theta, strict=True):
-            f.act(p, float(x))
-        for to, source in self.links:
-            p[to] = p[source]
-        return p
+    def _parameters_of(self, effect: Effect) -> list[FreeParameter]:
+        """The parameters of a candidate that may be fitted."""
+        free = []
+        for name, param in type(effect).params().items():
+            applies = not param.axis or param.axis in self.program.vessel.dof
+            if not param.fit or not applies or not self._has_actuator(effect, name):
+                continue
+            target = self._target(effect, name)
+            if target is None:
+                continue
+            usual = param.spread * self.scale(effect, name)
+            low, high = self._bounds(param)
+            free.append(
+                FreeParameter(
+                    effect.name,
+                    name,
+                    target.at,
+                    mean=param.absent,
+                    sd=self.spreads.get(effect.name, usual),
+                    low=low,
+                    high=high,
+                    searched=type(effect).random,
+                    how=param.how,
+                    weights=target.weights,
+                )
+            )
+        return free
 
-    def _acts(self, effect: Effect, name: str) -> _Acts | None:
-        """Where a parameter of a suspect acts: its own place, or the numbers of the vessel that it releases."""
+    def values(self, mapped: MappedRecording, free: Sequence[FreeParameter], theta: Array) -> Array:
+        """Return the parameter values of a run with the free parameters put in.
+
+        Args:
+            mapped: Recording of the run.
+            free: Free parameters of a hypothesis.
+            theta: (F,) their values.
+        """
+        values = mapped.values.copy()
+        for parameter, x in zip(free, theta, strict=True):
+            parameter.apply(values, float(x))
+        for to, source in self.links:
+            values[to] = values[source]
+        return values
+
+    def _target(self, effect: Effect, name: str) -> _Target | None:
+        """Places that a parameter of a candidate changes: its own, or those that it releases."""
         if not isinstance(effect, Release):
-            return _Acts((self.program.index(effect.name, name),), (1.0,))
+            return _Target((self.program.index(effect.name, name),), (1.0,))
         changes = [c for c in effect.changes(self.program.vessel) if c.parameter == name]
+        if not changes:
+            return None
         at = tuple(self.place(c.owner, c.key) for c in changes)
-        return _Acts(at, tuple(c.weight for c in changes)) if at else None
+        return _Target(at, tuple(c.weight for c in changes))
 
     def place(self, owner: str, key: str) -> int:
-        """Position in a track's values of an effect's parameter, or of a number of the "body"."""
+        """Return the place of a number in the parameter values of a run.
+
+        Args:
+            owner: Name of an effect, or "body".
+            key: Name of its parameter, or one of `BODY`.
+        """
         if owner == "body":
             return len(self.program.values()) + BODY.index(key)
         return self.program.index(owner, key)
 
-    def likelihood(
+    def filter(
         self,
         free: Sequence[FreeParameter],
         theta: Array,
         on: Array,
         levels: NoiseLevels,
-        fresh: bool = True,
+        about: FilterPasses | None = None,
+    ) -> FilterPasses:
+        """Return the filter passes of a hypothesis over all recordings.
+
+        Args:
+            free: Free parameters of the hypothesis.
+            theta: (F,) their values.
+            on: (effects,) 1 for the effects that act, else 0.
+            levels: Levels of sensor noise and latent force.
+            about: Passes whose linearisation is used again, for other noise levels; None: linearise.
+        """
+        before = about.passes if about else [None] * len(self.recordings)
+        found = []
+        for mapped, one in zip(self.recordings, before, strict=True):
+            found.append(mapped.filter(self.values(mapped, free, theta), on, levels, one))
+        return FilterPasses(tuple(found))
+
+    def log_likelihood(
+        self,
+        free: Sequence[FreeParameter],
+        theta: Array,
+        on: Array,
+        levels: NoiseLevels,
+        about: FilterPasses | None = None,
     ) -> float:
-        """Log likelihood of all runs; not `fresh`: linearised where the last fresh one was, for other levels."""
-        return sum(
-            t.likelihood(self.values(t, free, theta), on, levels, fresh) for t in self.recordings
-        )
+        """Return the log likelihood of `filter` with the same arguments."""
+        return self.filter(free, theta, on, levels, about).log_likelihood
 
     def whitened(
-        self, free: Sequence[FreeParameter], theta: Array, on: Array, levels: NoiseLevels
+        self,
+        free: Sequence[FreeParameter],
+        theta: Array,
+        on: Array,
+        levels: NoiseLevels,
+        about: FilterPasses,
     ) -> Array:
-        """Whitened prediction errors of all runs with the gains of the last `likelihood`."""
-        return np.concatenate(
-            [t.whitened(self.values(t, free, theta), on, levels) for t in self.recordings]
-        )
+        """Return the whitened prediction errors of all recordings with the gains of other passes.
+
+        Args:
+            free: Free parameters of the hypothesis.
+            theta: (F,) their values.
+            on: (effects,) 1 for the effects that act, else 0.
+            levels: Levels of sensor noise and latent force.
+            about: Passes whose gains are used.
+        """
+        found = []
+        for mapped, one in zip(self.recordings, about.passes, strict=True):
+            found.append(mapped.whitened(self.values(mapped, free, theta), on, levels, one))
+        return np.concatenate(found)
 
     def scale(self, effect: Effect, name: str) -> float:
-        """How much larger a parameter may be than on the boat for which effects state their priors, by its unit.
+        """Return how much larger a parameter may be than on the reference hull.
 
-        A threshold of thrust goes with the largest command given: that boat's full thrust is 1 N. What an instrument
-        wanders by goes with its noise.
+        Quantities follow Froude's law. The threshold of a command scales with the largest command
+        recorded, because the full thrust of the reference hull is 1 N. The drift of an instrument
+        scales with its noise.
+
+        Args:
+            effect: A candidate.
+            name: Name of its parameter.
         """
         unit = type(effect).params()[name].unit
         if isinstance(effect, Wandering):
             noise = {"m": "position_sd_m", "rad": "heading_sd_rad"}
             return self.ambient.sensors[noise[unit]] if unit in noise else 1.0
-        if (
-            name in type(effect).thresholds
-            and unit != "rad"
-            and (largest := excursion(self.recordings, effect))
-        ):
-            return largest
-        return scale_of(unit, self.program.vessel)
+        if name in type(effect).thresholds and unit != "rad":
+            largest = excursion(self.recordings, effect, self.config.load)
+            if largest:
+                return largest
+        return froude_scale(unit, self.program.vessel)
 
-    def _bounds(self, about: Param) -> tuple[float, float]:
-        """Between which values a parameter is sought: what a file may say, and what can be on a boat of this size."""
-        low, high = (end * scale_of(about.unit, self.program.vessel) for end in about.within)
-        return max(low, about.low), min(high, about.high)
+    def _bounds(self, param: Param) -> tuple[float, float]:
+        """Bounds of a parameter: those of the file format and those of a hull of this size."""
+        low, high = (end * froude_scale(param.unit, self.program.vessel) for end in param.within)
+        return max(low, param.low), min(high, param.high)
 
-    def _on_board(self, effect: Effect, parameter: str) -> bool:
-        """Whether there is an actuator on the side to which a channel effect's parameter belongs, if it is of one."""
+    def _has_actuator(self, effect: Effect, parameter: str) -> bool:
+        """Whether the vessel has an actuator on the side to which a parameter belongs, if any."""
         if not isinstance(effect, Channel) or parameter not in SIDES:
             return True
         vessel = self.program.vessel
@@ -260,67 +373,56 @@ class Problem:
 
     @property
     def stiff(self) -> bool:
-        """Whether the hull's quickest motion dies out within a sample of any run."""
-        return any(t.stiff for t in self.recordings)
-
-    def white(self) -> Array:
-        """Whitened prediction errors of all runs, of the last pass."""
-        return np.concatenate([t.white for t in self.recordings])
+        """Whether the fastest motion of the hull decays within a sample of any recording."""
+        return any(mapped.stiff for mapped in self.recordings)
 
     def nominal(self) -> Fit:
-        """Nothing fitted: the vessel as it is written."""
-        free = self.nuisances
-        return Fit(
-            (), free, np.ones(len(free)), np.zeros((len(free), len(free))), self.ambient, -np.inf
-        )
+        """Return the hypothesis that the vessel is as written, with nothing fitted."""
+        free = self.nominal_coefficients
+        count = len(free)
+        return Fit((), free, np.ones(count), np.zeros((count, count)), self.ambient, -np.inf)
 
-    def _nuisances(self) -> tuple[FreeParameter, ...]:
-        """Coefficients of the vessel's own that are never known exactly; what several instances share is one."""
-        vessel, shared = (
-            self.program.vessel,
-            defaultdict[tuple[str, str, float], list[tuple[str, int]]](list),
-        )
+    def _nominal_coefficients(self) -> tuple[FreeParameter, ...]:
+        """Coefficients of the vessel that are uncertain; those of several instances are one."""
+        vessel = self.program.vessel
+        shared = defaultdict[tuple[str, str, float], list[tuple[str, int]]](list)
         for effect in vessel.effects:
-            for name, about in type(effect).params().items():
-                sd = self.uncertainty.get(about.calibrates, 0.0)
+            for name, param in type(effect).params().items():
+                sd = self.uncertainty.get(param.calibrates, 0.0)
                 at = self.program.index(effect.name, name)
-                used = self.recordings[0].values[at] != 0.0 and (
-                    not about.axis or about.axis in vessel.dof
-                )
-                if about.calibrates and sd > 0 and used:
+                applies = not param.axis or param.axis in vessel.dof
+                used = self.recordings[0].values[at] != 0.0 and applies
+                if param.calibrates and sd > 0 and used:
                     shared[type(effect).idea(), name, sd].append((effect.name, at))
+        low, high = self.config.fit.coefficient_range
         found = []
         for (idea, name, sd), places in shared.items():
-            called, all_of = (
-                idea if len(places) > 1 else places[0][0],
-                tuple(at for _, at in places),
-            )
+            owner = idea if len(places) > 1 else places[0][0]
             found.append(
                 FreeParameter(
-                    called,
+                    owner,
                     name,
-                    all_of,
-                    1.0,
-                    sd,
-                    0.05,
-                    20.0,
-                    True,
-                    False,
-                    "scales",
-                    (1.0,) * len(all_of),
+                    tuple(at for _, at in places),
+                    mean=1.0,
+                    sd=sd,
+                    low=low,
+                    high=high,
+                    relative=True,
+                    how="scales",
+                    weights=(1.0,) * len(places),
                 )
             )
         return tuple(found)
 
-    def _links(self) -> list[tuple[int, int]]:
-        """(to, from) in a track's values: what nobody stated follows the vessel's number, recalibrated or not."""
-        links, on_board = [], {e.name for e in self.program.effects}
+    def _links(self) -> tuple[tuple[int, int], ...]:
+        """Places of unset parameters, and of the vessel's numbers that they inherit."""
+        links = []
+        owners = {e.name for e in self.program.effects} | {"body"}
         for effect in self.program.effects:
             for name in sorted(effect.filled):
-                source = (
-                    type(effect).params()[name].follows.removesuffix("?").removeprefix("vessel.")
-                )
-                owner, _, key = source.partition(".")
-                if owner in on_board or owner == "body":
-                    links.append((self.program.index(effect.name, name), self.place(owner, key)))
-        return links
+                source = type(effect).params()[name].follows
+                owner, _, key = source.removesuffix("?").removeprefix("vessel.").partition(".")
+                if owner in owners:
+                    to = self.program.index(effect.name, name)
+                    links.append((to, self.place(owner, key)))
+        return tuple(links)

@@ -1,4 +1,4 @@
-"""Free runs of a vessel as it is written over a recording of commands, nothing fitted."""
+"""Replays a recording: free runs of a vessel file with the recorded commands alone."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,7 +7,7 @@ import numpy as np
 
 from boatsim.diagnosis.candidates import composed
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
-from boatsim.diagnosis.filter import map_recording, nominal_levels
+from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.free_runs import FreeRun, free_runs
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
@@ -19,44 +19,77 @@ from boatsim.recordings.table import Recording
 
 
 def replayed(
-    recording: Recording, boat: Vessel, horizon: float, told: Report = silent
+    recording: Recording, vessel: Vessel, horizon: float, report: Report = silent
 ) -> list[FreeRun]:
-    """Free runs of `horizon` [s], model "simulated" beside "recorded". Raises BadInput for too short a recording."""
-    problem, fitted = as_written(recording, boat, told)
-    told("free runs", 0.8)
-    stretches = free_runs(problem, {"simulated": fitted}, problem.recordings, horizon)
-    if not stretches:
+    """Return free runs with the models "simulated" and "recorded".
+
+    Args:
+        recording: Measured signals and commands.
+        vessel: Vessel file, or a patched one.
+        horizon: Length of each free run [s].
+        report: Receives the progress.
+
+    Raises:
+        BadInput: The recording is shorter than the horizon, or misses a column.
+    """
+    problem, fitted = as_written(recording, vessel, report)
+    report("free runs", 0.8)
+    runs = free_runs(problem, {"simulated": fitted}, problem.recordings, horizon)
+    if not runs:
         name, whole = recording.path or recording.name, recording.t[-1] - recording.t[0]
         raise BadInput(f"{name}: {whole:g} s long; a free run of {horizon:g} s does not fit")
-    return stretches
+    return runs
 
 
-def columns(stretches: Sequence[FreeRun]) -> dict[str, Array]:
-    """Free runs one below the other, each whole: t_s, the number of each in `segment`, pose.
+def columns(runs: Sequence[FreeRun]) -> dict[str, Array]:
+    """Return free runs one after the other: t_s, the number of each run in `segment`, and the pose.
 
-    Where one ends as the next begins, that time is there twice: where the one has come to, where the other starts.
+    The time at which one ends and the next begins occurs twice: at the end of one run, and at the
+    start of the next.
+
+    Args:
+        runs: Free runs of one recording.
     """
-    poses = [s.channels["simulated"] for s in stretches]
-    found = {"t_s": np.concatenate([s.t for s in stretches])}
-    found["segment"] = np.repeat(np.arange(float(len(stretches))), [len(s.t) for s in stretches])
-    return found | {name: np.concatenate([pose[name] for pose in poses]) for name in poses[0]}
+    poses = [run.channels["simulated"] for run in runs]
+    numbers = np.arange(float(len(runs)))
+    found = {
+        "t_s": np.concatenate([run.t for run in runs]),
+        "segment": np.repeat(numbers, [len(run.t) for run in runs]),
+    }
+    for name in poses[0]:
+        found[name] = np.concatenate([pose[name] for pose in poses])
+    return found
 
 
-def joined(stretches: Sequence[FreeRun]) -> Recording:
-    """The same as one recording, which has each time once: of a shared one the end of the earlier run."""
-    every = columns(stretches)
-    first = np.append(True, np.diff(every["t_s"]) > 0.0)
-    signals = {name: values[first] for name, values in every.items()}
+def joined(runs: Sequence[FreeRun]) -> Recording:
+    """Return free runs as one recording in which each time occurs once: that of the earlier run.
+
+    Args:
+        runs: Free runs of one recording.
+    """
+    signals = columns(runs)
+    first = np.append(True, np.diff(signals["t_s"]) > 0.0)
+    signals = {name: values[first] for name, values in signals.items()}
     return Recording("replay", signals.pop("t_s"), signals)
 
 
-def as_written(recording: Recording, boat: Vessel, told: Report = silent) -> tuple[Problem, Fit]:
-    """A vessel file on a recording, nothing fitted but the noise that the smoothed starts need."""
-    told("compiling, or loading what was compiled before", 0.1)
-    program, acting = composed(boat)
-    levels = nominal_levels(boat, [recording])
-    problem = Problem(
-        [with_initial_actuators(map_recording(recording, program), levels)], levels, {}
-    )
-    told("fitting the noise", 0.3)
+def as_written(
+    recording: Recording, vessel: Vessel, report: Report = silent
+) -> tuple[Problem, Fit]:
+    """Return a vessel file on a recording with the noise fitted, which smoothed starts need.
+
+    Args:
+        recording: Measured signals and commands.
+        vessel: Vessel file, or a patched one.
+        report: Receives the progress.
+
+    Returns:
+        The problem and its fit.
+    """
+    report("compiling, or loading what was compiled before", 0.1)
+    program, acting = composed(vessel)
+    levels = prior_levels(vessel, [recording])
+    mapped = with_initial_actuators(map_recording(recording, program), levels)
+    problem = Problem([mapped], levels, {})
+    report("fitting the noise", 0.3)
     return problem, fit_noise(problem, replace(problem.nominal(), effects=acting))

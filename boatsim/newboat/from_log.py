@@ -19,7 +19,7 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import composed
 from boatsim.diagnosis.checks.data_cleaning import clean_recording, total_duration
 from boatsim.diagnosis.checks.initial_actuator_state import with_initial_actuators
-from boatsim.diagnosis.filter import map_recording, nominal_levels
+from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.pipeline import open_recording
@@ -124,7 +124,7 @@ def _problems(
 ) -> tuple[Problem, Problem]:
     """The question to the parts that are fitted, and the same to those that judge."""
     program, _ = composed(boat)
-    levels = nominal_levels(boat, first)
+    levels = prior_levels(boat, first)
     laid = [with_initial_actuators(map_recording(r, program), levels) for r in first]
     problem = Problem(laid, levels, priors.uncertainty(boat))
     return problem, problem.on([map_recording(r, program) for r in last])

@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from boatsim.diagnosis import pipeline, priors
-from boatsim.diagnosis.correlation_time import timed
-from boatsim.diagnosis.filter import MappedRecording, map_recording, noise_of, segments
+from boatsim.diagnosis.correlation_time import with_correlation_time
+from boatsim.diagnosis.filter import MappedRecording, map_recording, segments, shared_noise
 from boatsim.diagnosis.fit import converge, fit
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
@@ -93,7 +93,7 @@ class LeftOut:
 def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
     """Each run judged by a model chosen without its group and fitted without it; one compiled program serves all."""
     whole = [pipeline.open_recording(path, VESSEL, ())[0] for path in runs.values()]
-    stated, rate = noise_of(found.vessel, whole), priors.rate(found.vessel)
+    stated, rate = shared_noise(found.vessel, whole), priors.rate(found.vessel)
     tracks = [map_recording(run.thinned(rate), found.problem.program, stated) for run in whole]
     recorded = dict(zip((t.name for t in tracks), whole, strict=True))
     of_hull = replace(found.problem.ambient, time_constant=priors.time_constant(found.vessel))
@@ -105,7 +105,7 @@ def left_out(found: Diagnosis, runs: dict[str, Path]) -> list[LeftOut]:
         rest = without(usual, tracks, group)
         names = rest.program.entries
         chosen = selection(rest, names)
-        if (again := timed(rest, chosen[1])) is not rest:
+        if (again := with_correlation_time(rest, chosen[1])) is not rest:
             rest, chosen = again, selection(again, names)
         out += [_judged(without(rest, tracks, [t]), chosen, t, recorded[t.name]) for t in group]
     return sorted(out, key=lambda one: one.run)

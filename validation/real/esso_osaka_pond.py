@@ -19,8 +19,8 @@ import numpy as np
 
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
-from boatsim.diagnosis.coordinate_search import climbed
-from boatsim.diagnosis.filter import MappedRecording, noise_of, segments
+from boatsim.diagnosis.coordinate_search import maximize
+from boatsim.diagnosis.filter import MappedRecording, segments, shared_noise
 from boatsim.diagnosis.fit import converge, fit
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
@@ -261,12 +261,12 @@ class Weather:
 
         def score(x: Array) -> float:
             blown = self.problem.on([self.blown(t, towards(x)) for t in held])
-            likelihood = blown.likelihood((), np.zeros(0), on, self.ship.levels)
+            likelihood = blown.log_likelihood((), np.zeros(0), on, self.ship.levels)
             return likelihood - 0.5 * float(x @ x) / usual**2
 
         begun = [USUAL * np.array([np.cos(a), np.sin(a)]) for a in STARTS]
         return towards(
-            max((climbed(score, x, USUAL, NEARLY) for x in begun), key=lambda found: found[0])[1]
+            max((maximize(score, x, USUAL, NEARLY) for x in begun), key=lambda found: found[0])[1]
         )
 
     def blown(self, one: MappedRecording, wind: Wind) -> MappedRecording:
@@ -473,7 +473,7 @@ def main() -> None:
     found = diagnosed(recordings, boat)
     report(found, NAME)
     print_named(found)
-    stated = noise_of(boat, [r for one in recordings.values() for r in one.stretches])
+    stated = shared_noise(boat, [r for one in recordings.values() for r in one.stretches])
 
     def laid(some: Sequence[Recording]) -> list[MappedRecording]:
         return [found.laid(r, stated) for r in some]

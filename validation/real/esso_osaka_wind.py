@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.filter import noise_of
+from boatsim.diagnosis.filter import shared_noise
 from boatsim.diagnosis.fit import converge
 from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.recordings.table import Recording
@@ -89,7 +89,7 @@ def main() -> None:
     found = diagnosed(recordings, boat)
     report(found, CALLED)
     print_named(found)
-    stated = noise_of(boat, [r for one in recordings.values() for r in one.stretches])
+    stated = shared_noise(boat, [r for one in recordings.values() for r in one.stretches])
     fitted = [r for n, one in recordings.items() if n.startswith(FITTED) for r in one.stretches]
     judged = [one.whole for n, one in recordings.items() if n.startswith(JUDGED)]
     problem = found.problem.on([found.laid(r, stated) for r in fitted])

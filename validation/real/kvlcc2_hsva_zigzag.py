@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.fit import converge, descend
+from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.report import before_after
@@ -90,7 +90,7 @@ def print_left_out(found: Diagnosis, tracks: list[MappedRecording]) -> None:
     for out in tracks:
         problem = found.problem.on([t for t in tracks if t is not out])
         before, after = (
-            converge(problem, descend(problem, f, 4, 0.1))
+            converge(problem, gauss_newton(problem, f, 4, 0.1))
             for f in (found.ranking.recalibrated, found.ranking.best)
         )
         held_out = errors(

@@ -15,7 +15,7 @@ import numpy as np
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.fit import converge, descend
+from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.noise_levels import fit_force, force_prior
 from boatsim.diagnosis.pipeline import Diagnosis
@@ -182,7 +182,7 @@ def likely(problem: Problem, found: Fit) -> float:
     """Log likelihood [nats] of the recordings by these coefficients, the water as rough as it then must be."""
     there = fit_force(problem, found)
     on = problem.program.switches(there.effects)
-    return problem.likelihood(there.free, there.theta, on, there.levels) + force_prior(
+    return problem.log_likelihood(there.free, there.theta, on, there.levels) + force_prior(
         problem, there.levels
     )
 
@@ -197,7 +197,7 @@ def print_room(
     """
     before = found.ranking.recalibrated
     everything = found.problem.on([*found.problem.recordings, *held_out])
-    whole = converge(everything, descend(everything, before, 6, 0.1))
+    whole = converge(everything, gauss_newton(everything, before, 6, 0.1))
     taught = judged(whole)
     rng = np.random.default_rng(0)
     low, high = ([getattr(f, end) for f in before.free] for end in ("low", "high"))

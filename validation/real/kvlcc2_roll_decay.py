@@ -130,7 +130,7 @@ def polar_runs(
     omega, last = pulsation(laid), list(fits.values())[-1]
     whole = float(np.ptp(laid.times))
     on = problem.program.switches
-    smooth = laid.smoothed(
+    smooth = laid.smooth(
         problem.values(laid, last.free, last.theta), on(last.effects), last.levels
     )[0]
     found = {"recorded": polar(smooth, omega)}

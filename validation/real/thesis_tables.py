@@ -31,7 +31,7 @@ from typing import Any
 
 import numpy as np
 
-from boatsim.diagnosis.fit import Space, log_prior
+from boatsim.diagnosis.fit import ParameterSpace, log_prior
 from boatsim.diagnosis.search.pruning import ALIKE
 from boatsim.physics.base import Array
 from validation.real.common import table
@@ -216,17 +216,17 @@ def slopes(tables: Tables, knobs: Sequence[Knob], theta: Array, e: Array) -> Arr
     return found
 
 
-def descend(tables: Tables, names: Sequence[str], theta: Array, most: int = 6) -> Fit:
+def gauss_newton(tables: Tables, names: Sequence[str], theta: Array, most: int = 6) -> Fit:
     """Damped Gauss-Newton from theta; Laplace evidence at the end."""
     knobs = knobs_of(names)
-    space = Space(knobs)  # type: ignore[arg-type]
+    space = ParameterSpace(knobs)  # type: ignore[arg-type]
     theta, damping = space.clipped(theta), 1e-3
     best, e = score(tables, knobs, theta)
     A = slopes(tables, knobs, theta, e)
     for _ in range(most):
         g, gain = -(A.T @ e) - (theta - space.mean) / space.sd, 0.0
         for _ in range(4):
-            trial = space.stepped(theta, A, g, damping)
+            trial = space.damped_step(theta, A, g, damping)
             value, after = score(tables, knobs, trial)
             if value > best:
                 theta, e, gain, best, damping = trial, after, value - best, value, damping / 10.0
@@ -257,7 +257,7 @@ def with_candidate(tables: Tables, base: Fit, name: str, most: int = 3) -> Fit:
         mean,
     )
     begun = [start(s, thrust) for s in (-1.0, -0.3, 0.3, 1.0) for thrust in thrusts]
-    return descend(
+    return gauss_newton(
         tables, names, max(begun, key=lambda x: score(tables, knobs_of(names), x)[0]), most
     )
 
@@ -266,7 +266,7 @@ def without(tables: Tables, base: Fit, name: str) -> Fit:
     """`base` refitted without one of its candidates."""
     names = tuple(n for n in base.names if n != name)
     known = dict(zip(base.knobs, base.theta.tolist(), strict=True))
-    return descend(tables, names, np.array([known[k] for k in knobs_of(names)]))
+    return gauss_newton(tables, names, np.array([known[k] for k in knobs_of(names)]))
 
 
 @dataclass(frozen=True)
@@ -290,7 +290,7 @@ def rank(
     """Forward selection by evidence, then each member weighed on top of the others and against its rivals."""
     theta = np.array([k.mean for k in OWN])
     nominal = Fit((), OWN, theta, np.zeros((2, 2)), np.zeros((0, 2)), score(tables, OWN, theta)[0])
-    base = best = descend(tables, (), theta)
+    base = best = gauss_newton(tables, (), theta)
     looks: dict[tuple[str, ...], dict[str, Fit]] = {}
     while len(best.names) < most:
         tried = {n: with_candidate(tables, best, n) for n in candidates if n not in best.names}
@@ -298,7 +298,7 @@ def rank(
         front = max(tried.values(), key=lambda f: f.evidence)
         if front.evidence < best.evidence + ENOUGH:
             break
-        best = pruned(tables, descend(tables, front.names, front.theta))
+        best = pruned(tables, gauss_newton(tables, front.names, front.theta))
         if best.names in looks:
             break
     first = {n: f.evidence - base.evidence for n, f in looks[()].items()}
@@ -332,7 +332,9 @@ def left_out(tables: Tables, fitted: Fit, test: str) -> Fit:
     rest = tables.only([t for t in tables.benches if t != test])
     mean = np.array([k.mean for k in fitted.knobs])
     starts = (fitted.theta, 0.7 * fitted.theta + 0.3 * mean)
-    return max((descend(rest, fitted.names, theta) for theta in starts), key=lambda f: f.evidence)
+    return max(
+        (gauss_newton(rest, fitted.names, theta) for theta in starts), key=lambda f: f.evidence
+    )
 
 
 def distance(tables: Tables, fitted: Fit, tests: Sequence[str]) -> float:
@@ -418,7 +420,7 @@ def print_sources(tables: Tables, found: Ranking) -> None:
 
 def gain_in(part: Tables, best: Fit, name: str) -> float:
     """Evidence for one effect in a part of the data."""
-    return descend(part, best.names, best.theta).evidence - without(part, best, name).evidence
+    return gauss_newton(part, best.names, best.theta).evidence - without(part, best, name).evidence
 
 
 def print_left_out(tables: Tables, found: Ranking) -> None:

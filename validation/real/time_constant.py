@@ -14,7 +14,7 @@ import numpy as np
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.correlation_time import STEPS, correlation_time, halves_errors
-from boatsim.diagnosis.filter import map_recording, noise_of, nominal_levels
+from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.search.ranking import selection
 from boatsim.physics.program import Program
@@ -34,11 +34,11 @@ def problem_of(paths: list[Path], vessel: str | None) -> Problem:
     opened = [pipeline.open_recording(path, vessel, ()) for path in paths]
     boat, first = opened[0][1], opened[0][0]
     program = Program(boat, library_for(boat).compiled)
-    stated = noise_of(boat, [first])
+    stated = shared_noise(boat, [first])
     tracks = [map_recording(run.thinned(priors.rate(boat)), program, stated) for run, _ in opened]
     uncertainty = priors.uncertainty(boat)
     return Problem(
-        tracks, nominal_levels(boat, [first]), uncertainty | first.notes.coefficient_uncertainty
+        tracks, prior_levels(boat, [first]), uncertainty | first.notes.coefficient_uncertainty
     )
 
 

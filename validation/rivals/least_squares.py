@@ -11,7 +11,7 @@ import numpy as np
 
 from boatsim.diagnosis.candidates import called
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.screening import handed_over, joined, starts
+from boatsim.diagnosis.search.screening import add_effect, hand_over, starts
 from boatsim.physics.base import Array
 from validation.rivals.evidence import Judge, sizes
 from validation.rivals.linear import Linear, descended, solved
@@ -171,7 +171,7 @@ class LeastSquares:
 
     def fitted(self, state: State) -> State:
         """Gauss-Newton steps until they gain next to nothing."""
-        return descended(state, lambda s: self.stepped(s, self.linear(s)), ROUNDS)
+        return descended(state, lambda s: self.damped_step(s, self.linear(s)), ROUNDS)
 
     def stepped(self, state: State, linear: Linear) -> State | None:
         """After a step, shortened until it is one for the better; None if none is."""
@@ -212,7 +212,7 @@ class LeastSquares:
             own = [next(errors) for _ in s]
             slopes += run.by_starts(self.problem.values(run.track, free, state.theta), on, s, own)
         linear = Linear.of(state.errors, state.weights, slopes)
-        return linear.joined(
+        return linear.add_effect(
             [self.column(state, linear, j) for j in range(len(free))], self.prior_rows(state)
         )
 
@@ -248,8 +248,8 @@ class LeastSquares:
         effects, found = (*best.effects, entry), list[State]()
         begun_at = fit_of(self.question, best.effects, best.theta, np.zeros((0, 0)))
         for start in starts(self.problem, self.question.entries[entry]):
-            fit = handed_over(
-                joined(self.problem, begun_at, entry, start), self.question.entries[entry]
+            fit = hand_over(
+                add_effect(self.problem, begun_at, entry, start), self.question.entries[entry]
             )
             theta = np.clip(fit.theta, [f.low for f in fit.free], [f.high for f in fit.free])
             begun = self.at(effects, theta, best.starts, best.weights)
@@ -272,7 +272,7 @@ class LeastSquares:
             base.raw[:, self.before(state, j)] if j not in new else self.column(state, here, j)
             for j in range(len(free))
         ]
-        return self.stepped(state, here.joined(columns, self.prior_rows(state)))
+        return self.damped_step(state, here.add_effect(columns, self.prior_rows(state)))
 
     def before(self, state: State, j: int) -> int:
         """Where a parameter was before the last entry came in."""

@@ -15,7 +15,7 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import called, library_for
 from boatsim.diagnosis.checks.position_outliers import drop_position_outliers
 from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions
-from boatsim.diagnosis.filter import map_recording, noise_of, nominal_levels
+from boatsim.diagnosis.filter import map_recording, prior_levels, shared_noise
 from boatsim.diagnosis.pipeline import open_recording
 from boatsim.diagnosis.problem import Fit, FreeParameter, Problem
 from boatsim.diagnosis.report import patched_vessel
@@ -57,10 +57,10 @@ def asked(trial: Path) -> Question:
     columns = sorted({c for r in runs for c in r.signals})
     library = library_for(vessel, (), runs[0].notes.facts, columns)
     program = Program(vessel, library.compiled)
-    stated = noise_of(vessel, runs)
+    stated = shared_noise(vessel, runs)
     tracks = [map_recording(r, program, stated) for r in runs]
     uncertainty = priors.uncertainty(vessel) | runs[0].notes.coefficient_uncertainty
-    problem = Problem(tracks, nominal_levels(vessel, runs), uncertainty)
+    problem = Problem(tracks, prior_levels(vessel, runs), uncertainty)
     entries = {e.name: e for e in library.entries if e.name in library.tried and not type(e).random}
     families = {f for t in tracks for f in t.families}
     noise = {f: priors.sensed_noise(vessel, runs, f) or stated[f] for f in families}

@@ -14,7 +14,7 @@ from scipy.stats import chi2
 
 from boatsim.diagnosis.candidates import called
 from boatsim.diagnosis.problem import Fit
-from boatsim.diagnosis.search.screening import handed_over, joined, starts
+from boatsim.diagnosis.search.screening import add_effect, hand_over, starts
 from boatsim.physics.base import Array, Force, Measurement
 from validation.rivals.accelerations import Smoother, held_by, positions, predicted, shown_by
 from validation.rivals.evidence import Judge, sizes
@@ -195,7 +195,7 @@ class SparseRegression:
         """An entry fitted alone, and its columns; None if it runs away or changes nothing."""
         base = fit_of(self.question, (), nominal.theta, np.zeros((0, 0)))
         begun = [
-            handed_over(joined(self.problem, base, entry, s), self.entries[entry])
+            hand_over(add_effect(self.problem, base, entry, s), self.entries[entry])
             for s in starts(self.problem, self.entries[entry])
         ]
         free = free_of(self.question, (entry,))

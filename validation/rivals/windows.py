@@ -50,8 +50,8 @@ class Windows:
         out = np.full((len(starts), len(track.times), starts.shape[1]), np.nan)
         program.module.free_runs(
             track.times,
-            track.given,
-            track.orders,
+            track.command_times,
+            track.command_values,
             track.step,
             body_of(values),
             values,

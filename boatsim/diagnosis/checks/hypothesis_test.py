@@ -266,7 +266,7 @@ def _likeliest(recordings: list[Recording], comparison: Comparison) -> list[Rein
             changed = comparison.mapped(recordings, each.changes)
         except BadInput:
             return -np.inf
-        value = changed.likelihood(nominal.free, nominal.theta, on, levels)
+        value = changed.log_likelihood(nominal.free, nominal.theta, on, levels)
         return value if np.isfinite(value) else -np.inf
 
     candidates = reinterpretations(recordings, problem.program.vessel, config)

@@ -31,19 +31,19 @@ def with_initial_actuators(
         the recording is more likely with them. Otherwise the recording itself.
     """
     vessel = recording.program.vessel
-    neutral = recording.orders[0].copy()
+    neutral = recording.command_values[0].copy()
     commands = len(vessel.commands)
     neutral[:commands] = taken(vessel, sent_row(vessel, {}))[:commands]
-    if not commands or np.array_equal(neutral, recording.orders[0]):
+    if not commands or np.array_equal(neutral, recording.command_values[0]):
         return recording
     resting = replace(
         recording,
-        given=np.append(recording.times[0] - COMMAND_LEAD, recording.given),
-        orders=np.vstack([neutral, recording.orders]),
+        command_times=np.append(recording.times[0] - COMMAND_LEAD, recording.command_times),
+        command_values=np.vstack([neutral, recording.command_values]),
     )
     on = recording.program.switches()
-    settled = recording.likelihood(recording.values, on, levels)
-    from_rest = resting.likelihood(resting.values, on, levels)
+    settled = recording.log_likelihood(recording.values, on, levels)
+    from_rest = resting.log_likelihood(resting.values, on, levels)
     likelier = from_rest > settled + config.initial_rest_gain
     if likelier and _lies_still(resting, levels, config):
         return resting
@@ -57,6 +57,6 @@ def _lies_still(recording: MappedRecording, levels: NoiseLevels, config: ChecksC
     """
     nq = recording.program.module.NQ
     on = recording.program.switches()
-    means, _ = recording.smoothed(recording.values, on, levels)
+    means = recording.smooth(recording.values, on, levels).means
     energy = means[:, nq : 2 * nq] ** 2 @ recording.inertia
     return bool(energy[0] <= config.initial_rest_speed**2 * energy.max())

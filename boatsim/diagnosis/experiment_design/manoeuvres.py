@@ -7,7 +7,7 @@ from math import radians
 
 import numpy as np
 
-from boatsim.diagnosis.problem import scale_of
+from boatsim.diagnosis.problem import froude_scale
 from boatsim.physics.vessel import Vessel
 
 LONG, LONG_SHIP = (
@@ -107,7 +107,7 @@ def menu(
     """
     if not vessel.commands:
         found = [min(share * heel, STEEPEST) for share in HEELS]
-        length = float(f"{LONG * scale_of('s', vessel):.2g}")
+        length = float(f"{LONG * froude_scale('s', vessel):.2g}")
         return tuple(
             Manoeuvre(f"a release at {np.degrees(a):.1f} deg of roll", duration=length, heel=a)
             for a in found
@@ -161,7 +161,7 @@ def _ship(vessel: Vessel, in_use: dict[str, float]) -> tuple[Manoeuvre, ...]:
             }
             for s in (1, -1)
         )
-        length = float(f"{LONG_SHIP * scale_of('s', vessel):.2g}")
+        length = float(f"{LONG_SHIP * froude_scale('s', vessel):.2g}")
         words = f"{degrees:g}/{degrees:g} zig-zag"
         found.append(Manoeuvre(words, (0.0, length / 2), both, length, angle, True))
     return tuple(m for m in found if len({tuple(level.items()) for level in m.levels}) > 1)
@@ -175,7 +175,7 @@ def _from_script(
     to_wall: bool = False,
 ) -> Manoeuvre:
     """A script for this vessel; with `in_use` the drive is a share of that and the boat is under way."""
-    scale = scale_of("s", vessel)
+    scale = froude_scale("s", vessel)
     tick = float(f"{TICK * scale:.1g}")
     ends = np.cumsum([0.0, *(step[0] for step in script)]) * scale
     times = [round(float(tick * np.round(t / tick)), 6) for t in ends]

@@ -16,8 +16,8 @@ import numpy as np
 from boatsim.diagnosis.candidates import called
 from boatsim.diagnosis.experiment_design.manoeuvres import menu
 from boatsim.diagnosis.experiment_design.simulated_manoeuvre import Course, laid, walls
-from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.problem import Fit, Problem, scale_of
+from boatsim.diagnosis.filter import FilterPass, MappedRecording
+from boatsim.diagnosis.problem import Fit, Problem, froude_scale
 from boatsim.diagnosis.report.schema import NextEntry
 from boatsim.diagnosis.search.pruning import ALIKE, Named
 from boatsim.diagnosis.search.ranking import Ranking
@@ -127,7 +127,7 @@ def steps(plan: Plan | None) -> tuple[tuple[float, Mapping[str, float]], ...]:
 
 def scenario_text(plan: Plan, vessel: Vessel) -> str:
     """A scenario file that plays the plan on the vessel that was diagnosed."""
-    step = min(float(f"{STEP * scale_of('s', vessel):.1g}"), 1.0)
+    step = min(float(f"{STEP * froude_scale('s', vessel):.1g}"), 1.0)
     lines = [
         "#!/usr/bin/env -S boatsim run",
         f'about = "What to record next: {plan.manoeuvre}; to tell apart: {", ".join(plan.separates)}."',
@@ -204,32 +204,34 @@ def _refitted(
     def values(xi: Array) -> Array:
         return problem.values(track, model.free, np.clip(model.theta + root @ xi, low, high))
 
-    def score(xi: Array) -> float:
-        return track.likelihood(values(xi), on, winner.levels) - 0.5 * float(xi @ xi)
+    def score(xi: Array) -> tuple[float, FilterPass]:
+        passed = track.filter(values(xi), on, winner.levels)
+        return passed.log_likelihood - 0.5 * float(xi @ xi), passed
 
-    def derivative(xi: Array) -> tuple[Array, Array]:
-        """Whitened errors (M,) and their derivative (M, F), with the gains of the last `score`."""
-        white = track.white
+    def derivative(xi: Array, about: FilterPass) -> tuple[Array, Array]:
+        """Whitened errors (M,) and their derivative (M, F), with the gains of a pass."""
+        white = about.whitened
         U = np.empty((len(white), len(xi)))
         for j in range(len(xi)):
             moved = xi.copy()
             moved[j] += NUDGE
-            U[:, j] = (track.whitened(values(moved), on, winner.levels) - white) / NUDGE
+            U[:, j] = (track.whitened(values(moved), on, winner.levels, about) - white) / NUDGE
         return white, U
 
     xi = np.zeros(len(model.theta))
-    best = score(xi)
-    white, U = derivative(xi)
+    best, about = score(xi)
+    white, U = derivative(xi, about)
     for _ in range(rounds):
         step = np.linalg.solve(np.eye(len(xi)) + U.T @ U, -(U.T @ white) - xi)
         for _ in range(HALVINGS):
-            if (value := score(xi + step)) > best:
+            value, about = score(xi + step)
+            if value > best:
                 break
             step *= 0.5
         else:
             break
         gained, best, xi = value - best, value, xi + step
-        white, U = derivative(xi)
+        white, U = derivative(xi, about)
         if gained < 0.1:
             break
     return best, U

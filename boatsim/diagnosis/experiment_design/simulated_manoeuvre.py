@@ -5,7 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre
-from boatsim.diagnosis.filter import FIT_STEP, MappedRecording, axes_of, body_of, changes
+from boatsim.diagnosis.filter import (
+    InitialState,
+    MappedRecording,
+    axes_of,
+    body_of,
+    command_changes,
+)
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
@@ -73,22 +79,22 @@ def _track(
     """What the sensors of the first recording would show (N, 2 NQ) of a course begun at a state, as a recording."""
     first, nq = problem.recordings[0], problem.program.module.NQ
     measured = np.ascontiguousarray(shown[:, first.codes])
-    given, orders = changes(times, commands)
+    change_times, change_values = command_changes(times, commands)
     track = replace(
         first,
         name=name,
         times=times,
         measured=measured,
         commands=commands,
-        given=given,
-        orders=orders,
+        command_times=change_times,
+        command_values=change_values,
+        specified_initial=None,
     )
-    track.start[:nq], track.start[nq : 2 * nq], track.rates[:] = (
-        shown[0, :nq],
-        start[nq:],
-        start[nq:],
-    )
-    return track
+    mean = track.initial.mean.copy()
+    mean[:nq] = shown[0, :nq]
+    mean[nq : 2 * nq] = start[nq:]
+    initial = InitialState(mean, track.initial.covariance, start[nq:])
+    return replace(track, specified_initial=initial)
 
 
 def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: Array) -> Array:
@@ -99,7 +105,7 @@ def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: 
         times,
         times,
         commands,
-        FIT_STEP,
+        problem.config.filter.filter_step,
         body_of(values),
         values,
         problem.program.switches(found.effects),
@@ -163,7 +169,7 @@ def _start(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Array:
             problem.values(first, found.free, found.theta),
             problem.program.switches(found.effects),
         )
-        states, _ = first.smoothed(values, on, found.levels)
+        states = first.smooth(values, on, found.levels).means
         state[nq] = float(f"{np.median(np.hypot(states[:, nq], states[:, nq + 1])):.3g}")
     return state
 

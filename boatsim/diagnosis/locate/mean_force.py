@@ -48,9 +48,9 @@ def _mean(problem: Problem, found: Fit, track: MappedRecording) -> tuple[Array, 
         found.levels,
     )
     values, latent = problem.values(track, found.free, found.theta), slice(2 * nq, 3 * nq)
-    states, covariances, gains = track.smoothed_with_gains(values, on, levels)
+    states, covariances, gains = track.smooth(values, on, levels)
     by_chance = min(1.0, 2.0 * levels.time_constant / float(np.ptp(track.times)))
-    rms, _ = track.jolts(values, on, levels)
+    rms, _ = track.latent_force_rms(values, on, levels)
     return states[:, latent].mean(axis=0), variance_of_mean(
         covariances, gains, latent
     ) + rms**2 * by_chance

@@ -67,9 +67,7 @@ def _latent(
 ) -> tuple[Array, Array, Array]:
     """Averages of the smoothed latent force (N, axes), their variance, and the smoothed states (N, 2 NQ)."""
     on, nq = problem.program.switches(found.effects), problem.program.module.NQ
-    states, covariances, gains = track.smoothed_with_gains(
-        problem.values(track, found.free, theta), on, levels
-    )
+    states, covariances, gains = track.smooth(problem.values(track, found.free, theta), on, levels)
     latent = slice(2 * nq, 3 * nq)
     rows = averaged_rows(track.times, problem.ambient.time_constant)
     variance = variance_of_average(covariances, gains, latent, rows)
@@ -81,7 +79,7 @@ def _average(
 ) -> Array:
     """Averages of the smoothed latent force (N, axes) alone: their variance costs far more."""
     on, nq = problem.program.switches(found.effects), problem.program.module.NQ
-    states, _ = track.smoothed(problem.values(track, found.free, theta), on, levels)
+    states = track.smooth(problem.values(track, found.free, theta), on, levels).means
     return running_average(
         states[:, 2 * nq : 3 * nq], averaged_rows(track.times, problem.ambient.time_constant)
     )

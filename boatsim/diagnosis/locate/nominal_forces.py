@@ -23,7 +23,7 @@ def actuators(
         np.zeros(program.held_size),
         np.zeros(program.memory_size),
     )
-    program.module.settle(track.orders[0], memory, values, on, act)
+    program.module.settle(track.command_values[0], memory, values, on, act)
     out = np.empty((len(track.times), len(act) // 3))
     steps = np.append(np.diff(track.times), track.times[-1] - track.times[-2])
     for row, step in enumerate(steps.tolist()):

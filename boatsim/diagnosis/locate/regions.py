@@ -49,12 +49,12 @@ def _evidence(problem: Problem, found: Fit) -> tuple[Evidence, dict[str, Callabl
     evidence, sentences = [], []
     for track in problem.recordings:
         values = problem.values(track, found.free, found.theta)
-        z, covariances, gains = track.smoothed_with_gains(values, on, levels)
+        z, covariances, gains = track.smooth(values, on, levels)
         states = np.ascontiguousarray(z[:, : 2 * nq])
         parts = coefficient_forces(problem, found, track, states)
         tried = ideas(track, states, _damping(problem, found, parts))
         shapes = {KNOWN: tuple(parts)} | {i.variable: i.shapes for i in tried}
-        prior = *track.jolts(values, on, levels), levels.time_constant
+        prior = *track.latent_force_rms(values, on, levels), levels.time_constant
         evidence.append(
             Evidence.of(shapes, z[:, latent], track.times, covariances, gains, latent, *prior)
         )
@@ -110,8 +110,8 @@ def _rhythm(problem: Problem, found: Fit, tests: int) -> list[Region]:
 def _unexpected(problem: Problem, found: Fit, track: MappedRecording) -> Array:
     """(N, C) whitened prediction errors."""
     on = problem.program.switches(found.effects)
-    track.likelihood(problem.values(track, found.free, found.theta), on, found.levels)
-    return track.white.reshape(len(track.times), -1)
+    values = problem.values(track, found.free, found.theta)
+    return track.filter(values, on, found.levels).whitened.reshape(len(track.times), -1)
 
 
 def _region(variable: str, sentence: str, p: float) -> Region:

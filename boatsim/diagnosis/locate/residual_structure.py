@@ -67,7 +67,7 @@ def structure(problem: Problem, found: Fit) -> Structure:
     axes = axes_of(problem.program.vessel)
     for track in problem.recordings:
         values = problem.values(track, found.free, found.theta)
-        z, covariances, gains = track.smoothed_with_gains(values, on, levels)
+        z, covariances, gains = track.smooth(values, on, levels)
         named = dict(features(track, np.ascontiguousarray(z[:, : 2 * nq]), levels.time_constant))
         shapes = np.einsum("na,kb->nkba", np.column_stack(list(named.values())), np.eye(nq))
         learnt, slope = information_alone(
@@ -77,7 +77,7 @@ def structure(problem: Problem, found: Fit) -> Structure:
             covariances,
             gains,
             latent,
-            *track.jolts(values, on, levels),
+            *track.latent_force_rms(values, on, levels),
             levels.time_constant,
         )
         for key, i, s in zip(

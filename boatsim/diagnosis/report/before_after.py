@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.fit import descend
+from boatsim.diagnosis.fit import gauss_newton
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.locate.residual_structure import FACTOR
 from boatsim.diagnosis.problem import Fit, Problem
@@ -77,7 +77,7 @@ def by_part(
     out = []
     for track in tracks:
         own = Problem([track], problem.ambient, problem.uncertainty, config=problem.config)
-        alone = {"alone": descend(own, fits["recalibrated"], 6, 0.1)}
+        alone = {"alone": gauss_newton(own, fits["recalibrated"], 6, 0.1)}
         for family, found in errors(
             free_runs(problem, {**fits, **alone}, [track], horizon)
         ).items():

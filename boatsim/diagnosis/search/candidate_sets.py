@@ -7,10 +7,10 @@ import numpy as np
 
 from boatsim import progress
 from boatsim.diagnosis.candidates import called
-from boatsim.diagnosis.fit import SETTLED, converge, descend, fit, reduced
+from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import UNKNOWN, front, left_over, price, told_from
-from boatsim.diagnosis.search.screening import FURTHER, checked, handed_over, joined, screen, starts
+from boatsim.diagnosis.search.screening import add_effect, hand_over, recheck, screen, starts
 from boatsim.physics.base import Unsteady
 
 # [nats] that a look lies below the set it is on top of, from which it went wrong: numbers cost less
@@ -30,6 +30,7 @@ class Sets:
         report: progress.Report = progress.silent,
     ) -> None:
         self.problem, self.candidates, self.base, self.report = problem, candidates, base, report
+        self.config = problem.config
         self.fits: dict[frozenset[str], Fit] = {frozenset(): base}
         self.promised: dict[frozenset[str], float] = {}
         self.looks: dict[frozenset[str], dict[str, Fit]] = {}
@@ -63,12 +64,15 @@ class Sets:
         """The fit of a set, kept: made from `start` unless it was made before from one no worse."""
         key = frozenset(start.effects)
         known, promised = self.fits.get(key), self.promised.get(key, -np.inf)
-        if known is None or start.evidence > max(known.evidence, promised) + SETTLED:
+        if (
+            known is None
+            or start.evidence > max(known.evidence, promised) + self.config.fit.refit_gain
+        ):
             self.promised[key] = (
                 start.evidence
             )  # a look may promise more than a fit keeps, but once only
             found = converge(self.problem, start)
-            if known is not None and found.evidence > known.evidence + SETTLED:
+            if known is not None and found.evidence > known.evidence + self.config.fit.refit_gain:
                 self.forget(key)
             self.fits[key] = max(found, known or found, key=lambda f: f.evidence)
         return self.fits[key]
@@ -83,9 +87,14 @@ class Sets:
         calm = replace(
             found.levels, force=np.minimum(found.levels.force, self.problem.ambient.force)
         )
-        begun = descend(self.problem, replace(found, levels=calm, evidence=-np.inf), 4, SETTLED)
+        begun = gauss_newton(
+            self.problem,
+            replace(found, levels=calm, evidence=-np.inf),
+            4,
+            self.config.fit.refit_gain,
+        )
         other = converge(self.problem, begun) if np.isfinite(begun.evidence) else begun
-        if not other.evidence > found.evidence + SETTLED:
+        if not other.evidence > found.evidence + self.config.fit.refit_gain:
             return found
         key = frozenset(found.effects)
         self.forget(key)
@@ -100,7 +109,7 @@ class Sets:
 
     def without(self, best: Fit, name: str) -> Fit:
         """The fit of a set without one of its members."""
-        return self.converged(reduced(self.problem, best, name))
+        return self.converged(remove_effect(self.problem, best, name))
 
     def tried(self, best: Fit, among: Sequence[str] = ()) -> dict[str, Fit]:
         """Other candidates on top of a set, all or `among` some, less those found to mislead."""
@@ -132,7 +141,7 @@ class Sets:
             honest = (
                 look
                 if (key, name) in self.kept or name in self.random
-                else checked(self.problem, best, look)
+                else recheck(self.problem, best, look)
             )
             self.kept.add((key, name))
             if honest is look:
@@ -159,7 +168,15 @@ class Sets:
         if not wrong or left_over(self.problem, best) < told_from(self.explained(best)):
             return {}
         self.kept |= {(key, n) for n in wrong}
-        return {n: descend(self.problem, allowed[n], FURTHER, SETTLED) for n in wrong}
+        return {
+            n: gauss_newton(
+                self.problem,
+                allowed[n],
+                self.config.select.recheck_steps,
+                self.config.fit.refit_gain,
+            )
+            for n in wrong
+        }
 
     def fitted(self, best: Fit, name: str, look: Fit) -> Fit:
         """A candidate fitted in full from its quick look; where that leaves much over, from the best of its starts."""
@@ -168,9 +185,10 @@ class Sets:
         begun = starts(self.problem, effect)
         if len(begun) == 1 or type(effect).random or left_over(self.problem, found) < UNKNOWN:
             return found
-        others = [handed_over(joined(self.problem, best, name, s), effect) for s in begun]
+        others = [hand_over(add_effect(self.problem, best, name, s), effect) for s in begun]
         other = max(
-            (descend(self.problem, o, 2, SETTLED) for o in others), key=lambda f: f.evidence
+            (gauss_newton(self.problem, o, 2, self.config.fit.refit_gain) for o in others),
+            key=lambda f: f.evidence,
         )
         return max(found, fit(self.problem, other), key=lambda f: f.evidence)
 

@@ -30,7 +30,7 @@ def _share_of_power(sets: Sets, best: Fit) -> float:
     power, most = 0.0, 0.0
     for track in problem.recordings:
         values = problem.values(track, best.free, best.theta)
-        states, _ = track.smoothed(values, on, best.levels)
+        states = track.smooth(values, on, best.levels).means
         force = states[:, 3 * nq + 1 : 5 * nq : 2] / swell(values, on).frequency
         rates = problem.program.body_rates(states[:, : 2 * nq])[:, nq:]
         force, rates = force - force.mean(axis=0), rates - rates.mean(axis=0)

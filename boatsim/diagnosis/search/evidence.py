@@ -59,5 +59,5 @@ def left_over(problem: Problem, best: Fit) -> float:
     """Nats that the latent force gains beyond the tolerated level: what nothing in the library explains."""
     on = problem.program.switches(best.effects)
     held = replace(best.levels, force=np.minimum(best.levels.force, FACTOR * problem.ambient.force))
-    free = problem.likelihood(best.free, best.theta, on, best.levels)
-    return free - problem.likelihood(best.free, best.theta, on, held)
+    free = problem.log_likelihood(best.free, best.theta, on, best.levels)
+    return free - problem.log_likelihood(best.free, best.theta, on, held)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from boatsim.diagnosis.candidates import REORDERED, called
-from boatsim.diagnosis.fit import SETTLED, log_prior
+from boatsim.diagnosis.fit import log_prior
 from boatsim.diagnosis.problem import Fit
 from boatsim.diagnosis.search.candidate_sets import Sets
 from boatsim.diagnosis.search.evidence import HALF, UNKNOWN, front, left_over, together, told_from
@@ -46,7 +46,11 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         named = tuple(_named(sets, best, n) for n in best.effects)
         rivals = [(n.name, r, f) for n in named for r, f in n.rivals.items()]
         fair = [r for r in rivals if r[0] in sets.random or r[1] not in sets.random]
-        better = [f for name, rival, f in fair if f.evidence > best.evidence + _ahead(name, rival)]
+        better = [
+            f
+            for name, rival, f in fair
+            if f.evidence > best.evidence + _ahead(name, rival, sets.config.fit.refit_gain)
+        ]
         further = selected(sets, max(better, key=lambda f: f.evidence)) if better else best
         if frozenset(further.effects) not in seen:
             best = further
@@ -61,11 +65,11 @@ def settled(sets: Sets, best: Fit) -> tuple[Fit, tuple[Named, ...]]:
         best = sets.without(best, out.name)
 
 
-def _ahead(name: str, rival: str) -> float:
+def _ahead(name: str, rival: str, settled: float) -> float:
     """Nats by which a rival must be ahead: on the other side of an actuator than usual only where recordings tell."""
     if name.removeprefix(REORDERED) == rival.removeprefix(REORDERED):
         return -ALIKE if name.startswith(REORDERED) else ALIKE
-    return SETTLED
+    return settled
 
 
 def _little(sets: Sets, best: Fit, named: Named) -> bool:
@@ -111,9 +115,9 @@ def _foreseen(sets: Sets, best: Fit, named: Named) -> bool:
         return True
     for found in (best, sets.without(best, named.name)):
         on = problem.program.switches(found.effects)
-        likelihood = problem.likelihood(found.free, found.theta, on, best.levels)
-        tightness = sum(t.tightness for t in problem.recordings)
-        seen.append(likelihood - tightness + log_prior(found.free, found.theta))
+        passes = problem.filter(found.free, found.theta, on, best.levels)
+        likelihood = passes.log_likelihood - passes.log_density
+        seen.append(likelihood + log_prior(found.free, found.theta))
     return not seen[0] - seen[1] < WORTH
 
 

@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from boatsim.diagnosis.covariance_inflation import widened
+from boatsim.diagnosis.covariance_inflation import inflate_covariance
 from boatsim.diagnosis.description import Description
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.fit import converge, descend
+from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.locate.residual_structure import Structure, structure
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
@@ -105,7 +105,15 @@ def rank(
         last[name] = replace(last[name], evidence=min(last[name].evidence, best.evidence))
     explained = sets.explained(best)
     return Ranking(
-        nominal, sets.base, widened(problem, best), named, first, last, left, goes, explained
+        nominal,
+        sets.base,
+        inflate_covariance(problem, best),
+        named,
+        first,
+        last,
+        left,
+        goes,
+        explained,
     )
 
 
@@ -152,4 +160,4 @@ def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:
 def baseline(problem: Problem) -> tuple[Fit, Fit]:
     """The vessel as written with noise and force levels fitted, and recalibrated: its own coefficients refitted."""
     nominal = fit_noise(problem, problem.nominal())
-    return nominal, converge(problem, descend(problem, nominal, 4, 0.1))
+    return nominal, converge(problem, gauss_newton(problem, nominal, 4, 0.1))

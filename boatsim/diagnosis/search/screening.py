@@ -1,4 +1,4 @@
-"""A quick look at every suspect on top of a fit: Gauss-Newton with the filter's gains and all else linearised."""
+"""Screens candidates on top of a fit: Gauss-Newton steps with the gains of the filter held."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -7,280 +7,328 @@ import numpy as np
 
 from boatsim.diagnosis.command_range import excursion
 from boatsim.diagnosis.filter import axes_of
-from boatsim.diagnosis.fit import SETTLED, Space, as_promised, cut_off, descend, jacobian, log_prior
+from boatsim.diagnosis.fit import (
+    DAMPING_GROWTH,
+    FIRST_DAMPING,
+    LEAST_DAMPING,
+    ParameterSpace,
+    agrees_with_prediction,
+    gauss_newton,
+    jacobian,
+    log_prior,
+    log_truncation,
+    unfitted,
+)
 from boatsim.diagnosis.noise_levels import force_prior
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
 from boatsim.physics.base import Array, Effect, Unsteady
-
-ROUNDS = 3  # Gauss-Newton steps of a suspect
-NEARER = 4  # points at which a look is scored anew, each half as far from nothing missing,
-HONEST, SMALL_LIE = (
-    0.5,
-    3.0,
-)  # where the filter sees less than this share of what it promised, or so many nats less
-FURTHER = 2  # steps from the best of these
-TRIED = 2  # starts of a suspect from which a step is taken
-LITTLE = 0.3  # [nats] promised at most, a suspect is not followed further
-HALVINGS, TOO_STRONG = 8, 30.0  # of a start that lies this far below nothing missing [nats]
-SMALL = 0.1  # where a suspect without starts of its own begins, in prior sds
-# of the fitted latent force that a random force is tried with; the latent force keeps as much
-SWELL_SHARE = 0.7
 
 
 @dataclass(frozen=True)
-class Begin:
-    """What all looks share: the fit they are on top of, linearised with the gains held."""
+class Linearisation:
+    """The fit on top of which candidates are screened, linearised with the gains held."""
 
     columns: Array  # (rows, F) derivatives of the whitened errors by its parameters
-    slope: Array  # (F,) gradient that held gains show where there is none
+    slope: Array  # (F,) gradient that the held gains show at its maximum, where there is none
     score: float
-    white: Array  # (rows,) whitened errors
-    factor: (
-        Array  # (F, F) inverse of the information on its parameters, in units of their prior sds
-    )
+    passes: FilterPasses
+    # (F, F) inverse of the information on its parameters, in units of their prior sds
+    inverse: Array
 
-    def promise(self, white: Array) -> float:
-        """Nats that some multiple of a change of the errors gains, beside all that the fit has free itself."""
-        mark = white - self.white
-        with np.errstate(over="ignore", invalid="ignore"):  # a boat that runs away promises nothing
-            along = self.columns.T @ mark
-            length = float(mark @ mark - along @ (self.factor @ along))
-            slope = float(self.white @ mark - along @ (self.factor @ (self.columns.T @ self.white)))
+    @property
+    def white(self) -> Array:
+        """(rows,) whitened errors."""
+        return self.passes.whitened
+
+    def predicted_gain(self, white: Array) -> float:
+        """Return the evidence that some multiple of a change of the errors gains [nats].
+
+        The parameters of the fit itself are free, too.
+
+        Args:
+            white: (rows,) whitened errors after the change.
+        """
+        change = white - self.white
+        with np.errstate(over="ignore", invalid="ignore"):  # the simulated boat may diverge
+            along = self.columns.T @ change
+            length = float(change @ change - along @ (self.inverse @ along))
+            own = self.inverse @ (self.columns.T @ self.white)
+            slope = float(self.white @ change - along @ own)
         return 0.5 * slope**2 / length if np.isfinite(length) and length > 0.0 else -np.inf
+
+
+def linearise(problem: Problem, base: Fit) -> Linearisation:
+    """Return a fit linearised with the gains of the filter held.
+
+    Args:
+        problem: Recordings and priors.
+        base: A converged fit.
+    """
+    on = problem.program.switches(base.effects)
+    passes = problem.filter(base.free, base.theta, on, base.levels)
+    white = passes.whitened
+    known = jacobian(problem, base.free, base.theta, on, base.levels, passes)
+    # base is a maximum: its gradient is zero, whatever the held gains make of it
+    space = ParameterSpace(base.free)
+    slope = known.T @ white + (base.theta - space.mean) / space.sd
+    score = log_prior(base.free, base.theta) - 0.5 * float(white @ white)
+    inverse = np.linalg.inv(np.eye(len(slope)) + known.T @ known)
+    return Linearisation(known, slope, score, passes, np.asarray(inverse, dtype=np.float64))
 
 
 def screen(
     problem: Problem,
     base: Fit,
     candidates: Sequence[str],
-    done: Callable[[float], None] | None = None,
+    report: Callable[[float], None] | None = None,
 ) -> dict[str, Fit]:
-    """Each candidate added to `base`: parameters near the best, evidence near enough to choose whom to fit in full.
+    """Return a rough fit of each candidate on top of a fit.
 
-    `done` is told the share that was looked at.
+    Its parameters are near the best ones, and its evidence is accurate enough to choose the
+    candidates that are fitted in full.
+
+    Args:
+        problem: Recordings and priors.
+        base: A converged fit.
+        candidates: Names of the candidates.
+        report: Receives the share of the candidates that have been screened.
     """
-    on = problem.program.switches(base.effects)
-    problem.likelihood(base.free, base.theta, on, base.levels)  # the gains that all looks share
-    white = problem.white()
-    known = jacobian(problem, base.free, base.theta, on, base.levels, white)
-    # base is a maximum: its gradient is zero, whatever gains held still make of it
-    space = Space(base.free)
-    off = known.T @ white + (base.theta - space.mean) / space.sd
-    score = log_prior(base.free, base.theta) - 0.5 * float(white @ white)
-    begin = Begin(
-        known,
-        off,
-        score,
-        white,
-        np.asarray(np.linalg.inv(np.eye(len(off)) + known.T @ known), dtype=np.float64),
-    )
+    about = linearise(problem, base)
     effects = {e.name: e for e in problem.program.candidates}
-    looks: dict[str, Fit] = {}
+    found: dict[str, Fit] = {}
     for name in sorted(candidates, key=lambda n: type(effects[n]).random):
-        random = type(effects[name]).random
-        looks[name] = (
-            _random_look(problem, base, effects[name])
-            if random
-            else _look(problem, base, effects[name], begin)
-        )
-        if done:
-            done(len(looks) / len(candidates))
-    return looks
+        if type(effects[name]).random:
+            found[name] = _screen_stochastic(problem, base, effects[name], about)
+        else:
+            found[name] = _screen_deterministic(problem, base, effects[name], about)
+        if report:
+            report(len(found) / len(candidates))
+    return found
 
 
-def checked(problem: Problem, base: Fit, look: Fit) -> Fit:
-    """A look itself where the filter, its gains made anew, agrees; else steps from the best of points nearer `base`.
+def recheck(problem: Problem, base: Fit, screened: Fit) -> Fit:
+    """Return a screening if the full filter confirms it, else steps from the best point nearer `base`.
 
-    A look may go wrong where gains held no longer suit the boat, as where much mass is missing: what seems little from
-    where the filter bears it out may still gain most.
+    A screening may fail where the held gains no longer suit the hull, for example where much mass is
+    missing. What seems little at a point that the filter confirms may still gain most.
+
+    Args:
+        problem: Recordings and priors.
+        base: The fit on top of which the candidate was screened.
+        screened: The screening.
     """
-    on = problem.program.switches(look.effects)
-    at_base = problem.likelihood(
-        base.free, base.theta, problem.program.switches(base.effects), base.levels
-    )
+    config = problem.config.select
+    on = problem.program.switches(screened.effects)
+    on_base = problem.program.switches(base.effects)
+    at_base = problem.log_likelihood(base.free, base.theta, on_base, base.levels)
     at_base += log_prior(base.free, base.theta)
-    promised = look.evidence - base.evidence
+    predicted = screened.evidence - base.evidence
     fitted = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
-    nothing = np.array([fitted.get((f.effect, f.name), f.mean) for f in look.free])
-    theta, best = look.theta, look
-    for i in range(NEARER):
-        gain = (
-            problem.likelihood(look.free, theta, on, look.levels)
-            + log_prior(look.free, theta)
-            - at_base
-        )
-        if i == 0 and (gain > HONEST * promised or gain > promised - SMALL_LIE):
-            return look
+    nothing = np.array([fitted.get((f.effect, f.name), f.mean) for f in screened.free])
+    theta, best = screened.theta, screened
+    for i in range(config.recheck_points):
+        likelihood = problem.log_likelihood(screened.free, theta, on, screened.levels)
+        gain = likelihood + log_prior(screened.free, theta) - at_base
+        enough = gain > config.recheck_share * predicted or gain > predicted - config.recheck_loss
+        if i == 0 and enough:
+            return screened
         if i == 0 or gain > best.evidence - base.evidence:
-            best = replace(look, theta=theta, evidence=base.evidence + min(gain, promised))
+            best = replace(screened, theta=theta, evidence=base.evidence + min(gain, predicted))
         theta = 0.5 * (theta + nothing)
-    further = descend(problem, best, FURTHER, SETTLED)
+    further = gauss_newton(problem, best, config.recheck_steps, problem.config.fit.refit_gain)
     return further if np.isfinite(further.evidence) else best
 
 
-def _half_determinant(J: Array) -> float:
+def _half_log_determinant(J: Array) -> float:
     return 0.5 * float(np.linalg.slogdet(np.eye(J.shape[1]) + J.T @ J)[1])
 
 
 def starts(problem: Problem, effect: Effect) -> list[dict[str, float]]:
-    """Where a suspect's fit begins: its own starts, Froude-scaled, shares of the commands given, or a little of it."""
-    params = type(effect).params()
+    """Return the starting points of a candidate's parameters.
+
+    They are those of the effect, scaled by Froude's law, and shares of the largest command recorded;
+    a small value where there are none.
+
+    Args:
+        problem: Recordings and priors.
+        effect: The candidate.
+    """
+    kind = type(effect)
     default = {}
-    for name, p in params.items():
-        step = SMALL * p.spread * problem.scale(effect, name)
-        default[name] = p.absent + (step if p.absent + step <= p.high else -step)
-    given = [{n: x * problem.scale(effect, n) for n, x in s.items()} for s in type(effect).starts]
-    largest = excursion(problem.recordings, effect)
-    given += [
-        {n: share * largest}
-        for n, shares in type(effect).thresholds.items()
-        for share in shares
-        if largest
-    ]
-    return [{**default, **s} for s in given or [{}]]
+    for name, p in kind.params().items():
+        step = problem.config.select.screening_start * p.spread * problem.scale(effect, name)
+        default[name] = p.absent + step if p.absent + step <= p.high else p.absent - step
+    specified = []
+    for start in kind.starts:
+        specified.append({n: x * problem.scale(effect, n) for n, x in start.items()})
+    largest = excursion(problem.recordings, effect, problem.config.load)
+    if largest:
+        for name, shares in kind.thresholds.items():
+            specified += [{name: share * largest} for share in shares]
+    return [default | start for start in specified or [{}]]
 
 
-def joined(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -> Fit:
-    """`base` with one more suspect at a start of its parameters, not yet scored."""
+def add_effect(problem: Problem, base: Fit, name: str, start: Mapping[str, float]) -> Fit:
+    """Return a fit with one more effect at a starting point, without evidence yet.
+
+    Args:
+        problem: Recordings and priors.
+        base: A fit.
+        name: Name of the candidate that is added.
+        start: Its parameters by name.
+    """
     effects = (*base.effects, name)
     free = problem.parameters(effects)
-    known = {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
-    theta = np.array(
-        [known[f.effect, f.name] if (f.effect, f.name) in known else start[f.name] for f in free]
-    )
-    return Fit(effects, free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf)
+    values = {(name, parameter): x for parameter, x in start.items()}
+    values |= {(f.effect, f.name): x for f, x in zip(base.free, base.theta, strict=True)}
+    theta = np.array([values[f.effect, f.name] for f in free])
+    return unfitted(effects, free, theta, base.levels)
 
 
-def handed_over(start: Fit, effect: Effect) -> Fit:
-    """What recalibration made of a coefficient put into the factor of the suspect that releases it.
+def hand_over(start: Fit, effect: Effect) -> Fit:
+    """Return a start in which the factor of a release takes over a recalibrated coefficient.
 
-    The product is all that the data know: along the curve on which it stays the same straight steps get nowhere.
+    The recordings determine only the product of both: straight steps along the curve on which it is
+    constant would lead nowhere.
+
+    Args:
+        start: A start with the effect.
+        effect: The candidate that was added.
     """
     theta = start.theta.copy()
     coefficients = {f.at: i for i, f in enumerate(start.free) if f.relative}
     for own, f in enumerate(start.free):
-        if (
-            f.effect == effect.name
-            and f.how == "scales"
-            and not f.relative
-            and f.at in coefficients
-        ):
+        scales = f.effect == effect.name and f.how == "scales" and not f.relative
+        if scales and f.at in coefficients:
             coefficient = coefficients[f.at]
             theta[own] = np.clip(theta[coefficient], f.low, f.high)
             theta[coefficient] /= theta[own]
     return replace(start, theta=theta)
 
 
-def _look(problem: Problem, base: Fit, effect: Effect, begin: Begin) -> Fit:
-    """One suspect: a first step from those of its starts that promise most, the best of them followed further."""
-    begun = [
-        handed_over(joined(problem, base, effect.name, s), effect) for s in starts(problem, effect)
-    ]
-    if len(begun) > TRIED:
+def all_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
+    """Return a fit with a candidate added, at each of the candidate's starting points.
+
+    Args:
+        problem: Recordings and priors.
+        base: A fit.
+        effect: The candidate.
+    """
+    points = starts(problem, effect)
+    return [hand_over(add_effect(problem, base, effect.name, x), effect) for x in points]
+
+
+def _screen_deterministic(problem: Problem, base: Fit, effect: Effect, about: Linearisation) -> Fit:
+    """A first step from the most promising starting points, the best of them followed further."""
+    config = problem.config.select
+    begun = all_starts(problem, base, effect)
+    if len(begun) > config.screening_starts:
         on = problem.program.switches(begun[0].effects)
-        begun.sort(
-            key=lambda b: (
-                -begin.promise(
-                    problem.whitened(b.free, Space(b.free).clipped(b.theta), on, b.levels)
-                )
-            )
-        )
-        begun = begun[:TRIED]
-    first = [_step(problem, b, begin, ROUNDS if len(begun) == 1 else 1) for b in begun]
-    best = max(first, key=lambda f: f[1])
-    if len(begun) > 1:
-        best = _step(problem, best[0], begin, ROUNDS - 1)
+
+        def loss(start: Fit) -> float:
+            theta = ParameterSpace(start.free).clipped(start.theta)
+            white = problem.whitened(start.free, theta, on, start.levels, about.passes)
+            return -about.predicted_gain(white)
+
+        begun.sort(key=loss)
+        begun = begun[: config.screening_starts]
+    if len(begun) == 1:
+        best = _steps(problem, begun[0], about, config.screening_steps)
+    else:
+        first = [_steps(problem, start, about, 1) for start in begun]
+        best = max(first, key=lambda found: found[1])
+        best = _steps(problem, best[0], about, config.screening_steps - 1)
     found, score = best
-    one_sided = cut_off(found.free, found.theta, found.covariance) - cut_off(
-        base.free, base.theta, base.covariance
-    )
-    gain = score - begin.score + _half_determinant(begin.columns) + one_sided
+    truncation = log_truncation(found.free, found.theta, found.covariance)
+    truncation -= log_truncation(base.free, base.theta, base.covariance)
+    gain = score - about.score + _half_log_determinant(about.columns) + truncation
     return replace(found, evidence=base.evidence + gain)
 
 
-def _step(problem: Problem, start: Fit, begin: Begin, rounds: int) -> tuple[Fit, float]:
-    """Gauss-Newton steps; the columns of what was free before stay as they are. Fit and score with its determinant."""
-    free, levels = start.free, start.levels
+def _steps(problem: Problem, start: Fit, about: Linearisation, rounds: int) -> tuple[Fit, float]:
+    """Gauss-Newton steps with the columns of what was free before held.
+
+    Returns the fit, and its score with the determinant.
+    """
+    config, free, levels = problem.config.select, start.free, start.levels
     on = problem.program.switches(start.effects)
-    space = Space(free)
+    space = ParameterSpace(free)
     theta = middle = space.clipped(start.theta)
-    known, off = begin.columns, np.append(begin.slope, np.zeros(len(free) - len(begin.slope)))
+    known = about.columns
+    slope = np.append(about.slope, np.zeros(len(free) - len(about.slope)))
 
-    def look(x: Array) -> tuple[Array, float]:
-        white = problem.whitened(free, x, on, levels)
-        with np.errstate(
-            over="ignore"
-        ):  # a boat that runs away has no score, which the caller sees
-            return white, log_prior(free, x) - 0.5 * float(white @ white) + float(
-                off @ ((x - middle) / space.sd)
-            )
+    def evaluate(x: Array) -> tuple[Array, float]:
+        white = problem.whitened(free, x, on, levels, about.passes)
+        with np.errstate(over="ignore"):  # the simulated boat may diverge
+            score = log_prior(free, x) - 0.5 * float(white @ white)
+            return white, score + float(slope @ ((x - middle) / space.sd))
 
-    white, score = look(theta)
-    own = np.arange(len(free)) >= len(begin.slope)
-    for _ in range(
-        HALVINGS
-    ):  # a start far too strong for this boat is brought nearer to nothing missing
-        if np.isfinite(score) and score > begin.score - TOO_STRONG:
+    white, score = evaluate(theta)
+    own = np.arange(len(free)) >= len(about.slope)
+    for _ in range(config.screening_halvings):  # a start may be far too strong for this hull
+        if np.isfinite(score) and score > about.score - config.screening_loss:
             break
         theta = np.where(own, 0.5 * (theta + space.mean), theta)
-        white, score = look(theta)
-    if not np.isfinite(score):  # the boat runs away
+        white, score = evaluate(theta)
+    if not np.isfinite(score):
         return start, -np.inf
-    damping, J = 1e-3, known
+    damping, J = FIRST_DAMPING, known
     for _ in range(rounds):
-        J = np.hstack([known, jacobian(problem, free, theta, on, levels, white, known.shape[1])])
-        gain, kept = 0.0, False
-        for _ in range(3):
-            g = off - J.T @ white - (theta - space.mean) / space.sd
-            trial = space.stepped(theta, J, g, damping)
-            promised = space.promised(J, g, theta, trial)
-            if (
-                promised >= 0.0 and score + promised < begin.score + LITTLE
-            ):  # taken at its word: it is nothing
-                theta, score, kept = trial, score + promised, True
+        J = jacobian(problem, free, theta, on, levels, about.passes, white, known.shape[1])
+        J = np.hstack([known, J])
+        gain, ends = 0.0, False
+        for _ in range(config.screening_dampings):
+            g = slope - J.T @ white - (theta - space.mean) / space.sd
+            trial = space.damped_step(theta, J, g, damping)
+            predicted = space.predicted_gain(J, g, theta, trial)
+            if predicted >= 0.0 and score + predicted < about.score + config.screening_promise:
+                # too little to follow: the prediction is accepted as it is
+                theta, score, ends = trial, score + predicted, True
                 break
-            after, value = look(trial)
+            after, value = evaluate(trial)
             if np.isfinite(value) and value > score:
-                kept = as_promised(value - score, promised)
-                theta, white, gain, score = trial, after, value - score, value
+                ends = agrees_with_prediction(problem, value - score, predicted)
+                gain = value - score
+                theta, white, score = trial, after, value
                 break
-            damping = max(damping, 1e-2) * 10.0
-        if gain < 0.1 or kept:
+            damping = max(damping, LEAST_DAMPING) * DAMPING_GROWTH
+        if gain < problem.config.fit.step_gain or ends:
             break
-    found = replace(start, theta=theta, covariance=space.covariance(np.eye(len(free)) + J.T @ J))
-    return found, score - _half_determinant(J)
+    covariance = space.covariance(np.eye(len(free)) + J.T @ J)
+    found = replace(start, theta=theta, covariance=covariance)
+    return found, score - _half_log_determinant(J)
 
 
-def _random_look(problem: Problem, base: Fit, effect: Effect) -> Fit:
-    """A random force, or the error of an instrument, takes over from the latent one; the best of its starts.
+def _screen_stochastic(problem: Problem, base: Fit, effect: Effect, about: Linearisation) -> Fit:
+    """A stochastic force, or the drift of an instrument, takes over from the latent force.
 
-    A force that sways one axis alone would be spoilt by the others: each axis is left out in turn.
+    A force that acts along one axis alone would be spoilt by the others: each axis is omitted in
+    turn. The filter is linearised once; the determinant of what was free before hardly changes.
     """
-    # linearised once; the determinant of what was free before is much the same with and without
-    was = problem.likelihood(
-        base.free, base.theta, problem.program.switches(base.effects), base.levels
-    )
-    was += log_prior(base.free, base.theta) + force_prior(problem, base.levels)
+    before = about.passes.log_likelihood
+    before += log_prior(base.free, base.theta) + force_prior(problem, base.levels)
 
     def scored(at: Fit) -> Fit:
         on = problem.program.switches(at.effects)
-        score = problem.likelihood(at.free, at.theta, on, at.levels, fresh=False) + log_prior(
-            at.free, at.theta
-        )
-        return replace(at, evidence=base.evidence + score + force_prior(problem, at.levels) - was)
+        score = problem.log_likelihood(at.free, at.theta, on, at.levels, about.passes)
+        score += log_prior(at.free, at.theta)
+        evidence = base.evidence + score + force_prior(problem, at.levels) - before
+        return replace(at, evidence=evidence)
 
-    best = max(map(scored, random_starts(problem, base, effect)), key=lambda f: f.evidence)
+    best = _best([scored(start) for start in stochastic_starts(problem, base, effect)])
     if isinstance(effect, Unsteady):
         for i, axis in enumerate(axes_of(problem.program.vessel)):
-            best = max(
-                best, scored(_still(best, base, effect.name, i, axis)), key=lambda f: f.evidence
-            )
-        best = max(best, scored(_taken_over(problem, best, base)), key=lambda f: f.evidence)
+            best = _best([best, scored(_without_axis(best, base, effect.name, i, axis))])
+        best = _best([best, scored(_calm(problem, best, base))])
     return best
 
 
-def _still(at: Fit, base: Fit, name: str, i: int, axis: str) -> Fit:
-    """A start of a random force without a force along one axis, whose latent one is as it was."""
+def _best(fits: Sequence[Fit]) -> Fit:
+    return max(fits, key=lambda found: found.evidence)
+
+
+def _without_axis(at: Fit, base: Fit, name: str, i: int, axis: str) -> Fit:
+    """A start without a force along one axis, whose latent force is as it was."""
     off = np.array([(f.effect, f.name) == (name, axis) for f in at.free])
     force = at.levels.force.copy()
     force[i] = base.levels.force[i]
@@ -288,28 +336,34 @@ def _still(at: Fit, base: Fit, name: str, i: int, axis: str) -> Fit:
     return replace(at, theta=theta, levels=replace(at.levels, force=force))
 
 
-def _taken_over(problem: Problem, at: Fit, base: Fit) -> Fit:
-    """A start of a random force where nothing else pushes along its axes but what is tolerated."""
+def _calm(problem: Problem, at: Fit, base: Fit) -> Fit:
+    """A start in which the latent force along the axes of a stochastic force is the assumed one."""
     takes = at.levels.force < base.levels.force
     calm = np.minimum(at.levels.force, problem.ambient.force)
     return replace(at, levels=replace(at.levels, force=np.where(takes, calm, at.levels.force)))
 
 
-def random_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
-    """Where the fit of a random force begins, with a share of the latent one; that of an instrument's error, in calm.
+def stochastic_starts(problem: Problem, base: Fit, effect: Effect) -> list[Fit]:
+    """Return the starts of a stochastic force, or of the drift of an instrument.
 
-    Force and noise fitted without that error have taken up what they could of it.
+    A stochastic force starts with a share of the latent force. The drift of an instrument starts with
+    the assumed levels, because force and noise that were fitted without it have absorbed part of it.
+
+    Args:
+        problem: Recordings and priors.
+        base: A fit.
+        effect: The candidate.
     """
-    of_axis = dict(
-        zip(
-            axes_of(problem.program.vessel), (SWELL_SHARE * base.levels.force).tolist(), strict=True
-        )
-    )
+    shared = problem.config.select.swell_share * base.levels.force
     if isinstance(effect, Unsteady):
-        levels = replace(base.levels, force=SWELL_SHARE * base.levels.force)
-        rms = {n: of_axis.get(n, 0.0) for n in type(effect).strength}
+        of_axis = dict(zip(axes_of(problem.program.vessel), shared.tolist(), strict=True))
+        levels = replace(base.levels, force=shared)
+        rms = {name: of_axis.get(name, 0.0) for name in type(effect).strength}
     else:
         calm = np.minimum(base.levels.force, problem.ambient.force)
         levels, rms = replace(base.levels, force=calm, sensors=problem.ambient.sensors), {}
-    begun = (joined(problem, base, effect.name, start | rms) for start in starts(problem, effect))
-    return [replace(fit, levels=levels) for fit in begun]
+    found = []
+    for start in starts(problem, effect):
+        added = add_effect(problem, base, effect.name, start | rms)
+        found.append(replace(added, levels=levels))
+    return found

@@ -87,7 +87,7 @@ def foretold(sets: Sets, found: Fit, held_out: Sequence[MappedRecording]) -> flo
     problem = sets.problem.on(held_out)
     there = fit_force(problem, found)
     on = problem.program.switches(there.effects)
-    return problem.likelihood(there.free, there.theta, on, there.levels) + force_prior(
+    return problem.log_likelihood(there.free, there.theta, on, there.levels) + force_prior(
         problem, there.levels
     )
 

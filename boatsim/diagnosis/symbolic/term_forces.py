@@ -182,7 +182,7 @@ def ways(problem: Problem, found: Fit) -> list[Way]:
     out = []
     for track in problem.recordings:
         values = problem.values(track, found.free, found.theta)
-        means, *smoother = track.smoothed_with_gains(values, on, found.levels)
+        means, *smoother = track.smooth(values, on, found.levels)
         states, left = means[:, : 2 * nq].copy(), means[:, 2 * nq : 3 * nq].copy()
         out.append(Way(problem, track, found, states, left, (smoother[0], smoother[1])))
     return out

@@ -10,7 +10,7 @@ import numpy as np
 
 from boatsim.diagnosis.filter import axes_of
 from boatsim.diagnosis.locate.smoothing import information_alone
-from boatsim.diagnosis.problem import scale_of
+from boatsim.diagnosis.problem import froude_scale
 from boatsim.diagnosis.symbolic.term_forces import Way
 from boatsim.physics.base import AXES, Array
 from boatsim.physics.described_laws import Described
@@ -67,7 +67,7 @@ def _batch(ways: Sequence[Way], terms: Sequence[Described]) -> list[Weighed]:
             way.track.times,
             *way.smoother,
             latent,
-            *way.track.jolts(way.values, on, levels),
+            *way.track.latent_force_rms(way.values, on, levels),
             levels.time_constant,
         )
         known, score = known + learnt, score + slope
@@ -89,7 +89,7 @@ def strength(vessel: Vessel, term: Described) -> float:
         return SHARE
     axis = str(getattr(term, "axis", ""))
     turning = axis in ("roll", "pitch", "yaw")
-    return FORCE.get(axis, FORCE["surge"]) * scale_of("N m" if turning else "N", vessel)
+    return FORCE.get(axis, FORCE["surge"]) * froude_scale("N m" if turning else "N", vessel)
 
 
 def varying(ways: Sequence[Way]) -> tuple[dict[str, Array], list[str]]:

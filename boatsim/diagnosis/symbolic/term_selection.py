@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from boatsim.diagnosis.filter import MappedRecording
-from boatsim.diagnosis.fit import SETTLED, converge, descend, fit, reduced
+from boatsim.diagnosis.fit import converge, fit, gauss_newton, remove_effect
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.evidence import price
 from boatsim.diagnosis.search.forward_selection import SLIGHT
@@ -113,7 +113,7 @@ def _with(
     start = Fit(
         (*base.effects, slot), free, theta, np.diag([f.sd**2 for f in free]), base.levels, -np.inf
     )
-    found = descend(problem, start, 4, SETTLED)
+    found = gauss_newton(problem, start, 4, problem.config.fit.refit_gain)
     return (slot, fit(problem, found), w) if np.isfinite(found.evidence) else None
 
 
@@ -180,7 +180,7 @@ def _moved(
 
     def likelihood(one: Described) -> float:
         write(problem, slot, one, tracks)
-        return problem.likelihood(found.free, found.theta, on, found.levels)
+        return problem.log_likelihood(found.free, found.theta, on, found.levels)
 
     best = likelihood(term)
     for by in FINEST:
@@ -214,7 +214,7 @@ def _said_already(problem: Problem, before: Chosen, further: Chosen) -> bool:
 def _pruned(problem: Problem, so_far: Chosen) -> Chosen:
     """Without what the newest term has made needless: an earlier term, or an entry that but stood for it."""
     for name in so_far.fit.effects[:-1]:
-        without = converge(problem, reduced(problem, so_far.fit, name))
+        without = converge(problem, remove_effect(problem, so_far.fit, name))
         if without.evidence > so_far.fit.evidence - WORTH:
             so_far = Chosen(without, {n: t for n, t in so_far.terms.items() if n != name})
     return so_far
@@ -222,5 +222,5 @@ def _pruned(problem: Problem, so_far: Chosen) -> Chosen:
 
 def less(problem: Problem, so_far: Chosen, name: str) -> Chosen:
     """A description without one of its terms."""
-    found = converge(problem, reduced(problem, so_far.fit, name))
+    found = converge(problem, remove_effect(problem, so_far.fit, name))
     return replace(so_far, fit=found, terms={n: t for n, t in so_far.terms.items() if n != name})

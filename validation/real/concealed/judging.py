@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from boatsim.diagnosis.candidates import FURTHER, called
-from boatsim.diagnosis.fit import converge, descend
+from boatsim.diagnosis.fit import converge, gauss_newton
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report.answer import key_of
 from boatsim.diagnosis.report.schema import EffectEntry
-from boatsim.diagnosis.search.screening import joined
+from boatsim.diagnosis.search.screening import add_effect
 from boatsim.physics.base import Effect
 
 VISIBLE = 6.0  # [nats] that the true structure gains over no cause, from which a cause can be told
@@ -257,8 +257,8 @@ def with_entry(problem: Problem, base: Fit, effect: Effect, values: Mapping[str,
     begin = {
         f.name: values.get(key_of(f.name, params[f.name].unit), f.mean + SOME * f.sd) for f in free
     }
-    start = joined(problem, base, effect.name, {n: x for n, x in begin.items()})
-    return converge(problem, descend(problem, start, 4, 0.1))
+    start = add_effect(problem, base, effect.name, {n: x for n, x in begin.items()})
+    return converge(problem, gauss_newton(problem, start, 4, 0.1))
 
 
 def _fitted(found: Diagnosis, effect: Effect) -> dict[str, float]:
