@@ -1,5 +1,7 @@
 """How fits are found: a climb without a gradient, derivatives learnt from steps, a filter that follows the boat."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from jet_craft import Craft, sailed
@@ -67,7 +69,7 @@ def test_the_filter_follows_drag_that_dies_out_faster_than_its_steps_and_as_shor
     said = []
     for share in (1.0, 0.1):
         laid = map_recording(run, program)
-        laid.step *= share
+        laid = replace(laid, specified_step=share * laid.step)
         values = laid.values.copy()
         # 15 /s at 5 m/s; at rest the craft has less than 1 /s
         values[program.index("cubic_damping", "surge")] = 90.0
@@ -83,14 +85,15 @@ def test_a_recording_that_begins_at_full_speed_is_followed_from_its_first_row_on
     del run.signals["u_mps"]
     program = Program(boat, library_for(boat).entries)
     laid = map_recording(run, program)
-    means, covariances = laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))
-    assert laid.rates[0] == pytest.approx(24.0, abs=1.5)  # of noisy fixes a second apart
+    means, covariances, _ = laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))
+    assert laid.initial.rates[0] == pytest.approx(24.0, abs=1.5)  # of noisy fixes a second apart
     speed, sd = (
         means[0, program.module.NQ],
         covariances[0, program.module.NQ, program.module.NQ] ** 0.5,
     )
     assert speed == pytest.approx(24.0, abs=4.0 * sd) and sd < 0.5
-    laid.rates[:] = 0.0
+    still = replace(laid.initial, rates=np.zeros(4))
+    laid = replace(laid, specified_initial=still)
     assert laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))[0][
         0, 4
     ] == pytest.approx(speed, abs=0.1 * sd)  # however wrong the guess
@@ -104,6 +107,36 @@ def test_a_recording_without_positions_begins_at_the_speeds_that_it_shows() -> N
     run.signals["psi_rad"] = run.signals["psi_rad"] + 2.0
     program = Program(boat, library_for(boat).entries)
     laid = map_recording(run, program)
-    assert laid.rates[:2] == pytest.approx([24.0 * np.cos(2.0), 24.0 * np.sin(2.0)], abs=0.5)
-    means, _ = laid.smooth(laid.values, program.switches(), prior_levels(boat, [run]))
+    assert laid.initial.rates[:2] == pytest.approx(
+        [24.0 * np.cos(2.0), 24.0 * np.sin(2.0)], abs=0.5
+    )
+    means = laid.smooth(laid.values, program.switches(), prior_levels(boat, [run])).means
     assert np.hypot(*means[0, 4:6]) == pytest.approx(24.0, abs=0.3)
+
+
+def test_the_order_of_independent_calls_changes_no_number() -> None:
+    boat = vessel.load("jet_ski")
+    run = sailed(Craft(), np.full(60, 4.0), np.repeat([0.1, -0.1], 30), 24.0)
+    program = Program(boat, library_for(boat).entries)
+    laid, levels = map_recording(run, program), prior_levels(boat, [run])
+    on, more = program.switches(), program.switches(("cubic_damping",))
+    rough = replace(levels, force=2.0 * levels.force)
+
+    def everything(first: bool) -> list[Array]:
+        about = laid.filter(laid.values, on, levels)
+        if first:  # calls in between that once changed what a later one returned
+            laid.filter(1.01 * laid.values, more, rough)
+            laid.smooth(laid.values, more, rough)
+        other = laid.filter(laid.values, on, rough, about)
+        if first:
+            laid.filter(laid.values, more, levels)
+        errors = laid.whitened(1.001 * laid.values, on, levels, about)
+        smoothed = laid.smooth(laid.values, on, levels)
+        (_, states), *_ = laid.free_runs(laid.values, on, levels, 5.0)
+        numbers = np.array([about.log_likelihood, other.log_likelihood, about.log_density])
+        return [numbers, about.whitened, other.whitened, errors, *smoothed, states]
+
+    for one, other in zip(everything(first=True), everything(first=False), strict=True):
+        np.testing.assert_array_equal(one, other)
+    with pytest.raises(ValueError, match="read-only"):
+        laid.filter(laid.values, on, levels).whitened[0] = 1.0

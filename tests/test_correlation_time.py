@@ -10,6 +10,7 @@ import pytest
 from real_boat import Real, recorded
 
 from boatsim.diagnosis import correlation_time, pipeline, priors
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording, prior_levels
 from boatsim.errors import BadInput
 from boatsim.files import read_toml
@@ -55,7 +56,7 @@ def test_it_is_halved_or_doubled_as_long_as_that_predicts_clearly_better(
         "halves_errors",
         lambda problem, found, seconds: np.full(9, errors[seconds]),
     )
-    problem: Any = SimpleNamespace(ambient=SimpleNamespace(time_constant=1.0))
+    problem: Any = SimpleNamespace(ambient=SimpleNamespace(time_constant=1.0), config=DEFAULT)
     named: Any = SimpleNamespace(effects=("wind",))
     assert correlation_time.correlation_time(problem, named) == taken
     assert correlation_time.correlation_time(problem, SimpleNamespace(effects=())) == 1.0  # type: ignore[arg-type]
@@ -78,7 +79,7 @@ def test_a_single_recording_is_halved_in_time_and_each_row_is_in_one_half() -> N
     )
     ((first,), (second,)) = correlation_time.halves([whole])
     assert np.concatenate([first.times, second.times]) == pytest.approx(t)
-    assert len(first.times) == len(second.times) and second.start[0] == whole.measured[50, 0]
+    assert len(first.times) == len(second.times) and second.initial.mean[0] == whole.measured[50, 0]
     pair = correlation_time.halves([whole, first, second])
     assert [len(half) for half in pair] == [2, 1]
 

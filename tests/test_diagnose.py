@@ -80,7 +80,7 @@ def test_filter_and_smoother_equal_the_dense_gaussian_of_the_same_linear_model()
     assert got == pytest.approx(dense, abs=0.3)
     gain = np.linalg.solve(S, big[rows]).T
     smoothed = mean + gain @ (y - mean[rows])
-    means, covariances = found.smooth(values, on, levels)
+    means, covariances, _ = found.smooth(values, on, levels)
     assert means[:, 0] == pytest.approx(smoothed[0::3], abs=2e-4)
     variance = np.diag(big - gain @ big[rows])[2::3]
     assert np.sqrt(covariances[5:-5, 2, 2]) == pytest.approx(np.sqrt(variance)[5:-5], rel=0.05)
@@ -158,7 +158,7 @@ def test_likelihood_hangs_neither_on_the_filters_step_nor_on_a_delay_that_merely
     split[joystick.index("command_delay", "delay")] = 1e-5
     by_step = []
     for step in (laid.step, laid.step / 2, 1e-3):
-        laid.step = step
+        laid = replace(laid, specified_step=step)
         by_step.append(laid.log_likelihood(laid.values, nothing, levels))
         assert laid.log_likelihood(split, delayed, levels) == pytest.approx(by_step[-1], abs=0.02)
     assert by_step == pytest.approx([by_step[-1]] * 3, abs=0.02)  # nats; 240 rows

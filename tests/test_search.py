@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from pushed_boat import laid, push, sail
 
+from boatsim.diagnosis.filter import FilterPass
 from boatsim.diagnosis.fit import fit
-from boatsim.diagnosis.problem import Fit, Problem
+from boatsim.diagnosis.problem import FilterPasses, Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import Sets
 from boatsim.diagnosis.search.evidence import worth
 from boatsim.diagnosis.search.pruning import there
@@ -33,9 +34,10 @@ def test_a_start_promises_what_least_squares_gains_by_a_multiple_of_it_beside_al
         rng.standard_normal(50),
         rng.standard_normal(50),
     )
-    begin = Linearisation(
-        known, np.zeros(4), 0.0, white, np.linalg.inv(np.eye(4) + known.T @ known)
-    )
+    nothing = np.zeros((1, 1))
+    passes = FilterPasses((FilterPass(0.0, white, nothing, nothing, nothing, nothing),))
+    inverse = np.linalg.inv(np.eye(4) + known.T @ known)
+    begin = Linearisation(known, np.zeros(4), 0.0, passes, inverse)
 
     def cost(A: Array) -> float:
         """Of the best fit, with the priors of what was free before."""
@@ -46,8 +48,10 @@ def test_a_start_promises_what_least_squares_gains_by_a_multiple_of_it_beside_al
         return 0.5 * float(np.sum((rows @ np.linalg.lstsq(rows, b, rcond=None)[0] - b) ** 2))
 
     gain = cost(known) - cost(np.column_stack([known, mark]))
-    assert begin.promise(white + mark) == pytest.approx(gain, rel=1e-9)
-    assert begin.promise(white - 7.0 * mark) == pytest.approx(gain, rel=1e-9)  # whatever its size
+    assert begin.predicted_gain(white + mark) == pytest.approx(gain, rel=1e-9)
+    assert begin.predicted_gain(white - 7.0 * mark) == pytest.approx(
+        gain, rel=1e-9
+    )  # whatever its size
 
 
 def test_a_look_that_the_filter_bears_out_stays_and_from_one_that_it_does_not_it_steps_on(

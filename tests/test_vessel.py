@@ -9,6 +9,7 @@ import pytest
 
 from boatsim.diagnosis import pipeline, priors
 from boatsim.diagnosis.candidates import called, fittable, library_for, without_ruled_out
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.problem import check_uncertainty
 from boatsim.errors import BadInput
 from boatsim.physics import content, vessel
@@ -120,8 +121,8 @@ def test_rows_of_a_long_recording_are_thinned_by_its_length_but_never_to_less_th
     boat = vessel.load("trial_boat")
     usual = priors.rate(boat)
     assert priors.rate(boat, 300.0) == usual
-    assert 1200.0 * priors.rate(boat, 1200.0) == pytest.approx(priors.PLENTY)
-    assert priors.rate(boat, 36_000.0) == pytest.approx(priors.COARSEST * usual)
+    assert 1200.0 * priors.rate(boat, 1200.0) == pytest.approx(DEFAULT.load.enough_rows)
+    assert priors.rate(boat, 36_000.0) == pytest.approx(DEFAULT.load.least_row_share * usual)
 
 
 @pytest.mark.parametrize("name", content.names("vessel"))

@@ -9,7 +9,13 @@ from answers import diagnosed
 from real_boat import FURTHER, Real, recorded
 
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, inertia_of, map_recording
+from boatsim.diagnosis.filter import (
+    InitialState,
+    MappedRecording,
+    NoiseLevels,
+    inertia_of,
+    map_recording,
+)
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.facts import wrong
@@ -30,15 +36,18 @@ def laid_at_rest(x: Array, every: float) -> tuple[Program, MappedRecording]:
 def likelihood(x: Array, every: float, rms: float) -> float:
     """Of a boat that lies as good as fast, with this wander in x."""
     program, laid = laid_at_rest(x, every)
-    laid.start[:], laid.spread[:], laid.rates[:] = 0.0, 1e-18, 0.0
-    laid.measured[:, 1:] = np.nan
-    laid.spread[6:9, 6:9] = 0.0
+    mean, covariance = np.zeros(9), np.full((9, 9), 1e-18)
+    covariance[6:9, 6:9] = 0.0
+    mean[0] = x[0]
+    measured = laid.measured.copy()
+    measured[:, 1:] = np.nan
+    initial = InitialState(mean, covariance, np.zeros(3))
+    laid = replace(laid, measured=measured, specified_initial=initial)
     values = laid.values.copy()
     for name, value in (("position", rms), ("time", TIME)):
         values[program.index("position_wander", name)] = value
     families = {"position_sd_m": NOISE, "heading_sd_rad": 0.01}
     levels = NoiseLevels(np.full(3, 1e-9), 1.0, families)
-    laid.start[0] = x[0]
     return float(laid.log_likelihood(values, program.switches(["position_wander"]), levels))
 
 
