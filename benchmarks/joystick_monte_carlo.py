@@ -168,7 +168,7 @@ def _picture(done: boatsim.Sweep) -> str:
         for column, name in enumerate(names):
             x, y = LEFT + column * (WIDE + LEFT), TOP + row * (HIGH + TOP)
             scenarios = [s for s in dict.fromkeys(columns["scenario"].tolist()) if f"/{kind}_" in s]
-            parts += _panel(columns, scenarios, name, done.found.units[name], x, y)
+            parts += _panel(columns, scenarios, name, done.results.units[name], x, y)
     for k, (name, colour) in enumerate(LOOKS.items()):
         parts.append(f'<rect x="{LEFT + 170 * k}" y="8" width="14" height="10" fill="{colour}"/>')
         parts.append(f'<text x="{LEFT + 20 + 170 * k}" y="17">{name}</text>')

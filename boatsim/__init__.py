@@ -1,7 +1,8 @@
 """boatsim: small-boat motion and control on MuJoCo, and diagnosis of simulations against recordings.
 
-`load_vessel`, `run`, `sweep`, `read`, `diagnose` and `replay` are the Python equivalents of the commands; `Batch` and
-`Fleet` step many boats together. They are defined in `boatsim.api`, which is imported at first use.
+`load_vessel`, `load_scenario`, `run`, `sweep`, `read`, `diagnose` and `replay` are the Python equivalents of the
+commands. `Vessel`, `Scenario`, `Recording`, `Diagnosis`, `Run` and `Sweep` are their arguments and results; `Batch` and
+`Fleet` simulate many vessels together. All are defined or exported by `boatsim.api`, which is imported at first use.
 """
 
 from importlib import import_module
@@ -10,12 +11,18 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from boatsim.api import (
         Batch,
+        Body,
+        CommandChannel,
         Diagnosis,
         Fleet,
         Parameter,
+        Recording,
         Run,
+        Scenario,
         Sweep,
+        Vessel,
         diagnose,
+        load_scenario,
         load_vessel,
         read,
         replay,
@@ -25,13 +32,19 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Batch",
+    "Body",
+    "CommandChannel",
     "Diagnosis",
     "Fleet",
     "Parameter",
+    "Recording",
     "Run",
+    "Scenario",
     "Sweep",
+    "Vessel",
     "__version__",
     "diagnose",
+    "load_scenario",
     "load_vessel",
     "read",
     "replay",
@@ -43,7 +56,7 @@ __version__: str
 
 
 def __getattr__(name: str) -> object:
-    """Import a public name at first use, so that `import boatsim` stays fast."""
+    """Import a public name at first use, so that `import boatsim` is fast."""
     if name == "__version__":
         return import_module("boatsim.version").version()
     if name in __all__:
@@ -52,5 +65,5 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    """Return the public interface only."""
+    """Return the names of the public interface only."""
     return sorted(__all__)

@@ -1,7 +1,7 @@
-"""boatsim for Python: load a vessel, run a scenario or many, read a recording, diagnose it, replay it.
+"""Python interface: build or load vessels, run scenarios, read recordings, diagnose and replay them, run sweeps.
 
-`import boatsim` offers these functions and imports what they need when they are called. SI units, radians and SNAME
-axes throughout, as in files. What can not be used raises `boatsim.errors.BadInput`, one line that says what is right.
+Everything is available as `boatsim.NAME` and imported at first use. Units are SI and radians, axes are SNAME, as in
+files. Input that can not be used raises `boatsim.errors.BadInput` with a message of one line.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,17 +15,21 @@ from boatsim.diagnosis.config import Given, from_settings
 from boatsim.diagnosis.replay import joined, replayed
 from boatsim.diagnosis.report import output_files
 from boatsim.diagnosis.report.schema import Answer
+from boatsim.errors import BadInput
 from boatsim.physics import vessel as vessels
-from boatsim.physics.vessel import Vessel
+from boatsim.physics.vessel import Body as Body
+from boatsim.physics.vessel import CommandChannel as CommandChannel
+from boatsim.physics.vessel import Vessel as Vessel
 from boatsim.progress import Report, silent
 from boatsim.recordings import table
 from boatsim.recordings.notes import notes_for
-from boatsim.recordings.table import Recording
+from boatsim.recordings.table import Recording as Recording
 from boatsim.simulate.batch import Batch as Batch
 from boatsim.simulate.controllers import steered
 from boatsim.simulate.evaluation import Norm, NormEntry, all_norms
 from boatsim.simulate.fleet import Fleet as Fleet
 from boatsim.simulate.run import run as simulate
+from boatsim.simulate.scenario import Scenario as Scenario
 from boatsim.sweeps.axes import axis_of
 from boatsim.sweeps.designs import Kind as Design
 from boatsim.sweeps.execute import swept
@@ -36,8 +40,9 @@ from boatsim.sweeps.results import Results
 from boatsim.sweeps.sampled_keys import draw_of
 from boatsim.sweeps.summary import Pair, Spread, pairs, spreads
 
-Name = str | Path  # of something shipped, of a file, or of a folder
-Names = Name | Sequence[Name]  # one or several
+# Name of shipped content, or path of a file or folder
+Name = str | Path
+Names = Name | Sequence[Name]
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,12 @@ class Run:
 
 
 class Parameter(NamedTuple):
-    """A parameter that was found, with its standard deviation."""
+    """An identified parameter.
+
+    Attributes:
+        value: Estimate, in the parameter's unit.
+        sd: Standard deviation of the estimate.
+    """
 
     value: float
     sd: float
@@ -67,113 +77,175 @@ class Parameter(NamedTuple):
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What a vessel leaves out of recordings; `found` is all of it, curves too."""
+    """The physics that a vessel lacks, identified from recordings by `diagnose`.
 
-    found: pipeline.Diagnosis
+    Attributes:
+        result: All results of the stages of the diagnosis, with the curves of the report.
+    """
+
+    result: pipeline.Diagnosis
 
     @property
     def answer(self) -> Answer:
-        """Exactly what diagnosis.json holds."""
-        return self.found.findings.answer
+        """The content of diagnosis.json."""
+        return self.result.findings.answer
 
     @property
     def verdict(self) -> str:
-        """One of named, ambiguous, described, unknown and nothing_missing."""
+        """One of "named", "ambiguous", "described", "unknown" and "nothing_missing"."""
         return self.answer["verdict"]
 
     @property
     def sentence(self) -> str:
-        """The verdict in words, with the figures."""
+        """The verdict in words, with its numbers."""
         return self.answer["sentence"]
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Entries of the library that were named, the surest first."""
+        """Names of the identified effects, the most certain first."""
         return tuple(effect["name"] for effect in self.answer["effects"])
 
     @property
     def parameters(self) -> dict[str, dict[str, Parameter]]:
-        """Parameters of what was named: entry -> name -> value and standard deviation, in the parameter's unit."""
-        return {
-            effect["name"]: {
-                k: Parameter(p["value"], p["sd"]) for k, p in effect["parameters"].items()
-            }
-            for effect in self.answer["effects"]
-        }
+        """Parameters of the identified effects: effect -> parameter -> value and standard deviation."""
+        found: dict[str, dict[str, Parameter]] = {}
+        for effect in self.answer["effects"]:
+            entries = effect["parameters"].items()
+            found[effect["name"]] = {k: Parameter(p["value"], p["sd"]) for k, p in entries}
+        return found
 
     @property
     def skill(self) -> dict[str, float]:
-        """How much of the error on unseen data the patch takes away, of "position", "heading", "roll" what there is.
+        """Reduction of the error on held-out data, for "position", "heading" and "roll" where they are recorded.
 
-        1 - rms of the patched boat / rms of the same boat with but its own coefficients refitted: 0 gains nothing.
+        It is 1 - rms of the patched vessel / rms of the recalibrated one: 0 is no improvement, 1 a perfect model.
         """
         fit = self.answer["fit"]
-        position, heading, roll = (
-            fit.get("position_rms_m"),
-            fit.get("heading_rms_rad"),
-            fit.get("roll_rms_rad"),
-        )
-        by_name = {"position": position, "heading": heading, "roll": roll}
-        return {
-            name: 1.0 - rms["patched"] / rms["recalibrated"] for name, rms in by_name.items() if rms
+        errors = {
+            "position": fit.get("position_rms_m"),
+            "heading": fit.get("heading_rms_rad"),
+            "roll": fit.get("roll_rms_rad"),
         }
+        skill: dict[str, float] = {}
+        for name, rms in errors.items():
+            if rms:
+                skill[name] = 1.0 - rms["patched"] / rms["recalibrated"]
+        return skill
 
     def write(self, folder: Name) -> None:
-        """All files of `boatsim diagnose`: report.html, report.md, diagnosis.json, patched.toml, diagnosis.rrd."""
-        output_files.write(self.found, Path(folder))
+        """Write the files of `boatsim diagnose`: report.html, report.md, diagnosis.json, patched.toml, diagnosis.rrd.
+
+        Args:
+            folder: Folder of the files; it is created if needed.
+        """
+        output_files.write(self.result, Path(folder))
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """Many runs; `found` is all of them, with their plan."""
+    """The runs of a sweep.
 
-    found: Results
-    complete: bool  # whether all runs of the plan are done
-    folder: Path  # of sweep.parquet and report.html
+    Attributes:
+        results: All runs, with their plan.
+        complete: Whether all runs of the plan are done.
+        folder: Folder of sweep.parquet and report.html.
+    """
+
+    results: Results
+    complete: bool
+    folder: Path
 
     @property
     def columns(self) -> dict[str, Sequence[Any]]:
-        """Columns of sweep.parquet, a row each run: what was varied and drawn, norms, None where there is none."""
-        return self.found.columns()
+        """Columns of sweep.parquet with one row per run: varied and sampled keys, and metrics; None where missing."""
+        return self.results.columns()
 
     @property
     def spreads(self) -> list[Spread]:
-        """Mean and quantiles of each norm at each point of the grid."""
-        return spreads(self.found)
+        """Mean and quantiles of each metric at each point of the grid."""
+        return spreads(self.results)
 
     @property
     def pairs(self) -> list[Pair]:
-        """Controllers on the same draws, where `controller.use` was varied."""
-        return pairs(self.found)
+        """Comparison of controllers on the same samples, where `controller.use` was varied."""
+        return pairs(self.results)
 
     @property
     def indices(self) -> list[Index]:
         """Sobol indices, where the design was "sobol"."""
-        return indices(self.found)
+        return indices(self.results)
 
     @property
     def failures(self) -> dict[str, int]:
-        """Why runs failed, and how many of each."""
-        return self.found.reasons
+        """Reasons of failed runs -> number of runs."""
+        return self.results.reasons
 
 
 def load_vessel(name: Name, load: Names = ()) -> Vessel:
-    """A vessel by name, folder or file, in load conditions. Raises BadInput.
+    """Return a vessel.
+
+    Args:
+        name: Name of a shipped vessel, its folder or its file.
+        load: Load conditions in force.
+
+    Raises:
+        BadInput: If the vessel or a load condition does not exist, or the file has a mistake.
 
     >>> import boatsim
-    >>> boat = boatsim.load_vessel("joystick_boat", ["heavy"])
-    >>> boat.freedoms, boat.length
+    >>> vessel = boatsim.load_vessel("joystick_boat", ["heavy"])
+    >>> vessel.dof, vessel.length
     (('surge', 'sway', 'yaw'), 1.25)
     """
     return vessels.load(str(name), _names(load))
 
 
-def run(
-    scenario: Name, seed: int | None = None, controller: Name | None = None, out: Name | None = None
-) -> Run:
-    """Run a scenario by name or file, steered by its own controller or another; `out` is a folder for the files.
+def load_scenario(
+    name: Name,
+    vessel: Vessel | None = None,
+    controller: Name | None = None,
+    **changes: object,
+) -> Scenario:
+    """Return a scenario that `run`, `Fleet` and the environments of `boatsim.simulate.env` use.
 
-    An interruption ends the run and keeps what was reached. Raises BadInput or BadPhysics.
+    Args:
+        name: Name or file of a scenario, as for `boatsim run`.
+        vessel: Vessel in place of the scenario's.
+        controller: Name or file of a controller in place of the scenario's.
+        changes: Top-level keys of the file that are replaced, such as `duration`.
+
+    Raises:
+        BadInput: If scenario, controller and vessel do not fit each other.
+
+    >>> import boatsim
+    >>> vessel = boatsim.load_vessel("joystick_boat").with_parameters({"body": {"mass": 6.0}})
+    >>> scenario = boatsim.load_scenario("joystick_boat/sway_1", vessel=vessel, duration=5.0)
+    >>> scenario.vessel.body.mass, len(boatsim.run(scenario).recording.t)
+    (6.0, 251)
+    """
+    return steered(str(name), None if controller is None else str(controller), vessel, changes)
+
+
+def run(
+    scenario: Name | Scenario,
+    seed: int | None = None,
+    controller: Name | None = None,
+    out: Name | None = None,
+    vessel: Vessel | None = None,
+) -> Run:
+    """Run a scenario.
+
+    An interruption ends the run and keeps what was reached.
+
+    Args:
+        scenario: Name or file of a scenario, or a `Scenario`.
+        seed: Seed of sensor noise and random effects; the scenario's by default.
+        controller: Name or file of a controller in place of the scenario's; not for a `Scenario`.
+        out: Folder for the files of the run; none are written by default.
+        vessel: Vessel in place of the scenario's; not for a `Scenario`. One that was not saved is saved in `out`.
+
+    Raises:
+        BadInput: If scenario, controller and vessel do not fit each other.
+        BadPhysics: If the vessel can not be simulated.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1", out="out/sway_1")
@@ -183,7 +255,7 @@ def run(
     >>> float(done.recording["y_m"][-1]) > 0.9  # [m] to starboard
     True
     """
-    told = steered(str(scenario), None if controller is None else str(controller))
+    told = _scenario(scenario, controller, vessel)
     if out is None:
         done = simulate(told, seed)
         filmed = done.camera if "yaw" in told.vessel.dof else None
@@ -204,6 +276,18 @@ def run(
     )
 
 
+def _scenario(given: Name | Scenario, controller: Name | None, vessel: Vessel | None) -> Scenario:
+    """A scenario by name, with another controller or vessel; a `Scenario` as it is."""
+    if not isinstance(given, Scenario):
+        return steered(str(given), None if controller is None else str(controller), vessel)
+    if controller is not None or vessel is not None:
+        raise BadInput(
+            f"{given.name}: controller and vessel are allowed with the name of a scenario only; "
+            "a Scenario has its own"
+        )
+    return given
+
+
 def _norm(entry: NormEntry) -> Norm:
     """A norm of norms.json."""
     said = {f.name: entry[f.name] for f in fields(Norm)}  # type: ignore[literal-required]
@@ -215,7 +299,15 @@ def _norm(entry: NormEntry) -> Norm:
 
 
 def read(path: Name, vessel: Name | None = None, load: Names = ()) -> Recording:
-    """A recording (.csv, .parquet, an .rrd of ours), checked, with what its recording.toml says. Raises BadInput.
+    """Return a checked recording with the notes of its recording.toml.
+
+    Args:
+        path: A .csv, .parquet or .rrd file.
+        vessel: Name or file of the vessel; that of the recording.toml by default.
+        load: Load conditions of the vessel.
+
+    Raises:
+        BadInput: One line with file, row and column of what can not be used.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1", out="out/sway_1")
@@ -239,11 +331,23 @@ def diagnose(
     horizon: float | None = None,
     settings: Mapping[str, Given] | None = None,
 ) -> Diagnosis:
-    """Say which physics a vessel leaves out of recordings: files that are fitted, and files to judge the result on.
+    """Identify the physics that a vessel lacks, from recordings.
 
-    Without a `vessel` it is the one of the recordings' recording.toml. `library` and `without` are entries to try too
-    and not to try, `horizon` is the length [s] of the free runs by which it is judged, `settings` change the
-    configuration (`boatsim.diagnosis.config`), such as {"select.odds": 3.0}. Raises BadInput.
+    Args:
+        runs: Recordings that are fitted.
+        hold_out: Recordings that are held out to judge the result; by default a part of `runs`.
+        vessel: Name or file of the vessel; that of the recordings' recording.toml by default.
+        load: Load conditions of the vessel.
+        library: Candidate effects to test besides the usual ones.
+        without: Candidate effects not to test.
+        horizon: Length of the free runs by which the result is judged [s].
+        settings: Dotted name of a setting of `boatsim.diagnosis.config`, such as "select.odds" -> value.
+
+    Returns:
+        The identified effects, their parameters and the errors on held-out data.
+
+    Raises:
+        BadInput: If a recording, name or setting can not be used.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1_as_published", out="out/published")
@@ -251,22 +355,21 @@ def diagnose(
     >>> found.verdict, found.names
     ('named', ('weak_reverse',))
     >>> value, sd = found.parameters["weak_reverse"]["astern_factor"]
-    >>> abs(value - 0.694) < 2 * sd  # which the scenario added to the vessel
+    >>> abs(value - 0.694) < 2 * sd  # the value in the scenario
     True
     >>> found.skill["position"] > 0.9
     True
     >>> found.write("out/diagnosis")
     """
-    name = None if vessel is None else str(vessel)
-    tried = _names(library), _names(without)
     return Diagnosis(
         pipeline.diagnose(
-            _paths(runs),
-            _paths(hold_out),
-            name,
-            _names(load),
-            *tried,
-            horizon,
+            runs=_paths(runs),
+            hold_out=_paths(hold_out),
+            vessel=None if vessel is None else str(vessel),
+            load=_names(load),
+            library=_names(library),
+            without=_names(without),
+            horizon=horizon,
             config=from_settings(settings or {}),
         )
     )
@@ -275,15 +378,24 @@ def diagnose(
 def replay(
     recording: Name, vessel: Name | None = None, load: Names = (), horizon: float = 6.0
 ) -> Recording:
-    """Free runs of a vessel, each of `horizon` [s] from a recorded state with the recorded commands alone.
+    """Simulate free runs of a vessel, each from a recorded state with the recorded commands.
 
-    The result has the pose at the times of the recording, and the number of each free run in `segment`. `vessel` may be
-    a patched.toml. Raises BadInput.
+    Args:
+        recording: File of the recording.
+        vessel: Name or file of the vessel, such as a patched.toml; that of the recording.toml by default.
+        load: Load conditions of the vessel.
+        horizon: Length of a free run [s].
+
+    Returns:
+        The simulated pose at the times of the recording; the signal `segment` is the number of the free run.
+
+    Raises:
+        BadInput: If the recording or the vessel can not be used.
 
     >>> import boatsim
     >>> done = boatsim.run("joystick_boat/sway_1_as_published", out="out/published")
-    >>> as_written = boatsim.replay("out/published/camera.csv")
-    >>> sorted(as_written.signals)
+    >>> simulated = boatsim.replay("out/published/camera.csv")
+    >>> sorted(simulated.signals)
     ['psi_rad', 'segment', 'x_m', 'y_m']
     """
     opened, boat = pipeline.open_recording(
@@ -305,11 +417,25 @@ def sweep(
     norms: Names = (),
     report: Report = silent,
 ) -> Sweep:
-    """Run scenarios at every point of a grid, with the same draws at each; goes on where one was left in `out`.
+    """Run scenarios at every point of a grid, with the same random samples at each point.
 
-    `vary` is a key and its values, or "LOW:HIGH:COUNT", `draw` a key and a distribution; `norms` are those told and
-    drawn, all if there are none. A script that has more than one of the `jobs` needs `if __name__ == "__main__":`.
-    Raises BadInput.
+    A sweep that was interrupted is continued in its folder.
+
+    Args:
+        scenarios: Names or files of scenarios.
+        vary: Key -> its values, or "LOW:HIGH:COUNT".
+        draw: Key -> its distribution, such as "normal(0.7, 0.05)".
+        runs: Number of samples at each point.
+        design: "random", "latin" (Latin hypercube) or "sobol" (for Sobol indices).
+        seed: Seed of the samples.
+        out: Folder of sweep.parquet and report.html.
+        jobs: Number of processes; with more than one a script needs `if __name__ == "__main__":`.
+        ray: Address of a Ray cluster on which to run.
+        norms: Metrics in the report; all by default.
+        report: Called with the progress.
+
+    Raises:
+        BadInput: If a scenario, key, distribution or metric can not be used.
 
     >>> import boatsim
     >>> done = boatsim.sweep(
@@ -324,18 +450,19 @@ def sweep(
     >>> pair.norm, pair.second, pair.pairs
     ('|heading_at_end|', 'l1_joystick', 4)
     """
-    axes = [
-        axis_of(key, values if isinstance(values, str) else list(values))
-        for key, values in (vary or {}).items()
-    ]
+    axes = []
+    for key, values in (vary or {}).items():
+        axes.append(axis_of(key, values if isinstance(values, str) else list(values)))
     draws = [draw_of(key, law) for key, law in (draw or {}).items()]
     made = plan(_names(scenarios), axes, draws, runs, seed, design)
     return Sweep(*swept(made, Path(out), jobs, ray, _names(norms), report), Path(out))
 
 
-def _paths(given: Names) -> list[Path]:
-    return [Path(one) for one in _names(given)]
+def _paths(names: Names) -> list[Path]:
+    return [Path(name) for name in _names(names)]
 
 
-def _names(given: Names) -> list[str]:
-    return [str(given)] if isinstance(given, str | Path) else [str(one) for one in given]
+def _names(names: Names) -> list[str]:
+    if isinstance(names, str | Path):
+        return [str(names)]
+    return [str(name) for name in names]

@@ -1,10 +1,14 @@
 """boatsim for Python: examples run as written, types are told, and all that a user imports stays light and in place."""
 
 import doctest
+import inspect
 import json
+import pydoc
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,8 +17,11 @@ import boatsim
 from boatsim import api
 from boatsim.cli import diagnosis
 from boatsim.errors import BadInput
+from boatsim.physics import content
+from boatsim.physics.effects.current import Current
 
-OFFERED = ("diagnose", "load_vessel", "read", "replay", "run", "sweep")
+OFFERED = ("diagnose", "load_scenario", "load_vessel", "read", "replay", "run", "sweep")
+NOUNS = ("Batch", "Diagnosis", "Fleet", "Recording", "Run", "Scenario", "Sweep", "Vessel")
 ROOT = Path(__file__).parents[1]
 USER = """
 from typing import reveal_type
@@ -31,7 +38,7 @@ reveal_type(found)
 """
 
 
-@pytest.mark.parametrize("name", OFFERED)
+@pytest.mark.parametrize("name", [*OFFERED, "Vessel"])
 def test_the_example_of_each_function_runs_as_it_is_written(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -107,7 +114,7 @@ def test_a_strict_type_checker_knows_what_comes_back(tmp_path: Path) -> None:
     ]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
-    for told in ("boatsim.physics.vessel.Vessel", "ndarray", '"float"', "boatsim.api.Diagnosis"):
+    for told in ("boatsim.physics.vessel.model.Vessel", "ndarray", '"float"', "boatsim.api.Diagnosis"):
         assert told in done.stdout.replace("builtins.", "")
 
 
@@ -138,3 +145,97 @@ def test_what_is_not_offered_is_an_attribute_error_and_what_is_is_listed() -> No
     assert set(OFFERED) <= set(dir(boatsim)) and set(OFFERED) <= set(boatsim.__all__)
     with pytest.raises(AttributeError, match="nothing_such"):
         boatsim.nothing_such  # noqa: B018
+
+
+def test_the_interface_is_documented_and_has_real_signatures() -> None:
+    assert set(dir(boatsim)) == {*OFFERED, *NOUNS, "Body", "CommandChannel", "Parameter"} | {
+        "__version__"
+    }
+    for name in (*OFFERED, *NOUNS):
+        assert inspect.getdoc(getattr(boatsim, name)), name
+    for name in OFFERED:
+        assert "given" not in inspect.signature(getattr(boatsim, name)).parameters
+    assert "settings" in inspect.signature(boatsim.diagnose).parameters
+    assert "hold_out" in pydoc.render_doc(boatsim.diagnose)
+
+
+EFFECTS = [
+    {"use": "added_mass", "surge": 10.0, "sway": 90.0, "yaw": 15.0},
+    {"use": "linear_damping", "surge": 12.0, "sway": 60.0, "yaw": 30.0},
+    {"use": "thruster", "x": -1.0, "on": {"thrust": "thrust_N", "angle": "angle_rad"}},
+]
+
+
+def barge(**more: Any) -> boatsim.Vessel:
+    given: dict[str, Any] = {
+        "name": "barge",
+        "dof": ("surge", "sway", "yaw"),
+        "length": 2.0,
+        "beam": 0.8,
+        "draught": 0.2,
+        "body": boatsim.Body(mass=120.0, roll_inertia=8.0, yaw_inertia=40.0),
+        "channels": {
+            "thrust_N": boatsim.CommandChannel(low=-50.0, high=50.0),
+            "angle_rad": {"low": -0.6, "high": 0.6},
+        },
+        "effects": EFFECTS,
+    }
+    return boatsim.Vessel.from_effects(**(given | more))
+
+
+def test_a_vessel_without_a_file_is_run_saved_and_run_again(tmp_path: Path) -> None:
+    settings: dict[str, Any] = {
+        "duration": 3.0,
+        "controller": {"use": "open_loop"},
+        "goal": [{"thrust_N": 20.0, "angle_rad": 0.1}],
+    }
+    scenario = boatsim.Scenario.from_settings(vessel=barge(), name="ahead", **settings)
+    first = boatsim.run(scenario)
+    assert first.scenario == "ahead" and first.recording["x_m"][-1] > 0.1
+    saved = barge().save(tmp_path / "barge")
+    again = boatsim.run(boatsim.Scenario.from_settings(vessel=saved, **settings))
+    assert np.array_equal(first.recording["x_m"], again.recording["x_m"])
+    assert boatsim.load_vessel(saved.file) == saved
+
+
+def test_a_vessel_takes_the_place_of_that_of_a_scenario(tmp_path: Path) -> None:
+    heavy = boatsim.load_vessel("joystick_boat").with_parameters({"body": {"mass": 9.0}})
+    own, other = (boatsim.run("joystick_boat/sway_1", vessel=v) for v in (None, heavy))
+    assert len(own.recording) < len(other.recording)  # the heavy boat needs longer for the distance
+    with pytest.raises(BadInput, match="sway_1: controller l1_joystick sets pwm_port; barge: command"):
+        boatsim.load_scenario("joystick_boat/sway_1", vessel=barge())
+    with pytest.raises(BadInput, match="a Scenario has its own"):
+        boatsim.run(boatsim.load_scenario("joystick_boat/sway_1"), controller="pid_autopilot")
+
+
+def test_changes_of_a_vessel(tmp_path: Path) -> None:
+    vessel = barge()
+    windy = vessel.with_effect(Current(north=0.1))
+    assert [e.name for e in windy.effects][-1] == "current" and len(vessel.effects) == 3
+    assert windy.without_effect("current") == vessel
+    assert vessel.replace(length=3.0).length == 3.0
+    for wrong, message in (
+        (lambda: vessel.without_effect("curent"), "barge: effect 'curent' does not exist"),
+        (lambda: windy.with_effect(Current()), "effect current occurs 2 times"),
+        (
+            lambda: vessel.with_parameters({"thruster": {"gian": 1.0}}),
+            "barge: thruster 'gian' does not exist; did you mean 'gain'",
+        ),
+        (lambda: vessel.with_parameters({"body": {"mass": -1.0}}), "barge: body: mass = -1.0"),
+        (lambda: barge(lenght=1.0), "barge: key 'lenght' does not exist; did you mean 'length'"),
+        (lambda: barge(channels={}), "effect thruster: on.thrust channel 'thrust_N' does not"),
+        (lambda: barge(channels={"psi_rad": {"low": 0, "high": 1}}), "reserved for a column"),
+    ):
+        with pytest.raises(BadInput, match=message):
+            wrong()
+
+
+@pytest.mark.parametrize("name", content.names("vessel"))
+def test_every_vessel_is_the_same_after_saving(name: str, tmp_path: Path) -> None:
+    vessel = boatsim.load_vessel(name)
+    for load in ((), *((one,) for one in vessel.loads)):
+        vessel = boatsim.load_vessel(name, load)
+        saved = vessel.save(tmp_path / name)
+        again = boatsim.load_vessel(tmp_path / name)
+        assert again == saved == replace(vessel, file=saved.file, load=(), loads=())
+        assert [e.filled for e in again.effects] == [e.filled for e in vessel.effects]

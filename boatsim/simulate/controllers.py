@@ -5,27 +5,41 @@ from collections.abc import Mapping
 from boatsim.control.base import Sense
 from boatsim.errors import BadInput
 from boatsim.physics.content import find, load_class, names
+from boatsim.physics.vessel import Vessel
 from boatsim.simulate.cases import content
 from boatsim.simulate.run import what_went_wrong
 from boatsim.simulate.scenario import Scenario, from_table, load
 
 
-def steered(given: str, controller: str | None = None) -> Scenario:
-    """A scenario by name or path, steered by its own controller, or by another one with that one's defaults.
+def steered(
+    given: str,
+    controller: str | None = None,
+    vessel: Vessel | None = None,
+    changes: Mapping[str, object] | None = None,
+) -> Scenario:
+    """Return a scenario with its own controller or with another one.
 
-    A controller is given by name or by the path of its .py; named by the user, it may run. Where it is the scenario's
-    own, the scenario's settings of it stay. Raises BadInput.
+    Args:
+        given: Name or path of the scenario.
+        controller: Name of a controller, or path of its .py, which may run because the user names it. Another
+            controller has its default settings; for the scenario's own, the scenario's settings stay.
+        vessel: Vessel in place of the scenario's.
+        changes: Top-level keys of the scenario that are replaced.
+
+    Raises:
+        BadInput: If scenario, controller and vessel do not fit each other.
     """
     if controller is None:
-        return load(given)
+        return load(given, changes, vessel)
     load_class("controller", controller, named=True)
     use = controller if controller in names("controller") else str(find("controller", controller))
     said, place = content(given)
-    own = said.get("controller")
+    table: dict[str, object] = {**said, **(changes or {})}
+    own = table.get("controller")
     if isinstance(own, Mapping) and own.get("use") == use:
-        return from_table(said, place)
+        return from_table(table, place, vessel)
     try:
-        found = from_table({**said, "controller": {"use": use}}, place)
+        found = from_table({**table, "controller": {"use": use}}, place, vessel)
         _rehearse(found)
     except BadInput as error:
         raise BadInput(f"controller {controller} does not fit {place.name}: {error}") from None

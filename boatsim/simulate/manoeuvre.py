@@ -74,12 +74,14 @@ def scenario_of(
         "sensors": {"ideal": True},
     }
     if manoeuvre == "roll_decay":
-        return scenario.from_table(raw | _released(vessel, usual), Place(Path(f"{manoeuvre}.toml")))
+        place = Place(Path(f"{manoeuvre}.toml"))
+        return scenario.from_table(raw | _released(vessel, usual), place, vessel)
     if "yaw" not in vessel.dof:
         raise BadInput(
             f"{vessel.name} is not free to turn; of the manoeuvres it can only do roll_decay"
         )
-    vessel = replace(vessel, manoeuvring=handled(vessel))
+    loaded = vessel
+    vessel = replace(loaded, manoeuvring=handled(loaded))
     angle = min(usual, helm_of(vessel)) if angle is None else angle
     _check_commands(vessel, 0.0 if manoeuvre == "crash_stop" else angle)
     if manoeuvre == "crash_stop" and not vessel.manoeuvring.astern:
@@ -89,7 +91,8 @@ def scenario_of(
     at = approach(vessel, speed)
     reverses = abs(angle) if heading is None else heading
     place = Place(Path(f"{manoeuvre}.toml"))
-    return scenario.from_table(raw | _under_way(manoeuvre, vessel, angle, at, reverses), place)
+    table = raw | _under_way(manoeuvre, vessel, angle, at, reverses)
+    return scenario.from_table(table, place, loaded)
 
 
 def _check_heading(manoeuvre: str, heading: float | None) -> None:

@@ -160,6 +160,22 @@ class Scenario:
     aboard: tuple[Sensor, ...] = ()  # beside the usual ones
     address: str = ""  # what it is found by again
 
+    @classmethod
+    def from_settings(
+        cls, *, vessel: Vessel, name: str = "scenario", **settings: object
+    ) -> "Scenario":
+        """Build a scenario in Python, without a file.
+
+        Args:
+            vessel: The vessel.
+            name: Name of the scenario.
+            settings: Keys of a scenario file, such as `duration`, `controller` and `goal`.
+
+        Raises:
+            BadInput: For keys and values that are not allowed.
+        """
+        return from_table(settings, Place(Path(f"{name}.toml")), vessel)
+
     @cached_property
     def _begins(self) -> list[float]:
         return [_begin(g) for g in self.file.goal]
@@ -198,24 +214,41 @@ class Scenario:
         )
 
 
-def load(name: str, overrides: Mapping[str, object] | None = None) -> Scenario:
-    """A scenario by name ("vessel/case") or path ("my.toml", "my.toml:case").
+def load(
+    name: str, overrides: Mapping[str, object] | None = None, vessel: Vessel | None = None
+) -> Scenario:
+    """Return a scenario.
 
-    `overrides` replace top-level keys, for tests and studies.
-    Raises BadInput, one line naming file, key, value found, what is allowed and the nearest valid name.
+    Args:
+        name: Name ("vessel/case") or path ("my.toml", "my.toml:case").
+        overrides: Top-level keys of the file that are replaced.
+        vessel: Vessel in place of the scenario's; see `from_table`.
+
+    Raises:
+        BadInput: One line with file, key, value found, what is allowed and the nearest valid name.
     """
-    said, place = content(name)
-    return from_table({**said, **(overrides or {})}, place)
+    table, place = content(name)
+    return from_table({**table, **(overrides or {})}, place, vessel)
 
 
-def from_table(raw: Mapping[str, object], place: Place) -> Scenario:
-    """A scenario from what it says; `place` names it and is where relative paths start."""
+def from_table(raw: Mapping[str, object], place: Place, vessel: Vessel | None = None) -> Scenario:
+    """Return the scenario of the content of a scenario file.
+
+    Args:
+        raw: Content of the file.
+        place: Name of the scenario, and the file from which relative paths start.
+        vessel: Vessel in place of the scenario's, in its own load condition; [set], [[effect]] and [measured] of the
+            scenario apply to it.
+
+    Raises:
+        BadInput: One line with file, key, value found, what is allowed and the nearest valid name.
+    """
     label, path = place.label, place.path
+    if vessel is not None:
+        raw = {**raw, "vessel": vessel.name, "load": list(vessel.load)}
     file = checked(ScenarioFile, raw, label)
     try:
-        vessel = vessels.load(
-            file.vessel, file.load, file.set, file.effect, path.parent
-        ).with_measured(file.measured)
+        vessel = _vessel(file, path.parent, vessel)
         controller = _made(Controller, file.controller, path.parent)
         sensors = _settings("sensors", lambda: Sensors.from_settings(file.sensors))
         aboard = _aboard(file.sensor, path.parent)
@@ -227,8 +260,28 @@ def from_table(raw: Mapping[str, object], place: Place) -> Scenario:
     except BadInput as error:
         raise BadInput(f"{label}: {error}") from None
     return Scenario(
-        place.name, file, vessel, controller, sensors, camera, measure, aboard, place.address
+        name=place.name,
+        file=file,
+        vessel=vessel,
+        controller=controller,
+        sensors=sensors,
+        camera=camera,
+        measure=measure,
+        aboard=aboard,
+        address=place.address,
     )
+
+
+def _vessel(file: ScenarioFile, folder: Path, vessel: Vessel | None) -> Vessel:
+    """The scenario's vessel, or another one, with the changes that the scenario makes."""
+    if vessel is None:
+        vessel = vessels.load(file.vessel, file.load, file.set, file.effect, folder)
+        return vessel.with_measured(file.measured)
+    if file.set:
+        vessel = vessel.with_parameters(file.set)
+    for table in file.effect:
+        vessel = vessel.with_effect(vessels.effect_from_table(table, vessel.name, folder))
+    return vessel.with_measured(file.measured)
 
 
 def _made(base: type[M], table: Mapping[str, object], folder: Path) -> M:

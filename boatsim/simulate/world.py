@@ -181,9 +181,13 @@ def add_hull(spec: mujoco.MjSpec, vessel: Vessel) -> mujoco.MjsBody:
 
 def read_drawing(path: Path, vessel: Vessel) -> tuple[mujoco.MjSpec, tuple[float, float]]:
     """The hull's file, and length and draught [m] it was drawn for (the vessel's own where it says nothing)."""
-    check_text(path)
+    if not vessel.hull_xml:
+        check_text(path)
     try:
-        drawing = mujoco.MjSpec.from_file(str(path))
+        if vessel.hull_xml:
+            drawing = mujoco.MjSpec.from_string(vessel.hull_xml)
+        else:
+            drawing = mujoco.MjSpec.from_file(str(path))
         bodies = [body.name for body in drawing.bodies]
         _ = [
             part.name for part in (*drawing.geoms, *drawing.sites, *drawing.meshes)

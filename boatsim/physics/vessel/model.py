@@ -242,7 +242,7 @@ class Vessel(Bindings):
             raise BadInput(unknown_name(f"{self.name}: effect", name, self._effect_names()))
         return self._rebuilt([e for e in self.effects if e.name not in names])
 
-    def with_parameters(self, parameters: Mapping[str, Mapping[str, float]]) -> Self:
+    def with_parameters(self, parameters: Mapping[str, Mapping[str, object]]) -> Self:
         """Return the vessel with other values of parameters, as [set] of a scenario does.
 
         Args:
@@ -324,7 +324,7 @@ class Vessel(Bindings):
             effects.append(effect.having(dict.fromkeys(keys, new)))
         return dataclasses.replace(changed, effects=tuple(effects))
 
-    def _with_values(self, effect: Effect, values: Mapping[str, float]) -> Effect:
+    def _with_values(self, effect: Effect, values: Mapping[str, object]) -> Effect:
         params = type(effect).params()
         for key in values:
             if key not in params:
