@@ -114,7 +114,12 @@ def test_a_strict_type_checker_knows_what_comes_back(tmp_path: Path) -> None:
     ]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
-    for told in ("boatsim.physics.vessel.model.Vessel", "ndarray", '"float"', "boatsim.api.Diagnosis"):
+    for told in (
+        "boatsim.physics.vessel.model.Vessel",
+        "ndarray",
+        '"float"',
+        "boatsim.api.Diagnosis",
+    ):
         assert told in done.stdout.replace("builtins.", "")
 
 
@@ -202,7 +207,9 @@ def test_a_vessel_takes_the_place_of_that_of_a_scenario(tmp_path: Path) -> None:
     heavy = boatsim.load_vessel("joystick_boat").with_parameters({"body": {"mass": 9.0}})
     own, other = (boatsim.run("joystick_boat/sway_1", vessel=v) for v in (None, heavy))
     assert len(own.recording) < len(other.recording)  # the heavy boat needs longer for the distance
-    with pytest.raises(BadInput, match="sway_1: controller l1_joystick sets pwm_port; barge: command"):
+    with pytest.raises(
+        BadInput, match="sway_1: controller l1_joystick sets pwm_port; barge: command"
+    ):
         boatsim.load_scenario("joystick_boat/sway_1", vessel=barge())
     with pytest.raises(BadInput, match="a Scenario has its own"):
         boatsim.run(boatsim.load_scenario("joystick_boat/sway_1"), controller="pid_autopilot")
