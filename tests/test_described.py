@@ -155,7 +155,7 @@ def nothing(t: float, y: Array, command: Array) -> Array:
 def diagnosed(*causes: Missing, late: Late | None = None) -> Diagnosis:
     """Of recordings under these causes, the last one kept unseen."""
     runs = [sail(f"run_{i + 1}", 40 + i, cause, late=late)[0] for i, cause in enumerate(causes)]
-    return diagnose_recordings(runs[:-1], runs[-1:], {None: BOAT}, "kept unseen: the last")
+    return diagnose_recordings(runs[:-1], runs[-1:], {None: BOAT}, "the last")
 
 
 def halved(found: Diagnosis, signal: str) -> bool:
@@ -196,7 +196,7 @@ def test_a_moment_that_swings_is_described_with_its_period_and_carries_over(tmp_
     assert (
         law["axis"] == "yaw"
         and law["carries_over"]
-        and "swinging with a period" in law["statement"]
+        and "oscillating with a period" in law["statement"]
     )
     assert law["statement"] in answer["sentence"][:1].lower() + answer["sentence"][1:]
     assert halved(found, "heading_rms_rad")

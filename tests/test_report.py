@@ -28,6 +28,7 @@ from boatsim.diagnosis.report.formatting import (
 )
 from boatsim.diagnosis.report.schema import Answer, IntervalEntry
 from boatsim.diagnosis.report.sections import sections_of
+from boatsim.diagnosis.report.sentences import NONE_TESTED, sentence
 from boatsim.diagnosis.report.svg_plots import thinned, ticks
 from boatsim.physics.effects.described_force import DescribedForce
 from boatsim.physics.effects.described_thrust import DescribedThrust
@@ -40,7 +41,7 @@ def planar() -> Findings:
     """A twin-motor boat whose propellers are weak astern, with a look-alike."""
     missing, intervals = planar_missing()
     answer = planar_answer(intervals)
-    answer["sentence"] = report.sentence(answer)
+    answer["sentence"] = sentence(answer)
     words = {
         "weak_reverse": "the propellers push less astern than commanded",
         "prop_walk": "a propeller pushes sideways as well, mostly astern",
@@ -211,7 +212,7 @@ def rolling() -> Findings:
                 "position_rms_m": {}, "heading_rms_rad": {},
                 "roll_rms_rad": {"nominal": 0.0521, "recalibrated": 0.0183, "patched": 0.00203}},
     }  # fmt: skip
-    answer["sentence"] = report.sentence(answer)
+    answer["sentence"] = sentence(answer)
     remark = "In the last third the roll is small: there the linear vessel is already right, and no model beats it clearly."
     return Findings(
         answer,
@@ -240,7 +241,7 @@ def nothing() -> Findings:
         "fit": f.answer["fit"] | rms,
     }
     answer["where"] = f.answer["where"] | {"intervals": [], "region": []}
-    answer["sentence"] = report.sentence(answer)
+    answer["sentence"] = sentence(answer)
     return replace(f, answer=answer, remarks=())
 
 
@@ -252,7 +253,7 @@ def unknown() -> Findings:
         "unknown": {"flag": True, "gain_nats": 37.4, "told_from_nats": 6.0},
         "fit": {},
     }
-    answer["sentence"] = report.sentence(answer)
+    answer["sentence"] = sentence(answer)
     return replace(f, answer=answer, free_runs=(), held_out=(), held_out_note="")
 
 
@@ -267,7 +268,7 @@ def described() -> Findings:
     laws = [
         {
             "axis": "sway",
-            "statement": "a side force that no entry explains: 1.20 N s² times yaw rate squared",
+            "statement": "a side force that no candidate effect explains: 1.20 N s² times yaw rate squared",
             "terms": [
                 {
                     "of": "yaw rate squared",
@@ -281,7 +282,7 @@ def described() -> Findings:
         },
         {
             "axis": "thrust",
-            "statement": "a change of thrust that no entry explains: 15 % less (from 3 to 9 s)",
+            "statement": "a change of thrust that no candidate effect explains: 15 % less (from 3 to 9 s)",
             "terms": [
                 {
                     "of": "thrust, from 3 to 9 s of run_1",
@@ -296,7 +297,7 @@ def described() -> Findings:
         },
     ]
     answer = f.answer | {"verdict": "described", "described": laws, "fit": fit}
-    answer["sentence"] = report.sentence(answer)
+    answer["sentence"] = sentence(answer)
     x = np.linspace(0.0, 0.6, 12)
     curve = Curve("yaw_rate", x, 1.2 * x**2, 0.05 * x**2, 1.2 * x**2 + 0.01)
     terms = (
@@ -487,9 +488,9 @@ def test_nothing_missing_says_so_and_gives_the_upper_limits(tmp_path):
     f = nothing()
     report.write(f, tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
-    assert text.startswith("# Nothing is missing") and "**Nothing missing.**" in text
+    assert text.startswith("# No missing effect was found") and "**Nothing missing.**" in text
     assert (
-        "## Upper limits of what was not found" in text
+        "## Upper limits of effects that were not found" in text
         and "## What to record next" not in text
         and "smaller)" not in text
     )
@@ -497,15 +498,15 @@ def test_nothing_missing_says_so_and_gives_the_upper_limits(tmp_path):
 
 def test_sentence_is_made_of_the_words_of_the_effects():
     assert planar().answer["sentence"] == (
-        "The model leaves out one thing: the propellers push less astern than commanded (astern factor 0.694 ± 0.012); "
-        "but these recordings cannot tell weak reverse from prop walk."
+        "The model leaves out one effect: the propellers push less astern than commanded (astern factor 0.694 ± 0.012). "
+        "These recordings cannot distinguish weak reverse from prop walk."
     )
     roll = rolling().answer
     assert roll["sentence"].startswith(
-        "The model leaves out two things: damping grows with the square of the speed (roll "
+        "The model leaves out two effects: damping grows with the square of the speed (roll "
     )
     assert (
-        "cannot tell" not in roll["sentence"]
+        "cannot distinguish" not in roll["sentence"]
         and "N m s²), and the righting arm" in roll["sentence"]
     )
 
@@ -530,62 +531,66 @@ DAMPED = {
     "gain_nats": 80.0,
 }
 CLOCK = "the clock runs late (poses late by 0.210 ± 0.013 s)"
-MISSING = "Something is missing that no entry of the library explains (0.21 N rms in surge)"
+MISSING = "A force is missing that no candidate effect explains (0.21 N rms in surge)"
 
 
 @pytest.mark.parametrize(
     ("verdict", "effects", "text"),
     [
-        ("named", [DAMPED], "The model leaves out one thing: damping grows."),
+        ("named", [DAMPED], "The model leaves out one effect: damping grows."),
         (
             "named",
             [DAMPED] * 3,
-            "The model leaves out three things: damping grows, damping grows, and damping grows.",
+            "The model leaves out three effects: damping grows, damping grows, and damping grows.",
         ),
         (
             "named",
             [DAMPED] * 4,
-            "The model leaves out four things: " + "damping grows, " * 3 + "and damping grows.",
+            "The model leaves out four effects: " + "damping grows, " * 3 + "and damping grows.",
         ),
-        ("named", [LATE], f"The measurement is off, not the physics: {CLOCK}."),
+        (
+            "named",
+            [LATE],
+            f"No missing physics was found, but the recordings contain a measurement error: {CLOCK}.",
+        ),
         (
             "named",
             [DAMPED, LATE],
-            "The model leaves out one thing: damping grows; the measurement is off as well, "
-            f"which is not physics: {CLOCK}.",
+            "The model leaves out one effect: damping grows. In addition, the recordings contain a "
+            f"measurement error: {CLOCK}.",
         ),
         (
             "ambiguous",
             [DAMPED | {"tied_with": ["cubic_damping", "damping_error"]}],
-            "The model leaves out one thing: "
-            "damping grows; but these recordings cannot tell quadratic damping from cubic damping or damping error.",
+            "The model leaves out one effect: damping grows. These recordings cannot distinguish "
+            "quadratic damping from cubic damping or damping error.",
         ),
         ("unknown", [], f"{MISSING}."),
         (
             "unknown",
             [DAMPED],
-            f"{MISSING}; besides, the model leaves out one thing: damping grows.",
+            f"{MISSING}. In addition, the model leaves out one effect: damping grows.",
         ),
         (
             "unknown",
             [LATE],
-            f"{MISSING}; the measurement is off as well, which is not physics: {CLOCK}.",
+            f"{MISSING}. In addition, the recordings contain a measurement error: {CLOCK}.",
         ),
         (
             "unknown",
             [DAMPED | {"tied_with": ["wind"]}],
-            f"{MISSING}; besides, the model leaves out one thing: damping "
-            "grows; but these recordings cannot tell quadratic damping from wind.",
+            f"{MISSING}. In addition, the model leaves out one effect: damping "
+            "grows. These recordings cannot distinguish quadratic damping from wind.",
         ),
         (
             "nothing_missing",
             [],
-            "Nothing is missing that these recordings could show: the vessel explains them to "
-            "within their noise.",
+            "No missing effect was found: the vessel model explains these recordings to within their "
+            "noise.",
         ),
     ],
 )
-def test_every_verdict_is_one_sentence(verdict, effects, text):
+def test_every_verdict_has_its_sentences(verdict, effects, text):
     where = {"axes": {"surge": {"rms": 0.214, "sd": 0.05, "unit": "N"}}}
     answer = {
         "verdict": verdict,
@@ -595,7 +600,7 @@ def test_every_verdict_is_one_sentence(verdict, effects, text):
         "described": [],
         "unknown": {"flag": verdict == "unknown"},
     }
-    assert report.sentence(answer, MEANT) == text
+    assert sentence(answer, MEANT) == text
 
 
 LAW = {"statement": "a side force of 2 N", "carries_over": True}
@@ -606,27 +611,27 @@ EVENT = {"statement": "a push at 3 s of run_1", "carries_over": False}
     ("effects", "described", "text"),
     [
         ([], [LAW], "A side force of 2 N."),
-        ([], [EVENT, EVENT], "A push at 3 s of run_1; a push at 3 s of run_1."),
+        ([], [EVENT, EVENT], "A push at 3 s of run_1. A push at 3 s of run_1."),
         (
             [DAMPED],
             [LAW],
-            "The model leaves out one thing: damping grows; besides, a side force of 2 N.",
+            "The model leaves out one effect: damping grows. In addition, a side force of 2 N.",
         ),
         (
             [LATE],
             [EVENT],
-            f"The measurement is off, not the physics: {CLOCK}; besides, one event of a run is left "
-            "over, a push at 3 s of run_1.",
+            "No missing physics was found, but the recordings contain a measurement error: "
+            f"{CLOCK}. In addition, one event of a single run remains: a push at 3 s of run_1.",
         ),
         (
             [DAMPED],
             [EVENT, LAW, EVENT],
-            "The model leaves out one thing: damping grows; besides, a side force of 2 N; "
-            "2 events of single runs are left over, first a push at 3 s of run_1.",
+            "The model leaves out one effect: damping grows. In addition, a side force of 2 N. "
+            "2 events of single runs remain, the first is a push at 3 s of run_1.",
         ),
     ],
 )
-def test_what_has_a_name_comes_before_laws_and_events_are_counted(effects, described, text):
+def test_effects_come_before_formulas_and_events_are_counted(effects, described, text):
     answer = {
         "verdict": "described",
         "effects": effects,
@@ -635,7 +640,7 @@ def test_what_has_a_name_comes_before_laws_and_events_are_counted(effects, descr
         "unknown": {"flag": True},
         "described": described,
     }
-    assert report.sentence(answer, MEANT) == text
+    assert sentence(answer, MEANT) == text
 
 
 @pytest.mark.parametrize(
@@ -643,11 +648,11 @@ def test_what_has_a_name_comes_before_laws_and_events_are_counted(effects, descr
     [
         (
             "unknown",
-            "Something is missing (0.21 N rms in surge), and nothing was tried to explain it ",
+            "Something is missing (0.21 N rms in surge), but ",
         ),
         (
             "nothing_missing",
-            "No more force is missing than moving water makes, but nothing was tried to explain it ",
+            "No force beyond the assumed disturbance is missing, but ",
         ),
     ],
 )
@@ -662,8 +667,8 @@ def test_a_diagnosis_with_nothing_to_try_says_so(verdict: str, begins: str) -> N
         "unknown": unknown,
         "described": [],
     }
-    said = report.sentence(nothing)
-    assert said == f"{begins}(facts or the vessel's reasons leave every entry out)."
+    said = sentence(nothing)
+    assert said == f"{begins}{NONE_TESTED}."
 
 
 def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_numbers():
@@ -680,7 +685,7 @@ def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_number
             k: {"value": v, "sd": 0.01, "unit": parameter(k)[1]} for k, v in values.items()
         }
     }
-    said = report.sentence(
+    said = sentence(
         {
             "verdict": "named",
             "effects": [effect],
@@ -699,7 +704,7 @@ def test_a_sentence_leaves_out_what_may_be_zero_and_all_but_the_first_few_number
     effect["parameters"] = {
         "astern_factor": effect["parameters"]["astern_factor"]
     }  # a factor is something at zero too
-    assert "astern factor 0.005 ± 0.010" in report.sentence(
+    assert "astern factor 0.005 ± 0.010" in sentence(
         {
             "verdict": "named",
             "effects": [effect],
@@ -716,9 +721,10 @@ def test_an_error_of_measurement_is_told_from_physics(tmp_path):
     report.write(replace(f, answer=answer, words=f.words | MEANT), tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
     assert text.startswith(
-        "# The measurement is off, not the physics: the clock runs late (poses late by 0.210"
+        "# No missing physics was found, but the recordings contain a measurement error: the clock "
+        "runs late (poses late by 0.210"
     )
-    assert "**Measurement, not physics.**" in text and "a measurement error, not physics" in text
+    assert "**Measurement error.**" in text and "clock_offset · measurement error" in text
     assert "These forces are not real" in text
 
 
@@ -729,7 +735,7 @@ def test_what_is_tied_has_no_upper_limit_and_what_has_none_is_said(tmp_path):
     text = (tmp_path / "report.md").read_text("utf-8")
     assert (
         "0.77" not in text
-        and "How strong tether could be at most: no limit could be worked out" in text
+        and "How strong tether could be at most: no limit could be computed" in text
     )
 
 
@@ -741,7 +747,9 @@ def test_the_next_experiment_says_what_to_command_and_how_to_run_it(tmp_path):
     )
     report.write(replace(planar(), steps=steps), tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
-    assert "**Tells apart**: Weak reverse or prop walk." in text and "boatsim run next.toml" in text
+    assert (
+        "**Distinguishes**: Weak reverse or prop walk." in text and "boatsim run next.toml" in text
+    )
     assert re.search(
         r"\| 0 s \| −0\.4\d* N \| 0° \|\n\| 6 s \| −0\.9\d* N \|  \|\n\| 9 s \| end \|  \|", text
     )
@@ -749,7 +757,7 @@ def test_the_next_experiment_says_what_to_command_and_how_to_run_it(tmp_path):
 
 def test_how_a_deviation_is_made_is_said_once(written):
     findings, html, text = written
-    said = "holds 5 % of the effect's own size"
+    said = "includes 5 % of the effect's own size"
     assert (
         text.count(said)
         == html.replace("\u00a0", " ").count(said.replace("'", "&#39;"))
@@ -913,10 +921,7 @@ def test_a_long_curve_keeps_its_peaks():
 def test_a_described_law_is_drawn_over_what_it_goes_with_and_said_to_carry_over_or_not(tmp_path):
     report.write(described(), tmp_path)
     page, text = ((tmp_path / f"report.{end}").read_text("utf-8") for end in ("html", "md"))
-    assert (
-        "A side force, over yaw rate [rad/s]" in page
-        and "its band of 2 standard deviations" in page
-    )
+    assert "A side force, over yaw rate [rad/s]" in page and "band of 2 standard deviations" in page
     assert "it is part of the patched vessel" in text and "no part of the patched vessel" in text
     assert "1.200 ± 0.050 N s²" in text and "−15.0 ± 2.0 %" in text
     assert text.count("patched") > text.count("0.03")  # the patched boat has a column of its own

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from test_report import MODELS, described, nothing, planar, rolling, unknown
 
-from boatsim.diagnosis.report import before_after, mean_force_section
+from boatsim.diagnosis.report import before_after
 from boatsim.diagnosis.report import page as report
 from boatsim.diagnosis.report.animation import FRAMES, LASTS
 from boatsim.diagnosis.report.findings import Findings, FreeRun, Missing
 from boatsim.diagnosis.report.replay_section import LARGEST, SHOWN, SMALLEST, replay
+from boatsim.diagnosis.report.sentences import mean_force
 
 LIMIT = 2_000_000  # bytes of a page
 
@@ -248,7 +249,7 @@ def test_a_mean_force_that_stays_is_said_first_with_its_axis_its_side_and_its_sh
     assert said in html[: html.index("<nav")] and said in (tmp_path / "report.md").read_text(
         "utf-8"
     )
-    assert "stays in the patched vessel" in html
+    assert "remains in the patched vessel" in html
 
 
 @pytest.mark.parametrize("made", [planar, rolling, nothing, unknown, described])
@@ -256,14 +257,13 @@ def test_where_none_stays_nothing_is_said_of_it(made, tmp_path):
     f = made()
     report.write(replace(f, answer=f.answer | {"mean_left": {}}), tmp_path)
     assert "mean force" not in (tmp_path / "report.html").read_text("utf-8").lower()
-    assert mean_force_section.in_words(f.answer, True) == []
+    assert mean_force(f.answer, True) == []
 
 
 def test_the_share_of_belief_says_what_it_is(tmp_path):
     report.write(planar(), tmp_path)
     text = (tmp_path / "report.md").read_text("utf-8")
-    assert "probability alone" not in text and "how likely, if only one thing is missing" in text
+    assert "probability alone" not in text and "probability, if only one effect is missing" in text
     assert (
-        "if exactly one of these entries, or nothing, were what is missing, how likely is it this one?"
-        in text
+        "The probability assumes that exactly one of these candidates is missing, or none." in text
     )

@@ -15,10 +15,8 @@ from boatsim.diagnosis.free_runs import FreeRun, errors, free_runs
 from boatsim.diagnosis.pipeline import NEXT, Diagnosis, hint, open_recording
 from boatsim.diagnosis.pipeline import diagnose as analyse
 from boatsim.diagnosis.replay import as_written, columns, replayed
-from boatsim.diagnosis.report import assumptions, before_after, mean_force_section
-from boatsim.diagnosis.report.described_terms import what_of
 from boatsim.diagnosis.report.output_files import write
-from boatsim.diagnosis.report.schema import Family
+from boatsim.diagnosis.report.sentences import printed
 from boatsim.errors import BadInput
 from boatsim.files import replacing
 from boatsim.physics.signals import STATE, Array
@@ -67,11 +65,11 @@ def diagnose(
     ):
         remark(line)
     if full:  # which does not cost the answer
-        say(summary(found))
+        say(printed(found.findings))
         raise full
     plan = [NEXT] if found.plan else []
     files = ["report.html", "report.md", "diagnosis.json", "patched.toml", *plan, "diagnosis.rrd"]
-    say([*summary(found), f"written to {out}: {', '.join(files)}"])
+    say([*printed(found.findings), f"written to {out}: {', '.join(files)}"])
     return 0
 
 
@@ -82,46 +80,6 @@ def _unwritten(found: Diagnosis, out: Path) -> OSError | None:
     except OSError as error:
         return error
     return None
-
-
-def summary(found: Diagnosis) -> list[str]:
-    """What is printed of a diagnosis."""
-    answer = found.findings.answer
-    lines = [answer["sentence"]]
-    for effect in answer["effects"]:
-        lines.append(
-            f"  {effect['name']}: gains {effect['gain_nats']:.1f} nats, probability {effect['probability']:.2f}"
-        )
-        lines += [
-            f"    {k} = {p['value']:.4g} +- {p['sd']:.2g}" for k, p in effect["parameters"].items()
-        ]
-    for law in answer["described"]:
-        lines += [
-            f"  described: {what_of(law['axis'])} that goes with {term['of']}: gains {term['gain_nats']:.1f} nats\n"
-            f"    {term['value']:.4g} +- {term['sd']:.2g} {term['unit']}".rstrip()
-            for term in law["terms"]
-        ]
-    lines += [f"  {line}" for line in assumptions.in_words(answer)]
-    fit = answer["fit"]
-    lines.append(
-        f"free runs of {fit['horizon_s']:g} s on unseen data ({found.findings.held_out_note}):"
-    )
-    families: dict[Family, tuple[str, float]] = {
-        "position_rms_m": ("m", 1.0),
-        "heading_rms_rad": ("deg", 57.29578),
-        "roll_rms_rad": ("deg", 57.29578),
-    }
-    for key, (unit, scale) in families.items():
-        if rms := fit.get(key):
-            cells = ", ".join(f"{m} {rms[m] * scale:.4g}" for m in before_after.MODELS)
-            lines.append(f"  {key.split('_')[0]} rms [{unit}]: {cells}")
-    lines += mean_force_section.in_words(answer, found.findings.patched)
-    if wanted := answer["next_experiment"]:
-        names, nats = ", ".join(wanted["separates"]), wanted["expected_gain_nats"]
-        lines.append(
-            f"to record next: {wanted['manoeuvre']} (tells apart {names}; expected gain {nats:.3g} nats)"
-        )
-    return lines
 
 
 def replay(run: Path, vessel: str | None, load: list[str], horizon: float, out: Path) -> int:

@@ -968,11 +968,22 @@ class AnswerConfig:
     at_bound: float = setting(
         1e-3, "1", "A value within this relative distance of a bound is reported as at the bound."
     )
+    least_improvement: float = setting(
+        1.1,
+        "1",
+        "The report calls a result a hint if no rms error on held-out recordings decreases by more "
+        "than this factor.",
+        low=1.0,
+    )
 
 
 @dataclass(frozen=True)
 class DescribeConfig:
     """Symbolic description of a force that no candidate explains."""
+
+    most_terms: int = setting(
+        5, "count", "Largest number of terms: a longer formula would explain noise.", low=0
+    )
 
 
 @dataclass(frozen=True)

@@ -448,7 +448,7 @@ def diagnosed(recordings: Mapping[str, Opened], boat: Vessel) -> Diagnosis:
     fitted = [one.longest for n, one in some.items() if n not in UNSEEN]
     held_out = [some[n].whole for n in UNSEEN]
     boats = {r.path: boat for r in (*fitted, *held_out)}
-    note = f"kept unseen: {', '.join(UNSEEN)}; of the others the longest stretch without a leap, {WINDOW:g} s at most"
+    note = f"{', '.join(UNSEEN)}; of the others the longest stretch without a leap, {WINDOW:g} s at most"
     return pipeline.diagnose_recordings(fitted, held_out, boats, note, horizon=HORIZON)
 
 

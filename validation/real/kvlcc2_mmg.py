@@ -168,9 +168,7 @@ def diagnosed(
     """What the model leaves out of the recordings that are not kept unseen."""
     boats = {r.path: pipeline.vessel_for(r.path, vessel, ()) for r in runs.values() if r.path}
     fitted, kept = [r for n, r in runs.items() if n not in held_out], [runs[n] for n in held_out]
-    return pipeline.diagnose_recordings(
-        fitted, kept, boats, f"kept unseen: {', '.join(held_out)}", horizon=horizon
-    )
+    return pipeline.diagnose_recordings(fitted, kept, boats, ", ".join(held_out), horizon=horizon)
 
 
 # ---- the two tanks

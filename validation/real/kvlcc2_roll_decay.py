@@ -61,7 +61,7 @@ def cut_windows(whole: Recording) -> list[Recording]:
 def by_windows(whole: Recording, vessel: Vessel) -> Diagnosis:
     """Windows of 20 s, every second one unseen; the rest at the end is left out."""
     parts = cut_windows(whole)
-    note = f"every second window of {WINDOW:g} s was kept unseen"
+    note = f"every second window of {WINDOW:g} s"
     return pipeline.diagnose_recordings(
         parts[::2], parts[1::2], {whole.path: vessel}, note, horizon=HORIZON
     )
@@ -71,7 +71,7 @@ def by_thirds(whole: Recording, vessel: Vessel, held_out: int = 1) -> Diagnosis:
     """One third unseen, the middle one unless told."""
     parts = thirds(whole)
     kept = parts.pop(held_out)
-    note = f"{kept.name} was kept unseen"
+    note = kept.name
     return pipeline.diagnose_recordings(parts, [kept], {whole.path: vessel}, note, horizon=HORIZON)
 
 

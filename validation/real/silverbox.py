@@ -178,7 +178,7 @@ def part(whole: Recording, begin: int, end: int) -> Recording:
 def diagnosed(whole: Recording, boat: Vessel) -> Diagnosis:
     """What the linear oscillator lacks, by stretches of the training data."""
     fitted, held_out = ([part(whole, *rows) for rows in parts] for parts in (FITTED, UNSEEN))
-    note = f"{', '.join(r.name for r in held_out)} were kept unseen"
+    note = ", ".join(r.name for r in held_out)
     return pipeline.diagnose_recordings(fitted, held_out, {whole.path: boat}, note)
 
 

@@ -12,7 +12,6 @@ from boatsim.diagnosis.locate import missing_force as locate
 from boatsim.diagnosis.locate.regions import regions
 from boatsim.diagnosis.locate.residual_structure import Structure
 from boatsim.diagnosis.problem import Fit, Problem
-from boatsim.diagnosis.report import formatting as report_words
 from boatsim.diagnosis.report.described_terms import described_entries
 from boatsim.diagnosis.report.schema import (
     Acting,
@@ -24,6 +23,7 @@ from boatsim.diagnosis.report.schema import (
     ParameterEntry,
     StructureEntry,
 )
+from boatsim.diagnosis.report.sentences import sentence
 from boatsim.diagnosis.search.pruning import Named
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import Channel, Effect
@@ -95,7 +95,7 @@ def compose(
         answer["unknown"]["rest"] = locate.strength(problem, left)
     if ranking.structure.likely:
         answer["unknown"]["structure"] = _structure(ranking.structure)
-    answer["sentence"] = report_words.sentence(
+    answer["sentence"] = sentence(
         answer, meanings(problem.program.candidates, problem.program.vessel)
     )
     return answer

@@ -1,4 +1,4 @@
-"""What a diagnosis took for granted: what it tried and left out and why, stated facts, the numbers that rules gave."""
+"""Adds the candidates and the assumptions of a diagnosis to its answer."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,6 @@ from boatsim.diagnosis.filter import axes_of
 from boatsim.diagnosis.locate.missing_force import UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.problem import Problem
-from boatsim.diagnosis.report.formatting import listed, number, plain, quantity
 from boatsim.diagnosis.report.schema import AmbientEntry, Answer, LeftOutEntry, RulesEntry
 from boatsim.diagnosis.search.evidence import price
 
@@ -39,28 +38,3 @@ def _rules(problem: Problem, number_tried: int) -> RulesEntry:
         "effect_gain_nats": round(price(number_tried), 2),
         "overridden": dict(vessel.diagnosis.reasons),
     }
-
-
-def in_words(answer: Answer) -> list[str]:
-    """The same in sentences, a line each; none of an answer that does not hold it."""
-    if "rules" not in answer:
-        return []
-    told = [f"tried {len(answer['tried'])} entries of the library"]
-    if left_out := answer["left_out"]:
-        reasons = dict.fromkeys(e["reason"] for e in left_out)
-        by_reason = [
-            (why, [plain(e["name"]) for e in left_out if e["reason"] == why]) for why in reasons
-        ]
-        why_not = "; ".join(f"{listed(names)} ({why})" for why, names in by_reason)
-        told = [f"{told[0]}; left out {len(left_out)}: {why_not}"]
-    rules = answer["rules"]
-    levels = []
-    for axis, level in rules["ambient"].items():
-        share = level.get("share_of_full_thrust")
-        of_thrust = f", {number(100.0 * share, 2)} % of full thrust" if share is not None else ""
-        levels.append(f"{quantity(level['rms'], level['unit'], digits=2)} in {axis}{of_thrust}")
-    told.append(
-        f"never called missing: an unsteady force of {listed(levels)} (rms), as moving water makes"
-    )
-    told += [f"{rule} is the vessel file's own: {why}" for rule, why in rules["overridden"].items()]
-    return told

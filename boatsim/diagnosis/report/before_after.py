@@ -20,7 +20,7 @@ THIRDS = ("first", "middle", "last")
 def split(
     recordings: Sequence[Recording], hold_out: Sequence[Recording]
 ) -> tuple[list[Recording], list[Recording], str]:
-    """Recordings to fit, recordings kept unseen, and a sentence that says which.
+    """Return the recordings to fit, the held-out recordings, and words that state what is held out.
 
     Without a hold-out the last run is kept, or the middle third of a single run: the tail of a decay would be nearly
     linear and test nothing.
@@ -29,14 +29,14 @@ def split(
         return (
             list(recordings),
             list(hold_out),
-            "kept unseen: " + ", ".join(r.name for r in hold_out),
+            ", ".join(r.name for r in hold_out),
         )
     if len(recordings) > 1:
         last_run = recordings[-1]
         return (
             list(recordings[:-1]),
             [last_run],
-            f"no run was held out, so the last one, {last_run.name}, was kept unseen",
+            f"{last_run.name}, the last recording, because no other was chosen",
         )
     whole = recordings[0]
     a, b = (float(whole.t[0] + f * (whole.t[-1] - whole.t[0])) for f in (1 / 3, 2 / 3))
@@ -46,7 +46,7 @@ def split(
     first, middle, last = (
         replace(p, name=_third(whole.name, n)) for p, n in zip(parts, THIRDS, strict=True)
     )
-    note = f"one run only, so its middle third, {a:.1f} to {b:.1f} s, was kept unseen"
+    note = f"{a:.1f} to {b:.1f} s, the middle third of the only recording"
     return [first, last], [middle], note
 
 

@@ -1,8 +1,9 @@
-"""What a diagnosis hands to those who show it: the answer, and the curves behind it."""
+"""Findings: the result of a diagnosis that the report reads, the answer and the curves behind it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from boatsim.diagnosis.config import DEFAULT, as_plain
 from boatsim.diagnosis.description import Written
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.report.schema import Answer
@@ -11,44 +12,71 @@ from boatsim.physics.base import Array
 
 @dataclass(frozen=True)
 class Missing:
-    """The force of a run that the vessel as written has no cause for, by axis, and what the patch leaves of it."""
+    """The missing force of a recording over time: what the vessel model does not explain.
 
-    run: str  # name of the recording
-    t: Array  # (N,) s
-    force: dict[str, Array]  # "surge", "sway", "roll", "yaw" -> (N,)
-    sd: dict[str, Array]  # standard deviation of `force`, (N,)
-    unit: dict[str, str]  # "N" or "N m", by axis
-    left: dict[str, Array]  # the same force under the patched vessel, (N,)
+    Attributes:
+        run: Name of the recording.
+        t: Times (N,) [s].
+        force: Missing force of the recalibrated vessel (N,) [N, N m] by axis, such as "surge".
+        sd: Its standard deviation (N,) [N, N m] by axis.
+        unit: "N" or "N m" by axis.
+        left: Missing force of the patched vessel (N,) [N, N m] by axis.
+    """
+
+    run: str
+    t: Array
+    force: dict[str, Array]
+    sd: dict[str, Array]
+    unit: dict[str, str]
+    left: dict[str, Array]
 
 
 @dataclass(frozen=True)
 class Findings:
-    """A whole diagnosis, as the report shows it."""
+    """The result of a diagnosis as the report shows it.
 
-    answer: Answer  # exactly what diagnosis.json holds
+    Attributes:
+        answer: Content of diagnosis.json.
+        vessel: Name of the vessel.
+        runs: Names of the fitted recordings.
+        held_out: Names of the held-out recordings.
+        held_out_note: Words that state what was held out.
+        missing: Missing force of each recording.
+        free_runs: Free runs over the held-out recordings.
+        remarks: Sentences on what the recordings cannot show.
+        coefficients: Factor on the value in the vessel file, and its standard deviation, of each
+            recalibrated coefficient.
+        extra_tables: Further tables: title, header, rows.
+        words: Meaning of each effect, by name, and of its parameters, by "effect.parameter".
+        described: Terms of the formulas, with their curves.
+        steps: Commands of the next experiment: the time [s] from which they hold, value by name.
+        size: Length and beam of the vessel [m].
+    """
+
+    answer: Answer
     vessel: str
-    runs: tuple[str, ...]  # what was fitted
-    held_out: tuple[str, ...]  # what was kept unseen
-    held_out_note: str  # "the middle third of run_1 was kept unseen"
+    runs: tuple[str, ...]
+    held_out: tuple[str, ...]
+    held_out_note: str
     missing: tuple[Missing, ...] = ()
-    free_runs: tuple[FreeRun, ...] = ()  # on unseen data
-    remarks: tuple[
-        str, ...
-    ] = ()  # what the data can not tell, and anything else a reader must know
-    # recalibrated coefficient -> factor, sd
+    free_runs: tuple[FreeRun, ...] = ()
+    remarks: tuple[str, ...] = ()
     coefficients: dict[str, tuple[float, float]] = field(default_factory=dict)
-    extra_tables: tuple[tuple[str, list[str], list[list[str]]], ...] = ()  # title, header, rows
-    # what a library entry says, by name; also "entry.parameter"
+    extra_tables: tuple[tuple[str, list[str], list[list[str]]], ...] = ()
     words: dict[str, str] = field(default_factory=dict)
-    described: tuple[Written, ...] = ()  # terms of described laws, with their curves
-    steps: tuple[
-        tuple[float, Mapping[str, float]], ...
-    ] = ()  # commands of the next experiment from each time [s] on
-    size: tuple[float, float] = (1.0, 0.3)  # [m] length and beam of the vessel, for its picture
+    described: tuple[Written, ...] = ()
+    steps: tuple[tuple[float, Mapping[str, float]], ...] = ()
+    size: tuple[float, float] = (1.0, 0.3)
 
     @property
     def patched(self) -> bool:
-        """Whether the patched boat has anything that the recalibrated one has not."""
-        return bool(self.answer["effects"]) or any(
-            d["carries_over"] for d in self.answer["described"]
-        )
+        """Whether the patched vessel has any effect that the recalibrated one does not have."""
+        if self.answer["effects"]:
+            return True
+        return any(law["carries_over"] for law in self.answer["described"])
+
+    def setting(self, name: str) -> float:
+        """Return the value of a setting that the diagnosis used, such as "select.alike"."""
+        value = self.answer.get("config", {}).get(name, as_plain(DEFAULT)[name])
+        assert not isinstance(value, list)
+        return float(value)

@@ -1,139 +1,202 @@
-"""Numbers and sentences as a person reads them: degrees, handy units, as many digits as the spread allows."""
+"""Formatting of numbers, units, evidence and lists for the texts of a report."""
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
-from boatsim.diagnosis.report.schema import Answer, EffectEntry
 from boatsim.recordings.notes import unit_of
 
 DEGREE = 180.0 / math.pi
 IN_DEGREES = {"rad": "°", "rad/s": "°/s", "rad/s^2": "°/s²"}
-FORCES = (
-    (1e6, 1e6, "M"),
-    (1e3, 1e3, "k"),
-    (1e-2, 1.0, ""),
-    (0.0, 1e-3, "m"),
-)  # from this size on, factor, prefix
-STEPS = {  # unit -> from this size on, size of the unit taken instead, its name
+# SI unit -> rows of smallest size, size of the printed unit, its name; the first row that fits
+# is used
+STEPS = {
     "m": ((1.0, 1.0, "m"), (1e-2, 1e-2, "cm"), (0.0, 1e-3, "mm")),
     "m/s": ((0.1, 1.0, "m/s"), (1e-2, 1e-2, "cm/s"), (0.0, 1e-3, "mm/s")),
     "s": ((0.1, 1.0, "s"), (0.0, 1e-3, "ms")),
-} | {
-    unit: tuple((least, size, name + unit) for least, size, name in FORCES) for unit in ("N", "N m")
+    "N": ((1e6, 1e6, "MN"), (1e3, 1e3, "kN"), (1e-2, 1.0, "N"), (0.0, 1e-3, "mN")),
+    "N m": ((1e6, 1e6, "MN m"), (1e3, 1e3, "kN m"), (1e-2, 1.0, "N m"), (0.0, 1e-3, "mN m")),
 }
-COUNTS = (
-    "nothing",
-    "one thing",
-    "two things",
-    "three things",
-    "four things",
-    "five things",
-    "six things",
-)
-UNTRIED = "nothing was tried to explain it (facts or the vessel's reasons leave every entry out)"
-MOST = 3  # numbers of one effect in the sentence; the table has all of them
 FACTOR = "(kg|rad|N|m|s)([2-9]?)"
-UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")  # how keys spell a unit
+# the spelling of a unit at the end of a key, such as Ns2pm2
+UNIT = re.compile(f"({FACTOR})+(p({FACTOR})+)?|per({FACTOR})+")
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def plain(name: str) -> str:
-    """A name of a file or key as words: `weak_reverse` -> weak reverse."""
+    """Return a name of a file or key as words: `weak_reverse` -> weak reverse."""
     return name.replace("_", " ")
 
 
 def listed(words: Iterable[str], last: str = "and") -> str:
-    """A, B and C."""
+    """Return words as a list in prose: A, B and C."""
     *head, tail = list(words) or [""]
-    return f"{', '.join(head)} {last} {tail}" if head else tail
+    if not head:
+        return tail
+    return f"{', '.join(head)} {last} {tail}"
 
 
 def capital(words: str) -> str:
-    """First letter large, the rest as it is."""
+    """Return words with a capital first letter and the rest unchanged."""
     return words[:1].upper() + words[1:]
 
 
 def _decimals(size: float, digits: int) -> int:
-    return (
-        max(0, digits - 1 - math.floor(math.log10(size)))
-        if size > 0.0 and math.isfinite(size)
-        else 0
-    )
+    """Return the decimal places that show this many significant digits."""
+    if size <= 0.0 or not math.isfinite(size):
+        return 0
+    return max(0, digits - 1 - math.floor(math.log10(size)))
 
 
 def number(value: float, digits: int = 3) -> str:
-    """To this many significant digits; a power of ten only where plain digits would be hard to read."""
-    if not math.isfinite(value):
-        return "none" if math.isnan(value) else "∞"
-    size, value = abs(value), value + 0.0  # -0 becomes 0
+    """Return a number with significant digits.
+
+    Args:
+        value: The number; nan is written as "none".
+        digits: Number of significant digits.
+
+    Returns:
+        The number; it has a power of ten only where plain digits would be hard to read.
+    """
+    if math.isnan(value):
+        return "none"
+    if math.isinf(value):
+        return "∞"
+    size = abs(value)
+    value += 0.0  # -0 becomes 0
     if value == 0.0 or 1e-4 <= size < 1e6:
         text = f"{value:.{_decimals(size, digits)}f}"
     else:
         power = math.floor(math.log10(size))
-        text = f"{value / 10.0**power:.{digits - 1}f} × 10{str(power).translate(SUPERSCRIPTS)}"
+        text = f"{value / 10.0**power:.{digits - 1}f} × {_power_of_ten(power)}"
     return text.replace("-", "−")
 
 
-def nats(gain: float) -> str:
-    """A gain in nats; tenths are enough to judge by."""
-    return f"{gain:.{1 if abs(gain) < 100.0 else 0}f}".replace("-", "−").replace("−0.0", "0.0")
+def _power_of_ten(power: int) -> str:
+    return f"10{str(power).translate(SUPERSCRIPTS)}"
+
+
+def nats(log_bayes_factor: float) -> str:
+    """Return evidence in nats, to tenths below 100."""
+    decimals = 1
+    if abs(log_bayes_factor) >= 100.0:
+        decimals = 0
+    return f"{log_bayes_factor:.{decimals}f}".replace("-", "−").replace("−0.0", "0.0")
+
+
+def chance(log_bayes_factor: float) -> str:
+    """Return the odds that evidence of this size is due to chance.
+
+    Args:
+        log_bayes_factor: Evidence [nats].
+
+    Returns:
+        Words such as "odds of chance 1 in 55": the Bayes factor is exp(evidence).
+    """
+    if log_bayes_factor < math.log(2.0):
+        return "no evidence"
+    if log_bayes_factor < math.log(1e6):
+        odds = float(f"{math.exp(log_bayes_factor):.1e}")
+        return f"odds of chance 1 in {odds:,.0f}"
+    power = math.floor(log_bayes_factor / math.log(10.0))
+    return f"odds of chance below 1 in {_power_of_ten(power)}"
+
+
+def evidence(log_bayes_factor: float) -> str:
+    """Return evidence in nats with its odds: log Bayes factor 4.0 nats (odds of chance 1 in 55)."""
+    return f"log Bayes factor {nats(log_bayes_factor)} nats ({chance(log_bayes_factor)})"
 
 
 def spread(value: float, sd: float) -> str:
-    """Value ± standard deviation, both to the digits the deviation allows: 0.694 ± 0.012."""
+    """Return value ± standard deviation, to the digits that the deviation allows: 0.694 ± 0.012."""
     if not (math.isfinite(value) and math.isfinite(sd) and sd > 0.0):
         return number(value)
     largest = max(abs(value), sd)
-    power = 0 if 1e-3 <= largest < 1e5 else math.floor(math.log10(largest))
-    value, sd = value / 10.0**power, sd / 10.0**power
+    power = 0
+    if not 1e-3 <= largest < 1e5:
+        power = math.floor(math.log10(largest))
+    value /= 10.0**power
+    sd /= 10.0**power
     places = min(_decimals(sd, 2), 6)
     text = f"{value:.{places}f} ± {sd:.{places}f}".replace("-", "−")
-    return f"({text}) × 10{str(power).translate(SUPERSCRIPTS)}" if power else text
+    if power:
+        return f"({text}) × {_power_of_ten(power)}"
+    return text
 
 
 def unit_words(unit: str) -> str:
-    """Unit as printed: N s^2/m^2 -> N s²/m²."""
+    """Return a unit as printed: N s^2/m^2 -> N s²/m²."""
     for digit in "234":
         unit = unit.replace(f"^{digit}", digit.translate(SUPERSCRIPTS))
     return unit
 
 
 def quantity(value: float, unit: str, sd: float = 0.0, digits: int = 3) -> str:
-    """Value ± deviation in a handy unit; angles in degrees. Without a deviation, to so many digits."""
-    name, factor = handy(unit, max((abs(v) for v in (value, sd) if math.isfinite(v)), default=0.0))
-    text = spread(value * factor, sd * factor) if sd > 0.0 else number(value * factor, digits)
-    if name.startswith("°"):
-        return f"{text.replace(' ± ', f'{name} ± ') if '×' not in text else text}{name}"
-    return f"{text} {name}".rstrip()
+    """Return a quantity in a convenient unit.
+
+    Args:
+        value: The value [unit].
+        unit: Its SI unit; angles are printed in degrees.
+        sd: Standard deviation [unit]; 0 where there is none.
+        digits: Significant digits without a standard deviation.
+
+    Returns:
+        Text such as 4.34 ± 0.78 cm.
+    """
+    name, factor = handy(unit, _largest((value, sd)))
+    if sd > 0.0:
+        text = spread(value * factor, sd * factor)
+    else:
+        text = number(value * factor, digits)
+    if not name.startswith("°"):
+        return f"{text} {name}".rstrip()
+    if "×" not in text:
+        text = text.replace(" ± ", f"{name} ± ")
+    return f"{text}{name}"
+
+
+def _largest(values: Sequence[float]) -> float:
+    """Return the largest size among the finite values, 0 if there is none."""
+    return max(map(abs, filter(math.isfinite, values)), default=0.0)
 
 
 def shown(key: str, value: float, unit: str = "", sd: float = 0.0) -> tuple[str, str]:
-    """(name, value ± deviation) of a parameter as people say it: shares in %, bearings from 0 to 360°."""
+    """Return the name and the value ± deviation of a parameter, fractions in per cent.
+
+    Args:
+        key: Key of the parameter in diagnosis.json.
+        value: Its value [unit].
+        unit: Its SI unit; "" if the key has it.
+        sd: Its standard deviation [unit].
+
+    Returns:
+        Name in words, and the value in a convenient unit; a bearing lies within 0 to 360°.
+    """
     name, unit = parameter(key, unit)
     if name.endswith("fraction") and not unit:
-        return name.removesuffix(
-            "fraction"
-        ).strip() or name, f"{spread(100.0 * value, 100.0 * sd)} %"
+        return _fraction(name), f"{spread(100.0 * value, 100.0 * sd)} %"
     if name == "toward" and unit == "rad":
         value %= 2.0 * math.pi
-    if (
-        name == "frequency" and unit == "rad/s" and value > 0.0
-    ):  # of a wave, which nobody counts in degrees
-        return name, f"{spread(value, sd)} rad/s, a period of {number(2.0 * math.pi / value)} s"
+    if name == "frequency" and unit == "rad/s" and value > 0.0:  # of a wave, not of a rotation
+        period = number(2.0 * math.pi / value)
+        return name, f"{spread(value, sd)} rad/s, a period of {period} s"
     return name, quantity(value, unit, sd)
 
 
 def limit(key: str, value: float) -> tuple[str, str]:
-    """(name, largest strength) of a parameter that was not found: 3.9 mm/s; factors and shares in %."""
+    """Return the name and the upper limit of a parameter: 3.9 mm/s; factors and fractions in %."""
     name, unit = parameter(key)
     if not unit and name.endswith(("factor", "fraction")):
-        return name.removesuffix("fraction").strip() or name, f"{number(100.0 * value, 2)} %"
+        return _fraction(name), f"{number(100.0 * value, 2)} %"
     return name, quantity(value, unit, digits=2)
 
 
+def _fraction(name: str) -> str:
+    return name.removesuffix("fraction").strip() or name
+
+
 def readable(words: str) -> str:
-    """A sentence of the answer for people: degrees by their sign, no p-value at its end (the table has it)."""
+    """Return a sentence of the answer with degree signs and without the p-value at its end."""
     words = re.sub(
         r"([\d.]+) rad(?![/\w])", lambda found: f"{float(found[1]) * DEGREE:.2g}°", words
     )
@@ -141,158 +204,72 @@ def readable(words: str) -> str:
 
 
 def parameter(key: str, unit: str = "") -> tuple[str, str]:
-    """(name in words, unit) of a parameter key of the answer: `toward_rad` -> (toward, rad)."""
+    """Return the name in words and the unit of a parameter key: `toward_rad` -> (toward, rad)."""
     compact = unit.replace("1/", "per").replace("/", "p").replace("^", "").replace(" ", "")
     if compact and key.endswith(f"_{compact}"):
         return plain(key.removesuffix(f"_{compact}")), unit
     if unit:
         return plain(key), unit
     name, _, ending = key.rpartition("_")
-    unit = unit_of(key) or (_spelt(ending) if name and UNIT.fullmatch(ending) else "")
-    return plain(name if unit else key), unit
+    unit = unit_of(key)
+    if not unit and name and UNIT.fullmatch(ending):
+        unit = _spelt(ending)
+    if not unit:
+        return plain(key), ""
+    return plain(name), unit
 
 
 def _spelt(compact: str) -> str:
-    """Ns2pm2 -> N s^2/m^2."""
+    """Return a unit from its spelling in a key: Ns2pm2 -> N s^2/m^2."""
     if compact.startswith("per"):
         return f"1/{_spelt(compact.removeprefix('per'))}"
     above, _, below = compact.partition("p")
-    parts = (
-        " ".join(f"{u}^{n}" if n else u for u, n in re.findall(FACTOR, part))
-        for part in (above, below)
-    )
-    return "/".join(part for part in parts if part)
+    return "/".join(filter(None, map(_product, (above, below))))
+
+
+def _product(compact: str) -> str:
+    symbols = []
+    for symbol, power in re.findall(FACTOR, compact):
+        symbols.append(f"{symbol}^{power}".removesuffix("^"))
+    return " ".join(symbols)
 
 
 def percent(share: float) -> str:
-    """A probability; never 0 or 100 %."""
+    """Return a probability in per cent; never 0 or 100 %."""
     if share > 0.999:
         return "> 99.9 %"
     if share < 0.001:
         return "< 0.1 %"
-    return f"{100 * share:.{0 if 0.01 < share < 0.99 else 1}f} %"
+    if 0.01 < share < 0.99:
+        return f"{100 * share:.0f} %"
+    return f"{100 * share:.1f} %"
 
 
 def handy(unit: str, largest: float) -> tuple[str, float]:
-    """(unit, factor) that make a number of this size readable: m -> cm, N -> kN, rad -> °."""
+    """Return the printed unit and the factor from SI for numbers up to this size: N -> (kN, 1e-3).
+
+    Args:
+        unit: SI unit.
+        largest: Size of the largest number to be printed [unit].
+
+    Returns:
+        Name of the printed unit, and the factor to it.
+    """
     if unit in IN_DEGREES:
         return IN_DEGREES[unit], DEGREE
-    if unit in STEPS and largest > 0.0:
-        _, size, name = next(s for s in STEPS[unit] if largest >= s[0])
-        return name, 1.0 / size
+    if largest > 0.0:
+        for least, size, name in STEPS.get(unit, ()):
+            if largest >= least:
+                return name, 1.0 / size
     return unit_words(unit), 1.0
 
 
 def alike(values: Sequence[float], unit: str) -> list[str]:
-    """Several values of one unit, all in the same handy one."""
-    name, factor = handy(unit, max((abs(v) for v in values if math.isfinite(v)), default=0.0))
-    gap = "" if name.startswith("°") else " "
-    return [f"{number(v * factor)}{gap}{name}" for v in values]
-
-
-def said(words: str) -> str:
-    """What an entry says; that it is not physics is said once, not in every clause."""
-    return words.removesuffix(" (not physics)")
-
-
-def parameters(effect: EffectEntry, words: Mapping[str, str]) -> str:
-    """The fitted numbers of an effect in a row: astern factor 0.694 ± 0.012; the first few, none that may be zero."""
-    found = []
-    for key, p in effect["parameters"].items():
-        name, text = shown(key, p["value"], p["unit"], p["sd"])
-        if effect["kind"] == "measurement":  # "cos" says little, "error heading north" does
-            name = words.get(f"{effect['name']}.{key}", name)
-        if abs(p["value"]) > p["sd"] or "factor" in key:
-            found.append(
-                f"{name} {text}{', as far as the entry goes' if p.get('at_bound') else ''}"
-            )
-    return ", ".join(found[:MOST])
-
-
-def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
-    """The verdict of a diagnosis in one sentence, made of the words of the effects it names.
-
-    `words` is what parameters mean, by "effect.parameter".
-    """
-    effects = answer["effects"]
-    if not tried(answer):
-        return f"{capital(_untried(answer))}."
-    physics = [_clause(e, words or {}) for e in effects if e["kind"] != "measurement"]
-    measured = [_clause(e, words or {}) for e in effects if e["kind"] == "measurement"]
-    unknown, described = answer["unknown"]["flag"], _described(answer, bool(effects))
-    parts = []
-    if unknown and not described:
-        parts = [
-            f"something is missing that no entry of the library explains{_sizes(answer)}{_with(answer)}"
-        ]
-    if physics:
-        count = COUNTS[len(physics)] if len(physics) < len(COUNTS) else f"{len(physics)} things"
-        parts.append(
-            f"{'besides, ' if parts else ''}the model leaves out {count}: {_clauses(physics)}"
-        )
-    if measured:
-        also, only = (
-            "the measurement is off as well, which is not physics",
-            "the measurement is off, not the physics",
-        )
-        parts.append(f"{also if parts else only}: {_clauses(measured)}")
-    if described:
-        parts += [f"{'besides, ' if parts else ''}{described[0]}", *described[1:]]
-    if not parts:
-        return "Nothing is missing that these recordings could show: the vessel explains them to within their noise."
-    ties = [
-        f"{plain(e['name'])} from {listed(map(plain, e['tied_with']), 'or')}"
-        for e in effects
-        if e["tied_with"]
-    ]
-    if ties:
-        parts.append(f"but these recordings cannot tell {listed(ties)}")
-    return f"{capital('; '.join(parts))}."
-
-
-def _described(answer: Answer, beside: bool) -> list[str]:
-    """Laws that were written down, those first that carry over; events of runs in full only where there is no more."""
-    lasting = [d["statement"] for d in answer["described"] if d["carries_over"]][:MOST]
-    events = [d["statement"] for d in answer["described"] if not d["carries_over"]]
-    if not events or not (lasting or beside):
-        return lasting + events[:MOST]
-    count = (
-        "one event of a run is" if len(events) == 1 else f"{len(events)} events of single runs are"
-    )
-    return [*lasting, f"{count} left over, {'' if len(events) == 1 else 'first '}{events[0]}"]
-
-
-def tried(answer: Answer) -> bool:
-    """Whether there was any entry to explain the recordings with."""
-    return bool(answer["candidates"])
-
-
-def _untried(answer: Answer) -> str:
-    """What can be said all the same: whether more force is left than the vessel file tolerates."""
-    if answer["verdict"] == "unknown":
-        return f"something is missing{_sizes(answer)}, and {UNTRIED}"
-    return f"no more force is missing than moving water makes, but {UNTRIED}"
-
-
-def _sizes(answer: Answer) -> str:
-    """How large what nothing explains is, per axis; in brackets."""
-    axes = answer["unknown"].get("rest") or answer["where"]["axes"]
-    sizes = [f"{quantity(a['rms'], a['unit'], digits=2)} rms in {axis}" for axis, a in axes.items()]
-    return f" ({listed(sizes)})" if sizes else ""
-
-
-def _with(answer: Answer) -> str:
-    """What it goes with, if with anything."""
-    found = answer["unknown"].get("structure")
-    return f", which in {found['axis']} goes with {found['goes_with']}" if found else ""
-
-
-def _clause(effect: EffectEntry, words: Mapping[str, str]) -> str:
-    numbers = parameters(effect, words)
-    return said(effect["words"]) + (f" ({numbers})" if numbers else "")
-
-
-def _clauses(clauses: Sequence[str]) -> str:
-    """A, B, and C: clauses have commas of their own."""
-    *head, tail = clauses
-    return f"{', '.join(head)}, and {tail}" if head else tail
+    """Return several values of one SI unit, all in the same convenient unit."""
+    name, factor = handy(unit, _largest(values))
+    if not name.startswith("°"):
+        name = f" {name}"
+    texts = []
+    for value in values:
+        texts.append(f"{number(value * factor)}{name}")
+    return texts

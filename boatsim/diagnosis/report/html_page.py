@@ -1,4 +1,4 @@
-"""A page complete in itself: its template, with the style, the script and the sections that all our pages share."""
+"""Self-contained HTML pages: a template with the style, the script and the sections of all pages."""
 
 from base64 import b64encode
 from hashlib import sha256
@@ -8,31 +8,37 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 
 def rendered(template: Path, **values: object) -> str:
-    """The page of a template, which may include any that lies in `TEMPLATES`; the browser fetches nothing."""
+    """Return the page of a template; a browser fetches nothing to show it.
+
+    Args:
+        template: Jinja template, which may include any template of `TEMPLATES`.
+        values: Values of the names that the template uses.
+    """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    script, style = (
-        (TEMPLATES / name).read_text(encoding="utf-8") for name in ("report.js", "style.css")
-    )
-    folders = FileSystemLoader([template.parent, TEMPLATES])
+    script = (TEMPLATES / "report.js").read_text(encoding="utf-8")
+    style = (TEMPLATES / "style.css").read_text(encoding="utf-8")
     environment = Environment(
-        loader=folders,
+        loader=FileSystemLoader([template.parent, TEMPLATES]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["held"] = _held
-    shared = {"script": script, "style": style, "policy": _policy(script)}
-    return environment.get_template(template.name).render(**shared, **values)
+    environment.filters["nonbreaking"] = _nonbreaking
+    page = environment.get_template(template.name)
+    return page.render(script=script, style=style, policy=_policy(script), **values)
 
 
 def _policy(script: str) -> str:
-    """What a browser may do with the page: run this script and no other, fetch nothing."""
-    own = b64encode(sha256(script.encode()).digest()).decode()
-    return f"default-src 'none'; script-src 'sha256-{own}'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
+    """Return a content security policy that allows this script only and no connections."""
+    digest = b64encode(sha256(script.encode()).digest()).decode()
+    return (
+        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
+        "base-uri 'none'; form-action 'none'"
+    )
 
 
-def _held(words: str) -> str:
-    """No line ends within a value."""
+def _nonbreaking(words: str) -> str:
+    """Return a text in which no line breaks within a value."""
     return words.replace(" ± ", "\u00a0±\u00a0").replace(" %", "\u00a0%")

@@ -1,48 +1,55 @@
-"""The report of a diagnosis for people: one page and the same as plain text, made from one list of sections."""
+"""The report of a diagnosis: one HTML page and the same text as Markdown, from the same sections."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
-from boatsim.diagnosis.report import mean_force_section
 from boatsim.diagnosis.report.blocks import Section, as_text, safe
 from boatsim.diagnosis.report.findings import Findings
-from boatsim.diagnosis.report.formatting import capital, listed, plain, sentence, tried
+from boatsim.diagnosis.report.formatting import capital, listed, plain
 from boatsim.diagnosis.report.html_page import TEMPLATES, rendered
 from boatsim.diagnosis.report.replay_section import replay
-from boatsim.diagnosis.report.sections import proof, sections_of
+from boatsim.diagnosis.report.sections import sections_of
+from boatsim.diagnosis.report.sentences import any_tested, mean_force, proof, sentence
 from boatsim.files import replacing
 
-__all__ = ["sentence", "write"]
-
-VERDICTS = {
-    "named": "Named",
-    "ambiguous": "Named, with look-alikes",
-    "described": "Described: a law that is not in the library",
-    "unknown": "Cause not in the library",
+VERDICTS = {  # verdict of the answer -> words at the top of the report
+    "named": "Effect identified",
+    "ambiguous": "Effect identified, with look-alikes",
+    "described": "Cause outside the candidates, described by a formula",
+    "unknown": "Cause outside the candidates",
     "nothing_missing": "Nothing missing",
 }
-
-
-LOG_FIRST = "Probably the log"  # if what is wrong with it is certain and of all of it
-LONG = 200  # characters from which a sentence is no headline
-UNTRIED = "Something missing, nothing tried"
-NOT_PHYSICS = "Measurement, not physics"  # if all that was named is of that kind
+LOG_PROBLEM = "Probably the log"  # a certain problem of the whole recording
+NONE_TESTED = "Something missing, no candidates tested"
+MEASUREMENT_ERROR = "Measurement error"  # all identified effects are errors of measurement
+LONGEST_HEADLINE = 200  # characters; a longer sentence is not used as the headline
 
 
 def write(findings: Findings, folder: Path) -> None:
-    """Write report.html (one page, nothing fetched) and report.md (the same in text). Raises OSError."""
+    """Write report.html (one page that fetches nothing) and report.md (the same text).
+
+    Args:
+        findings: Findings of a diagnosis.
+        folder: Folder of the two files.
+
+    Raises:
+        OSError: The files cannot be written; existing reports remain unchanged.
+    """
     sections = [s for s in sections_of(findings) if s.blocks]
-    for name, text in (
-        ("report.html", page(findings, sections)),
-        ("report.md", markdown(findings, sections)),
-    ):
+    texts = {"report.html": page(findings, sections), "report.md": markdown(findings, sections)}
+    for name, text in texts.items():
         with replacing(folder / name) as temporary:
             temporary.write_text(text, encoding="utf-8")
 
 
 def page(findings: Findings, sections: Sequence[Section]) -> str:
-    """The page, complete in itself."""
+    """Return the HTML page.
+
+    Args:
+        findings: Findings of a diagnosis.
+        sections: Its sections that have content.
+    """
     return rendered(
         TEMPLATES / "report.html.j2",
         f=findings,
@@ -53,19 +60,27 @@ def page(findings: Findings, sections: Sequence[Section]) -> str:
         sections=sections,
         proof=proof(findings),
         facts=_facts(findings),
-        stays=mean_force_section.in_words(findings.answer, findings.patched),
+        mean_force=mean_force(findings.answer, findings.patched),
         replay=replay(findings),
     )
 
 
 def markdown(findings: Findings, sections: Sequence[Section]) -> str:
-    """The same as text."""
-    title, whole = _headline(findings), _sentence(findings)
-    lines = [f"# {safe(title)}", "", *([safe(whole), ""] if whole != title else [])]
+    """Return the report as Markdown.
+
+    Args:
+        findings: Findings of a diagnosis.
+        sections: Its sections that have content.
+    """
+    headline, whole = _headline(findings), _sentence(findings)
+    lines = [f"# {safe(headline)}", ""]
+    if whole != headline:
+        lines += [safe(whole), ""]
     lines += [f"**{_verdict(findings)}.** {safe(proof(findings))}", ""]
-    for line in mean_force_section.in_words(findings.answer, findings.patched):
-        lines += [safe(line), ""]
-    lines += [f"- {name}: {safe(value)}" for name, value in _facts(findings)]
+    for paragraph in mean_force(findings.answer, findings.patched):
+        lines += [safe(paragraph), ""]
+    for name, value in _facts(findings):
+        lines.append(f"- {name}: {safe(value)}")
     for section in sections:
         lines += ["", f"## {section.title}"]
         for block in section.blocks:
@@ -74,40 +89,46 @@ def markdown(findings: Findings, sections: Sequence[Section]) -> str:
 
 
 def _headline(f: Findings) -> str:
-    """The sentence of the answer, or the names alone where that would be a paragraph."""
-    said = _sentence(f)
-    if said.startswith(capital(LOG_NOT_BOAT)):
-        return f"{said.partition('. ')[0]}."
+    """Return the sentence of the answer, or only the names of the effects where it is long."""
+    whole = _sentence(f)
+    if _log_problem(f):
+        return f"{whole.partition('. ')[0]}."
     names = [plain(e["name"]) for e in f.answer["effects"]]
-    if len(said) <= LONG or not names:
-        return said
-    rest = "; more is missing than these explain" if f.answer["unknown"]["flag"] else ""
+    if len(whole) <= LONGEST_HEADLINE or not names:
+        return whole
+    rest = ""
+    if f.answer["unknown"]["flag"]:
+        rest = ", and a force that they do not explain"
     return f"{capital(listed(names))}{rest}."
 
 
 def _sentence(f: Findings) -> str:
-    return str(f.answer["sentence"]) or sentence(f.answer, f.words)
+    return f.answer["sentence"] or sentence(f.answer, f.words)
+
+
+def _log_problem(f: Findings) -> bool:
+    """Return whether the answer begins with a certain problem of the whole recording."""
+    return f.answer["sentence"].startswith(capital(LOG_NOT_BOAT))
 
 
 def _verdict(f: Findings) -> str:
-    """The verdict in a word or two."""
-    effects, verdict = f.answer["effects"], f.answer["verdict"]
-    if str(f.answer["sentence"]).startswith(capital(LOG_NOT_BOAT)):
-        return LOG_FIRST
-    if verdict == "unknown" and not tried(f.answer):
-        return UNTRIED
-    measured = verdict == "named" and all(e["kind"] == "measurement" for e in effects)
-    return NOT_PHYSICS if measured else VERDICTS[verdict]
+    """Return the verdict in a few words."""
+    verdict = f.answer["verdict"]
+    if _log_problem(f):
+        return LOG_PROBLEM
+    if verdict == "unknown" and not any_tested(f.answer):
+        return NONE_TESTED
+    kinds = {e["kind"] for e in f.answer["effects"]}
+    if verdict == "named" and kinds <= {"measurement"}:
+        return MEASUREMENT_ERROR
+    return VERDICTS[verdict]
 
 
 def _facts(f: Findings) -> list[tuple[str, str]]:
-    """Who, on what, how long."""
+    """Return vessel, fitted and held-out recordings, and version."""
     return [
         ("Vessel", f.vessel),
         ("Fitted to", listed(f.runs)),
-        (
-            "Kept unseen",
-            f.held_out_note.removeprefix("kept unseen: ") or listed(f.held_out) or "nothing",
-        ),
-        ("Made by", f"boatsim {f.answer['version']}"),
+        ("Held out", f.held_out_note or listed(f.held_out) or "nothing"),
+        ("Version", f"boatsim {f.answer['version']}"),
     ]

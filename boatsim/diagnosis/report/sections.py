@@ -1,4 +1,4 @@
-"""What the report of a diagnosis says, section by section."""
+"""Sections of the report of a diagnosis."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -10,8 +10,7 @@ import numpy as np
 from boatsim.diagnosis.experiment_design.next_experiment import WORTH
 from boatsim.diagnosis.free_runs import FreeRun
 from boatsim.diagnosis.locate.residual_structure import FACTOR
-from boatsim.diagnosis.report import assumptions, figures, svg_plots
-from boatsim.diagnosis.report.answer import SHAPE
+from boatsim.diagnosis.report import figures, svg_plots
 from boatsim.diagnosis.report.blocks import (
     Block,
     Figures,
@@ -24,9 +23,10 @@ from boatsim.diagnosis.report.blocks import (
 )
 from boatsim.diagnosis.report.findings import Findings, Missing
 from boatsim.diagnosis.report.formatting import (
-    UNTRIED,
     alike,
     capital,
+    chance,
+    evidence,
     limit,
     listed,
     nats,
@@ -36,599 +36,613 @@ from boatsim.diagnosis.report.formatting import (
     plain,
     quantity,
     readable,
-    said,
     shown,
     spread,
-    tried,
 )
-from boatsim.diagnosis.report.schema import EffectEntry, Family, StructureEntry, TermEntry
-from boatsim.diagnosis.search.pruning import ALIKE
-
-INTERVALS = 24  # flagged ones that a table shows; diagnosis.json has all
-PICTURES = 6  # runs whose missing force is drawn; the strongest ones
-UNSEEN_PICTURES = 3  # unseen runs that are drawn
-RANKED = 8  # entries of the ranking, and of the limits, that are seen without asking for the rest
-FAMILIES: dict[
-    Family, tuple[str, str, str]
-] = {  # key of `fit` -> what it is the error of, unit, signal of a free run
-    "position_rms_m": ("position", "m", "position"),
-    "heading_rms_rad": ("heading", "rad", "psi_rad"),
-    "roll_rms_rad": ("roll", "rad", "phi_rad"),
-}
-MODELS = ("nominal", "recalibrated", "patched")
-# times that an error on unseen data must get smaller for a finding to be more than a hint
-HELPS = 1.1
-GLOSSARY = (
-    (
-        "nominal, recalibrated, patched",
-        "The vessel file as given; the same with its own coefficients refitted; and that with the effects found added. "
-        "Gains are judged against the recalibrated vessel, because refitting alone takes up part of any misfit.",
-    ),
-    (
-        "missing force",
-        "The force or moment on the hull that the recording shows and the vessel as written has no cause for, estimated "
-        "along the run. The band is two standard deviations wide on either side; flagged is where zero lies outside it "
-        "and the force is more than moving water makes.",
-    ),
-    ("unseen data", "Recordings that were kept apart: nothing was fitted to them."),
-    (
-        "free run",
-        "The simulated boat starts at the state of the real one and is then driven by the recorded commands alone, "
-        "without ever looking at the recording again. What it misses by is the error of the model.",
-    ),
-    (
-        "rms",
-        "Root mean square: the size of a quantity that changes, over all of its samples. "
-        "In a position x and y count each.",
-    ),
-    (
-        "gain, in nats",
-        "How much better an explanation predicts the recordings, as a natural logarithm, the freedom of its extra "
-        "parameters paid for. 1 nat is a factor of 2.7, 3 nats 20, 4 nats 55. An effect is named from 4 nats on if, with "
-        "its look-alikes, it gains more than two and the logarithm of the number of entries tried (more tried, "
-        "more to gain), and more than a fortieth of what the others explain, which their laws may be off by. Entries "
-        "within 3 nats of it are its look-alikes.",
-    ),
-    (
-        "described",
-        "A law written down for what no entry of the library explains: the shortest sum of products of "
-        "speeds, commands, heading, place and time that the recordings call for, at most five terms. It says what goes "
-        "with what, not why. A term has to gain more than two and the logarithm of the number of terms weighed.",
-    ),
-    (
-        "how likely",
-        "Of a named effect: how likely it is this one that acts, rather than one of its rivals or nothing, "
-        "given the recordings and the other effects named. In the ranking: the same as if it were the only one.",
-    ),
-    (
-        "\u00b1",
-        "One standard deviation: the true value is expected within twice this in 95 of 100 cases.",
-    ),
-    ("surge, sway, roll, yaw", "Forward, to starboard, starboard side down, bow to starboard."),
+from boatsim.diagnosis.report.glossary import glossary
+from boatsim.diagnosis.report.schema import (
+    EffectEntry,
+    IntervalEntry,
+    LogEntry,
+    StructureEntry,
+    TermEntry,
+)
+from boatsim.diagnosis.report.sentences import (
+    FAMILIES,
+    MODELS,
+    NONE_TESTED,
+    any_tested,
+    assumptions,
+    words_of,
 )
 
-
-def proof(f: Findings) -> str:
-    """What the found model gains on unseen data, in a sentence."""
-    fit, parts = f.answer["fit"], []
-    for key, (words, unit, _) in FAMILIES.items():
-        if rms := fit.get(key):
-            before, after = alike([rms["recalibrated"], rms["patched"]], unit)
-            parts.append((words, before, after, rms["recalibrated"] / max(rms["patched"], 1e-300)))
-    if not parts:
-        return "Nothing was left to test the finding on: no data was kept unseen."
-    stretch = f"{fit['horizon_s']:g} s"
-    if not f.patched:
-        errors = listed(f"{before} in {words}" for words, before, *_ in parts)
-        return f"In free runs of {stretch} over unseen data the recalibrated vessel has an rms error of {errors}."
-    compared = (
-        f"of {after} in {words} instead of {before} ({_times(gain)})"
-        for words, before, after, gain in parts
-    )
-    hint = (
-        ""
-        if max(gain for *_, gain in parts) > HELPS
-        else "Take it for a hint: on unseen data it hardly helps. "
-    )
-    return (
-        f"{hint}With this in the model, free runs of {stretch} over unseen data have an rms error {listed(compared)}; "
-        "the comparison is with the same vessel after its own coefficients were refitted."
-    )
-
-
-def _times(gain: float) -> str:
-    if 0.95 < gain < 1.05:
-        return "the same"
-    return (
-        f"{number(gain, 2)} times smaller"
-        if gain > 1.0
-        else f"{number(1.0 / gain, 2)} times larger"
-    )
+MOST_INTERVALS = 24  # rows of the table of flagged intervals; diagnosis.json has all of them
+MOST_MISSING_FIGURES = 6  # recordings whose missing force is drawn: those flagged longest
+MOST_HELD_OUT_FIGURES = 3  # held-out recordings that are drawn
+MOST_VISIBLE_CANDIDATES = 8  # rows of the ranking that are not folded
+FREE_RUN_SIGNALS = {"position": "position", "heading": "psi_rad", "roll": "phi_rad"}
 
 
 def sections_of(f: Findings) -> list[Section]:
-    """The whole report in order; sections that have nothing to say are empty."""
+    """Return all sections of the report in order.
+
+    Args:
+        f: Findings of a diagnosis.
+
+    Returns:
+        The sections; those without content have no blocks.
+    """
     return [
-        Section("log", "The log", list(_log(f))),
-        Section("what", "What was found", list(_what(f))),
-        Section("taken", "What was tried, and what was taken for granted", list(_taken(f))),
-        Section("where", "Where it shows", list(_where(f))),
-        Section("ranking", "Ranking", list(_ranking(f))),
-        Section("proof", "Before and after on unseen data", list(_proof(f))),
+        Section("log", "Problems of the recordings", list(_log(f))),
+        Section("what", "What was found", list(_found(f))),
+        Section("taken", "Candidates and assumptions", list(_assumptions(f))),
+        Section("where", "Where and when a force is missing", list(_where(f))),
+        Section("ranking", "Ranking of the candidate effects", list(_ranking(f))),
+        Section("proof", "Validation on held-out recordings", list(_validation(f))),
         Section("next", "What to record next", list(_next(f))),
-        Section("cannot", "What the data cannot tell", list(_cannot(f))),
-        Section("limits", "Upper limits of what was not found", list(_limits(f))),
-        Section("coefficients", "Refitted coefficients", list(_coefficients(f))),
+        Section("cannot", "What these recordings cannot show", list(_limitations(f))),
+        Section("limits", "Upper limits of effects that were not found", list(_limits(f))),
+        Section("coefficients", "Recalibrated coefficients", list(_coefficients(f))),
         Section("files", "Files", list(_files(f))),
-        Section("reading", "How to read this", [Items(GLOSSARY)]),
+        Section("reading", "How to read this report", [Items(glossary(f))]),
     ]
 
 
-def _prose(rows: Sequence[Sequence[str]]) -> tuple[int, ...]:
-    """Columns of words, after the first."""
-    wordy = {
-        i
-        for row in rows
-        for i, cell in enumerate(row)
-        if i and cell and not any(c.isdigit() for c in cell)
-    }
-    return tuple(sorted(wordy))
-
-
 def _log(f: Findings) -> Iterator[Block]:
-    """What is wrong with the recordings themselves, and the lines that put it right."""
+    """Yield the problems of the recordings, and the lines that correct them."""
     for e in f.answer.get("log", ()):
-        of_whom = e.get("words", "left out or allowed for")
-        yield Heading(
-            capital(plain(e["name"])), f"{e['run']} · {of_whom} · sure to {percent(e['sure'])}"
-        )
+        cause = e.get("words", "corrected or allowed for by the diagnosis")
+        facts = f"{e['run']} · {cause} · probability {percent(e['sure'])}"
+        yield Heading(capital(plain(e["name"])), facts)
         yield Text(f"{capital(e['evidence'])}.")
-        written = [("write into recording.toml", " / ".join(e["lines"]))] if e["lines"] else []
-        written += [
-            (f"or, if {o['words']}", " / ".join(["[columns]", *o["lines"]]))
-            for o in e["alternatives"]
-        ]
-        if written:
-            yield Items(tuple(written))
+        if corrections := _corrections(e):
+            yield Items(corrections)
         if "remedy" in e:
             yield Text(f"{capital(e['remedy'])}.")
 
 
-def _what(f: Findings) -> Iterator[Block]:
-    noted = False
-    for e in f.answer["effects"]:
-        measured = "a measurement error, not physics" if e["kind"] == "measurement" else "physics"
-        likely = f"{percent(e['probability'])} likely among its rivals"
-        facts = f"{e['name']} · {measured} · {likely} · gain {nats(e['gain_nats'])} nats"
-        yield Heading(capital(said(e["words"])), facts)
-        if e["parameters"]:
-            header = ["parameter", "value ± deviation", "meaning"]
-            yield without_empty(Table("Fitted values", header, _values(f, e), prose=(2,)))
-            if not noted:
-                yield Text(_about_deviations(e))
-            noted = True
-        if e["tied_with"]:
-            rivals = (
-                plain(n) + (f" ({_beside(f.words[n])})" if n in f.words else "")
-                for n in e["tied_with"]
-            )
-            yield Text(f"These recordings cannot tell it from {listed(rivals, 'or')}.")
+def _corrections(e: LogEntry) -> tuple[tuple[str, str], ...]:
+    lines = []
+    if e["lines"]:
+        lines.append(("Write into recording.toml", " / ".join(e["lines"])))
+    for other in e["alternatives"]:
+        lines.append((f"Or, if {other['words']}", " / ".join(["[columns]", *other["lines"]])))
+    return tuple(lines)
+
+
+def _found(f: Findings) -> Iterator[Block]:
+    """Yield the identified effects, the formulas, and what remains unexplained."""
+    for i, e in enumerate(f.answer["effects"]):
+        yield from _effect(f, e, explain_deviation=i == _first_with_parameters(f))
     unknown = f.answer["unknown"]
-    if not tried(f.answer):
-        yield Text(f"{capital(UNTRIED)}.")
+    if not any_tested(f.answer):
+        yield Text(f"{capital(NONE_TESTED)}.")
     elif unknown["flag"]:
-        yield from _described(f)
-        if not f.answer["described"]:
-            yield Heading(
-                "Something that no entry of the library explains",
-                f"gain {nats(unknown['gain_nats'])} nats",
-            )
-        if unknown["gain_nats"] > unknown["told_from_nats"]:
-            yield Text(
-                f"After the best set of entries, a random force of {FACTOR:g} times the tolerated size is not "
-                f"enough: the recordings call for more, by {nats(unknown['gain_nats'])} nats (said from "
-                f"{nats(unknown['told_from_nats'])} on: more where entries explain much, for no law is quite "
-                "nature's). Where and when it acts is shown below."
-            )
-        if "structure" in unknown:
-            yield Text(f"{capital(_structure(unknown['structure']))}.")
+        yield from _unexplained(f)
     elif not f.answer["effects"]:
         yield Text(
-            "No entry of the library explains the recordings clearly better than the vessel as it is. What may still "
-            "be hidden in them is bounded by the upper limits below."
+            "No candidate effect explains the recordings clearly better than the vessel model "
+            "alone. The upper limits below state how strong each effect could be at most."
         )
 
 
-def _described(f: Findings) -> Iterator[Block]:
-    """The laws written down for what no entry explains, each as a curve over what it goes with."""
-    for d in f.answer["described"]:
-        gain = sum(t["gain_nats"] for t in d["terms"])
-        yield Heading(capital(d["statement"]), f"described · gain {nats(gain)} nats")
-        rows = [[t["of"], _coefficient(d["axis"], t), nats(t["gain_nats"])] for t in d["terms"]]
-        yield Table("Terms", ["goes with", "value ± deviation", "gain [nats]"], rows)
-        if d["carries_over"]:
+def _first_with_parameters(f: Findings) -> int:
+    """Return the number of the first effect with fitted values, -1 if there is none."""
+    for i, e in enumerate(f.answer["effects"]):
+        if e["parameters"]:
+            return i
+    return -1
+
+
+def _effect(f: Findings, e: EffectEntry, explain_deviation: bool) -> Iterator[Block]:
+    kind = "measurement error" if e["kind"] == "measurement" else "physics"
+    likely = f"probability {percent(e['probability'])} among its rivals"
+    facts = f"{e['name']} · {kind} · {evidence(e['gain_nats'])} · {likely}"
+    yield Heading(capital(words_of(e["words"])), facts)
+    if e["parameters"]:
+        header = ["parameter", "value ± deviation", "meaning"]
+        yield without_empty(Table("Fitted values", header, _values(f, e), prose=(2,)))
+    if explain_deviation:
+        yield Text(_about_deviations(f, e))
+    if e["tied_with"]:
+        rivals = []
+        for name in e["tied_with"]:
+            rivals.append(plain(name))
+            if name in f.words:
+                rivals[-1] += f" ({_meaning(f.words[name])})"
+        yield Text(f"These recordings cannot distinguish it from {listed(rivals, 'or')}.")
+
+
+def _values(f: Findings, effect: EffectEntry) -> list[list[str]]:
+    """Return name, value and meaning of each fitted parameter."""
+    rows = []
+    for key, p in effect["parameters"].items():
+        name, text = shown(key, p["value"], p["unit"], p["sd"])
+        meaning = f.words.get(f"{effect['name']}.{key}", "")
+        if meaning == name:
+            meaning = ""
+        rows.append([name, text, meaning])
+    return rows
+
+
+def _meaning(words: str) -> str:
+    """Return the description of an effect for use in brackets."""
+    if words == words_of(words):
+        return words
+    return f"{words_of(words)}, not physics"
+
+
+def _about_deviations(f: Findings, effect: EffectEntry) -> str:
+    """Return what the printed standard deviations include."""
+    law_error = f.setting("answer.law_error")
+    direction = ""
+    if any(p["unit"] == "rad" for p in effect["parameters"].values()):
+        direction = f" ({math.degrees(law_error):.1f}° of a direction)"
+    return (
+        "± is one standard deviation. In addition to the uncertainty from noise it includes "
+        f"{100 * law_error:g} % of the effect's own size{direction}, because the law of a candidate "
+        "is never exactly that of nature."
+    )
+
+
+def _unexplained(f: Findings) -> Iterator[Block]:
+    """Yield the formulas for what no candidate explains, and the evidence for an unknown cause."""
+    unknown = f.answer["unknown"]
+    yield from _formulas(f)
+    if not f.answer["described"]:
+        facts = evidence(unknown["gain_nats"])
+        yield Heading("A force that no candidate effect explains", facts)
+    if unknown["gain_nats"] > unknown["told_from_nats"]:
+        yield Text(
+            "Even with all identified effects, the recordings require an additional random force of "
+            f"more than {FACTOR:g} times the assumed disturbance level "
+            f"({evidence(unknown['gain_nats'])}). Such a force is reported from "
+            f"{nats(unknown['told_from_nats'])} nats on. This threshold increases with the evidence "
+            "that the identified effects explain, because their laws are never exact. The section on "
+            "the missing force shows where and when the force acts."
+        )
+    if "structure" in unknown:
+        yield Text(_structure(unknown["structure"]))
+
+
+def _structure(s: StructureEntry) -> str:
+    """Return what the unexplained force varies with."""
+    often = "a million"
+    if s["p_value"] >= 1e-6:
+        often = number(1.0 / s["p_value"], 1)
+    return (
+        f"The unexplained force in {s['axis']} varies with {s['goes_with']}. A force in proportion "
+        f"to it gains {nats(s['gain_nats'])} nats. One of the {s['tried']} quantities tested would "
+        f"gain as much by chance once in {often} recordings."
+    )
+
+
+def _formulas(f: Findings) -> Iterator[Block]:
+    """Yield each formula with its terms, and its curve over the quantity that it varies with."""
+    for law in f.answer["described"]:
+        gain, rows = 0.0, []
+        for term in law["terms"]:
+            gain += term["gain_nats"]
+            value = _coefficient(law["axis"], term)
+            rows.append([term["of"], value, nats(term["gain_nats"])])
+        yield Heading(capital(law["statement"]), f"formula · {evidence(gain)}")
+        header = ["varies with", "value ± deviation", "log Bayes factor [nats]"]
+        yield Table("Terms", header, rows)
+        if law["carries_over"]:
             yield Text(
-                "Free runs over unseen recordings get better by it: it is part of the patched vessel."
+                "It reduces the errors of free runs over held-out recordings. Therefore it is part "
+                "of the patched vessel."
             )
         else:
             yield Text(
-                "Unseen recordings do not bear it out, so that it is no part of the patched vessel."
+                "Held-out recordings do not confirm it. Therefore it is no part of the patched "
+                "vessel."
             )
     if not f.answer["described"]:
         return
     yield Text(
-        "No entry of the library explains this. The law is the shortest sum of products of speeds, commands, heading, "
-        "place and time that the recordings call for: it says what goes with what, and not why."
+        "No candidate effect explains this force. The formula is the shortest sum of products of "
+        "speeds, commands, heading, position and time that explains it. It states what the force "
+        "varies with; it does not state the cause."
     )
-    if drawn := [w for w in f.described if w.curve is not None]:
+    drawn = [figures.law_figure(w) for w in f.described if w.curve is not None]
+    if drawn:
         looks = {
-            "patched": "the law",
-            "band": "its band of 2 standard deviations",
-            "recorded": "what was recorded",
+            "patched": "formula",
+            "band": "band of 2 standard deviations",
+            "recorded": "recorded",
         }
-        yield Figures(svg_plots.legend(looks), [figures.law_figure(w) for w in drawn])
-        yield Text("Curves end where the recordings end: beyond what was seen the law is a guess.")
+        yield Figures(svg_plots.legend(looks), drawn)
+        yield Text("The curves end at the largest recorded values. Do not extrapolate the formula.")
 
 
 def _coefficient(axis: str, term: TermEntry) -> str:
-    """Value and deviation of a described term; shares of the thrust in %."""
+    """Return value and deviation of a term of a formula; a share of the thrust in %."""
     if axis == "thrust" and not term["unit"]:
         return f"{spread(100.0 * term['value'], 100.0 * term['sd'])} %"
     return quantity(term["value"], term["unit"], term["sd"])
 
 
-def _taken(f: Findings) -> Iterator[Block]:
-    if lines := assumptions.in_words(f.answer):
-        yield Items(tuple(("", capital(f"{line}.")) for line in lines))
-
-
-def _structure(s: StructureEntry) -> str:
-    """What the force left over goes with."""
-    often = "a million" if s["p_value"] < 1e-6 else number(1.0 / s["p_value"], 1)
-    return (
-        f"what is left over in {s['axis']} goes with {s['goes_with']}: a force along with it gains "
-        f"{nats(s['gain_nats'])} nats. Of the {s['tried']} things tried one would do so by accident once in {often} "
-        "recordings"
-    )
-
-
-def _beside(words: str) -> str:
-    """What an entry says, in brackets."""
-    return said(words) + ("" if words == said(words) else ", not physics")
-
-
-def _values(f: Findings, effect: EffectEntry) -> list[list[str]]:
-    rows = []
-    for key, p in effect["parameters"].items():
-        name, text = shown(key, p["value"], p["unit"], p["sd"])
-        meaning = f.words.get(f"{effect['name']}.{key}", "")
-        rows.append([name, text, "" if meaning == name else meaning])
-    return rows
-
-
-def _about_deviations(effect: EffectEntry) -> str:
-    """What is behind the deviations that are printed."""
-    turned = any(p["unit"] == "rad" for p in effect["parameters"].values())
-    direction = f" ({math.degrees(SHAPE):.1f}° of a direction)" if turned else ""
-    return (
-        f"± is one standard deviation. Beside what the noise leaves open it holds {100 * SHAPE:g} % of the effect's "
-        f"own size{direction}, because the law of an entry never has exactly nature's shape."
-    )
+def _assumptions(f: Findings) -> Iterator[Block]:
+    lines = []
+    for line in assumptions(f.answer):
+        lines.append(("", capital(f"{line}.")))
+    if lines:
+        yield Items(tuple(lines))
 
 
 def _where(f: Findings) -> Iterator[Block]:
-    where = f.answer["where"]
+    """Yield the conditions, the sizes, the curves and the intervals of the missing force."""
+    where, verdict = f.answer["where"], f.answer["verdict"]
     if where["region"]:
-        rows = [
-            [capital(readable(r["statement"])), number(r["p_value"], 1)] for r in where["region"]
-        ]
-        yield Table("When it acts", ["finding", "chance of seeing this by accident (p)"], rows)
+        rows = []
+        for region in where["region"]:
+            statement = capital(readable(region["statement"]))
+            rows.append([statement, number(region["p_value"], 1)])
+        header = ["condition", "probability of chance (p-value)"]
+        yield Table("When the force is missing", header, rows)
     if where["axes"]:
-        header = ["axis", "missing, rms", "its uncertainty, rms"]
-        rows = [[axis, *alike([a["rms"], a["sd"]], a["unit"])] for axis, a in where["axes"].items()]
-        share = _shares(f)
-        if share:
-            header = [*header, "share of the time flagged"]
-            rows = [[*row, f"{100 * share.get(row[0], 0.0):.0f} %"] for row in rows]
-        yield Table("Force and moment that the vessel as written has no cause for", header, rows)
-        if f.answer["verdict"] == "named" and all(
-            e["kind"] == "measurement" for e in f.answer["effects"]
-        ):
-            yield Text(
-                "These forces are not real: they are what the error of measurement looks like."
-            )
+        yield _strengths(f)
+        kinds = {e["kind"] for e in f.answer["effects"]}
+        if verdict == "named" and kinds <= {"measurement"}:
+            yield Text("These forces are not real: they are the result of the measurement error.")
     if f.missing:
         yield from _missing_figures(f)
-    unknown = f.answer["unknown"]
-    if where["intervals"]:
-        if f.answer["verdict"] == "nothing_missing":
-            yield Text(
-                "Stretches are flagged one by one, wherever the force leaves what the vessel file tolerates. Together "
-                "they are not enough for a verdict: no entry explains them clearly better, and a cause outside the "
-                f"library would gain {nats(unknown['gain_nats'])} nats (told from {nats(unknown['told_from_nats'])})."
-            )
-        every = where["intervals"]
-        longest = sorted(every, key=lambda i: i["from_s"] - i["to_s"])[:INTERVALS]
-        rows = [
-            [i["run"], i["axis"], f"{i['from_s']:.1f}", f"{i['to_s']:.1f}"]
-            for i in every
-            if i in longest
-        ]
-        header = ["run", "axis", "from [s]", "to [s]"]
-        most = (
-            f"All {len(every)}"
-            if len(every) == len(rows)
-            else f"The {len(rows)} longest of {len(every)}"
+    if not where["intervals"]:
+        return
+    if verdict == "nothing_missing":
+        unknown = f.answer["unknown"]
+        yield Text(
+            "An interval is flagged wherever the missing force exceeds the assumed disturbance "
+            "level. Together the intervals are not enough for a finding: no candidate effect explains "
+            "them clearly better than the vessel model alone, and a cause outside the candidates "
+            f"gains {nats(unknown['gain_nats'])} of the {nats(unknown['told_from_nats'])} nats "
+            "required."
         )
-        title = "The one flagged interval" if len(every) == 1 else f"{most} flagged intervals"
-        yield Table(title, header, rows, (1,), folded=True)
+    yield _interval_table(where["intervals"])
 
 
-def _shares(f: Findings) -> dict[str, float]:
-    """Share of the time of all runs that is flagged, by axis."""
+def _strengths(f: Findings) -> Table:
+    """Return the table of the missing force of each axis."""
+    header, share = ["axis", "missing, rms", "standard deviation, rms"], _flagged_shares(f)
+    if share:
+        header.append("share of the time flagged")
+    rows = []
+    for axis, strength in f.answer["where"]["axes"].items():
+        row = [axis, *alike([strength["rms"], strength["sd"]], strength["unit"])]
+        if share:
+            row.append(f"{100 * share.get(axis, 0.0):.0f} %")
+        rows.append(row)
+    return Table("Force and moment that the recalibrated vessel does not explain", header, rows)
+
+
+def _interval_table(intervals: Sequence[IntervalEntry]) -> Table:
+    """Return the folded table of the longest flagged intervals, in the order of the answer."""
+    longest = sorted(intervals, key=lambda i: i["from_s"] - i["to_s"])[:MOST_INTERVALS]
+    rows = []
+    for i in intervals:
+        if i in longest:
+            rows.append([i["run"], i["axis"], f"{i['from_s']:.1f}", f"{i['to_s']:.1f}"])
+    title = f"The {len(rows)} longest of {len(intervals)} flagged intervals"
+    if len(intervals) == 1:
+        title = "The flagged interval"
+    elif len(intervals) == len(rows):
+        title = f"All {len(rows)} flagged intervals"
+    header = ["recording", "axis", "from [s]", "to [s]"]
+    return Table(title, header, rows, (1,), folded=True)
+
+
+def _flagged_shares(f: Findings) -> dict[str, float]:
+    """Return the share of the time of all recordings that is flagged, by axis."""
     seconds = sum(float(m.t[-1] - m.t[0]) for m in f.missing)
     flagged: dict[str, float] = {}
+    if not seconds:
+        return flagged
     for i in f.answer["where"]["intervals"]:
-        flagged[i["axis"]] = (
-            flagged.get(i["axis"], 0.0) + (i["to_s"] - i["from_s"]) / seconds if seconds else 0.0
-        )
-    return flagged if seconds else {}
+        flagged[i["axis"]] = flagged.get(i["axis"], 0.0) + (i["to_s"] - i["from_s"]) / seconds
+    return flagged
 
 
 def _missing_figures(f: Findings) -> Iterator[Block]:
+    """Yield the missing force over time of the recordings that are flagged longest."""
     intervals = f.answer["where"]["intervals"]
-    flagged = {
-        m.run: sum(i["to_s"] - i["from_s"] for i in intervals if i["run"] == m.run)
-        for m in f.missing
-    }
-    strongest = sorted(f.missing, key=lambda m: -flagged[m.run])[:PICTURES]
-    shown: list[Missing] = (
-        [m for m in f.missing if m in strongest] if len(f.missing) > PICTURES else list(f.missing)
-    )
+    flagged = {m.run: 0.0 for m in f.missing}
+    for interval in intervals:
+        if interval["run"] in flagged:
+            flagged[interval["run"]] += interval["to_s"] - interval["from_s"]
+    order = sorted(range(len(f.missing)), key=lambda i: -flagged[f.missing[i].run])
+    drawn: list[Missing] = []
+    for i in sorted(order[:MOST_MISSING_FIGURES]):
+        drawn.append(f.missing[i])
+        if not f.patched:  # there is no patched vessel with a force of its own
+            drawn[-1] = replace(f.missing[i], left={})
     looks = {
         "missing": "missing force",
-        "left": "what is left of it in the patched vessel",
-        "band": "its band of 2 standard deviations",
-        "flag": "flagged: zero lies outside the band",
+        "left": "missing force of the patched vessel",
+        "band": "band of 2 standard deviations",
+        "flag": "flagged: the band does not contain zero",
     }
-    if not f.patched:  # then there is no patch that could leave anything
-        shown = [replace(m, left={}) for m in shown]
-    if not any(m.left for m in shown):
+    if not any(m.left for m in drawn):
         del looks["left"]
-    yield Figures(svg_plots.legend(looks), figures.missing_figures(shown, intervals, f.missing))
-    if len(shown) < len(f.missing):
+    yield Figures(svg_plots.legend(looks), figures.missing_figures(drawn, intervals, f.missing))
+    if len(drawn) < len(f.missing):
         yield Text(
-            f"Drawn are the {len(shown)} of {len(f.missing)} runs with the longest flagged time."
+            f"The figures show the {len(drawn)} of {len(f.missing)} recordings that are flagged "
+            "longest."
         )
 
 
-def _proof(f: Findings) -> Iterator[Block]:
+def _validation(f: Findings) -> Iterator[Block]:
+    """Yield the errors of free runs over held-out recordings, and their figures."""
     fit = f.answer["fit"]
-    models = MODELS if f.patched else MODELS[:2]  # a patch that adds nothing is no boat of its own
-    header = [*models, "better by"] if f.patched else list(models)
-    rows = [
-        _compared(words, fit[key], unit)
-        for key, (words, unit, _) in FAMILIES.items()
-        if fit.get(key)
-    ]
+    models = MODELS if f.patched else MODELS[:2]
+    header = [*models, "error reduced by factor"] if f.patched else list(models)
+    rows = []
+    for key, (words, unit) in FAMILIES.items():
+        if rms := fit.get(key):
+            rows.append(_compared(words, rms, unit)[: len(header) + 1])
     if rows:
         caption = f"rms error of free runs of {fit['horizon_s']:g} s over {listed(fit['held_out'])}"
-        yield Table(caption, ["error in", *header], [row[: len(header) + 1] for row in rows])
-    free_runs = [
-        replace(r, channels={m: c for m, c in r.channels.items() if m in ("recorded", *models)})
-        for r in f.free_runs
-    ]
-    runs = [list(group) for _, group in groupby(free_runs, key=lambda r: r.run)]
-    if len(runs) > 1:
-        each = [list(group) for _, group in groupby(f.free_runs, key=lambda r: r.run)]
-        yield Table(
-            "The same, run by run",
-            ["run", *header],
-            [row[: len(header) + 1] for row in _by_run(each)],
+        yield Table(caption, ["error in", *header], rows)
+    by_run = _by_run(f.free_runs)
+    if len(by_run) > 1:
+        rows = []
+        for runs in by_run:
+            for row in _errors_of_run(runs):
+                rows.append(row[: len(header) + 1])
+        yield Table("The same for each recording", ["recording", *header], rows)
+    drawn = []
+    for runs in by_run[:MOST_HELD_OUT_FIGURES]:
+        drawn += figures.free_run_figures(_only(runs, models))
+    if by_run:
+        names = _only(by_run[0], models)[0].channels
+        yield Figures(svg_plots.legend(dict(zip(names, names, strict=True))), drawn)
+    if len(by_run) > MOST_HELD_OUT_FIGURES:
+        yield Text(
+            f"The figures show the first {MOST_HELD_OUT_FIGURES} of {len(by_run)} held-out "
+            "recordings."
         )
-    if runs:
-        looks = {m: m for m in runs[0][0].channels}
-        yield Figures(
-            svg_plots.legend(looks),
-            [p for r in runs[:UNSEEN_PICTURES] for p in figures.free_run_figures(r)],
-        )
-    if len(runs) > UNSEEN_PICTURES:
-        yield Text(f"Drawn are the first {UNSEEN_PICTURES} of {len(runs)} unseen runs.")
-    for title, names, cells in f.extra_tables:
-        yield Table(title, names, cells, _prose(cells), folded=True)
+    for title, names_of_columns, cells in f.extra_tables:
+        yield Table(title, names_of_columns, cells, _text_columns(cells), folded=True)
+
+
+def _by_run(free_runs: Sequence[FreeRun]) -> list[list[FreeRun]]:
+    """Return consecutive free runs grouped by their recording."""
+    return [list(group) for _, group in groupby(free_runs, key=lambda r: r.run)]
+
+
+def _only(runs: Sequence[FreeRun], models: Sequence[str]) -> list[FreeRun]:
+    """Return free runs with the channels of the recording and of these models."""
+    kept = []
+    for run in runs:
+        channels = {m: c for m, c in run.channels.items() if m in ("recorded", *models)}
+        kept.append(replace(run, channels=channels))
+    return kept
+
+
+def _text_columns(rows: Sequence[Sequence[str]]) -> tuple[int, ...]:
+    """Return the columns, after the first, that have any cell of words without a digit."""
+    columns = set()
+    for row in rows:
+        for i, cell in enumerate(row[1:], 1):
+            if cell and not any(map(str.isdigit, cell)):
+                columns.add(i)
+    return tuple(sorted(columns))
 
 
 def _compared(words: str, rms: dict[str, float], unit: str) -> list[str]:
-    return [
-        words,
-        *alike([rms[m] for m in MODELS], unit),
-        f"{number(rms['recalibrated'] / max(rms['patched'], 1e-300))} ×",
-    ]
+    """Return a row of the rms errors of the three models and the improvement by the last."""
+    errors = alike([rms["nominal"], rms["recalibrated"], rms["patched"]], unit)
+    factor = number(rms["recalibrated"] / max(rms["patched"], 1e-300))
+    return [words, *errors, factor]
 
 
-def _by_run(runs: Sequence[Sequence[FreeRun]]) -> list[list[str]]:
+def _errors_of_run(runs: Sequence[FreeRun]) -> list[list[str]]:
+    """Return the rms errors of the free runs over one recording, a row for each signal."""
     rows = []
-    for group in runs:
-        for words, unit, signal in FAMILIES.values():
-            wanted = ("x_m", "y_m") if signal == "position" else (signal,)
-            if all(s in group[0].channels["recorded"] for s in wanted):
-                errors = {
-                    m: np.concatenate([figures.error_of(r, m, signal) for r in group])
-                    for m in MODELS
-                }
-                each = 2 if signal == "position" else 1  # both coordinates of a position count
-                rms = {m: math.sqrt(float(np.nanmean(e**2)) / each) for m, e in errors.items()}
-                rows.append(_compared(f"{group[0].run}, {words}", rms, unit))
+    for words, unit in FAMILIES.values():
+        signal = FREE_RUN_SIGNALS[words]
+        needed = {"x_m", "y_m"} if signal == "position" else {signal}
+        if not needed <= runs[0].channels["recorded"].keys():
+            continue
+        rms = {}
+        for model in MODELS:
+            errors = np.concatenate([figures.error_of(r, model, signal) for r in runs])
+            # the rms of a position is that of its coordinates, of which there are two
+            rms[model] = math.sqrt(float(np.nanmean(errors**2)) / len(needed))
+        rows.append(_compared(f"{runs[0].run}, {words}", rms, unit))
     return rows
 
 
 def _ranking(f: Findings) -> Iterator[Block]:
+    """Yield the evidence for each candidate effect alone."""
     candidates = f.answer["candidates"]
     if not candidates:
         return
-    status = {
-        n: f"not to be told from {plain(e['name'])}"
-        for e in f.answer["effects"]
-        for n in e["tied_with"]
-    }
-    status |= {e["name"]: "named" for e in f.answer["effects"]}
-    rows = [
-        [
-            plain(name),
-            nats(c["gain_nats"]),
-            percent(c["probability"]),
-            status.get(name, ""),
-            f.words.get(name, ""),
-        ]
-        for c in candidates
-        for name in [c["name"]]
-    ]
-    most = max(max(c["gain_nats"] for c in candidates), 1e-9)
-    bars = tuple(max(0.0, c["gain_nats"]) / most for c in candidates)
+    status, rows, visible = _status(f), [], MOST_VISIBLE_CANDIDATES
+    for i, c in enumerate(candidates, 1):
+        name = c["name"]
+        if name in status:
+            visible = max(visible, i)
+        rows.append(
+            [
+                plain(name),
+                nats(c["gain_nats"]),
+                percent(c["probability"]),
+                status.get(name, ""),
+                f.words.get(name, ""),
+            ]
+        )
+    gains = [c["gain_nats"] for c in candidates]
+    bars = tuple(max(0.0, gain) / max(*gains, 1e-9) for gain in gains)
     caption = (
-        "Each entry alone, before any is named: how much better than the recalibrated vessel it explains the runs. "
-        "The gain of a named effect above is on top of the others named, all refitted, and so differs. The percentage "
-        "answers: if exactly one of these entries, or nothing, were what is missing, how likely is it this one? They "
-        "add up to 100 %, so that of several true causes only the strongest gets much"
+        "Each candidate effect tested alone. The log Bayes factor compares the recalibrated vessel "
+        "with and without the candidate. For an identified effect it differs from the value above, "
+        "which is computed in the presence of all other identified effects. The probability assumes "
+        "that exactly one of these candidates is missing, or none. The probabilities add up to "
+        "100 %, so that only the strongest of several missing effects has a high probability"
     )
     header = [
-        "entry",
-        "gain alone [nats]",
-        "how likely, if only one thing is missing",
+        "candidate",
+        "log Bayes factor [nats]",
+        "probability, if only one effect is missing",
         "verdict",
-        "it would mean",
+        "meaning",
     ]
-    first = max([RANKED, *(i + 1 for i, row in enumerate(rows) if row[3])])
-    yield without_empty(Table(caption, header, rows[:first], (3, 4), bars[:first], aside=True))
-    if rest := rows[first:]:
-        one = "The other entry tried" if len(rest) == 1 else f"The other {len(rest)} entries tried"
-        yield without_empty(Table(one, header, rest, (3, 4), bars[first:], folded=True, aside=True))
+    yield without_empty(Table(caption, header, rows[:visible], (3, 4), bars[:visible], aside=True))
+    if rest := rows[visible:]:
+        title = f"The other {len(rest)} candidates"
+        if len(rest) == 1:
+            title = "The other candidate"
+        table = Table(title, header, rest, (3, 4), bars[visible:], folded=True, aside=True)
+        yield without_empty(table)
+
+
+def _status(f: Findings) -> dict[str, str]:
+    """Return the verdict on identified effects and their look-alikes, by name."""
+    status = {}
+    for e in f.answer["effects"]:
+        for rival in e["tied_with"]:
+            status[rival] = f"look-alike of {plain(e['name'])}"
+    for e in f.answer["effects"]:
+        status[e["name"]] = "identified"
+    return status
 
 
 def _limits(f: Findings) -> Iterator[Block]:
+    """Yield the largest strength that each effect may have that was not found."""
     rows = []
     for name, values in _not_found(f).items():
-        told = []
+        limits = []
         for key, value in values.items():
             words, text = limit(key, value)
-            told.append(f"{_meant(f, name, key) or words} {text}")
-        if told:
-            rows.append([plain(name), ", ".join(told), f.words.get(name, "")])
-    if rows:
-        caption = (
-            "How far each can be from not acting at all, with 95 % confidence; a factor or share counts from what the "
-            "vessel file has"
-        )
-        header, folded = (
-            ["entry", "at most", "it would mean"],
-            f.answer["verdict"] != "nothing_missing",
-        )
-        yield without_empty(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
+            limits.append(f"{_measurement_meaning(f, name, key) or words} {text}")
+        if limits:
+            rows.append([plain(name), ", ".join(limits), f.words.get(name, "")])
+    if not rows:
+        return
+    caption = (
+        "With 95 % confidence each effect is weaker than this. The limit of a factor or fraction is "
+        "its distance from the value in the vessel file"
+    )
+    header, folded = ["candidate", "at most", "meaning"], f.answer["verdict"] != "nothing_missing"
+    yield without_empty(Table(caption, header, rows, (1, 2), folded=folded, aside=True))
 
 
-def _meant(f: Findings, name: str, key: str) -> str:
-    """What a parameter of a measurement entry means, which says more than its name: "cos" of a compass."""
+def _measurement_meaning(f: Findings, name: str, key: str) -> str:
+    """Return the meaning of a parameter of a measurement error, which is clearer than its name."""
     words = f.words.get(name, "")
-    return f.words.get(f"{name}.{key}", "") if words != said(words) else ""
+    if words == words_of(words):
+        return ""
+    return f.words.get(f"{name}.{key}", "")
 
 
 def _not_found(f: Findings) -> dict[str, dict[str, float]]:
-    """Upper limits without those of look-alikes: what may be there in another's place has none."""
-    tied = {n for e in f.answer["effects"] for n in e["tied_with"]}
-    return {n: values for n, values in f.answer["upper_limits"].items() if n not in tied}
+    """Return the upper limits without those of look-alikes, which may be the true cause."""
+    limits = dict(f.answer["upper_limits"])
+    for e in f.answer["effects"]:
+        for rival in e["tied_with"]:
+            limits.pop(rival, None)
+    return limits
 
 
 def _coefficients(f: Findings) -> Iterator[Block]:
-    if not f.coefficients:
-        return
-    caption = "The nominal structure with its own coefficients refitted: factor on the value in the vessel file"
-    changes = {
-        name: f"{100 * (factor - 1):+.1f} %".replace("-", "−")
-        for name, (factor, _) in f.coefficients.items()
-    }
-    rows = [
-        [plain(name.replace(".", ", ")), spread(*f.coefficients[name]), change]
-        for name, change in changes.items()
-    ]
-    yield Table(caption, ["coefficient", "factor ± deviation", "change"], rows)
+    rows = []
+    for name, (factor, sd) in f.coefficients.items():
+        change = f"{100 * (factor - 1):+.1f} %".replace("-", "−")
+        rows.append([plain(name.replace(".", ", ")), spread(factor, sd), change])
+    if rows:
+        caption = "Coefficients of the recalibrated vessel: factor on the value in the vessel file"
+        yield Table(caption, ["coefficient", "factor ± deviation", "change"], rows)
 
 
 def _next(f: Findings) -> Iterator[Block]:
+    """Yield the manoeuvre that would add most evidence, and how to perform it."""
     wanted = f.answer["next_experiment"]
     if not wanted:
         if f.answer["effects"]:
             yield Text(
-                f"No manoeuvre tried is expected to bring more than {WORTH:g} nat of evidence on what is named and "
-                "what could be taken for it."
+                f"None of the manoeuvres considered is expected to add more than {WORTH:g} nat of "
+                "evidence on the identified effects and their rivals."
             )
         return
-    gain, scenario = wanted["expected_gain_nats"], wanted["scenario"]
-    apart = ["nothing at all" if n == "nothing" else plain(n) for n in wanted["separates"]]
-    given = "the commands below" if f.steps else "the start it states"
+    scenario = wanted["scenario"]
+    rivals = []
+    for name in wanted["separates"]:
+        rivals.append("no effect at all" if name == "nothing" else plain(name))
+    commands = "the commands below" if f.steps else "the initial state that it specifies"
+    gain = wanted["expected_gain_nats"]
     yield Items(
         (
             ("Manoeuvre", f"{capital(readable(wanted['manoeuvre']))}."),
-            ("Tells apart", f"{capital(listed(apart, 'or'))}."),
+            ("Distinguishes", f"{capital(listed(rivals, 'or'))}."),
             (
                 "Expected evidence",
-                f"{nats(gain)} nats: {_odds(gain)} for the right one, against the hardest rival.",
+                f"{nats(gain)} nats for the true cause against its closest rival ({chance(gain)}).",
             ),
             (
-                "How to run it",
-                f"boatsim run {scenario} plays it on the vessel as written (it lies beside this report). "
-                f"Give the real boat {given}, record it, and diagnose all runs together.",
+                "How to perform it",
+                f"The file {scenario} lies next to this report; boatsim run {scenario} simulates it "
+                f"with the vessel as specified. Give the real boat {commands}, record it, and "
+                "diagnose all recordings together.",
             ),
         )
     )
-    yield from _commands(f)
+    if f.steps:
+        yield _commands(f)
 
 
-def _commands(f: Findings) -> Iterator[Block]:
-    """When the next experiment commands what; the last row is its end."""
-    if not f.steps:
-        return
-    names = {name: parameter(name) for _, level in f.steps for name in level}
-    header = ["from", *(words for words, _ in names.values())]
+def _commands(f: Findings) -> Table:
+    """Return the folded table of the commands of the next experiment; its last row is the end."""
+    names = {}
+    for _, levels in f.steps:
+        for name in levels:
+            names[name] = parameter(name)
     rows = []
-    for t, level in f.steps:
-        cells = (
-            shown(n, level[n], unit)[1] if n in level else "" for n, (_, unit) in names.items()
-        )
-        rows.append([f"{t:g} s", *(cells if level else ["end", *[""] * (len(names) - 1)])])
-    yield Table("Commands of the next experiment", header, rows, folded=True)
+    for t, levels in f.steps:
+        row = [f"{t:g} s"]
+        for name, (_, unit) in names.items():
+            row.append(shown(name, levels[name], unit)[1] if name in levels else "")
+        if not levels:
+            row[1] = "end"
+        rows.append(row)
+    header = ["from", *(words for words, _ in names.values())]
+    return Table("Commands of the next experiment", header, rows, folded=True)
 
 
-def _odds(nats: float) -> str:
-    odds = math.exp(min(max(nats, 0.0), 700.0))
-    return f"{float(f'{odds:.1e}'):,.0f} to 1" if odds < 1e5 else "more than 100,000 to 1"
-
-
-def _cannot(f: Findings) -> Iterator[Block]:
-    lines = [
-        f"Whether it is {listed(map(plain, (e['name'], *e['tied_with'])), 'or')}: they explain these recordings about "
-        f"equally well (within {ALIKE:g} nats, a factor of {math.exp(ALIKE):.0f})."
-        for e in f.answer["effects"]
-        if e["tied_with"]
-    ]
+def _limitations(f: Findings) -> Iterator[Block]:
+    """Yield what the recordings cannot show."""
+    lines = []
+    close = f.setting("select.alike")
+    for e in f.answer["effects"]:
+        if e["tied_with"]:
+            causes = listed(map(plain, (e["name"], *e["tied_with"])), "or")
+            lines.append(
+                f"Whether the cause is {causes}: they explain these recordings about equally well "
+                f"(within {close:g} nats, a factor of {math.exp(close):.0f})."
+            )
     if not f.answer["fit"].get("held_out"):
-        lines.append("Whether the finding holds on other data: nothing was kept unseen.")
-    if silent := [plain(n) for n, values in _not_found(f).items() if not values]:
+        lines.append("Whether the finding holds on other data: no recording was held out.")
+    unlimited = [plain(name) for name, values in _not_found(f).items() if not values]
+    if unlimited:
         lines.append(
-            f"How strong {listed(silent, 'or')} could be at most: no limit could be worked out."
+            f"How strong {listed(unlimited, 'or')} could be at most: no limit could be computed."
         )
-    if lines or f.remarks:
-        yield Items(tuple(("", line) for line in (*lines, *map(readable, f.remarks))))
+    lines += map(readable, f.remarks)
+    if lines:
+        yield Items(tuple(("", line) for line in lines))
 
 
 def _files(f: Findings) -> Iterator[Block]:
-    lines = {"diagnosis.json": "all of this as data"}
+    lines = {"diagnosis.json": "All results as data."}
     if patch := f.answer["patch"]:
         lines[patch] = (
-            f"the vessel with what was found; boatsim replay takes it as --vessel {patch}"
+            "The vessel with recalibrated coefficients and the identified effects. boatsim run, "
+            f"replay and diagnose read it with --vessel {patch}."
         )
     if wanted := f.answer["next_experiment"]:
-        lines[wanted["scenario"]] = "the manoeuvre to record next; boatsim run plays it"
+        lines[wanted["scenario"]] = "The manoeuvre to record next, as a scenario for boatsim run."
     lines["diagnosis.rrd"] = (
-        "recording, nominal, recalibrated and patched boat in one scene, for the rerun viewer"
+        "Recording, nominal, recalibrated and patched vessel in one scene of the rerun viewer."
     )
     yield Items(tuple(lines.items()))

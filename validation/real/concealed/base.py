@@ -22,7 +22,7 @@ ROUNDS = 3  # of patching a vessel with what is still named with it
 def diagnosed(laid: Laid) -> Diagnosis:
     """What the vessel leaves out of some recordings."""
     boats = {r.path: laid.vessel for r in (*laid.fitted, *laid.held_out)}
-    return pipeline.diagnose_recordings(laid.fitted, laid.held_out, boats, "one kept unseen")
+    return pipeline.diagnose_recordings(laid.fitted, laid.held_out, boats, "one recording")
 
 
 def causes_of(found: Diagnosis) -> list[Cause]:

@@ -1,0 +1,353 @@
+"""Sentences of a diagnosis: the verdict, its validation, the assumptions, and the printed summary."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+
+from boatsim.diagnosis.report.described_terms import what_of
+from boatsim.diagnosis.report.findings import Findings
+from boatsim.diagnosis.report.formatting import (
+    alike,
+    capital,
+    evidence,
+    listed,
+    number,
+    percent,
+    plain,
+    quantity,
+    shown,
+)
+from boatsim.diagnosis.report.schema import (
+    AmbientEntry,
+    Answer,
+    EffectEntry,
+    Family,
+    LeftOutEntry,
+    MeanEntry,
+)
+
+MODELS = ("nominal", "recalibrated", "patched")
+FAMILIES: dict[Family, tuple[str, str]] = {  # key of `fit` -> its signal in words, SI unit
+    "position_rms_m": ("position", "m"),
+    "heading_rms_rad": ("heading", "rad"),
+    "roll_rms_rad": ("roll", "rad"),
+}
+WAYS = {  # axis -> direction of a positive mean force, and of a negative one
+    "surge": ("forward", "astern"),
+    "sway": ("to starboard", "to port"),
+    "heave": ("down", "up"),
+    "roll": ("heeling to starboard", "heeling to port"),
+    "pitch": ("bow up", "bow down"),
+    "yaw": ("bow to starboard", "bow to port"),
+}
+COUNTS = ("no", "one", "two", "three", "four", "five", "six")
+# numbers of one effect, or formulas, in the verdict; the tables of the report have all of them
+MOST_NUMBERS = 3
+NONE_TESTED = (
+    "no candidate effect was tested: the facts of the recordings or the vessel file exclude all "
+    "of them"
+)
+NOTHING_MISSING = (
+    "No missing effect was found: the vessel model explains these recordings to within their noise."
+)
+
+
+def words_of(effect_words: str) -> str:
+    """Return the description of an effect without the remark that it is not physics."""
+    return effect_words.removesuffix(" (not physics)")
+
+
+def any_tested(answer: Answer) -> bool:
+    """Return whether any candidate effect was tested."""
+    return bool(answer["candidates"])
+
+
+def sentence(answer: Answer, words: Mapping[str, str] | None = None) -> str:
+    """Return the verdict of a diagnosis in a few sentences.
+
+    Args:
+        answer: Content of diagnosis.json; its own sentence is not read.
+        words: Meaning of parameters by "effect.parameter".
+
+    Returns:
+        Sentences on the identified effects with their first numbers, on formulas, and on what the
+        recordings cannot distinguish.
+    """
+    if not any_tested(answer):
+        return _none_tested(answer)
+    statements = _effects(answer, words or {})
+    statements += _formulas(answer, bool(answer["effects"]))
+    if not statements:
+        return NOTHING_MISSING
+    statements += _ties(answer["effects"])
+    return " ".join(f"{capital(statement)}." for statement in statements)
+
+
+def _none_tested(answer: Answer) -> str:
+    if answer["verdict"] == "unknown":
+        return f"Something is missing{_sizes(answer)}, but {NONE_TESTED}."
+    return f"No force beyond the assumed disturbance is missing, but {NONE_TESTED}."
+
+
+def _effects(answer: Answer, words: Mapping[str, str]) -> list[str]:
+    """Return statements on an unknown cause, on missing physics and on errors of measurement."""
+    statements = []
+    if answer["unknown"]["flag"] and not answer["described"]:
+        statements.append(f"a force is missing that no candidate effect explains{_sizes(answer)}")
+        if found := answer["unknown"].get("structure"):
+            statements.append(f"in {found['axis']} it varies with {found['goes_with']}")
+    physics: list[str] = []
+    measured: list[str] = []
+    for effect in answer["effects"]:
+        clauses = measured if effect["kind"] == "measurement" else physics
+        clauses.append(_clause(effect, words))
+    addition = "in addition, " if statements else ""
+    if physics:
+        effects = counted(len(physics), "effect")
+        statements.append(f"{addition}the model leaves out {effects}: {_clauses(physics)}")
+    if measured:
+        errors = "a measurement error"
+        if len(measured) > 1:
+            errors = counted(len(measured), "measurement error")
+        if statements:
+            statements.append(f"in addition, the recordings contain {errors}: {_clauses(measured)}")
+        else:
+            statements.append(
+                f"no missing physics was found, but the recordings contain {errors}: "
+                f"{_clauses(measured)}"
+            )
+    return statements
+
+
+def counted(count: int, noun: str) -> str:
+    """Return a number of things, in words up to six: two effects."""
+    number_words = str(count)
+    if count < len(COUNTS):
+        number_words = COUNTS[count]
+    if count == 1:
+        return f"{number_words} {noun}"
+    return f"{number_words} {noun}s"
+
+
+def _formulas(answer: Answer, effects_precede: bool) -> list[str]:
+    """Return statements on the formulas: those that generalize first, further events as a count."""
+    general = [d["statement"] for d in answer["described"] if d["carries_over"]][:MOST_NUMBERS]
+    events = [d["statement"] for d in answer["described"] if not d["carries_over"]]
+    if not (general or effects_precede):
+        return events[:MOST_NUMBERS]
+    statements = list(general)
+    if len(events) == 1:
+        statements.append(f"one event of a single run remains: {events[0]}")
+    elif events:
+        statements.append(f"{len(events)} events of single runs remain, the first is {events[0]}")
+    if statements and effects_precede:
+        statements[0] = f"in addition, {statements[0]}"
+    return statements
+
+
+def _ties(effects: Sequence[EffectEntry]) -> list[str]:
+    ties = []
+    for effect in effects:
+        if effect["tied_with"]:
+            rivals = listed(map(plain, effect["tied_with"]), "or")
+            ties.append(f"{plain(effect['name'])} from {rivals}")
+    if not ties:
+        return []
+    return [f"these recordings cannot distinguish {listed(ties)}"]
+
+
+def _sizes(answer: Answer) -> str:
+    """Return the rms force that remains unexplained, by axis, in brackets."""
+    axes = answer["unknown"].get("rest") or answer["where"]["axes"]
+    sizes = []
+    for axis, strength in axes.items():
+        size = quantity(strength["rms"], strength["unit"], digits=2)
+        sizes.append(f"{size} rms in {axis}")
+    if not sizes:
+        return ""
+    return f" ({listed(sizes)})"
+
+
+def _clause(effect: EffectEntry, words: Mapping[str, str]) -> str:
+    numbers = parameters(effect, words)
+    if not numbers:
+        return words_of(effect["words"])
+    return f"{words_of(effect['words'])} ({numbers})"
+
+
+def _clauses(clauses: Sequence[str]) -> str:
+    """Return clauses, which have commas of their own, as a list: A, B, and C."""
+    *head, tail = clauses
+    if not head:
+        return tail
+    return f"{', '.join(head)}, and {tail}"
+
+
+def parameters(effect: EffectEntry, words: Mapping[str, str]) -> str:
+    """Return the first fitted numbers of an effect, without those that may be zero.
+
+    Args:
+        effect: An identified effect.
+        words: Meaning of parameters by "effect.parameter".
+
+    Returns:
+        Text such as: astern factor 0.694 ± 0.012.
+    """
+    numbers = []
+    for key, p in effect["parameters"].items():
+        if abs(p["value"]) <= p["sd"] and "factor" not in key:
+            continue
+        name, text = shown(key, p["value"], p["unit"], p["sd"])
+        if effect["kind"] == "measurement":  # "error heading north" is clearer than "cos"
+            name = words.get(f"{effect['name']}.{key}", name)
+        if p.get("at_bound"):
+            text += ", the bound of its range"
+        numbers.append(f"{name} {text}")
+    return ", ".join(numbers[:MOST_NUMBERS])
+
+
+def proof(f: Findings) -> str:
+    """Return how much the errors on held-out recordings decrease with the patched vessel."""
+    fit = f.answer["fit"]
+    errors, compared, gains = [], [], []
+    for key, (words, unit) in FAMILIES.items():
+        if rms := fit.get(key):
+            before, after = alike([rms["recalibrated"], rms["patched"]], unit)
+            gain = rms["recalibrated"] / max(rms["patched"], 1e-300)
+            errors.append(f"{before} in {words}")
+            compared.append(f"{after} in {words} instead of {before} ({_times(gain)})")
+            gains.append(gain)
+    if not errors:
+        return "The result could not be validated: no recording was held out."
+    runs = f"In free runs of {fit['horizon_s']:g} s over the held-out recordings"
+    if not f.patched:
+        return f"{runs}, the recalibrated vessel has an rms error of {listed(errors)}."
+    caution = ""
+    if max(gains) <= f.setting("answer.least_improvement"):
+        caution = "Treat this result as a hint: it hardly reduces the errors on held-out data. "
+    return (
+        f"{caution}{runs}, the patched vessel has an rms error of {listed(compared)}. The "
+        "comparison is with the recalibrated vessel, whose own coefficients were refitted."
+    )
+
+
+def _times(gain: float) -> str:
+    if 0.95 < gain < 1.05:
+        return "unchanged"
+    if gain > 1.0:
+        return f"{number(gain, 2)} times smaller"
+    return f"{number(1.0 / gain, 2)} times larger"
+
+
+def mean_force(answer: Answer, patched: bool) -> list[str]:
+    """Return a paragraph on the mean force that remains in the patched vessel, if there is one.
+
+    Args:
+        answer: Content of diagnosis.json.
+        patched: Whether the patched vessel differs from the recalibrated one.
+
+    Returns:
+        One paragraph with size, direction and share of full thrust; an empty list without a force.
+    """
+    found = answer.get("mean_left") or {}
+    if not found:
+        return []
+    vessel = "patched" if patched else "recalibrated"
+    forces = listed(itertools.starmap(_mean, found.items()))
+    return [
+        f"A mean force remains in the {vessel} vessel: {forces}, averaged over all recordings. No "
+        "effect of the model produces it. A controller without integral action keeps a steady "
+        "offset because of it."
+    ]
+
+
+def _mean(axis: str, mean: MeanEntry) -> str:
+    positive, negative = WAYS[axis]
+    way = positive if mean["mean"] > 0.0 else negative
+    size = quantity(abs(mean["mean"]), mean["unit"], mean["sd"])
+    return f"{size} {way} in {axis}{_of_thrust(mean)}"
+
+
+def _of_thrust(entry: MeanEntry | AmbientEntry) -> str:
+    share = entry.get("share_of_full_thrust")
+    if share is None:
+        return ""
+    return f" ({number(100.0 * share, 2)} % of full thrust)"
+
+
+def assumptions(answer: Answer) -> list[str]:
+    """Return the candidates tested and excluded, and the assumptions of a diagnosis.
+
+    Args:
+        answer: Content of diagnosis.json.
+
+    Returns:
+        One line per statement; an empty list if the answer has no rules.
+    """
+    if "rules" not in answer:
+        return []
+    tested = f"{len(answer['tried'])} candidate effects tested"
+    if excluded := answer["left_out"]:
+        tested += f", {len(excluded)} excluded: {_exclusions(excluded)}"
+    levels = []
+    for axis, level in answer["rules"]["ambient"].items():
+        size = quantity(level["rms"], level["unit"], digits=2)
+        levels.append(f"{axis} {size}{_of_thrust(level)}")
+    lines = [tested, f"assumed disturbance level (rms): {', '.join(levels)}"]
+    for rule, reason in answer["rules"]["overridden"].items():
+        lines.append(f"{rule} is specified by the vessel file: {reason}")
+    return lines
+
+
+def _exclusions(excluded: Sequence[LeftOutEntry]) -> str:
+    """Return the excluded effects, grouped by their reason: A and B (no wind); C (no rudder)."""
+    by_reason: dict[str, list[str]] = {}
+    for entry in excluded:
+        by_reason.setdefault(entry["reason"], []).append(plain(entry["name"]))
+    return "; ".join(f"{listed(names)} ({reason})" for reason, names in by_reason.items())
+
+
+def printed(f: Findings) -> list[str]:
+    """Return the lines that `boatsim diagnose` prints.
+
+    Args:
+        f: Findings of a diagnosis.
+
+    Returns:
+        Verdict, evidence and values of each effect, assumptions, errors on held-out recordings,
+        a remaining mean force, and the next experiment.
+    """
+    answer = f.answer
+    lines = [answer["sentence"]]
+    for effect in answer["effects"]:
+        likely = f"probability {percent(effect['probability'])} among its rivals"
+        lines.append(f"  {effect['name']}: {evidence(effect['gain_nats'])}, {likely}")
+        for key, p in effect["parameters"].items():
+            lines.append(f"    {key} = {p['value']:.4g} ± {p['sd']:.2g}")
+    for law in answer["described"]:
+        for term in law["terms"]:
+            varies = f"{what_of(law['axis'])} that varies with {term['of']}"
+            lines.append(f"  formula: {varies}: {evidence(term['gain_nats'])}")
+            lines.append(f"    {term['value']:.4g} ± {term['sd']:.2g} {term['unit']}".rstrip())
+    for line in assumptions(answer):
+        lines.append(f"  {line}")
+    lines += [*_validation(f), *mean_force(answer, f.patched)]
+    if wanted := answer["next_experiment"]:
+        rivals, expected = listed(wanted["separates"], "or"), wanted["expected_gain_nats"]
+        lines.append(f"next experiment: {wanted['manoeuvre']}")
+        lines.append(f"  it distinguishes {rivals}; expected {evidence(expected)}")
+    return lines
+
+
+def _validation(f: Findings) -> list[str]:
+    """Return the printed errors of free runs on the held-out recordings."""
+    fit = f.answer["fit"]
+    lines = [
+        f"held out: {f.held_out_note}",
+        f"rms error of free runs of {fit['horizon_s']:g} s on the held-out data:",
+    ]
+    for key, (words, unit) in FAMILIES.items():
+        if rms := fit.get(key):
+            name, scale = ("deg", 57.29578) if unit == "rad" else (unit, 1.0)
+            cells = ", ".join(f"{model} {rms[model] * scale:.4g}" for model in MODELS)
+            lines.append(f"  {words} [{name}]: {cells}")
+    return lines
