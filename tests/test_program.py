@@ -242,7 +242,7 @@ print(*(Program(vessel.load(place)).module for place in sys.argv[1:]))
 # a file, what of it is changed into what, whether a spring in roll, and waves, can feel it
 EDITS = [
     ("particulars.py", ("GRAVITY = 9.81", "GRAVITY = 19.62"), (True, True)),
-    ("chance.py", ("9007199254740992.0", "9007199254740993.0"), (False, True)),
+    ("noise.py", ("9007199254740992.0", "9007199254740993.0"), (False, True)),
     ("kernel/run.py", ("LONG = 1e4", "LONG = 2e4"), (True, True)),
     ("kernel/compiling.py", ("\n", "\n\n"), (True, True)),
     ("kinds/force.py", ('ADD = "; "', 'ADD = ";  "'), (True, True)),
@@ -306,11 +306,11 @@ def test_what_a_file_imports_by_dots_is_reached_too(
     monkeypatch.setattr(dependency_hash, "PACKAGE", copied / "boatsim")
     effect = physics / "effects" / "by_dots.py"
     effect.write_text(
-        "from .thruster import at_mount\nfrom ..chance import drawn\nfrom .. import particulars\n"
+        "from .thruster import at_mount\nfrom ..noise import drawn\nfrom .. import particulars\n"
     )
     reached = dependency_hash.reach(effect)
     assert {
-        physics / n for n in ("effects/thruster.py", "chance.py", "particulars.py", "signals.py")
+        physics / n for n in ("effects/thruster.py", "noise.py", "particulars.py", "signals.py")
     } <= reached
     assert physics / "effects" / "tether.py" not in reached
 
