@@ -22,6 +22,7 @@ import numpy as np
 
 from boatsim.control.base import Sense
 from boatsim.physics.base import Array
+from boatsim.physics.kernel.records import Model
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 from boatsim.simulate import scenario
@@ -103,32 +104,24 @@ def sailed(test: Scenario, seed: int = 0) -> Recording:
     boat = replace(test.vessel, effects=tuple(e.seeded(seed) for e in test.vessel.effects))
     program, start = Program(boat), State(**test.file.start.motion())
     code, p, on = program.module, program.values(), program.switches()
-    memory, none, after = (
-        np.zeros(program.memory_size),
-        np.zeros(code.NQ),
-        np.empty((2, 2 * code.NQ)),
-    )
+    memory, after = np.zeros(program.memory_size), np.empty((2, 2 * code.NQ))
     code.settle(program.command_array({}), memory, p, on, np.zeros(program.held_size))
     y = program.joint_rates(np.array(start[1:])[list(code.SHOWS)])
     pilot, period, step = test.controller, test.controller.period, test.file.step
     pilot.reset()
     rows = np.empty((round(test.file.duration / period) + 1, 4))
     for i, row in enumerate(rows):
-        s = State(i * period, *code.moved.py_func(y.tolist()))  # one call needs no compiling
+        s = State(i * period, *program.shown(y.tolist()))
         sense = Sense(s.t, s.psi, s.r, nan, nan, nan, nan, nan, nan, s.phi, s.p)
         commands = program.command_array(pilot.step(sense, test.goal_at(s.t)))
         row[:] = s.t, s.psi, s.phi, commands[0]
         code.rollout(
-            s.t,
-            y,
+            Model(program.body, p, on),
+            program.plant(y, memory),
             commands[None],
-            memory,
+            s.t,
             step,
             round(period / step),
-            program.body,
-            p,
-            on,
-            none,
             after,
         )
     return Recording(

@@ -14,6 +14,7 @@ from boatsim.physics.effects.drive_map import DriveMap
 from boatsim.physics.effects.rate_limit import RateLimit
 from boatsim.physics.effects.servo import Servo
 from boatsim.physics.effects.steering_backlash import SteeringBacklash
+from boatsim.physics.kernel.records import Model
 from boatsim.physics.program import Program
 from boatsim.simulate.engine import Engine
 
@@ -107,16 +108,12 @@ def test_a_delayed_command_acts_when_it_arrives_however_long_the_steps(delay: fl
         memory, path = np.zeros(program.memory_size), np.zeros((rows + 1, 2 * code.NQ))
         code.settle(commands[0], memory, values, on, np.zeros(3 * program.held_size))
         code.rollout(
-            0.0,
-            np.zeros(2 * code.NQ),
+            Model(np.array(program.body), values, on),
+            program.plant(np.zeros(2 * code.NQ), memory),
             commands,
-            memory,
+            0.0,
             STEP / substeps,
             substeps,
-            np.array(program.body),
-            values,
-            on,
-            np.zeros(code.NQ),
             path,
         )
         ends.append(path[-1, : code.NQ])

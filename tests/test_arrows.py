@@ -13,8 +13,8 @@ FOR_CONTROLLERS = set(  # plain laws, ready to move to a boat
     "control.identification control.helm control.compiled control.axis control.joystick control.motor_check".split()
 )
 HEAVY = {  # library -> the only modules that may import it
-    "mujoco": {f"simulate.{name}" for name in ("world", "native_callback", "engine", "env")}
-    | {"warp.on_mujoco"},
+    "mujoco": {f"simulate.{name}" for name in ("world", "engine", "env")}
+    | {"warp.on_mujoco", "physics.compiler_internals"},
     "mujoco_warp": {"warp.on_mujoco"},
     "warp": {"warp.runtime"},
     "dm_control": {"simulate.env"},

@@ -22,6 +22,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.effects.described_force import DescribedForce
+from boatsim.physics.kernel.records import Inputs, Model
 from boatsim.physics.program import Program
 from boatsim.simulate.compiled_engine import Twin
 from boatsim.simulate.engine import Engine
@@ -114,13 +115,9 @@ def test_engine_twin_and_filter_agree_on_laws_that_look_back() -> None:
     program, on = composed(replace(boat, found=tuple(law.get("name", law["use"]) for law in LAWS)))
     times, out = row * np.arange(61), np.full((1, 61, 6), np.nan)
     program.module.free_runs(
-        times,
-        times,
-        commands,
+        Inputs(times, times, commands),
         DEFAULT.filter.free_run_step,
-        program.body,
-        program.values(),
-        program.switches(on),
+        Model(program.body, program.values(), program.switches(on)),
         np.array([0]),
         np.array([60]),
         np.zeros((1, 6)),

@@ -22,6 +22,7 @@ from boatsim.diagnosis.search.screening import screen
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
 from boatsim.physics.content import load_class
+from boatsim.physics.kernel.records import Model
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording, write_csv
 from boatsim.simulate import scenario
@@ -69,16 +70,12 @@ def recorded(
     code.settle(rows[0], memory, values, on, act)
     out = np.zeros((len(rows) + 1, 6))
     code.rollout(
-        0.0,
-        np.zeros(6),
+        Model(program().body, values, on),
+        program().plant(np.zeros(6), memory),
         rows,
-        memory,
+        0.0,
         1 / RATE / 8,
         8,
-        program().body,
-        values,
-        on,
-        np.zeros(3),
         out,
     )
     pose = out[:-1, :3] + rng.standard_normal((len(rows), 3)) * [0.003, 0.003, 0.012]

@@ -13,6 +13,7 @@ from boatsim.errors import BadInput
 from boatsim.physics import vessel
 from boatsim.physics.effects.thrust_deadband import ThrustDeadband
 from boatsim.physics.effects.thrust_imbalance import ThrustImbalance
+from boatsim.physics.kernel.records import Model
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings import table
@@ -59,16 +60,12 @@ def sailed(boat: Vessel, fault: ThrustDeadband, seed: int) -> Recording:
     path = np.zeros((rows + 1, 2 * code.NQ))
     code.settle(commands[0], memory, values, on, np.zeros(program.held_size))
     code.rollout(
-        0.0,
-        np.zeros(2 * code.NQ),
+        Model(np.array(program.body), values, on),
+        program.plant(np.zeros(2 * code.NQ), memory),
         commands,
-        memory,
+        0.0,
         STEP / STEPS_A_ROW,
         STEPS_A_ROW,
-        np.array(program.body),
-        values,
-        on,
-        np.zeros(code.NQ),
         path,
     )
     noise = rng.standard_normal((rows, 3)) * (0.003, 0.003, 0.005)

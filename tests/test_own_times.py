@@ -11,6 +11,7 @@ from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import body_of, map_recording, relative_noise
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
+from boatsim.physics.kernel.records import Inputs, Model
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 from boatsim.simulate.compiled_engine import Twin
@@ -40,13 +41,9 @@ def test_thinned_rows_keep_every_command_at_its_own_time() -> None:
     n, out = len(laid.times), np.full((1, len(laid.times), 6), np.nan)
     there = np.rint(laid.times / (EVERY / 2)).astype(int)
     laid.program.module.free_runs(
-        laid.times,
-        laid.command_times,
-        laid.command_values,
+        Inputs(laid.times, laid.command_times, laid.command_values),
         DEFAULT.filter.free_run_step,
-        body_of(laid.values),
-        laid.values,
-        laid.program.switches(),
+        Model(body_of(laid.values), laid.values, laid.program.switches()),
         np.array([0]),
         np.array([n - 1]),
         states[there[:1]],

@@ -10,6 +10,7 @@ from boatsim.diagnosis.candidates import composed
 from boatsim.diagnosis.config import DEFAULT
 from boatsim.physics import content, vessel
 from boatsim.physics.base import Array, Release
+from boatsim.physics.kernel.records import Inputs, Model
 from boatsim.simulate.engine import Engine
 
 WALLS = {"x_low": -4.0, "x_high": 4.0, "y_low": -3.0, "y_high": 3.0}
@@ -89,13 +90,9 @@ def test_engine_and_filter_agree_over_six_seconds(
     assert set(acting) == laws  # a release is its coefficient's new value, in both
     times, out = ROW * np.arange(ROWS), np.full((1, ROWS, 6), np.nan)
     program.module.free_runs(
-        times,
-        times,
-        commands,
+        Inputs(times, times, commands),
         DEFAULT.filter.free_run_step,
-        program.body,
-        program.values(),
-        program.switches(acting),
+        Model(program.body, program.values(), program.switches(acting)),
         np.array([0]),
         np.array([ROWS - 1]),
         np.zeros((1, 6)),

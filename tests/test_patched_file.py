@@ -18,6 +18,7 @@ from boatsim.physics import content, vessel
 from boatsim.physics.base import Array, Release
 from boatsim.physics.content import load_class
 from boatsim.physics.effects.linear_hull import LinearHull
+from boatsim.physics.kernel.records import Inputs, Model
 from boatsim.physics.program import Program
 from boatsim.physics.vessel import Vessel
 
@@ -60,13 +61,9 @@ def free_run(problem: Problem, values: Array, acting: tuple[str, ...]) -> Array:
     start[0, nq - 1 :] = 0.02
     start[0, nq] = getattr(problem.program.vessel.effect("speed_hold"), "speed", 0.5)
     problem.program.module.free_runs(
-        track.times,
-        track.command_times,
-        track.command_values,
+        Inputs(track.times, track.command_times, track.command_values),
         DEFAULT.filter.free_run_step,
-        body_of(values),
-        values,
-        problem.program.switches(acting),
+        Model(body_of(values), values, problem.program.switches(acting)),
         np.array([0]),
         np.array([ROWS - 1]),
         start,

@@ -321,11 +321,11 @@ def test_11_the_cache_is_private(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     place.chmod(0o750)
     assert stat.S_IMODE(cache.cache_folder().stat().st_mode) == 0o700
     place.chmod(0o777)
-    with pytest.raises(BadInput, match="everybody may write to it"):
+    with pytest.raises(BadInput, match="every user may write to it"):
         cache.cache_folder()
     place.chmod(0o700)
     monkeypatch.setattr(os, "geteuid", lambda: place.stat().st_uid + 1)
-    with pytest.raises(BadInput, match="belongs to somebody else"):
+    with pytest.raises(BadInput, match="belongs to another user"):
         cache.cache_folder()
 
 

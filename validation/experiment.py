@@ -33,6 +33,7 @@ from boatsim.diagnosis.problem import Problem, froude_scale
 from boatsim.diagnosis.search.ranking import Ranking, rank
 from boatsim.physics import vessel
 from boatsim.physics.base import Array
+from boatsim.physics.kernel.records import Model
 from boatsim.physics.program import Program
 from boatsim.recordings.table import Recording
 
@@ -141,16 +142,12 @@ def recorded(
     for i in range(len(commands)):
         rows.append(y[:3].copy())
         code.rollout(
-            i / RATE,
-            y,
+            Model(program().body, boat.values, boat.on),
+            program().plant(y, memory, force),
             commands[i : i + 1],
-            memory,
+            i / RATE,
             1.0 / RATE / SUBSTEPS,
             SUBSTEPS,
-            program().body,
-            boat.values,
-            boat.on,
-            force,
             out,
         )
         force = kept * force + np.sqrt(1.0 - kept**2) * rms * rng.standard_normal(3)

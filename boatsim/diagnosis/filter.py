@@ -17,6 +17,16 @@ from boatsim.diagnosis.config import DEFAULT, DiagnosisConfig, FilterConfig
 from boatsim.errors import BadInput
 from boatsim.physics.base import Unsteady, Wandering
 from boatsim.physics.commands import taken_rows
+from boatsim.physics.kernel.records import (
+    FilterStart,
+    History,
+    Inputs,
+    LatentForce,
+    Measurements,
+    Model,
+    PassArrays,
+    PassOptions,
+)
 from boatsim.physics.particulars import GRAVITY
 from boatsim.physics.program import Program
 from boatsim.physics.signals import AXES, NOISE, Array, Signal, signals_of
@@ -136,6 +146,11 @@ class MappedRecording:
         """Prior of the state at the first row."""
         return self.specified_initial or _estimated_initial(self)
 
+    @property
+    def inputs(self) -> Inputs:
+        """Row times and commands, as the compiled functions take them."""
+        return Inputs(self.times, self.command_times, self.command_values)
+
     @cached_property
     def inertia(self) -> Array:
         """(NQ,) mass or moment of inertia of the nominal hull with added mass [kg, kg m^2]."""
@@ -185,7 +200,7 @@ class MappedRecording:
         else:
             transitions = _writable(about.transitions)
             steps = _writable(about.steps)
-        arrays = _PassArrays(transitions, steps, gains, scale, whitened)
+        arrays = PassArrays(transitions, steps, gains, scale, whitened)
         found = self._run(values, on, levels, arrays, fresh=about is None)
         return FilterPass(
             found,
@@ -212,7 +227,7 @@ class MappedRecording:
             about: Pass whose gains, scale and integration steps are used.
         """
         whitened = np.zeros(self.measured.shape)
-        arrays = _PassArrays(
+        arrays = PassArrays(
             _writable(about.transitions),
             _writable(about.steps),
             _writable(about.gains),
@@ -232,7 +247,7 @@ class MappedRecording:
         """
         n, channels = self.measured.shape
         size, state, nq = self.program.module.NZ, len(self.initial.mean), self.program.module.NQ
-        arrays = _PassArrays(
+        arrays = PassArrays(
             np.zeros((n, state, state)),
             np.full(n, self.step),
             np.zeros((n, channels, size)),
@@ -244,19 +259,10 @@ class MappedRecording:
         gains, rates = np.zeros_like(transitions), self.initial.rates
         force, _ = self.latent_force_rms(values, on, levels)
         for _ in range(self.config.smoother_passes):
-            keep = means, covariances, transitions, predicted
+            keep = History(means, covariances, transitions, predicted)
             self._run(values, on, levels, arrays, rates=rates, keep=keep)
             self.program.module.smooth(
-                means,
-                covariances,
-                transitions,
-                predicted,
-                gains,
-                force**2,
-                self.times,
-                levels.time_constant,
-                values,
-                on,
+                keep, gains, self.times, LatentForce(force**2, levels.time_constant), values, on
             )
             before, rates = rates, means[0, nq : 2 * nq].copy()
             sd = np.sqrt(np.maximum(np.diag(covariances[0])[nq : 2 * nq], 0.0))
@@ -288,13 +294,9 @@ class MappedRecording:
         out = np.full((len(starts), len(self.times), 2 * nq), np.nan)
         states = np.ascontiguousarray(means[starts, : 2 * nq])
         self.program.module.free_runs(
-            self.times,
-            self.command_times,
-            self.command_values,
+            self.inputs,
             self.config.free_run_step,
-            body_of(values),
-            values,
-            on,
+            Model(body_of(values), values, on),
             np.array(starts),
             np.array(ends),
             states,
@@ -353,12 +355,12 @@ class MappedRecording:
         values: Array,
         on: Array,
         levels: NoiseLevels,
-        arrays: "_PassArrays",
+        arrays: PassArrays,
         *,
         full: bool = True,
         fresh: bool = True,
         rates: Array | None = None,
-        keep: tuple[Array, ...] | None = None,
+        keep: History | None = None,
     ) -> float:
         """Run the compiled filter, which fills or uses `arrays`; return the log likelihood."""
         nq = self.program.module.NQ
@@ -376,43 +378,21 @@ class MappedRecording:
         if rates is None:
             rates = self.initial.rates
         found = self.program.module.kalman(
-            self.times,
-            self.measured,
-            self.codes,
-            self.command_times,
-            self.command_values,
-            self.step,
-            body_of(values),
-            values,
-            on,
-            force**2,
-            levels.time_constant,
-            noise,
-            self.initial.mean,
-            covariance,
-            rates,
-            full,
-            fresh,
-            *arrays,
-            keep is not None,
-            *(keep or _nothing_kept()),
+            self.inputs,
+            Measurements(self.measured, self.codes, noise),
+            Model(body_of(values), values, on),
+            LatentForce(force**2, levels.time_constant),
+            FilterStart(self.initial.mean, covariance, rates),
+            PassOptions(self.step, full, fresh, keep is not None),
+            arrays,
+            keep or _no_history(),
         )
         return float(found)
 
 
-class _PassArrays(NamedTuple):
-    """Arrays that a pass of the compiled filter fills or uses, in the order of its arguments."""
-
-    transitions: Array
-    steps: Array
-    gains: Array
-    scale: Array
-    whitened: Array
-
-
-def _nothing_kept() -> tuple[Array, ...]:
+def _no_history() -> History:
     """Placeholders for the arrays of a smoothing pass."""
-    return np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1))
+    return History(np.zeros((1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1)))
 
 
 def _read_only(array: Array) -> Array:

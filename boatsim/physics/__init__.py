@@ -1,1 +1,3 @@
-"""What a boat is: signals, kinds of effects, vessels, and the program they are composed to."""
+"""Effects, the laws of a vessel and their compilation to one program."""
+
+from boatsim.physics import debugging as debugging  # before any module in which numba compiles

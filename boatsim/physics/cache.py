@@ -1,10 +1,13 @@
-"""Keeps composed programs on disk, so that numba compiles each once.
+"""Keeps compiled programs on disk, so that numba compiles each of them once.
 
-What lies there is run: the folder is the user's alone, and a program that is not as it was written is written anew.
+A program is a package in the user's cache folder: the generated `laws.py` and `motion.py` with copies of the files of
+the kernel. Its name is a digest of their content and of every file that a law can reach by imports, because numba
+itself looks at the content of a function's own file only. The code in the folder is run. The folder therefore belongs to
+the user alone, and a program whose files differ from what was written is written again.
 
-A program is a package of its own in the user's cache folder: the generated `laws.py` and `motion.py` beside copies of
-the kernel's files, under a name made from their content and from the content of every file that a law can reach. Numba
-watches each file's own content only; a law, a constant or a kernel edited since has another name.
+The folder is that of `platformdirs` for caches (`~/.cache/boatsim` on Linux), or the environment variable
+`BOATSIM_CACHE`. With `BOATSIM_DEBUG=1` (`boatsim.physics.debugging`) the files of the kernel are imported from the
+repository instead of being copied.
 """
 
 import atexit
@@ -16,7 +19,7 @@ import stat
 import sys
 import tempfile
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache
 from inspect import getsourcefile
@@ -24,20 +27,18 @@ from pathlib import Path
 from types import ModuleType
 
 import numba
+import platformdirs
 
 from boatsim.errors import BadInput
+from boatsim.physics.debugging import DEBUG
 from boatsim.physics.dependency_hash import PACKAGE, content, reach
 from boatsim.physics.kinds.effect import Effect
 
 KERNEL = PACKAGE / "physics" / "kernel"
-WRITTEN = ("laws.py", "motion.py")  # generated in place of the kernel's files of these names
-SHARED = (
-    "compiling.py",
-    "correction.py",
-    "matrices.py",
-    "rotation.py",
-)  # imported by every program, and compiled once for all
-LEFT_OUT = ("algebra.py", "equations.py", "source.py", *SHARED)  # the first three write programs
+WRITTEN = ("laws.py", "motion.py")  # generated for each vessel instead of the kernel's own files
+# Imported by every program, and compiled once for all of them
+SHARED = ("compiling.py", "correction.py", "matrices.py", "records.py", "rotation.py")
+GENERATORS = ("algebra.py", "equations.py", "source.py")  # they write programs
 EXPORTS = '''"""A vessel's program, composed by boatsim; not meant to be edited."""
 
 from .batch import *
@@ -48,89 +49,107 @@ from .laws import *
 from .motion import *
 from .run import *
 '''
-KEPT = 90 * 86400.0  # [s] after its last use that a composed program stays in the cache
+KEPT = 90 * 86400.0  # [s] time after the last use of a program until it is removed
 
 
-def module(written: dict[str, str], classes: Iterable[type[Effect]]) -> ModuleType:
-    """The program whose generated files are `written`, compiled before if the same one was composed before."""
-    files = {
-        p.name: p.read_text(encoding="utf-8")
-        for p in sorted(KERNEL.glob("*.py"))
-        if p.name not in LEFT_OUT
-    }
-    files |= written | {"__init__.py": EXPORTS}
-    return package(files, stamp_of(files, classes))
+def module(written: Mapping[str, str], classes: Iterable[type[Effect]]) -> ModuleType:
+    """Return a vessel's program, compiled before if the same one was composed before.
+
+    Args:
+        written: Text of each generated file.
+        classes: Classes of the effects whose laws it calls.
+    """
+    copied = {}
+    for path in sorted(KERNEL.glob("*.py")):
+        if path.name not in (*SHARED, *GENERATORS, *WRITTEN):
+            copied[path.name] = path.read_text(encoding="utf-8")
+    own = {**written, "__init__.py": EXPORTS}
+    stamp = stamp_of(copied | own, classes)
+    if DEBUG:
+        return package(own, f"{stamp}_debug", KERNEL)
+    return package(copied | own, stamp)
 
 
-def package(files: dict[str, str], stamp: str) -> ModuleType:
-    """The package of these files, kept on disk under a name that tells all it depends on."""
+def package(files: Mapping[str, str], stamp: str, *further: Path) -> ModuleType:
+    """Write a package to the cache folder, if it is not there, and import it.
+
+    Args:
+        files: Text of each file.
+        stamp: Name that identifies the content and all that it depends on.
+        further: Folders in which the package finds its other modules.
+    """
     folder = cache_folder()
     path = folder / f"program_{stamp}"
-    if not _whole(files, path):
+    if not _is_complete(files, path):
         shutil.rmtree(path, ignore_errors=True)
         _write(files, path)
         _prune(folder)
     with suppress(OSError):
         os.utime(path)  # it is in use
-    return _imported(path, f"boatsim_program_{stamp}")
+    return _imported((path, *further), f"boatsim_program_{stamp}")
 
 
-def stamp_of(files: dict[str, str], classes: Iterable[type[Effect]]) -> str:
-    """Name of a composition: its text, all that its laws can reach, and what compiles it."""
-    kinds, digest = (
-        sorted(classes, key=lambda kind: (kind.__module__, kind.__qualname__)),
-        hashlib.sha256(),
-    )
+def stamp_of(files: Mapping[str, str], classes: Iterable[type[Effect]]) -> str:
+    """Return the name of a program: a digest of its text, of all that its laws reach, and of the compiler's version.
+
+    Args:
+        files: Text of each file of the program.
+        classes: Classes of the effects whose laws it calls.
+    """
+    kinds = sorted(classes, key=lambda kind: (kind.__module__, kind.__qualname__))
+    digest = hashlib.sha256()
     for name, text in sorted(files.items()):
         digest.update(f"{name}\n{text}".encode())
+    reached = set[Path]()
     for kind in kinds:
-        digest.update(
-            f"{kind.__module__}\n".encode()
-        )  # tells a user's own file from what it was before an edit
-    sources = {getsourcefile(kind) for kind in kinds} | {str(KERNEL / name) for name in SHARED}
-    for path in sorted({file for source in sources if source for file in reach(Path(source))}):
+        # The name of the module distinguishes versions of a user's file within one process.
+        digest.update(f"{kind.__module__}\n".encode())
+        if source := getsourcefile(kind):
+            reached |= reach(Path(source))
+    for name in SHARED:
+        reached |= reach(KERNEL / name)
+    for path in sorted(reached):
         digest.update(content(path))
     digest.update(f"{numba.__version__} {sys.version}".encode())
     return digest.hexdigest()[:16]
 
 
 def cache_folder() -> Path:
-    """~/.cache/boatsim, or a private folder that goes with the process where home can not be written. Raises BadInput.
+    """Return the user's cache folder, or a temporary one of this process if that cannot be written.
 
-    Code that lies in it is run, so it must be the user's own, and nobody else may write to it.
+    Raises:
+        BadInput: Another user owns the folder or may write to it; the code in it is run.
     """
-    wanted = (
-        os.environ.get("BOATSIM_CACHE")
-        or Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache") / "boatsim"
-    )
+    wanted = os.environ.get("BOATSIM_CACHE") or platformdirs.user_cache_dir("boatsim", False)
     try:
         folder = Path(wanted).expanduser()
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         found = folder.stat()
-    except (OSError, RuntimeError):  # not to be written; no home to be found
-        return _fleeting()
-    if found.st_uid != os.geteuid() or found.st_mode & stat.S_IWOTH:
-        whose = (
-            "everybody may write to it"
-            if found.st_uid == os.geteuid()
-            else "it belongs to somebody else"
-        )
+    except (OSError, RuntimeError):  # not writable; no home folder
+        return _temporary_folder()
+    reason = ""
+    if found.st_uid != os.geteuid():
+        reason = "it belongs to another user"
+    elif found.st_mode & stat.S_IWOTH:
+        reason = "every user may write to it"
+    if reason:
         raise BadInput(
-            f"{folder}: no folder for compiled programs: {whose}; set BOATSIM_CACHE to one of your own"
+            f"{folder} cannot hold compiled programs: {reason}; "
+            "set BOATSIM_CACHE to a folder of your own"
         )
     if found.st_mode & 0o077:
         with suppress(OSError):
             folder.chmod(0o700)
-    return folder if os.access(folder, os.W_OK | os.X_OK) else _fleeting()
+    if not os.access(folder, os.W_OK | os.X_OK):
+        return _temporary_folder()
+    return folder
 
 
 @cache
-def _fleeting() -> Path:
-    """A folder of this process and those it starts, gone at its end."""
+def _temporary_folder() -> Path:
+    """A folder of this process and of those that it starts, removed at its end."""
     try:
-        folder = Path(
-            tempfile.mkdtemp(prefix="boatsim-")
-        )  # 0700, under a name that nobody can know before
+        folder = Path(tempfile.mkdtemp(prefix="boatsim-"))  # 0700, with a random name
     except OSError as error:
         raise BadInput(
             f"no folder for compiled programs ({error.strerror}); set BOATSIM_CACHE to one"
@@ -140,16 +159,16 @@ def _fleeting() -> Path:
     return folder
 
 
-def _whole(files: dict[str, str], path: Path) -> bool:
-    """Whether a program lies there as it was written."""
+def _is_complete(files: Mapping[str, str], path: Path) -> bool:
+    """Whether a folder holds these files."""
     try:
         return all((path / name).read_bytes() == text.encode() for name, text in files.items())
     except OSError:
         return False
 
 
-def _write(files: dict[str, str], path: Path) -> None:
-    """A program's folder, whole or not at all: another process may be as quick."""
+def _write(files: Mapping[str, str], path: Path) -> None:
+    """Create a folder with these files in one step: another process may do the same at the same time."""
     temporary = Path(tempfile.mkdtemp(dir=path.parent, prefix=".new_"))
     try:
         for name, text in files.items():
@@ -160,12 +179,14 @@ def _write(files: dict[str, str], path: Path) -> None:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
-def _imported(path: Path, name: str) -> ModuleType:
-    """The package at a folder, once."""
+def _imported(folders: tuple[Path, ...], name: str) -> ModuleType:
+    """The package in the first of these folders; its modules are searched in all of them."""
     if name in sys.modules:
         return sys.modules[name]
     spec = importlib.util.spec_from_file_location(
-        name, path / "__init__.py", submodule_search_locations=[str(path)]
+        name,
+        folders[0] / "__init__.py",
+        submodule_search_locations=[str(folder) for folder in folders],
     )
     assert spec is not None and spec.loader is not None
     found = importlib.util.module_from_spec(spec)
@@ -173,20 +194,21 @@ def _imported(path: Path, name: str) -> ModuleType:
     try:
         spec.loader.exec_module(found)
     except BaseException:
-        for known in [n for n in sys.modules if n == name or n.startswith(f"{name}.")]:
-            del sys.modules[known]
+        for known in list(sys.modules):
+            if known == name or known.startswith(f"{name}."):
+                del sys.modules[known]
         raise
     return found
 
 
 def _prune(folder: Path) -> None:
-    """Remove programs that nobody has used for long.
+    """Remove programs that have not been used for a long time.
 
-    Safe beside other processes: one that has loaded a program needs its files no more, one that finds them gone writes
-    them anew.
+    Other processes are not disturbed: one that has loaded a program no longer needs its files, and one that does not
+    find them writes them again.
     """
     for old in folder.glob("program_*"):
-        with suppress(OSError):  # another process may be as quick
+        with suppress(OSError):  # another process may remove it at the same time
             if time.time() - old.stat().st_mtime > KEPT:
                 if old.is_dir():
                     shutil.rmtree(old)

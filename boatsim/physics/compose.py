@@ -12,6 +12,7 @@ from math import cos, sin
 
 from boatsim.errors import BadInput
 from boatsim.physics.content import address, load_class, module_of, names
+from boatsim.physics.debugging import is_compiled
 from boatsim.physics.kinds.channel import WHOLE, Channel
 from boatsim.physics.kinds.effect import Effect, Kind, Part, Site
 from boatsim.physics.kinds.recall import Recall
@@ -239,7 +240,7 @@ def _remark(name: str) -> str:
 
 def _check_compiled(kind: type[Effect], law: str) -> None:
     """Raises BadInput for a law that is missing, or that numba does not know."""
-    if not hasattr(getattr(kind, law, None), "py_func"):
+    if not is_compiled(getattr(kind, law, None)):
         raise BadInput(
             f"{getsourcefile(kind)}: class {kind.__name__} has no compiled {law}; it needs {law}: ClassVar = {law} of "
             f'a function under @njit(inline="always")'

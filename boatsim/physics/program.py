@@ -1,40 +1,51 @@
-"""A vessel's effects as one compiled program that engine, twin and diagnosis share."""
+"""A vessel's effects as one compiled program that engine, compiled engine and diagnosis share.
+
+`python -m boatsim.physics.program VESSEL` prints the laws that are composed for a vessel.
+"""
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import FunctionType, ModuleType
+from typing import Any, cast
 
 import numpy as np
 
 from boatsim.physics import cache
 from boatsim.physics import vessel as vessels
 from boatsim.physics.commands import taken_row
+from boatsim.physics.compiled_program import CompiledProgram
 from boatsim.physics.compose import Composition
+from boatsim.physics.debugging import python_function
+from boatsim.physics.kernel.records import Model, Plant
 from boatsim.physics.kernel.source import written
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.kinds.release import Release
-from boatsim.physics.signals import AXES, Array
+from boatsim.physics.signals import AXES, Array, Shown
 from boatsim.physics.vessel import Vessel
+
+KINEMATICS = ("moved", "jacobian")  # functions of one state that are used in Python too
 
 
 @dataclass(frozen=True)
 class Program:
-    """The effects of a vessel, some of them optional, as compiled functions over one flat parameter array.
+    """The effects of a vessel and further candidates as compiled functions over one flat parameter array.
 
-    `module` offers `constants, step_in_place, steps, forces, actuate_in_place, rollout` and, for the diagnosis, the
-    filter; see `boatsim/physics/kernel/`.
+    Attributes:
+        vessel: The vessel; its own effects always act.
+        candidates: Further effects. They are compiled too, and act where `on` is 1.
+        effects: All effects that have a law: the vessel's own, then the candidates.
+        offsets: Place of each effect's first parameter in the flat array.
     """
 
     vessel: Vessel
-    # effects that act only where `on` switches them on
     candidates: tuple[Effect, ...] = ()
     effects: tuple[Effect, ...] = field(init=False)
-    offsets: tuple[int, ...] = field(init=False)  # where each effect's parameters start
+    offsets: tuple[int, ...] = field(init=False)
 
     def __post_init__(self) -> None:
-        # a release has nothing to compile
+        # A release changes a coefficient of the vessel and has no law.
         laws = (e for e in self.candidates if not isinstance(e, Release))
         object.__setattr__(self, "effects", (*self.vessel.effects, *laws))
         sizes = [len(type(e).params()) for e in self.effects]
@@ -46,19 +57,28 @@ class Program:
         return tuple(e.name for e in self.candidates if not type(e).described)
 
     def values(self) -> Array:
-        """Parameters of all effects, flat."""
+        """Parameters of all effects (P,), in SI units."""
         return np.array([v for e in self.effects for v in e.values()], dtype=float)
 
     def switches(self, active: Sequence[str] = ()) -> Array:
-        """`on` (effects,) with the named candidates switched on."""
-        own = len(self.vessel.effects)
-        return np.array(
-            [i < own or e.name in active for i, e in enumerate(self.effects)], dtype=np.float64
-        )
+        """Return (E,): 1 for the vessel's own effects and for the candidates that act, else 0.
+
+        Args:
+            active: Names of the candidates that act.
+        """
+        on = np.ones(len(self.effects))
+        for i in range(len(self.vessel.effects), len(self.effects)):
+            on[i] = float(self.effects[i].name in active)
+        return on
 
     def index(self, effect: str, parameter: str) -> int:
-        """Position of one parameter in the flat array."""
-        i = next(i for i, e in enumerate(self.effects) if e.name == effect)
+        """Return the place of a parameter in the flat array.
+
+        Args:
+            effect: Name of an effect.
+            parameter: Name of one of its parameters.
+        """
+        i = [e.name for e in self.effects].index(effect)
         return self.offsets[i] + list(type(self.effects[i]).params()).index(parameter)
 
     @cached_property
@@ -76,61 +96,114 @@ class Program:
             ]
         )
 
+    def model(self, active: Sequence[str] = ()) -> Model:
+        """Return rigid body, parameters and switches together.
+
+        Args:
+            active: Names of the candidates that act.
+        """
+        return Model(self.body, self.values(), self.switches(active))
+
+    def plant(self, y: Array, memory: Array | None = None, force: Array | None = None) -> Plant:
+        """Return the state of a vessel for `rollout`.
+
+        Args:
+            y: (2 NQ,) joint coordinates and rates, changed in place.
+            memory: (memory_size,) state of the actuators, changed in place; zeros if None.
+            force: (NQ,) constant further body force [N, N m]; zeros if None.
+        """
+        code = self.module
+        if memory is None:
+            memory = np.zeros(self.memory_size)
+        if force is None:
+            force = np.zeros(code.NQ)
+        return Plant(y, memory, np.zeros(self.held_size), force)
+
     @cached_property
     def composition(self) -> Composition:
-        """The effects in their places."""
+        """The effects with the places of their parameters, signals and states."""
         return Composition(self.vessel, self.effects, self.offsets)
 
     @property
     def memory_size(self) -> int:
-        """Floats that all channels together remember, at least one."""
+        """Floats of the state of all actuators, at least one."""
         return max(self.composition.memory_size, 1)
 
     @property
     def held_size(self) -> int:
-        """Floats that hold all actuators over a step."""
+        """Floats that describe all actuators over a step."""
         return 3 * int(self.module.HELD)
 
     def command_array(self, commands: Mapping[str, float]) -> Array:
-        """(C,) in force when these are sent, in the vessel's order; those not given are neutral. Raises BadInput."""
+        """Return the commands in force (inputs,) in the vessel's order.
+
+        Args:
+            commands: Values by name; the others are neutral.
+
+        Raises:
+            BadInput: A command does not exist or is not finite.
+        """
         return taken_row(self.vessel, commands)
 
+    def shown(self, state: Sequence[float]) -> Shown:
+        """Return pose and body-axes velocities of joint coordinates and rates (2 NQ,)."""
+        found: Shown = self._python_functions["moved"](state)
+        return found
+
+    def jacobian(self, state: Sequence[float]) -> Array:
+        """Return the body rates per joint rate (6, NQ) of joint coordinates and rates (2 NQ,)."""
+        J = np.zeros((len(AXES), self.module.NQ))
+        self._python_functions["jacobian"](state, J)
+        return J
+
     def body_rates(self, states: Array) -> Array:
-        """States (N, 2 NQ), joint rates replaced by body rates."""
-        code, out = self.module, np.empty(states.shape)
-        seen = self._of_many("moved")(states.T)
-        for i, k in enumerate(code.SHOWS):
+        """Return states (N, 2 NQ) with body rates in place of joint rates."""
+        out = np.empty(states.shape)
+        seen = self._vectorised("moved")(states.T)
+        for i, k in enumerate(self.module.SHOWS):
             out[:, i] = seen[k]
         return out
 
     def joint_rates(self, states: Array) -> Array:
-        """The inverse of `body_rates`, for states (N, 2 NQ) or one (2 NQ,)."""
+        """Return states with joint rates in place of body rates: the inverse of `body_rates`.
+
+        Args:
+            states: (N, 2 NQ), or one state (2 NQ,).
+        """
         code, rows = self.module, np.array(np.atleast_2d(states), dtype=float)
         J = np.zeros((len(AXES), code.NQ, len(rows)))
-        self._of_many("jacobian")(rows.T, J)
+        self._vectorised("jacobian")(rows.T, J)
         rates = np.linalg.solve(J[list(code.FREE)].transpose(2, 0, 1), rows[:, code.NQ :, None])
         rows[:, code.NQ :] = rates[:, :, 0]
         return rows.reshape(np.shape(states))
 
-    def _of_many(self, name: str) -> FunctionType:
-        """A function of the motion of one state, in Python and over all states at once."""
-        motion = self.module.motion
-        return FunctionType(
-            getattr(motion, name).py_func.__code__, {**vars(motion), "cos": np.cos, "sin": np.sin}
-        )
+    @cached_property
+    def _python_functions(self) -> dict[str, Callable[..., Any]]:
+        """Functions of one state in Python: for a single state they need no compilation."""
+        return {name: python_function(getattr(self.module, name)) for name in KINEMATICS}
+
+    def _vectorised(self, name: str) -> FunctionType:
+        """A function of one state as a function of arrays over many states."""
+        python = cast(FunctionType, self._python_functions[name])
+        return FunctionType(python.__code__, {**python.__globals__, "cos": np.cos, "sin": np.sin})
 
     @cached_property
-    def module(self) -> ModuleType:
+    def module(self) -> CompiledProgram:
         """The compiled program, from the cache if the same one was composed before."""
         text = {
             "laws.py": self.composition.source_text(),
             "motion.py": written(self.vessel.dof, centred=self.vessel.body.centre == (0.0, 0.0)),
         }
-        return cache.module(text, {type(e) for e in self.effects})
+        package: ModuleType = cache.module(text, {type(e) for e in self.effects})
+        return cast(CompiledProgram, package)
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Print a vessel's composed laws."""
+    """Print the laws that are composed for a vessel.
+
+    Args:
+        arguments: Name or folder of the vessel.
+    """
     print(Program(vessels.load(arguments[0])).composition.source_text())
 
 

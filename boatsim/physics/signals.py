@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from boatsim.physics.records import known_to_numba
+from boatsim.physics.compiler_internals import known_to_numba
 
 Array = NDArray[np.float64]
 

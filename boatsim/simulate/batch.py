@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from boatsim.errors import BadInput, unknown_name
 from boatsim.physics.commands import taken, taken_row
+from boatsim.physics.kernel.records import Fleet
 from boatsim.physics.kinds.effect import Effect
 from boatsim.physics.param import Param
 from boatsim.physics.program import Program
@@ -84,6 +85,21 @@ class Batch:
         return self.n
 
     @property
+    def fleet(self) -> Fleet:
+        """States and parameters of all boats as compiled functions take them; views, not copies."""
+        return Fleet(
+            self.t,
+            self._y,
+            self._commands,
+            self._memory,
+            self._act,
+            self._p,
+            self._on,
+            self._k,
+            self._none,
+        )
+
+    @property
     def bytes_per_boat(self) -> int:
         """Memory that a boat takes, whatever their number."""
         held = (
@@ -136,12 +152,7 @@ class Batch:
         )
         self._commands[chosen] = self._taken(commands if commands is not None else {}, chosen)
         self.t[chosen] = 0.0
-        self.shared(
-            lambda some: self.code.settle_boats(
-                some, self._commands, self._memory, self._p, self._on, self._act
-            ),
-            chosen,
-        )
+        self.shared(lambda some: self.code.settle_boats(some, self.fleet), chosen)
 
     def advance(
         self, commands: ArrayLike | Mapping[str, float] | None = None, steps: int = 1
@@ -202,20 +213,7 @@ class Batch:
                     self._p[b, first : first + len(values)] = values
 
     def _stepped(self, boats: Boats, steps: int) -> None:
-        self.code.advance_boats(
-            boats,
-            self.t,
-            self._y,
-            self._commands,
-            self._memory,
-            self._act,
-            self.step,
-            steps,
-            self._p,
-            self._on,
-            self._k,
-            self._none,
-        )
+        self.code.advance_boats(boats, self.fleet, self.step, steps)
 
     def _weigh(self, boats: Boats) -> None:
         self.code.weigh_boats(boats, self._body, self._p, self._on, self._k)
@@ -233,11 +231,7 @@ class Batch:
 
     def feel(self, felt: Array) -> None:
         """What instruments without noise would say, a row (11,) a boat, in the order of `control.compiled.FELT`."""
-        self.shared(
-            lambda some: self.code.feel_boats(
-                some, self.t, self._y, self._act, self._p, self._on, self._k, self._none, felt
-            )
-        )
+        self.shared(lambda some: self.code.feel_boats(some, self.fleet, felt))
 
     def _chosen(self, boats: ArrayLike | None) -> Boats:
         """Numbers of the boats that are meant. Raises BadInput."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from boatsim.errors import BadInput
 from boatsim.physics.commands import taken
+from boatsim.physics.kernel.records import Model
 from boatsim.physics.program import Program
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
@@ -27,7 +28,6 @@ class Twin:
         self.program = Program(vessel)
         self.code = self.program.module
         self._values, self._on = self.program.values(), self.program.switches()
-        self._none = np.zeros(self.code.NQ)
 
     def rollout(
         self,
@@ -46,24 +46,12 @@ class Twin:
         if substeps < 1 or abs(substeps * self.step - interval) > 1e-9 * interval:
             raise BadInput(f"step {self.step:g} s does not divide the interval {interval:g} s")
         p = self._values if values is None else values
-        memory, act = np.zeros(self.program.memory_size), np.zeros(self.program.held_size)
         commands = np.ascontiguousarray(taken(self.vessel, np.asarray(commands, dtype=float)))
-        self.code.settle(commands[0], memory, p, self._on, act)
-        y = self.program.joint_rates(np.array(start, dtype=float))
-        out = np.empty((len(commands) + 1, len(y)))
-        self.code.rollout(
-            t0,
-            y,
-            commands,
-            memory,
-            self.step,
-            substeps,
-            self.program.body,
-            p,
-            self._on,
-            self._none,
-            out,
-        )
+        model = Model(self.program.body, p, self._on)
+        plant = self.program.plant(self.program.joint_rates(np.array(start, dtype=float)))
+        self.code.settle(commands[0], plant.memory, p, self._on, plant.act)
+        out = np.empty((len(commands) + 1, len(plant.y)))
+        self.code.rollout(model, plant, commands, t0, self.step, substeps, out)
         return self.program.body_rates(out)
 
     def coast(self, start: Sequence[float], commands: Mapping[str, float], steps: int) -> Array:

@@ -1,178 +1,170 @@
-"""The closed loop of many boats, compiled: every period sensors, law and commands, then some steps of physics.
+"""The closed loop of many vessels, compiled: in every control period sensors, law, commands and steps of physics.
 
-It knows neither vessel nor controller: what they compile to comes in as pointers to functions, so that it is compiled
-once for each controller, whatever boat it steers.
+It depends neither on the vessel nor on the controller: their compiled functions are passed as pointers, so that it is
+compiled once for each kind of controller, whatever vessel it steers.
 """
 
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from numba import types
 
 from boatsim.physics.commands import SLACK
+from boatsim.physics.compiler_internals import FunctionPointer
+from boatsim.physics.debugging import DEBUG
 from boatsim.physics.kernel.compiling import merged, unlocked
+from boatsim.physics.kernel.records import Fleet
 from boatsim.physics.signals import Array
 from boatsim.simulate.sensing import disturb
+
+
+class Periods(NamedTuple):
+    """The control periods of one call."""
+
+    law_first: bool  # each period begins with the law; else it ends with it
+    number: int
+    steps: int  # integration steps of a period
+    dt: float  # [s] integration step
+
+
+class Control(NamedTuple):
+    """Records of the controllers, one for each vessel."""
+
+    settings: Any
+    memory: Any
+    sense: Any
+    goal: Any
+    sent: Any
+
+
+class Sensing(NamedTuple):
+    """Readings of the instruments."""
+
+    felt: Array  # (n, 11) numbers of the records `sense`
+    sensors: Array  # `Sensors.numbers`
+    noise: Array  # (boats, periods, 7) standard normal numbers
+
+
+class Goals(NamedTuple):
+    """Goals of the controllers."""
+
+    wanted: Array  # (n, G) numbers of the records `goal`
+    values: Array  # (periods, G) the same for all vessels
+
+
+class Orders(NamedTuple):
+    """Commands that the controllers send."""
+
+    values: Array  # (n, orders) numbers of the records `sent`
+    places: Any  # (orders,) input of the vessel that each order is for
+    low: Array  # (inputs,) lowest and
+    high: Array  # (inputs,) highest value of each input
+    saturated: Array  # (n, inputs) number of steps in which more was ordered than the range allows
+    total: Array  # (n, inputs) integral of the commands in force over time
+
+
+class Loop(NamedTuple):
+    """What the closed loop takes of the controllers."""
+
+    control: Control
+    sensing: Sensing
+    goals: Goals
+    orders: Orders
+
 
 Boats = types.Array(types.int64, 1, "C")
 Row = types.Array(types.float64, 1, "C")
 Rows = types.Array(types.float64, 2, "C")
-Block = types.Array(types.float64, 3, "C")
-FEEL = types.void(Boats, Row, Rows, Rows, Rows, Row, Rows, Row, Rows)  # `feel_boats` of a program
-ADVANCE = types.void(
-    Boats, Row, Rows, Rows, Rows, Rows, types.float64, types.int64, Rows, Row, Rows, Row
-)
-
-
-class Pointer:
-    """A compiled function of one signature as an argument of another: numba finds it without a search."""
-
-    def __init__(self, function: Any, signature: Any) -> None:
-        """Compiles it, if that was not done before."""
-        function.compile(signature.args)
-        compiled = function.get_compile_result(signature)
-        self._address = compiled.library.get_pointer_to_function(
-            compiled.fndesc.llvm_cfunc_wrapper_name
-        )
-        self._numba_type_ = types.FunctionType(signature)
-        self._function = function  # whose code must outlive the address
-
-    def __wrapper_address__(self) -> int:
-        return int(self._address)
+FLEET = types.NamedTuple([Row, Rows, Rows, Rows, Rows, Rows, Row, Rows, Row], Fleet)
+FEEL = types.void(Boats, FLEET, Rows)  # `feel_boats` of a program
+ADVANCE = types.void(Boats, FLEET, types.float64, types.int64)  # `advance_boats` of a program
+PERIODS = types.NamedTuple([types.boolean, types.int64, types.int64, types.float64], Periods)
 
 
 @unlocked
 def disturb_boats(boats: Any, felt: Array, sensors: Array, noise: Array, i: int) -> None:
-    """What is felt aboard made what sensors say; noise (boats, periods, 7) of period i."""
+    """Add the errors of the sensors to true readings; noise (boats, periods, 7) of period i."""
     for j in range(len(boats)):
         disturb(felt[boats[j]], sensors, noise[j, i])
 
 
 @merged
-def note_orders(
-    boats: Any,
-    commands: Array,
-    orders: Array,
-    places: Any,
-    low: Array,
-    high: Array,
-    steps: int,
-    dt: float,
-    beyond: Array,
-    total: Array,
-) -> None:
-    """Count what acts over some steps, and whether more was ordered."""
+def count_orders(boats: Any, commands: Array, orders: Orders, steps: int, dt: float) -> None:
+    """Add up the commands in force over some steps, and the steps in which more was ordered."""
+    low, high = orders.low, orders.high
     for b in boats:
-        for j in range(len(places)):
-            c = places[j]
-            total[b, c] += commands[b, c] * (steps * dt)
-            if abs(orders[b, j] - commands[b, c]) > SLACK * (high[c] - low[c]):
-                beyond[b, c] += steps
+        for j in range(len(orders.places)):
+            c = orders.places[j]
+            orders.total[b, c] += commands[b, c] * (steps * dt)
+            if abs(orders.values[b, j] - commands[b, c]) > SLACK * (high[c] - low[c]):
+                orders.saturated[b, c] += steps
 
 
-def sail(
-    law: Any,
-    feel: Any,
-    advance: Any,
-    boats: Any,
-    begins: bool,
-    periods: int,
-    steps: int,
-    dt: float,
-    t: Array,
-    y: Array,
-    commands: Array,
-    memory: Array,
-    act: Array,
-    p: Array,
-    on: Any,
-    k: Array,
-    extra: Array,
-    settings: Any,
-    remembered: Any,
-    sense: Any,
-    felt: Array,
-    sensors: Array,
-    noise: Array,
-    goal: Any,
-    wanted: Array,
-    goals: Array,
-    sent: Any,
-    orders: Array,
-    places: Any,
-    low: Array,
-    high: Array,
-    beyond: Array,
-    total: Array,
+def run_periods(
+    law: Any, feel: Any, advance: Any, boats: Any, periods: Periods, fleet: Fleet, loop: Loop
 ) -> None:
-    """So many control periods of `steps` steps of dt [s], in place; all arrays have a row a boat.
+    """Run control periods in place.
 
-    Each begins with the law where `begins`, else it ends with it. `felt`, `wanted` and `orders` are the numbers of the
-    records `sense`, `goal` and `sent`; goals (periods, G) are those of all boats; `places` says which input of a vessel
-    each order is for, within low and high; noise (boats, periods, 7) is that of `disturb`. `beyond` (n, inputs) counts
-    the steps in which more was ordered than a channel takes, `total` sums what acted over time [s].
+    Args:
+        law: Law of the controllers.
+        feel: `feel_boats` of the program.
+        advance: `advance_boats` of the program.
+        boats: Rows of the vessels to work on.
+        periods: Number and length of the periods.
+        fleet: States and parameters of all vessels.
+        loop: Records and arrays of the controllers.
     """
-    for i in range(periods):
-        if not begins:
-            note_orders(boats, commands, orders, places, low, high, steps, dt, beyond, total)
-            advance(boats, t, y, commands, memory, act, dt, steps, p, on, k, extra)
-        feel(boats, t, y, act, p, on, k, extra, felt)
-        disturb_boats(boats, felt, sensors, noise, i)
+    control, sensing, goals, orders = loop
+    steps, dt, commands = periods.steps, periods.dt, fleet.commands
+    places, low, high = orders.places, orders.low, orders.high
+    for i in range(periods.number):
+        if not periods.law_first:
+            count_orders(boats, commands, orders, steps, dt)
+            advance(boats, fleet, dt, steps)
+        feel(boats, fleet, sensing.felt)
+        disturb_boats(boats, sensing.felt, sensing.sensors, sensing.noise, i)
         for b in boats:
-            for j in range(goals.shape[1]):
-                wanted[b, j] = goals[i, j]
-        law(boats, settings, remembered, sense, goal, sent)
+            for j in range(goals.values.shape[1]):
+                goals.wanted[b, j] = goals.values[i, j]
+        law(boats, control.settings, control.memory, control.sense, control.goal, control.sent)
         for b in boats:
             for j in range(len(places)):
-                commands[b, places[j]] = min(max(orders[b, j], low[places[j]]), high[places[j]])
-        if begins:
-            note_orders(boats, commands, orders, places, low, high, steps, dt, beyond, total)
-            advance(boats, t, y, commands, memory, act, dt, steps, p, on, k, extra)
+                order = orders.values[b, j]
+                commands[b, places[j]] = min(max(order, low[places[j]]), high[places[j]])
+        if periods.law_first:
+            count_orders(boats, commands, orders, steps, dt)
+            advance(boats, fleet, dt, steps)
+
+
+def pointers(law: Any, feel: Any, advance: Any, records: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return the first three arguments of `run_periods`.
+
+    Args:
+        law: Law of the controllers.
+        feel: `feel_boats` of the program.
+        advance: `advance_boats` of the program.
+        records: Types of the five records in `Control`.
+    """
+    if DEBUG:
+        return law, feel, advance
+    return (
+        FunctionPointer(law, types.void(Boats, *records)),
+        FunctionPointer(feel, FEEL),
+        FunctionPointer(advance, ADVANCE),
+    )
 
 
 @cache
-def sailing(pointers: tuple[Any, ...], records: tuple[Any, ...]) -> Any:
-    """`sail` for pointers to law, `feel_boats` and `advance_boats` of these types, and for settings, memory, sense, ...
+def compiled_loop(kinds: tuple[Any, ...], loop: Any) -> Any:
+    """Return `run_periods` compiled for pointers of these types and this type of `Loop`.
 
-    Each has one of its own: numba would try every call on the types of the others too.
+    Each has its own function: numba would try every call on the types of the others too.
+
+    Args:
+        kinds: Types of the three pointers.
+        loop: Type of the record.
     """
-    settings, remembered, sense, goal, sent = records
-    whole, number = types.int64, types.float64
-    own: Any = unlocked(sail)
-    own.compile(
-        (
-            *pointers,
-            Boats,
-            types.boolean,
-            whole,
-            whole,
-            number,
-            Row,
-            Rows,
-            Rows,
-            Rows,
-            Rows,
-            Rows,
-            Row,
-            Rows,
-            Row,
-            settings,
-            remembered,
-            sense,
-            Rows,
-            Row,
-            Block,
-            goal,
-            Rows,
-            Rows,
-            sent,
-            Rows,
-            Boats,
-            Row,
-            Row,
-            Rows,
-            Rows,
-        )
-    )
+    own: Any = unlocked(run_periods)
+    own.compile((*kinds, Boats, PERIODS, FLEET, loop))
     own.disable_compile()
     return own

@@ -6,13 +6,14 @@ and in `add_to_mujoco` of the equations for the compiled step; nowhere else.
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import ModuleType
 from typing import TypedDict, Unpack
 
 import mujoco
 import numpy as np
 
 from boatsim.errors import BadPhysics
+from boatsim.physics.compiled_program import CompiledProgram
+from boatsim.physics.debugging import DEBUG
 from boatsim.physics.kernel.equations import COORDINATES, SIGN
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
@@ -45,7 +46,7 @@ class Engine(Stepper):
     ) -> None:
         """Build the model; `look` goes to `world.build`. Raises BadPhysics for a model that can not be stepped.
 
-        `callback` is "native" (and falls back to "python" on any difference between the two) or "python".
+        `callback` is "native" (which falls back to "python", with a warning, where the two differ) or "python".
         """
         super().__init__(vessel, step)
         self.tank = tank or world.open_water(vessel)
@@ -111,8 +112,7 @@ class Engine(Stepper):
 
     def acceleration(self) -> tuple[float, float]:
         """Acceleration of the origin over ground along body x and y [m/s^2], as an accelerometer there feels it."""
-        J = np.zeros((6, self.code.NQ))
-        self.code.jacobian.py_func(self._joint_state().tolist(), J)
+        J = self.program.jacobian(self._joint_state().tolist())
         moving = [k for k, i in enumerate(self.code.FREE) if i < 3]
         ahead, aside, _ = J[:3, moving] @ (self._sign * self.data.qacc[self._place])[moving]
         return float(ahead), float(aside)
@@ -123,16 +123,19 @@ class Engine(Stepper):
         )
 
     def _choose(self, wanted: str, size: int) -> object:
-        """The native callback if it gives the numbers of the Python one, which is in any case there."""
+        """The native callback if it gives the same numbers as the one in Python, which always works."""
         plain = python_callback(self.code, size)
-        if wanted == "python":
+        if wanted == "python" or DEBUG:
             return plain
         try:
-            native_callback.make_symbols_known()
-            fast = self.code.make_native(native_callback.layout(), size)
-        except (BadPhysics, OSError, IndexError):
+            fast = native_callback.compile_native(self.code, size)
+        except BadPhysics as error:
+            native_callback.warn_of_slow_callback(str(error))
             return plain
-        return fast.ctypes if self._agree(fast.ctypes, plain) else plain
+        if not self._agree(fast, plain):
+            native_callback.warn_of_slow_callback("its accelerations differ from those in Python")
+            return plain
+        return fast
 
     def _agree(self, fast: object, plain: object) -> bool:
         """Whether both callbacks give the same acceleration at a state in which every term counts."""
@@ -147,7 +150,9 @@ class Engine(Stepper):
         return bool(np.allclose(found[0], found[1], rtol=SAME, atol=SAME * np.abs(found[1]).max()))
 
 
-def python_callback(code: ModuleType, size: int) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
+def python_callback(
+    code: CompiledProgram, size: int
+) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
     """The callback in Python: the same compiled laws, called through the interpreter."""
 
     def passive(model: mujoco.MjModel, data: mujoco.MjData) -> None:

@@ -3,16 +3,16 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numba
 import numpy as np
-from numba import types
 from numpy.typing import ArrayLike
 
 from boatsim.control.compiled import SENSE, CompiledController, Records, as_table, columns
 from boatsim.errors import BadInput
 from boatsim.physics.commands import SLACK, sent_row
+from boatsim.physics.debugging import DEBUG
 from boatsim.physics.signals import Array
 from boatsim.simulate import compiled_loop
 from boatsim.simulate.batch import Batch, Boats
@@ -131,7 +131,7 @@ class ByLaw:
         )
         self.places = columns(kind.commands, boat.inputs)
         self._low, self._high = aboard.limits
-        self._loop = self._compiled()
+        self._compile()
 
     def reset(self) -> None:
         """Nothing learnt."""
@@ -143,51 +143,36 @@ class ByLaw:
         self.aboard.batch.shared(lambda boats: self._sailed(boats, table, begins))
 
     def _sailed(self, boats: Boats, goals: Array, begins: bool) -> None:
-        a, b, periods = self.aboard, self.aboard.batch, len(goals)
-        self._loop(
-            *self._pointers,
-            boats,
-            begins,
-            periods,
-            a.steps,
-            b.step,
-            b.t,
-            b._y,
-            b._commands,
-            b._memory,
-            b._act,
-            b._p,
-            b._on,
-            b._k,
-            b._none,
-            self._settings,
-            self._memory,
-            self._sense,
-            self._felt,
-            a.sensors.numbers,
-            a.noise(boats, periods),
-            self._goal,
-            self._wanted,
-            goals,
-            self._sent,
-            self.orders,
-            self.places,
-            self._low,
-            self._high,
-            a.saturated,
-            a.total,
+        aboard, batch, count = self.aboard, self.aboard.batch, len(goals)
+        periods = compiled_loop.Periods(begins, count, aboard.steps, batch.step)
+        loop = self._loop(goals, aboard.noise(boats, count))
+        self._run(*self._pointers, boats, periods, batch.fleet, loop)
+
+    def _loop(self, goals: Array, noise: Array) -> compiled_loop.Loop:
+        """Records and arrays of the controllers for the compiled loop."""
+        aboard = self.aboard
+        return compiled_loop.Loop(
+            compiled_loop.Control(
+                self._settings, self._memory, self._sense, self._goal, self._sent
+            ),
+            compiled_loop.Sensing(self._felt, aboard.sensors.numbers, noise),
+            compiled_loop.Goals(self._wanted, goals),
+            compiled_loop.Orders(
+                self.orders, self.places, self._low, self._high, aboard.saturated, aboard.total
+            ),
         )
 
-    def _compiled(self) -> Any:
-        """The loop, law and program being pointers to functions: so it is kept on disk, whatever boat it steers."""
-        code, typeof = self.aboard.batch.code, numba.typeof
-        records = tuple(
-            typeof(r) for r in (self._settings, self._memory, self._sense, self._goal, self._sent)
-        )
-        law = types.void(compiled_loop.Boats, *records)
-        self._pointers = (
-            compiled_loop.Pointer(self.kind.law, law),
-            compiled_loop.Pointer(code.feel_boats, compiled_loop.FEEL),
-            compiled_loop.Pointer(code.advance_boats, compiled_loop.ADVANCE),
-        )
-        return compiled_loop.sailing(tuple(p._numba_type_ for p in self._pointers), records)
+    _run: Callable[..., None]
+
+    def _compile(self) -> None:
+        """Compile the loop; law and program are pointers, so that it is kept on disk for all vessels."""
+        code = self.aboard.batch.code
+        loop = self._loop(np.zeros((1, len(self.kind.goals))), np.zeros((1, 1, NOISES)))
+        records = tuple(map(numba.typeof, loop.control))
+        law = self.kind.law
+        self._pointers = compiled_loop.pointers(law, code.feel_boats, code.advance_boats, records)
+        if DEBUG:
+            self._run = compiled_loop.run_periods
+        else:
+            kinds = tuple(pointer.kind for pointer in self._pointers)
+            self._run = compiled_loop.compiled_loop(kinds, numba.typeof(loop))

@@ -58,7 +58,6 @@ class OpenWater(Stepper):
 
     def acceleration(self) -> tuple[float, float]:
         """Acceleration of the origin over ground along body x and y [m/s^2], as an accelerometer there feels it."""
-        b = self.batch
-        self.code.feel_boats(ONE, b.t, b._y, b._act, b._p, self._on, b._k, self._none, self._felt)
+        self.code.feel_boats(ONE, self.batch.fleet, self._felt)
         ahead, aside = self._felt[0, 3:5].tolist()
         return ahead, aside

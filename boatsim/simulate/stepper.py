@@ -167,7 +167,7 @@ class Stepper(ABC):
     @property
     def state(self) -> State:
         """The present state."""
-        return State(self.t, *self.code.moved.py_func(self._joint_state().tolist()))
+        return State(self.t, *self.program.shown(self._joint_state().tolist()))
 
     @property
     def actuators(self) -> dict[str, float]:

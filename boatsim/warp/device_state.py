@@ -18,7 +18,7 @@ class Boats:
         """`on` is the device, `real` the kind of floats there."""
         self.program, self.n, self.step = program, n, step
         self.wp, self.device = warp(), device(on)
-        self.code: ModuleType = program.module
+        self.code = program.module
         self.kernels: ModuleType = programs.module(program, real)
         self.real = getattr(self.wp, real)
         self.commands = self.zeros(len(program.vessel.inputs))

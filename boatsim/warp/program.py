@@ -29,8 +29,8 @@ def text_of(program: Program, real: str) -> str:
         raise BadInput(f"{program.vessel.name}: {error}") from None
     limits = {
         "{real}": real,
-        "{enough}": repr(code.run.ENOUGH),
-        "{shortest}": repr(code.run.SHORTEST),
+        "{enough}": repr(code.ENOUGH),
+        "{shortest}": repr(code.SHORTEST),
     }
     text = "\n\n".join([HEAD, translation.text, FORCES, PARTS, ALONE])
     for mark, number in limits.items():

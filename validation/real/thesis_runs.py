@@ -14,6 +14,7 @@ import numpy as np
 from boatsim.control.base import Sense
 from boatsim.physics.base import Array, Release
 from boatsim.physics.content import load_class
+from boatsim.physics.kernel.records import Model
 from boatsim.physics.program import Program
 from boatsim.simulate import scenario
 from boatsim.simulate.camera_log import Film, FilmMeasure
@@ -155,7 +156,7 @@ class Bench:
         memory, out = np.zeros(self.program.memory_size), np.zeros((len(commands) + 1, 6))
         start = self.program.command_array(self.scenario.controller.initial_commands())
         code.settle(start, memory, p, on, np.zeros(self.program.held_size))
-        code.rollout(0.0, y, commands, memory, step, 1, body, p, on, np.zeros(3), out)
+        code.rollout(Model(body, p, on), self.program.plant(y, memory), commands, 0.0, step, 1, out)
         return np.asarray(step * np.arange(len(out)), float), np.asarray(out, float)
 
     def _run(
@@ -166,12 +167,8 @@ class Bench:
         controller, file, sensors = told.controller, told.file, told.sensors
         controller.reset()
         period = round(controller.period / file.step)
-        memory, act, on, none = (
-            np.zeros(self.program.memory_size),
-            np.zeros(self.program.held_size),
-            self.program.switches(),
-            np.zeros(3),
-        )
+        memory, act = np.zeros(self.program.memory_size), np.zeros(self.program.held_size)
+        on = self.program.switches()
         code.settle(self.program.command_array(controller.initial_commands()), memory, p, on, act)
         y, out, pull = np.zeros(6), np.zeros((period + 1, 6)), (0.0, 0.0)
         parts, t = [np.zeros((1, 6))], 0.0
@@ -181,7 +178,9 @@ class Bench:
             sense: Sense = sensors.feel(t, (x, east, psi), (u, v, r), pull, rng)
             row = self.program.command_array(controller.step(sense, told.goal_at(t)))
             commands = np.tile(row, (period, 1))
-            code.rollout(t, y, commands, memory, file.step, 1, body, p, on, none, out)
+            code.rollout(
+                Model(body, p, on), self.program.plant(y, memory), commands, t, file.step, 1, out
+            )
             if given is not None:
                 given.append(commands)
             a, b = (out[-1, i] - out[-2, i] for i in (3, 4))  # over the last step

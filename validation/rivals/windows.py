@@ -11,6 +11,7 @@ import numpy as np
 
 from boatsim.diagnosis.filter import MappedRecording, body_of, segments
 from boatsim.physics.base import Array
+from boatsim.physics.kernel.records import Inputs, Model
 
 FIRST = 1.0  # [s] from which a window's start is guessed
 STEP = 1e-4  # [m, rad and per s] by which starts are moved for derivatives
@@ -49,13 +50,9 @@ class Windows:
         track, program = self.track, self.track.program
         out = np.full((len(starts), len(track.times), starts.shape[1]), np.nan)
         program.module.free_runs(
-            track.times,
-            track.command_times,
-            track.command_values,
+            Inputs(track.times, track.command_times, track.command_values),
             track.step,
-            body_of(values),
-            values,
-            on,
+            Model(body_of(values), values, on),
             self.begins,
             self.ends,
             np.ascontiguousarray(starts),

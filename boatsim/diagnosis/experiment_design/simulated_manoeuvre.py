@@ -14,6 +14,7 @@ from boatsim.diagnosis.filter import (
 )
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
+from boatsim.physics.kernel.records import Inputs, Model
 
 CLEAR, TOUCH = (
     0.6,
@@ -102,13 +103,9 @@ def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: 
     values = problem.values(problem.recordings[0], found.free, found.theta)
     out = np.full((1, len(times), len(start)), np.nan)
     problem.program.module.free_runs(
-        times,
-        times,
-        commands,
+        Inputs(times, times, commands),
         problem.config.filter.filter_step,
-        body_of(values),
-        values,
-        problem.program.switches(found.effects),
+        Model(body_of(values), values, problem.program.switches(found.effects)),
         np.array([0]),
         np.array([len(times) - 1]),
         start[None],

@@ -1,19 +1,16 @@
-"""MuJoCo's passive-force callback for this vessel: parameters and actuators lie in `userdata`, so nothing is global.
+"""MuJoCo's passive-force callback of one vessel. All it needs lies in `userdata`, so that no state is global.
 
-userdata: [parameters..., constants k..., actuators at begin, middle and end of the step..., its begin [s], its inverse
-length [1/s]]. Offsets of struct fields are words.
+userdata: parameters (P,); constants (K,); actuators at the begin, in the middle and at the end of the step (3 HELD,);
+begin of the step [s]; 1 / length of the step [1/s].
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numba import carray, types
-from numba.core import cgutils
-from numba.core.ccallback import CFunc
-from numba.extending import intrinsic
 
-from boatsim.physics.kernel.compiling import inlined, lean, on_disk
+from boatsim.physics.compiler_internals import compile_callback, pointer_from_integer
+from boatsim.physics.kernel.compiling import inlined, lean
 from boatsim.physics.signals import Array
 
 from .laws import HELD
@@ -25,7 +22,7 @@ factor_mass = types.ExternalFunction("mj_factorM", types.void(types.voidptr, typ
 
 @inlined
 def passive(t: float, q: Array, qd: Array, user: Array, n: int, f: Array, M: Array) -> None:
-    """Add forces and inertia; the stage of the Runge-Kutta step is known by its time."""
+    """Add forces and inertia; the time tells which stage of the Runge-Kutta step this is."""
     act = n + K
     share = (t - user[act + 3 * HELD]) * user[act + 3 * HELD + 1]
     at = np.int64(0) if share < 0.25 else np.int64(HELD) if share < 0.75 else np.int64(2 * HELD)
@@ -34,22 +31,20 @@ def passive(t: float, q: Array, qd: Array, user: Array, n: int, f: Array, M: Arr
 
 @lean
 def passive_in_place(t: float, q: Array, qd: Array, user: Array, f: Array, M: Array) -> None:
-    """What the native callback does, for the callback written in Python."""
+    """The same as the native callback, for a callback in Python."""
     passive(t, q, qd, user, user.size - 3 * HELD - 2 - K, f, M)
 
 
-@intrinsic
-def pointer(context: Any, word: Any) -> Any:
-    """An address held in an integer, as a pointer."""
+def make_native(offsets: dict[str, int], size: int) -> Any:
+    """Compile the callback to a C function.
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
+    Args:
+        offsets: Offsets of the fields in MuJoCo's structs, as `compiler_internals.mujoco_layout` finds them.
+        size: Floats in the `userdata` of the model. The callback leaves models of other sizes alone.
 
-    return types.voidptr(word), generate
-
-
-def make_native(offsets: dict[str, int], size: int) -> Callable[..., Any]:
-    """The callback as a C function for models whose userdata has `size` floats; other models are left alone."""
+    Returns:
+        numba's C function; its attribute `ctypes` is what MuJoCo takes.
+    """
     of_size, of_time = offsets["nuserdata"], offsets["time"]
     of_q, of_qd, of_user = offsets["qpos"], offsets["qvel"], offsets["userdata"]
     of_f, of_M = offsets["qfrc_passive"], offsets["M"]
@@ -61,17 +56,12 @@ def make_native(offsets: dict[str, int], size: int) -> Callable[..., Any]:
             return
         w = carray(data, (words,), np.int64)
         t = carray(data, (words,), np.float64)[of_time]
-        user = carray(pointer(w[of_user]), (size,), np.float64)
-        q = carray(pointer(w[of_q]), (NQ,), np.float64)
-        qd = carray(pointer(w[of_qd]), (NQ,), np.float64)
-        f = carray(pointer(w[of_f]), (NQ,), np.float64)
-        M = carray(pointer(w[of_M]), (NM,), np.float64)
+        user = carray(pointer_from_integer(w[of_user]), (size,), np.float64)
+        q = carray(pointer_from_integer(w[of_q]), (NQ,), np.float64)
+        qd = carray(pointer_from_integer(w[of_qd]), (NQ,), np.float64)
+        f = carray(pointer_from_integer(w[of_f]), (NQ,), np.float64)
+        M = carray(pointer_from_integer(w[of_M]), (NM,), np.float64)
         passive(t, q, qd, user, n, f, M)
         factor_mass(model, data)
 
-    options = {"nopython": True, "error_model": "numpy"}
-    native = on_disk(
-        CFunc(called, ((types.voidptr, types.voidptr), types.void), {}, options), called
-    )
-    native.compile()
-    return native
+    return compile_callback(called)

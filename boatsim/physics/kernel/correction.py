@@ -1,28 +1,23 @@
-"""How the filter takes one measurement at a time; compiled once for all vessels, which differ in the size n."""
+"""The filter's update by one measurement; compiled once for all vessels, which differ in the size of the state."""
 
 from math import log, sqrt
 
 from boatsim.physics.kernel.compiling import lean
+from boatsim.physics.kernel.records import Channel, Estimate, Measurement
 from boatsim.physics.signals import Array
 
-# [sd] a measurement further off is taken for an outlier: its pull falls with its distance, its
-# penalty grows with the
-# logarithm (as of a Cauchy distribution), neither with a jump at which a fit would get stuck
+# [sd] A measurement with a larger prediction error is an outlier. Its weight falls with the error and its penalty grows
+# with the logarithm of the error, as of a Cauchy distribution. Both are continuous, so that a fit does not get stuck.
 GATE = 5.0
-# outliers of one channel; a further one means that the filter has lost track and must follow
+# Consecutive outliers of one channel. A further one means that the filter has diverged and must follow the measurements.
 IN_A_ROW = 2
 
 
 @lean
-def weigh(
-    P: Array, row: Array, noise: float, gain: Array, Ph: Array, n: int, ny: int, own: int
-) -> float:
-    """Gain (n,) of one measurement and P row' (n,), in place; returns the inverse sd of its prediction error.
-
-    A measurement shows the motion, the first `ny` entries of its `row`, and the state `own`, its instrument's wandering
-    error; -1: it has none.
-    """
-    variance = noise
+def weigh(one: Measurement, estimate: Estimate, gain: Array, Ph: Array) -> float:
+    """Compute gain (n,) and P row' (n,) of one measurement, in place; return the inverse sd of its prediction error."""
+    row, n, ny, own = one.row, estimate.n, one.ny, one.own
+    P, variance = estimate.P, one.variance
     for a in range(n):
         Ph[a] = 0.0
     for b in range(ny):
@@ -41,29 +36,13 @@ def weigh(
 
 
 @lean
-def take(
-    error: float,
-    row: Array,
-    noise: float,
-    full: bool,
-    outliers: Array,
-    z: Array,
-    P: Array,
-    Ph: Array,
-    n: int,
-    ny: int,
-    own: int,
-    gain: Array,
-    scale: Array,
-    white: Array,
-) -> float:
-    """Correct z by one measurement, and P if `full`; returns what it adds to the log likelihood.
-
-    Of `outliers`, `scale` and `white` the first entry belongs to the measurement's channel.
-    """
+def update(one: Measurement, estimate: Estimate, gains: bool, channel: Channel, Ph: Array) -> float:
+    """Correct the mean by one measurement, and the covariance if `gains`; return its log likelihood."""
+    z, P, n, error = estimate.z, estimate.P, estimate.n, one.error
+    gain, scale, white, outliers = channel.gain, channel.scale, channel.white, channel.outliers
     likelihood = 0.0
-    if full:
-        scale[0] = weigh(P, row, noise, gain, Ph, n, ny, own)
+    if gains:
+        scale[0] = weigh(one, estimate, gain, Ph)
         likelihood += log(scale[0])
         far = abs(error) * scale[0] > GATE and outliers[0] < IN_A_ROW
         outliers[0] = outliers[0] + 1.0 if far else 0.0
@@ -76,7 +55,7 @@ def take(
     white[0] = error * scale[0]
     for a in range(n):
         z[a] += gain[a] * error
-    if full:
+    if gains:
         for a in range(n):
             for b in range(n):
                 P[a, b] -= gain[a] * Ph[b]

@@ -1,7 +1,7 @@
-"""Signatures of what a vessel's effects compose to. `boatsim.physics.compose` writes the real ones in its place.
+"""Signatures of the laws of a vessel. `boatsim.physics.compose` generates the file that replaces this one.
 
-p is the flat array of all effects' parameters, on says which optional effects act; act holds the actuators and the
-cosine and sine of those that are angles, HELD numbers each at begin, middle and end of a step.
+p: parameters of all effects, flat. on: 1 for each effect that acts. act: actuators, and the cosine and sine of those
+that are angles, HELD numbers each at the begin, in the middle and at the end of a step.
 """
 
 from typing import Any
@@ -9,14 +9,14 @@ from typing import Any
 from boatsim.physics.signals import Array, Motion, Shown, Swell, Wander, Wrench
 
 HELD = 0
-MEMORY = 1  # floats that all channels together remember
+MEMORY = 1  # floats of the state of all channels
 HAS_PAUSE = False  # whether the signal of any channel may jump or bend while its command is held
-HAS_SWELL = False  # whether any effect of the vessel is a swell
-HAS_WANDER = False  # whether the error of any instrument wanders
+HAS_SWELL = False  # whether any effect is a random oscillating force
+HAS_WANDER = False  # whether any instrument has a slowly varying error
 
 
 def wrench(m: Motion, p: Array, on: Any, act: Array, at: int) -> Wrench:
-    """Sum of all force laws under the actuators act[at:]."""
+    """Sum of all force laws with the actuators act[at:]."""
     raise NotImplementedError
 
 
@@ -26,42 +26,42 @@ def flow(p: Array, on: Any) -> tuple[float, float]:
 
 
 def inertias(p: Array, on: Any, water: Array, hull: Array) -> None:
-    """Add the `Mass` entries (12,) of effects that move with the water and with the hull."""
+    """Add the `Mass` entries (12,) of added mass to `water` and of ballast to `hull`."""
     raise NotImplementedError
 
 
 def actuate(
     commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array, held: Any
 ) -> None:
-    """One step of all channels: commands (those the vessel takes) to act (3 held,): begin, middle, end of the step."""
+    """Advance all channels by one step of dt [s]: commands of the vessel to actuators, act (3 held,)."""
     raise NotImplementedError
 
 
 def pause(commands: Array, memory: Array, p: Array, on: Any) -> float:
-    """Time until a channel's signal jumps or bends of itself [s]; a step must not reach beyond it."""
+    """Time until the signal of a channel jumps or bends while its command is held [s]."""
     raise NotImplementedError
 
 
 def shown(m: Shown, p: Array, on: Any) -> Shown:
-    """What the recording shows of a motion."""
+    """Motion as the recording shows it."""
     raise NotImplementedError
 
 
 def distorted(on: Any) -> bool:
-    """Whether a recording shows anything but the motion itself."""
+    """Whether a recording shows anything but the true motion."""
     raise NotImplementedError
 
 
 def late(p: Array, on: Any) -> float:
-    """Time by which the recorded motion is late behind the recorded commands [s]."""
+    """Delay of the recorded motion behind the recorded commands [s]."""
     raise NotImplementedError
 
 
 def swell(p: Array, on: Any) -> Swell:
-    """The random oscillating force that acts; frequency 0: none."""
+    """Random oscillating force; frequency 0: none."""
     raise NotImplementedError
 
 
 def wander(p: Array, on: Any) -> Wander:
-    """The slowly varying error of the instruments; zeros: none."""
+    """Slowly varying error of the instruments; zeros: none."""
     raise NotImplementedError

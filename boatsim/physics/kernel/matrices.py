@@ -1,25 +1,25 @@
-"""Small dense matrices inside compiled code, in place; compiled once for all vessels, which differ in the size n."""
+"""Operations on small dense matrices, in place; compiled once for all vessels, which differ in the size n."""
 
 from math import sqrt
 
 from boatsim.physics.kernel.compiling import lean
 from boatsim.physics.signals import Array
 
-SMALLEST = (
-    2.0**-40
-)  # share of a step over which an exponential begins; a matrix stiffer than that has gone wild
+# Smallest share of a step over which the series of an exponential is taken; a matrix that needs a
+# smaller one belongs to a model that has diverged.
+SMALLEST = 2.0**-40
 
 
 @lean
 def copy(source: Array, out: Array) -> None:
-    """Fill a vector from the beginning of another. Assigning slices would take numba seconds to compile."""
+    """Fill a vector from the begin of another. An assignment of slices would take numba seconds to compile."""
     for i in range(len(out)):
         out[i] = source[i]
 
 
 @lean
 def copy_square(source: Array, out: Array, n: int) -> None:
-    """Fill the first n rows and columns of a matrix from those of another."""
+    """Copy the first n rows and columns of a matrix."""
     for i in range(n):
         for j in range(n):
             out[i, j] = source[i, j]
@@ -27,7 +27,7 @@ def copy_square(source: Array, out: Array, n: int) -> None:
 
 @lean
 def multiply(A: Array, B: Array, out: Array, n: int) -> None:
-    """Out = A B, most of A's rows zero: faster here than a library call."""
+    """Compute out = A B; A has many zeros, so that this is faster than a library call."""
     for i in range(n):
         for j in range(n):
             out[i, j] = 0.0
@@ -40,7 +40,7 @@ def multiply(A: Array, B: Array, out: Array, n: int) -> None:
 
 @lean
 def carry(F: Array, P: Array, work: Array, n: int) -> None:
-    """P = F P F', symmetric, in place; F's many zeros are passed over."""
+    """Compute P = F P F', symmetric, in place; the many zeros of F are skipped."""
     multiply(F, P, work, n)
     for i in range(n):
         for j in range(i):
@@ -53,9 +53,9 @@ def carry(F: Array, P: Array, work: Array, n: int) -> None:
 
 @lean
 def exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
-    """F = exp(A h); A and B are overwritten.
+    """Compute F = exp(A h) by scaling and squaring; A and B are overwritten.
 
-    To third order of so small a part of h that it converges for a stiff hull too, then squared up again.
+    The series of third order is taken over a part of h that is small enough for stiff damping.
     """
     part, stiffest = h, 0.0
     for i in range(n):
@@ -79,7 +79,7 @@ def exponential(A: Array, h: float, F: Array, B: Array, n: int) -> None:
 
 @lean
 def solve(A: Array, B: Array, n: int) -> None:
-    """B = A^-1 B in place for a symmetric positive definite A (n, n), which is overwritten by its Cholesky factor."""
+    """Compute B = A^-1 B for a symmetric positive definite A (n, n), which becomes its Cholesky factor."""
     for j in range(n):
         for k in range(j):
             for i in range(j, n):

@@ -1,6 +1,6 @@
-"""Signatures of a vessel's equations of motion. `boatsim.physics.kernel.equations` writes the real ones in its place.
+"""Signatures of a vessel's equations of motion. `boatsim.physics.kernel.source` generates the file that replaces this.
 
-State s = (joint coordinates, their rates) of the freedoms there are, NQ each; k the constants of a pass (`inertia`).
+State s = (joint coordinates, their rates) of the vessel's degrees of freedom, NQ each. k: masses (`inertia`).
 """
 
 from typing import Any
@@ -10,50 +10,50 @@ import numpy as np
 from boatsim.physics.signals import Array, Shown
 
 NQ = 0  # positions; the state has twice as many
-K = 0  # constants of a pass
-FREE: tuple[int, ...] = ()  # of (surge, sway, heave, roll, pitch, yaw)
-FREED: tuple[float, ...] = ()  # 1 for each of the six that is free
+K = 0  # masses, constant over a run
+FREE: tuple[int, ...] = ()  # places among (surge, sway, heave, roll, pitch, yaw)
+FREED: tuple[float, ...] = ()  # for each of the six: 1 if it is free, else 0
 SHOWS: tuple[int, ...] = ()  # entries of `Shown` in the order of a state
-TILTS = False  # axes are fixed in the hull
-CLOSED = True  # the whole mass matrix is inverted once
-BESIDE = 1e-6  # [m, rad, m/s, rad/s] of a one-sided difference
+TILTS = False  # whether the body axes are fixed in the hull; else they are level
+CLOSED = True  # whether one inverse of the mass matrix serves all states
+DIFFERENCE = 1e-6  # [m, rad, m/s, rad/s] step of one-sided finite differences
 
 
 def step_in_place(
     t: float, y: Array, dt: float, act: Array, p: Array, on: Any, k: Array, extra: Array
 ) -> None:
-    """One Runge-Kutta step of fourth order; act: the actuators at its begin, middle and end."""
+    """Advance the state y by one Runge-Kutta step of fourth order; extra: a further body force (NQ,)."""
 
 
 def forces(t: float, s: Array, act: Array, at: Any, p: Array, on: Any) -> tuple[float, ...]:
-    """Body force of all laws, over the freedoms, under the actuators act[at:]."""
+    """Body force (NQ,) of all laws with the actuators act[at:]."""
     raise NotImplementedError
 
 
 def slopes(
     t: float, s: Array, act: Array, p: Array, on: Any, k: Array, extra: Array, out: Array
 ) -> None:
-    """Derivatives of the joint accelerations by the state, one-sided, to out (NQ, 2 NQ)."""
+    """Write the derivatives of the joint accelerations by the state to out (NQ, 2 NQ), one-sided."""
 
 
 def force_slopes(s: Array, k: Array, A: Array, row: np.int64, column: np.int64) -> None:
-    """Derivatives of the joint accelerations by a body force over the freedoms, to A[row:, column:]."""
+    """Write the derivatives of the joint accelerations by a body force to A[row:, column:]."""
 
 
 def feels(
     t: float, s: Any, act: Array, at: Any, p: Array, on: Any, k: Array, extra: Any
 ) -> tuple[float, ...]:
-    """What instruments aboard would feel: psi, r, acceleration over ground along x and y, u, v, x, y, phi, p."""
+    """Readings of instruments aboard: psi, r, acceleration over ground along x and y, u, v, x, y, phi, p."""
     raise NotImplementedError
 
 
 def moved(s: Any) -> Shown:
-    """What instruments that show the truth would show of a state."""
+    """True values of all recorded signals in a state."""
     raise NotImplementedError
 
 
 def observe_level(s: Array, code: int, row: Array) -> float:
-    """Expected value of one measured channel and its row of the measurement matrix, axes that do not tilt."""
+    """Expected value of one measured channel; fills its row of the measurement matrix. For level axes only."""
     raise NotImplementedError
 
 

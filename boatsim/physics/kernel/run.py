@@ -1,35 +1,37 @@
-"""Actuators, and runs of many steps under given commands."""
+"""Actuators, and simulations of many steps under given commands."""
 
 from typing import Any
 
 import numpy as np
 
 from boatsim.physics.kernel.compiling import compiled, lean
+from boatsim.physics.kernel.records import Model, Plant
 from boatsim.physics.signals import Array
 
 from .inertia import constants
 from .laws import HAS_PAUSE, HELD, actuate, pause
 from .motion import NQ, K, step_in_place
 
-SHORTEST = 1e-6  # [s] of a step; within one, a signal that jumps counts with its mean
-# by which parts of a step that only ever shrink may be shorter less: a ramp behind a lag ends
-# without end
+# [s] Shortest part of a step; within one, a signal that jumps is replaced by its mean.
+SHORTEST = 1e-6
+# Factor by which the shortest part grows where the parts of a step only become shorter: the parts of
+# a ramp behind a first-order lag would become shorter without end.
 GROWS = 8.0
-LONG = 1e4  # [s] longer than any actuator takes
-ENOUGH = 1e-9  # [s] a step is done
+LONG = 1e4  # [s] longer than any actuator needs to reach its command
+ENOUGH = 1e-9  # [s] a remainder of a step that is neglected
 
 
 @lean
 def actuate_in_place(
     commands: Array, memory: Array, dt: float, p: Array, on: Any, act: Array
 ) -> None:
-    """One step of all channels: act holds the actuators at its begin, in its middle and at its end."""
+    """Advance all channels by one step; fill act with the actuators at its begin, in its middle and at its end."""
     actuate(commands, memory, dt, p, on, act, np.int64(HELD))
 
 
 @compiled
 def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> None:
-    """Let the actuators reach their commands: a few steps far longer than any actuator takes, in place."""
+    """Let the actuators reach their commands, in place, by a few steps far longer than any actuator needs."""
     for i in range(3 * HELD):
         act[i] = 0.0
     for _ in range(3):
@@ -42,7 +44,7 @@ def settle(commands: Array, memory: Array, p: Array, on: Any, act: Array) -> Non
 def until_bend(
     commands: Array, memory: Array, left: float, least: float, p: Array, on: Any
 ) -> float:
-    """Length of the next step: no further than `left`, nor, beyond `least`, than where a signal jumps or bends."""
+    """Length of the next part of a step: at most `left`, and not beyond a jump or bend of a signal, but for `least`."""
     if HAS_PAUSE:
         return min(left, max(pause(commands, memory, p, on), least))
     return left
@@ -50,26 +52,23 @@ def until_bend(
 
 @lean
 def least_after(part: float, before: float, least: float) -> float:
-    """The least length of the next part of a step, after this one and the one before."""
+    """Return the least length of the next part of a step, after parts of the lengths `before` and `part`."""
     return GROWS * least if part <= least or part < before else SHORTEST
 
 
 @compiled
 def rollout(
-    t0: float,
-    y: Array,
-    commands: Array,
-    memory: Array,
-    dt: float,
-    substeps: int,
-    body: Array,
-    p: Array,
-    on: Any,
-    extra: Array,
-    out: Array,
+    model: Model, plant: Plant, commands: Array, t0: float, dt: float, substeps: int, out: Array
 ) -> None:
-    """Free run: row i of commands (N, C) is held for `substeps` steps of dt; states to out (N + 1, 2 NQ)."""
-    k, act = np.zeros(K), np.zeros(3 * HELD)
+    """Simulate a vessel: row i of commands (N, C) is held for `substeps` steps of dt; states to out (N + 1, 2 NQ).
+
+    Changes the arrays of `plant`.
+    """
+    body, p, on = model
+    y, memory, act, force = plant
+    k = np.zeros(K)
+    for i in range(3 * HELD):
+        act[i] = 0.0
     constants(body, p, on, k)
     out[0] = y
     for i in range(commands.shape[0]):
@@ -79,6 +78,6 @@ def rollout(
                 part = until_bend(commands[i], memory, left, least, p, on)
                 least, before = least_after(part, before, least), part
                 actuate_in_place(commands[i], memory, part, p, on, act)
-                step_in_place(t, y, part, act, p, on, k, extra)
+                step_in_place(t, y, part, act, p, on, k, force)
                 t, left = t + part, left - part
         out[i + 1] = y[: 2 * NQ]

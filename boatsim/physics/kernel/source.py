@@ -75,7 +75,7 @@ def steps(n: int) -> list[str]:
 
 def slopes(n: int) -> list[str]:
     """Body of the derivatives of the joint accelerations by the 2 n states."""
-    beside = ", ".join(f"s[{i}] + BESIDE * (j == {i})" for i in range(2 * n))
+    beside = ", ".join(f"s[{i}] + DIFFERENCE * (j == {i})" for i in range(2 * n))
     return [
         f"force = ({entries('extra', n)},)",
         f"{' = '.join(f'b{i}' for i in range(n))} = 0.0",
@@ -84,7 +84,7 @@ def slopes(n: int) -> list[str]:
         "    if j < 0:",
         f"        {', '.join(f'b{i}' for i in range(n))}{',' if n == 1 else ''} = a",
         "    else:",
-        *(f"        out[{i}, j] = (a[{i}] - b{i}) / BESIDE" for i in range(n)),
+        *(f"        out[{i}, j] = (a[{i}] - b{i}) / DIFFERENCE" for i in range(n)),
     ]
 
 
@@ -102,7 +102,7 @@ def head(w: Writer) -> list[str]:
         f"SHOWS = {shows}  # entries of `Shown` in the order of a state",
         f"TILTS = {w.tilts}  # axes are fixed in the hull",
         f"CLOSED = {w.closed}  # the whole mass matrix is inverted once",
-        "BESIDE = 1e-6  # [m, rad, m/s, rad/s] of a one-sided difference",
+        "DIFFERENCE = 1e-6  # [m, rad, m/s, rad/s] of a one-sided difference",
         "",
         "",
     ]

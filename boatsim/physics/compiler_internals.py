@@ -1,0 +1,290 @@
+"""Every use that boatsim makes of undocumented parts of numba, llvmlite and MuJoCo.
+
+No other module may rely on them. Each assumption below is checked by `tests/test_compiler_internals.py`, and the upper
+bounds on numba and MuJoCo in `pyproject.toml` exist because of this module: raise a bound after that test has passed on
+the new version.
+
+1. numba reads the default of each argument of a Python function through an `AbstractTemplate` (`known_to_numba`).
+2. numba keeps compiled code in a `FunctionCache`, whose file object may be given another class (`keep_on_disk`).
+3. The option `_nrt=False` switches off numba's reference counts (`WITHOUT_REFERENCE_COUNTS`).
+4. A compiled function has a C wrapper whose address may be passed to other compiled code (`FunctionPointer`).
+5. `CFunc` accepts such a cache too (`compile_callback`), and an intrinsic may return a pointer (`pointer_from_integer`).
+6. The C structs of MuJoCo hold the addresses of their arrays, so that a search in memory finds the offset of each field
+   in whatever version is installed (`mujoco_layout`).
+"""
+
+import ctypes
+import pickle
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils, utils
+from numba.core.base import BaseContext
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.ccallback import CFunc
+from numba.core.typing.templates import AbstractTemplate, Signature, infer_global, signature
+from numba.extending import intrinsic, lower_builtin
+from numpy.typing import NDArray
+
+from boatsim.errors import BadPhysics
+from boatsim.physics.dependency_hash import stamp
+
+# numba counts references to arrays with locked instructions at every assignment, which takes longer
+# than the laws of a vessel themselves. Functions that allocate no arrays do without.
+WITHOUT_REFERENCE_COUNTS: Mapping[str, Any] = {"_nrt": False}
+
+# Named tuples with default values
+# ------------------------------------------------------------------------------------------------
+
+
+def known_to_numba(constructor: Callable[..., object], record: type) -> None:
+    """Let compiled code call a function that fills the fields of a named tuple, the others at their defaults.
+
+    numba does not support defaults of named tuples, and a small compiled function in place of the constructor would be
+    analysed again at every call. The constructor is therefore registered by its signature alone.
+
+    Args:
+        constructor: Python function whose arguments are the fields of `record`, floats with a default.
+        record: The named tuple that it returns.
+    """
+    python = utils.pysignature(constructor)
+    defaults = {name: float(about.default) for name, about in python.parameters.items()}
+
+    class Constructor(AbstractTemplate):
+        """Typing of one call: an argument that is not given has its default."""
+
+        def generic(self, args: Sequence[types.Type], kws: Mapping[str, types.Type]) -> Signature:
+            given = python.bind(*args, **kws).arguments
+            full = [given.get(name, types.Omitted(value)) for name, value in defaults.items()]
+            result = types.BaseTuple.from_types([types.float64] * len(full), record)
+            return signature(result, *full).replace(pysig=python)
+
+    infer_global(constructor)(Constructor)
+
+    @lower_builtin(constructor, types.VarArg(types.Any))
+    def build(
+        context: BaseContext, builder: ir.IRBuilder, call: Signature, args: Sequence[ir.Value]
+    ) -> ir.Value:
+        items = []
+        for value, kind in zip(args, call.args, strict=True):
+            if isinstance(kind, types.Omitted):
+                items.append(context.get_constant(types.float64, float(kind.value)))
+            else:
+                items.append(context.cast(builder, value, kind, types.float64))
+        return context.make_tuple(builder, call.return_type, items)
+
+
+# Compiled code on disk
+# ------------------------------------------------------------------------------------------------
+
+DIGEST_SIZE = sha256().digest_size  # bytes in front of each file of compiled code
+
+
+class SealedCacheFile(IndexDataCacheFile):
+    """The files in which numba keeps the compiled code of one function, each with a digest of its content.
+
+    A damaged file counts as missing. numba compares the content of the function's own file alone; here the content of
+    all modules of boatsim that the file imports counts as well.
+    """
+
+    source: Path
+
+    @property
+    def _source_stamp(self) -> str:
+        if self.source.parent.name.startswith("program_"):
+            return ""  # the folder of a compiled program is named by its content
+        return stamp(self.source)
+
+    def load(self, key: Any) -> Any:
+        """Return the compiled code of a signature, None if there is none that can be read."""
+        with suppress(Exception):  # a damaged pickle may raise any exception
+            return super().load(key)
+        return None
+
+    def save(self, key: Any, data: Any) -> None:
+        """Write compiled code; where that fails the function is compiled again in the next process."""
+        try:
+            super().save(key, data)
+        except Exception:  # the index cannot be read: start another one
+            with suppress(Exception):
+                self.flush()
+                super().save(key, data)
+
+    def _save_data(self, name: str, data: Any) -> None:
+        content = self._dump(data)
+        with self._open_for_write(self._data_path(name)) as file:
+            file.write(sha256(content).digest() + content)
+
+    def _load_data(self, name: str) -> Any:
+        whole = Path(self._data_path(name)).read_bytes()
+        if sha256(whole[DIGEST_SIZE:]).digest() != whole[:DIGEST_SIZE]:
+            raise OSError(f"{name} is damaged")
+        return pickle.loads(whole[DIGEST_SIZE:])
+
+
+def keep_on_disk(compiled: Any, function: Callable[..., Any]) -> Any:
+    """Give a dispatcher or C callback of numba a `SealedCacheFile`; return it.
+
+    Args:
+        compiled: What numba made of `function`.
+        function: The Python function.
+    """
+    compiled._cache = FunctionCache(function)
+    compiled._cache._cache_file.__class__ = SealedCacheFile
+    compiled._cache._cache_file.source = Path(function.__code__.co_filename)
+    return compiled
+
+
+# Pointers
+# ------------------------------------------------------------------------------------------------
+
+
+class FunctionPointer:
+    """A compiled function of one signature as an argument of another compiled function."""
+
+    def __init__(self, function: Any, call: Any) -> None:
+        """Compile `function` for the signature `call`, unless that was done before."""
+        function.compile(call.args)
+        compiled = function.get_compile_result(call)
+        self._address = compiled.library.get_pointer_to_function(
+            compiled.fndesc.llvm_cfunc_wrapper_name
+        )
+        self._numba_type_ = types.FunctionType(call)
+        self._function = function  # its code must exist as long as the address is used
+
+    @property
+    def kind(self) -> Any:
+        """The type that numba gives to the pointer."""
+        return self._numba_type_
+
+    def __wrapper_address__(self) -> int:
+        return int(self._address)
+
+
+@intrinsic
+def pointer_from_integer(context: Any, word: Any) -> Any:
+    """Return the pointer whose address is `word`."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
+
+    return types.voidptr(word), generate
+
+
+def compile_callback(function: Callable[..., Any]) -> Any:
+    """Return a C function of two pointers without a result, with its compiled code kept on disk."""
+    options = {"nopython": True, "error_model": "numpy"}
+    signature = ((types.voidptr, types.voidptr), types.void)
+    native = keep_on_disk(CFunc(function, signature, {}, options), function)
+    native.compile()
+    return native
+
+
+# MuJoCo's structs
+# ------------------------------------------------------------------------------------------------
+
+FIELDS = ("qpos", "qvel", "userdata", "qfrc_passive", "M")  # arrays of mjData
+SEARCH_LIMIT = 1 << 17  # [words] every field of interest lies within this distance of the start
+PROBE_TIME = 76543.21098765432  # [s] occurs nowhere else in a fresh mjData
+PROBE_SIZES = (1237, 3571, 911)  # sizes of userdata that occur nowhere else in a fresh mjModel
+PROBE_MODELS = (
+    """<mujoco><size nuserdata="5"/><worldbody><body>
+    <joint type="slide" axis="1 0 0"/><joint axis="0 0 1"/>
+    <inertial pos="0 0 .1" mass="1" diaginertia="1 1 1"/></body></worldbody></mujoco>""",
+    """<mujoco><size nuserdata="3"/><worldbody><body>
+    <freejoint/><geom size=".1"/></body></worldbody></mujoco>""",
+)
+
+
+@cache
+def mujoco_layout() -> dict[str, int]:
+    """Find where MuJoCo's structs hold the fields that the native callback needs.
+
+    No header file is needed: Python knows the addresses of the arrays of mjData, and the struct is searched for them.
+
+    Returns:
+        Offsets of the fields of mjData and of its time in 8-byte words, and of `nuserdata` of mjModel in 4-byte words.
+
+    Raises:
+        BadPhysics: A field is not found.
+    """
+    import mujoco
+
+    saved = mujoco.get_mjcb_passive()
+    mujoco.set_mjcb_passive(None)  # compiling the probes would run a callback
+    try:
+        probes = [mujoco.MjData(mujoco.MjModel.from_xml_string(xml)) for xml in PROBE_MODELS]
+        found = {}
+        for name in FIELDS:
+            # A field of size zero has the address of the next one: of the candidates that are
+            # common to both probes the last one is right.
+            hits = set(range(SEARCH_LIMIT))
+            for data in probes:
+                hits &= _search(data._address, getattr(data, name).ctypes.data)
+            if not hits:
+                raise BadPhysics(f"mjData.{name} not found in MuJoCo {mujoco.__version__}")
+            found[name] = max(hits)
+        probes[0].time = PROBE_TIME
+        times = _search(probes[0]._address, int(np.float64(PROBE_TIME).view(np.int64)))
+        if not times:
+            raise BadPhysics(f"mjData.time not found in MuJoCo {mujoco.__version__}")
+        found["time"] = min(times)
+        found["nuserdata"] = _offset_of_nuserdata()
+    finally:
+        mujoco.set_mjcb_passive(saved)
+    return found
+
+
+def _search(address: int, wanted: int) -> set[int]:
+    """Offsets of the words equal to `wanted`; ends soon after the first one, to stay within the struct."""
+    hits: set[int] = set()
+    for start in range(0, SEARCH_LIMIT, 32):
+        found = np.flatnonzero(_words(address + 8 * start, 32) == wanted)
+        hits |= set((start + found).tolist())
+        if hits and not len(found):
+            break
+    return hits
+
+
+def _words(address: int, count: int) -> NDArray[np.int64]:
+    """View of `count` 8-byte words of memory."""
+    return np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(ctypes.c_int64)), (count,))
+
+
+def _offset_of_nuserdata() -> int:
+    """Offset of mjModel.nuserdata in 4-byte words, from models of several known sizes."""
+    import mujoco
+
+    common: set[int] = set(range(512))
+    for size in PROBE_SIZES:
+        model = mujoco.MjModel.from_xml_string(f'<mujoco><size nuserdata="{size}"/></mujoco>')
+        start = ctypes.cast(model._address, ctypes.POINTER(ctypes.c_int32))
+        words = np.ctypeslib.as_array(start, (512,))
+        common &= set(np.flatnonzero(words == size).tolist())
+    if len(common) != 1:
+        raise BadPhysics(f"mjModel.nuserdata not found in MuJoCo {mujoco.__version__}")
+    return common.pop()
+
+
+@cache
+def load_mujoco_symbols() -> None:
+    """Let compiled code call functions of MuJoCo's own library by name.
+
+    Raises:
+        BadPhysics: The package of MuJoCo holds no library.
+    """
+    import mujoco
+    from llvmlite import binding
+
+    folder = Path(mujoco.__file__).parent
+    libraries = sorted([*folder.glob("libmujoco.so*"), *folder.glob("libmujoco*.dylib")])
+    if not libraries:
+        raise BadPhysics(f"no library of MuJoCo in {folder}")
+    binding.load_library_permanently(str(libraries[0]))

@@ -1,0 +1,172 @@
+"""Named tuples in which related arrays travel between Python and compiled functions.
+
+Sizes: NQ degrees of freedom; NZ entries of the filter's state; P parameters of all effects; E effects; C measured
+channels; N rows of a recording; M changes of the commands; B boats of a batch.
+"""
+
+from typing import Any, NamedTuple
+
+from boatsim.physics.signals import Array, Swell, Wander
+
+
+class Model(NamedTuple):
+    """The numbers of a vessel: rigid body, parameters, and which optional effects act."""
+
+    body: Array  # (6,) as in `Program.body`
+    p: Array  # (P,) parameters of all effects, in SI units
+    on: Any  # (E,) 1 for an effect that acts
+
+
+class Laws(NamedTuple):
+    """What the equations of motion take: parameters, switches and the constants computed from them."""
+
+    p: Array  # (P,) parameters of all effects, in SI units
+    on: Any  # (E,) 1 for an effect that acts
+    k: Array  # (K,) masses, see `inertia.constants`
+
+
+class Plant(NamedTuple):
+    """State of one vessel; `step_in_place` and `actuate_in_place` change the arrays."""
+
+    y: Array  # (2 NQ,) joint coordinates and their rates
+    memory: Array  # (MEMORY,) state of the actuators
+    act: Array  # (3 HELD,) actuators at the begin, in the middle and at the end of a step
+    force: Array  # (NQ,) further constant body force [N, N m]
+
+
+class Fleet(NamedTuple):
+    """States and parameters of many vessels, a row each; `advance_boats` changes the arrays."""
+
+    t: Array  # (B,) [s]
+    y: Array  # (B, 2 NQ) joint coordinates and their rates
+    commands: Array  # (B, inputs)
+    memory: Array  # (B, MEMORY) state of the actuators
+    act: Array  # (B, 3 HELD) actuators at the begin, in the middle and at the end of a step
+    p: Array  # (B, P) parameters
+    on: Any  # (E,) 1 for an effect that acts, the same for all
+    k: Array  # (B, K) masses
+    force: Array  # (NQ,) further constant body force [N, N m], the same for all
+
+
+class Inputs(NamedTuple):
+    """Row times of a recording and the commands that act on it."""
+
+    times: Array  # (N,) [s]
+    change_times: Array  # (M,) [s]
+    commands: Array  # (M, K) in force from the change time of the same row on
+
+
+class Measurements(NamedTuple):
+    """Measured channels of a recording."""
+
+    values: Array  # (N, C), nan where missing
+    codes: Any  # (C,) 0 .. NQ - 1: a position; NQ .. 2 NQ - 1: a body-axes rate
+    variances: Array  # (C,) of the sensors' noise
+
+
+class LatentForce(NamedTuple):
+    """The slowly varying force that stands for unmodelled effects, an Ornstein-Uhlenbeck process per axis."""
+
+    variances: Array  # (NQ,) [N^2, N^2 m^2]
+    time_constant: float  # [s]
+
+
+class FilterStart(NamedTuple):
+    """Distribution of the filter's state (positions, earth-axes rates, latent forces) at the first row."""
+
+    mean: Array  # (3 NQ,)
+    covariance: Array  # (3 NQ, 3 NQ)
+    rates: Array  # (NQ,) earth-axes rates about which the first interval is linearised
+
+
+class PassOptions(NamedTuple):
+    """What one pass of the filter computes and what it reuses."""
+
+    max_step: float  # [s] longest integration step
+    gains: bool  # compute the gains; else reuse those of the last pass that did
+    linearise: bool  # linearise about the estimate; else reuse the last transitions and steps
+    history: bool  # store what the smoother needs
+
+
+class PassArrays(NamedTuple):
+    """What a pass of the filter computes for each row, or reuses as its options demand."""
+
+    transitions: Array  # (N, 3 NQ, 3 NQ) of motion and latent forces
+    steps: Array  # (N,) [s] longest integration step that follows the quickest motion
+    gains: Array  # (N, C, NZ)
+    scale: Array  # (N, C) inverse sd of the prediction errors, 0 where missing, less for an outlier
+    whitened: Array  # (N, C) prediction errors in standard deviations
+
+
+class History(NamedTuple):
+    """What the smoother takes from a pass of the filter; it replaces means and covariances."""
+
+    means: Array  # (N, NZ)
+    covariances: Array  # (N, NZ, NZ)
+    transitions: Array  # (N, NZ, NZ)
+    predicted: Array  # (N, NZ) means before the row's measurements
+
+
+# Inside the filter
+# ------------------------------------------------------------------------------------------------
+
+
+class ProcessNoise(NamedTuple):
+    """Noise that drives the filter's state, and the sizes of that state."""
+
+    force: LatentForce
+    swell: Swell
+    wander: Wander
+    m: Any  # entries of motion, latent forces and oscillators
+    n: Any  # the same with the errors of instruments
+
+
+class Estimate(NamedTuple):
+    """Mean and covariance of the filter's state, changed in place."""
+
+    z: Array  # (NZ,)
+    P: Array  # (NZ, NZ)
+    n: Any  # entries in use
+
+
+class Measurement(NamedTuple):
+    """One measured value."""
+
+    error: float  # less what was expected
+    row: Array  # its row of the measurement matrix
+    variance: float  # of the sensor's noise
+    ny: Any  # entries of `row` that may differ from zero: the motion
+    own: Any  # place in the state of its instrument's error; -1: none
+
+
+class Channel(NamedTuple):
+    """Where the results of one measurement go; the first entry of `outliers`, `scale` and `white` belongs to it."""
+
+    outliers: Array  # consecutive outliers so far
+    gain: Array  # (NZ,)
+    scale: Array
+    white: Array
+
+
+class Work(NamedTuple):
+    """Arrays of one pass of the filter in which intermediate results lie."""
+
+    F: Array  # (NZ, NZ) transition
+    A: Array  # (NZ, NZ)
+    B: Array  # (NZ, NZ)
+    row: Array  # (NZ,)
+    Ph: Array  # (NZ,)
+    H: Array  # (C, 2 NQ) rows of the measurement matrix
+    outliers: Array  # (C,)
+    memory: Array  # (MEMORY,) state of the actuators at the begin of an interval
+
+
+class Pass(NamedTuple):
+    """What all steps of one pass of the filter share."""
+
+    inputs: Inputs
+    laws: Laws
+    delay: float  # [s] of the recorded motion behind the recorded commands
+    noise: ProcessNoise
+    plant: Plant
+    work: Work
