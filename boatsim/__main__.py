@@ -1,14 +1,14 @@
-"""`python -m boatsim` is `boatsim`."""
+"""Entry point of `boatsim` and `python -m boatsim`."""
 
-from boatsim.quiet import leave_quietly
+from boatsim.quiet import exit_on_signals
 
 
 def main() -> None:
-    """Entry point of the program: until all is imported, Ctrl-C ends it without a word."""
-    leave_quietly()
-    from boatsim.cli import main as begin
+    """Run the command line. Until all modules are imported, Ctrl-C ends the program without a message."""
+    exit_on_signals()
+    from boatsim.cli import main as run_command_line
 
-    begin()
+    run_command_line()
 
 
 if __name__ == "__main__":  # processes of `--jobs` import this file too

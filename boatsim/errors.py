@@ -1,54 +1,67 @@
-"""The error family: everything a user can get wrong ends in one clear line and exit code 2."""
+"""Exceptions of boatsim. Every mistake of a user ends in a message of one line and exit code 2."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-GAP = " ... "  # in place of the middle of a line that is too long
+GAP = " ... "  # replaces the middle of a line that is too long
+MAX_LISTED = 12  # with more names than this a message lists the nearest ones only
+NEAREST_LISTED = 5  # number of nearest names that are listed then
 
 
 class BoatsimError(Exception):
-    """Base of all errors raised on purpose by boatsim; the command line prints its message as one line."""
+    """Base class of all errors raised by boatsim; the command line prints the message as one line."""
 
 
 class BadInput(BoatsimError):
-    """Something a user wrote (a file, a key, a value, a name) can not be used; the message says what would be right."""
+    """Input that can not be used (a file, key, value or name). The message states what is allowed."""
 
 
 class BadPhysics(BoatsimError):
-    """A model that can not be stepped: a mass matrix that is not positive definite, a state that is not finite."""
-
-
-MANY, FEW = 12, 5  # names beyond which only the nearest are told, and how many
+    """A model that can not be simulated: its mass matrix is not positive definite or its state is not finite."""
 
 
 def unknown_name(what: str, found: str, allowed: Iterable[str]) -> str:
-    """Line for a name that does not exist: the nearest valid one, then all of them, or of many the nearest few."""
-    names = sorted(allowed)
-    ends = {
-        name.rpartition("/")[2]: name for name in reversed(names)
-    }  # a case stands for vessel/case too
-    near = get_close_matches(found, names, n=1, cutoff=0.5) or get_close_matches(
-        found, ends, n=1, cutoff=0.5
-    )
-    near = [ends.get(n, n) for n in near]
-    hint = f"; did you mean {near[0]!r}?" if near else ""
-    if len(names) <= MANY:
-        return f"{what} {found!r} does not exist{hint} (there are: {', '.join(names) or 'none'})"
-    alike = [n for n in names if found and found in n][:FEW] or get_close_matches(
-        found, names, n=FEW, cutoff=0.4
-    )
-    others = [n for n in alike if n not in near]
-    return f"{what} {found!r} does not exist{hint} ({len(names)} do{', such as ' + ', '.join(others) if others else ''})"
+    """Return the message for a name that does not exist, with the nearest valid name.
 
-
-def shown(text: str, longest: int | None = None) -> str:
-    """Text of others as a terminal may show it: what steers one, or turns the way of reading, is written as an escape.
-
-    What is longer than `longest` characters loses its middle: the file stands in front, what is wrong with it behind.
+    Args:
+        what: Kind of name, such as "vessel".
+        found: The name.
+        allowed: All valid names; of many the message lists the nearest few. "vessel/case" is matched by "case" too.
     """
-    plain = "".join(
-        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
-    )
+    names = sorted(allowed)
+    nearest = _nearest(found, names)
+    hint = f"; did you mean {nearest!r}?" if nearest else ""
+    if len(names) <= MAX_LISTED:
+        return f"{what} {found!r} does not exist{hint} (there are: {', '.join(names) or 'none'})"
+    similar = [name for name in names if found and found in name][:NEAREST_LISTED]
+    if not similar:
+        similar = get_close_matches(found, names, n=NEAREST_LISTED, cutoff=0.4)
+    others = ", ".join(name for name in similar if name != nearest)
+    examples = f", such as {others}" if others else ""
+    return f"{what} {found!r} does not exist{hint} ({len(names)} do{examples})"
+
+
+def _nearest(found: str, names: list[str]) -> str | None:
+    """The most similar name, or the name whose last part is the most similar."""
+    if near := get_close_matches(found, names, n=1, cutoff=0.5):
+        return near[0]
+    last_parts = {name.rpartition("/")[2]: name for name in reversed(names)}
+    near = get_close_matches(found, last_parts, n=1, cutoff=0.5)
+    return last_parts[near[0]] if near else None
+
+
+def printable(text: str, longest: int | None = None) -> str:
+    """Return text for a terminal: control and direction characters are written as escapes.
+
+    Args:
+        text: Text from files of others.
+        longest: Longest result; the middle of a longer one is cut out, since the file's name is at the beginning and
+            the reason at the end.
+    """
+    characters = []
+    for c in text:
+        characters.append(c if c.isprintable() else c.encode("unicode_escape").decode("ascii"))
+    plain = "".join(characters)
     if longest is None or len(plain) <= longest:
         return plain
     tail = longest // 2

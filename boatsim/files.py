@@ -1,4 +1,4 @@
-"""Files in and out: TOML checked against a pydantic model, each mistake one clear line; writing all or nothing."""
+"""Reading of TOML files with checks by pydantic models, and writing of files that are complete or absent."""
 
 import os
 import re
@@ -13,21 +13,21 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from boatsim.errors import BadInput, unknown_name
 
-# What TOML and JSON say, as tomllib and json read it; a point in time is a date
+# A value of TOML or JSON, as tomllib and json read it; a datetime is a date
 Value: TypeAlias = (
     "None | str | bool | int | float | date | time | Sequence[Value] | Mapping[str, Value]"
 )
 
-LARGEST = 1 << 20  # bytes of a TOML file
-DEEPEST = 32  # tables and lists within each other
-WHOLE = 1 << 63  # beyond all integers that TOML promises to read
+MAX_TOML_BYTES = 1 << 20
+MAX_DEPTH = 32  # of tables and lists within each other
+INTEGER_LIMIT = 1 << 63  # TOML guarantees integers of 64 bits only
 DOTTED = re.compile(
     r"""(?<![\w-])(?:(?:[\w-]{1,200}+|"[^"\n]{0,200}"|'[^'\n]{0,200}')[ \t]{0,9}\.[ \t]{0,9}){32}"""
 )
 
 
 class Table(BaseModel):
-    """A table of a file: unknown keys are refused, numbers must be finite."""
+    """Base of the tables of files: unknown keys and numbers that are not finite are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -36,14 +36,20 @@ T = TypeVar("T", bound=Table)
 
 
 def read_toml(path: Path) -> dict[str, Value]:
-    """Raw content; raises BadInput with the parser's own line and column, or for what is no honest size."""
+    """Return the content of a TOML file.
+
+    Raises:
+        BadInput: With line and column of a syntax error, or for a file that is too large or too deeply nested.
+    """
     try:
         with path.open("rb") as file:
-            raw = file.read(LARGEST + 1)
-        if len(raw) > LARGEST:
-            raise BadInput(f"{path}: more than {LARGEST} bytes; no file of ours is that large")
+            raw = file.read(MAX_TOML_BYTES + 1)
+        if len(raw) > MAX_TOML_BYTES:
+            raise BadInput(
+                f"{path}: more than {MAX_TOML_BYTES} bytes; larger TOML files are not read"
+            )
         text = raw.decode("utf-8-sig")
-        if DOTTED.search(text):  # the parser's time grows with the square of their number
+        if DOTTED.search(text):  # the parser's time grows with the square of the dots
             raise RecursionError
         found: dict[str, Value] = tomllib.loads(text)
         _check_sizes(found)
@@ -52,34 +58,43 @@ def read_toml(path: Path) -> dict[str, Value]:
         raise BadInput(f"{path}: no such file") from None
     except RecursionError:
         raise BadInput(
-            f"{path}: not a TOML file (tables or lists more than {DEEPEST} deep)"
+            f"{path}: not a TOML file (tables or lists more than {MAX_DEPTH} deep)"
         ) from None
     except (ValueError, OSError) as error:
-        said = (
-            error.strerror if isinstance(error, OSError) else str(error).partition("; use sys.")[0]
-        )
-        raise BadInput(f"{path}: not a TOML file ({said})".replace("\n", " ")) from None
+        reason = str(error).partition("; use sys.")[0]
+        if isinstance(error, OSError):
+            reason = str(error.strerror)
+        raise BadInput(f"{path}: not a TOML file ({reason})".replace("\n", " ")) from None
 
 
 def _check_sizes(content: Mapping[str, Value]) -> None:
-    """Raises RecursionError for what is nested too deep, ValueError for an integer that TOML has no room for."""
-    left: list[tuple[str, object, int]] = [("", content, 0)]
-    while left:
-        key, value, depth = left.pop()
-        if depth > DEEPEST:
+    """Raises RecursionError for too deep nesting, ValueError for an integer of more than 64 bits."""
+    pending: list[tuple[str, object, int]] = [("", content, 0)]
+    while pending:
+        key, value, depth = pending.pop()
+        if depth > MAX_DEPTH:
             raise RecursionError
         if isinstance(value, dict):
-            left += [(str(k), v, depth + 1) for k, v in value.items()]
+            pending += [(str(k), v, depth + 1) for k, v in value.items()]
         elif isinstance(value, list):
-            left += [(key, v, depth + 1) for v in value]
-        elif isinstance(value, int) and abs(value) >= WHOLE:
+            pending += [(key, v, depth + 1) for v in value]
+        elif isinstance(value, int) and abs(value) >= INTEGER_LIMIT:
             raise ValueError(
                 f"{key} is an integer of {len(str(abs(value)))} digits; allowed are those of 64 bits"
             )
 
 
 def checked(model: type[T], data: Mapping[str, object], file: str) -> T:
-    """`data` as `model`; raises BadInput naming file, key, value found, what is allowed and the nearest valid key."""
+    """Return the table of a file as its model.
+
+    Args:
+        model: Model of the table.
+        data: The table.
+        file: Name of the file in messages.
+
+    Raises:
+        BadInput: With file, key, value found, what is allowed and the nearest valid key.
+    """
     try:
         return model.model_validate(data)
     except ValidationError as error:
@@ -87,31 +102,30 @@ def checked(model: type[T], data: Mapping[str, object], file: str) -> T:
 
 
 def tables(value: object) -> list[dict[str, Value]]:
-    """The tables of what may be a list of them: [[effect]], [[case]]."""
-    return [table for table in value if isinstance(table, dict)] if isinstance(value, list) else []
+    """Return the tables of an array of tables such as [[effect]]; none if the value is no array."""
+    if not isinstance(value, list):
+        return []
+    return [table for table in value if isinstance(table, dict)]
 
 
 def _line(model: type[BaseModel], error: ValidationError) -> str:
-    """First mistake of a validation in words."""
+    """Message of the first mistake of a validation."""
     first = min(
         error.errors(), key=lambda e: e["type"] != "extra_forbidden"
     )  # a misspelt key is also a missing one
     place = ".".join(str(p) for p in first["loc"])
     if first["type"] == "extra_forbidden":
         table = ".".join(str(p) for p in first["loc"][:-1])
-        return unknown_name(
-            f"key{f' in [{table}]' if table else ''}",
-            str(first["loc"][-1]),
-            _keys(model, first["loc"]),
-        )
+        what = f"key in [{table}]" if table else "key"
+        return unknown_name(what, str(first["loc"][-1]), _keys(model, first["loc"]))
     if first["type"] == "missing":
         return f"{place} is missing"
-    said = first["msg"].removeprefix("Value error, ").lower()
-    return f"{place} = {first['input']!r}; {said}" if place else said  # of the file as a whole
+    message = first["msg"].removeprefix("Value error, ").lower()
+    return f"{place} = {first['input']!r}; {message}" if place else message
 
 
 def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
-    """Names allowed in the table a wrong key stands in."""
+    """Allowed keys of the table that has a wrong key."""
     for key in place[:-1]:
         if not isinstance(key, str) or key not in model.model_fields:
             continue
@@ -123,20 +137,26 @@ def _keys(model: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
     return list(model.model_fields)
 
 
-class Growing:
-    """A file that grows by whole pieces: of one that can not be written, such as on a full disk, nothing stays."""
+class AppendedFile:
+    """A file to which pieces are appended. A piece that can not be written, as on a full disk, leaves no trace."""
 
     def __init__(self, file: IO[bytes], path: Path, whole: int = 0) -> None:
-        """`file` is open for writing and not buffered, its first `whole` bytes stay; errors name it by its `path`."""
+        """Append to an open file.
+
+        Args:
+            file: Unbuffered file, open for writing.
+            path: Name of the file in errors.
+            whole: Number of bytes at the beginning that are kept.
+        """
         self._file, self._path, self._whole = file, path, whole
 
     def add(self, data: bytes) -> None:
-        """One more piece. Raises OSError that names the file."""
-        left = memoryview(data)
+        """Append a piece. Raises OSError with the name of the file."""
+        rest = memoryview(data)
         try:
             self._file.seek(self._whole)
-            while left:
-                left = left[self._file.write(left) :]
+            while rest:
+                rest = rest[self._file.write(rest) :]
         except BaseException as error:
             with suppress(OSError):
                 self._file.truncate(self._whole)
@@ -145,24 +165,30 @@ class Growing:
             raise
         self._whole += len(data)
 
-    def take_back(self, count: int) -> None:
-        """The last `count` bytes do not count: what comes next is written over them."""
+    def discard_end(self, count: int) -> None:
+        """Discard the last `count` bytes: the next piece replaces them."""
         self._whole -= count
 
     def close(self) -> None:
-        """No more pieces."""
+        """Close the file."""
         self._file.close()
 
 
 @contextmanager
 def replacing(path: Path | str) -> Iterator[Path]:
-    """A temporary name beside `path` to write to; it takes the place of `path` at the end if nothing was raised.
+    """Replace a file when the block has written its new content, unless the block raises.
 
-    Only a process that is killed leaves it behind, and it says what it is: `run.part-1234.csv`.
+    A process that is killed may leave a temporary file such as `run.part-1234.csv`.
+
+    Args:
+        path: The file.
+
+    Yields:
+        Path of a temporary file in the same folder, to be written by the block.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    # keeps the ending, by which writers choose the format
+    # The suffix is kept, for writers choose the format by it
     temporary = path.with_name(f"{path.stem}.part-{os.getpid()}{path.suffix}")
     try:
         yield temporary
@@ -172,7 +198,7 @@ def replacing(path: Path | str) -> Iterator[Path]:
 
 
 def home_folder() -> Path | None:
-    """The user's home by its real place; None where nobody says which it is."""
+    """Return the resolved home folder of the user; None where it is unknown."""
     try:
         return Path.home().resolve()
     except (RuntimeError, OSError):

@@ -1,4 +1,4 @@
-"""Signals that end the program: Ctrl-C, a kill, a terminal that closes. What is being written is finished first."""
+"""Handling of signals that end the program: Ctrl-C, kill, a closed terminal. Files in progress are completed first."""
 
 import signal
 import sys
@@ -10,36 +10,50 @@ from typing import Any
 
 from boatsim.quiet import SIGNALS
 
-Handler = Callable[[int, FrameType | None], Any] | int | None  # as the signal module has it
+# As in the signal module
+Handler = Callable[[int, FrameType | None], Any] | int | None
 
-AGAIN = 0.05  # [s] until one that was lost strikes again
+RETRY_DELAY = 0.05  # [s] until a KeyboardInterrupt lost in native code is raised again
 
 
 class Stop:
-    """Whether somebody wants what is done in a block of `noted` to end; it asks at every step."""
+    """Request to stop within a block of `deferred_signals`; the block calls it at every step.
+
+    Attributes:
+        requested: Whether a signal has arrived.
+        finishing: Set by the block when it no longer calls the object, for it only writes files.
+    """
 
     def __init__(self) -> None:
-        self.asked, self.over = struck(), False
+        self.requested = signal_received()
+        self.finishing = False
 
     def __call__(self) -> bool:
-        """Whether to end now."""
-        return self.asked
+        """Return whether the block should stop."""
+        return self.requested
 
-    def note(self, *_: object) -> None:
-        """A signal has come. A second one while the first waits, as for a controller that hangs, ends it by force."""
-        global _struck
-        _struck = True
-        if self.asked and not self.over:
+    def record(self, *_: object) -> None:
+        """Record a signal.
+
+        Raises:
+            KeyboardInterrupt: On a second signal, if the block did not react to the first, as with a hanging controller.
+        """
+        global _received
+        _received = True
+        if self.requested and not self.finishing:
             raise KeyboardInterrupt
-        self.asked = True
+        self.requested = True
 
 
 @contextmanager
-def noted() -> Iterator[Stop]:
-    """Signals are noted and do not strike: a run ends at its next step, and its files are written whatever comes.
+def deferred_signals() -> Iterator[Stop]:
+    """Defer signals until the block exits, so that a run stops after a step and its files are complete.
 
-    The block says `stop.over = True` once nothing waits for an answer; one within another is a part of it. Outside the
-    main thread nothing changes.
+    The block sets `stop.finishing = True` when it stops calling `stop`. A nested block is a part of the outer one.
+    Outside the main thread nothing changes.
+
+    Yields:
+        The `Stop` that the block calls at every step.
     """
     global _block
     if _block is not None:
@@ -47,66 +61,66 @@ def noted() -> Iterator[Stop]:
         return
     _block = Stop()
     try:
-        with _handled(_block.note):
+        with _handled(_block.record):
             yield _block
     finally:
         _block = None
 
 
 @contextmanager
-def ignored() -> Iterator[None]:
-    """Signals do nothing; a process that starts inherits that."""
+def ignored_signals() -> Iterator[None]:
+    """Ignore signals within the block; processes started there inherit that."""
     with _handled(signal.SIG_IGN):
         yield
 
 
 @contextmanager
-def _handled(how: Handler) -> Iterator[None]:
+def _handled(handler: Handler) -> Iterator[None]:
     before = {}
     if current_thread() is main_thread():
-        # one that is ignored stays so: nohup, and a shell that runs us in the background, mean it
-        before = {
-            s: signal.signal(s, how) for s in SIGNALS if signal.getsignal(s) != signal.SIG_IGN
-        }
+        for number in SIGNALS:
+            # A signal that is ignored stays ignored: nohup and shells that run jobs in the background rely on it
+            if signal.getsignal(number) != signal.SIG_IGN:
+                before[number] = signal.signal(number, handler)
     try:
         yield
     finally:
-        for s, handler in before.items():
-            signal.signal(s, handler)
+        for number, previous in before.items():
+            signal.signal(number, previous)
 
 
-def heed() -> None:
-    """From now each of them is a KeyboardInterrupt, as Ctrl-C is; what came before is answered."""
-    global _struck
-    _struck = False
-    for s in SIGNALS:
-        if signal.getsignal(s) != signal.SIG_IGN:
-            signal.signal(s, _strike)
-    sys.unraisablehook = _lost
+def raise_on_signals() -> None:
+    """Raise KeyboardInterrupt on every signal from now on, and forget earlier ones."""
+    global _received
+    _received = False
+    for number in SIGNALS:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, _interrupt)
+    sys.unraisablehook = _raise_lost_interrupt
 
 
-def struck() -> bool:
-    """Whether one of them has come. A KeyboardInterrupt may be lost where a library catches or replaces it."""
-    return _struck
+def signal_received() -> bool:
+    """Return whether a signal has arrived, also if a library caught or replaced its KeyboardInterrupt."""
+    return _received
 
 
-def _strike(number: int, frame: FrameType | None) -> None:
-    global _struck
-    _struck = True
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    global _received
+    _received = True
     if _block is not None:
-        _block.asked = True
+        _block.requested = True
         return
     raise KeyboardInterrupt
 
 
-def _lost(what: "sys.UnraisableHookArgs") -> None:
-    """One that struck in a callback of native code, such as the compiler's, goes no further: it strikes once more."""
-    if not _struck or not issubclass(what.exc_type, KeyboardInterrupt):
-        sys.__unraisablehook__(what)
+def _raise_lost_interrupt(unraisable: "sys.UnraisableHookArgs") -> None:
+    """Raise a KeyboardInterrupt again that was lost in a callback of native code, such as the compiler's."""
+    if not _received or not issubclass(unraisable.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(unraisable)
     elif hasattr(signal, "setitimer"):
-        signal.signal(signal.SIGALRM, _strike)
-        signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        signal.signal(signal.SIGALRM, _interrupt)
+        signal.setitimer(signal.ITIMER_REAL, RETRY_DELAY)
 
 
-_struck = False
+_received = False
 _block: Stop | None = None

@@ -1,26 +1,35 @@
-"""How far long work has come: the library tells a report, and whoever called shows it; by default nobody does."""
+"""Progress of long work: a callback that the library calls and the caller may display. The default displays nothing."""
 
 from typing import Protocol
 
 
 class Report(Protocol):
-    """Told of each stage as it begins, and of what is done meanwhile."""
+    """Callback that receives the progress of long work."""
 
     def __call__(self, stage: str, share: float = 0.0, detail: str = "") -> None:
-        """`stage` is what is being done, always in the same words, `detail` how it goes.
+        """Receive the progress.
 
-        `share` is how much of the whole work is done, 0 to 1, by experience.
+        Args:
+            stage: What is being done, always in the same words.
+            share: Estimated part of the whole work that is done, 0 to 1.
+            detail: Details of the stage.
         """
 
 
 def silent(stage: str, share: float = 0.0, detail: str = "") -> None:
-    """The report of work that nobody watches."""
+    """Ignore the progress."""
 
 
 def part(report: Report, begin: float, end: float) -> Report:
-    """The report of a part of the work, from one share of the whole to another."""
+    """Return the report of a part of the work.
 
-    def told(stage: str, share: float = 0.0, detail: str = "") -> None:
+    Args:
+        report: Report of the whole work.
+        begin: Share of the whole at which the part begins.
+        end: Share of the whole at which it ends.
+    """
+
+    def report_part(stage: str, share: float = 0.0, detail: str = "") -> None:
         report(stage, begin + (end - begin) * min(max(share, 0.0), 1.0), detail)
 
-    return told
+    return report_part

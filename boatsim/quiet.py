@@ -1,19 +1,18 @@
-"""The first and the last moments of the program, in which there is nothing to keep; imports next to nothing itself."""
+"""Signals while the program starts and exits, when no data can be lost. The module imports only the standard library."""
 
 import os
 import signal
 
-# what a user, a supervisor and a terminal that closes send; not every system has all of them
+# Sent by users, supervisors and closed terminals; some systems lack some of them
 SIGNALS = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
-CODE = 130  # exit code of what was interrupted: 128 + SIGINT, as shells have it
+CODE = 130  # exit code of an interrupted program by the convention of shells: 128 + SIGINT
 
 
-def leave_quietly() -> None:
-    """From now each of SIGNALS ends the program without a word."""
-    for s in SIGNALS:
-        if (
-            signal.getsignal(s) != signal.SIG_IGN
-        ):  # nohup, and a shell that runs us in the background, mean it
-            signal.signal(s, lambda *_: os._exit(CODE))
+def exit_on_signals() -> None:
+    """End the program without a message on each of SIGNALS from now on."""
+    for number in SIGNALS:
+        # A signal that is ignored stays ignored: nohup and shells that run jobs in the background rely on it
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, lambda *_: os._exit(CODE))

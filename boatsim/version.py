@@ -1,11 +1,11 @@
-"""The version of the program, as it was installed."""
+"""Version of the installed package."""
 
 from importlib.metadata import PackageNotFoundError
 from importlib.metadata import version as installed
 
 
 def version() -> str:
-    """That of the package; "0+unknown" for a source tree that was never installed."""
+    """Return the version of the package; "0+unknown" for a source tree that is not installed."""
     try:
         return installed("boatsim")
     except PackageNotFoundError:

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 from boatsim import interruption
-from boatsim.files import Growing, replacing
-from boatsim.interruption import noted
+from boatsim.files import AppendedFile, replacing
+from boatsim.interruption import deferred_signals
 from boatsim.physics.content import load_class, names
 from boatsim.physics.signals import STATE as OF_HULLS
 from boatsim.quiet import SIGNALS
@@ -221,14 +221,14 @@ def listening(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 @pytest.mark.usefixtures("listening")
 def test_signals_wait_while_files_are_moved_and_count_afterwards(tmp_path: Path) -> None:
-    with noted() as stop, filling(tmp_path / "out") as new:
+    with deferred_signals() as stop, filling(tmp_path / "out") as new:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            stop.over = True
+            stop.finishing = True
             os.kill(os.getpid(), number)
         (new / "a").write_text("whole")
     assert stop() and (tmp_path / "out" / "a").read_text() == "whole"
     assert [f.name for f in tmp_path.iterdir()] == ["out"]
-    with pytest.raises(KeyboardInterrupt), noted():
+    with pytest.raises(KeyboardInterrupt), deferred_signals():
         os.kill(os.getpid(), signal.SIGINT)
         os.kill(os.getpid(), signal.SIGINT)
 
@@ -336,7 +336,7 @@ def test_of_a_piece_that_does_not_fit_nothing_stays(tmp_path: Path) -> None:
             return len(part)
 
     full: Any = Full()
-    file = Growing(full, Path("log"))
+    file = AppendedFile(full, Path("log"))
     file.add(b"sevenby")
     with pytest.raises(OSError, match="No space left on device") as caught:
         file.add(b"another")

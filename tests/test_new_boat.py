@@ -271,5 +271,5 @@ def test_the_bare_name_of_a_scenario_is_enough_where_one_only_has_it() -> None:
     assert scenario.load("sway_1").name == "joystick_boat/sway_1"
     bare = Counter(name.rpartition("/")[2] for name in names("scenario"))
     shared = next(name for name, times in bare.items() if times > 1)
-    with pytest.raises(BadInput, match=f"several scenarios are called {shared}; say which: "):
+    with pytest.raises(BadInput, match=f"several scenarios are called {shared}; give one of "):
         scenario.load(shared)

@@ -30,8 +30,8 @@ from boatsim.diagnosis.pipeline import vessel_for
 from boatsim.drive.driver_input import PATIENCE, Hands, Sticks
 from boatsim.drive.server import LARGEST as MESSAGE
 from boatsim.drive.server import STRANGE, TAKEN, Server
-from boatsim.errors import BadInput, BoatsimError, shown
-from boatsim.files import DEEPEST, LARGEST, read_toml
+from boatsim.errors import BadInput, BoatsimError, printable
+from boatsim.files import MAX_DEPTH, MAX_TOML_BYTES, read_toml
 from boatsim.physics import cache, content, trust, vessel
 from boatsim.physics.program import Program
 from boatsim.recordings import limits
@@ -389,7 +389,7 @@ def test_14_what_steers_a_terminal_is_shown_as_an_escape(
 ) -> None:
     complain("a\x1b[2Jb\u202ec\u200bd\udcffe\nf")
     assert capsys.readouterr().err == "boatsim: a\\x1b[2Jb\\u202ec\\u200bd\\udcffe\\nf\n"
-    assert shown("Königsberg, 5 °") == "Königsberg, 5 °"
+    assert printable("Königsberg, 5 °") == "Königsberg, 5 °"
 
 
 def test_14_an_ascii_terminal_gets_escapes(tmp_path: Path) -> None:
@@ -462,7 +462,7 @@ def test_3_a_check_and_an_import_run_what_is_trusted(tmp_path: Path) -> None:
         ("a = " + "[" * 10**5 + "]" * 10**5, f"more than {DEEPEST} deep"),
         ("a = " + "[" * (DEEPEST + 1) + "]" * (DEEPEST + 1), f"more than {DEEPEST} deep"),
         (".".join("a" * 10**5) + " = 1", f"more than {DEEPEST} deep"),
-        ("#" + "x" * LARGEST, f"more than {LARGEST} bytes"),
+        ("#" + "x" * MAX_TOML_BYTES, f"more than {MAX_TOML_BYTES} bytes"),
         (f"a = {1 << 63}", "a is an integer of 19 digits"),
         ("a = " + "9" * 5000, "not a TOML file"),
     ],
@@ -686,7 +686,8 @@ def test_the_page_states_the_limits_that_are() -> None:
         and f"{limits.BYTES_PER_CELL} bytes for each cell" in said
     )
     assert (
-        f"{LARGEST >> 20} MiB, {DEEPEST} tables" in said and f"at most {LONGEST} characters" in said
+        f"{MAX_TOML_BYTES >> 20} MiB, {MAX_DEPTH} tables" in said
+        and f"at most {LONGEST} characters" in said
     )
     assert f"at most {MESSAGE} bytes" in said and f"silent for {PATIENCE:g} s" in said
     assert limits.GROWS == 12 and limits.LONGEST_HEADER == 1 << 20

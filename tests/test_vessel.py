@@ -279,7 +279,8 @@ def test_a_class_that_is_no_effect_is_one_line(tmp_path: Path) -> None:
     )
     (tmp_path / "test_boat" / "plain.py").write_text("class Plain:\n    pass\n")
     with pytest.raises(
-        BadInput, match=r"plain\.py: class Plain is no effect; it must derive from one's base class"
+        BadInput,
+        match=r"plain\.py: class Plain is no effect; it must be derived from the base class of one",
     ):
         vessel.load(str(tmp_path / "test_boat" / "vessel.toml"))
 

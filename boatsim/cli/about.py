@@ -23,14 +23,14 @@ def about(name: str) -> list[str]:
     path = Path(name)
     if name.endswith(".toml"):
         return _vessel(name) if "freedoms" in read_toml(path) else _scenario(name)
-    found = [(k, _class(k, name)) for k in CLASSES if name in content.known(k)]
-    if name in content.known("vessel") or (path / "vessel.toml").is_file():
+    found = [(k, _class(k, name)) for k in CLASSES if name in content.all_names(k)]
+    if name in content.all_names("vessel") or (path / "vessel.toml").is_file():
         found.append(("vessel", _vessel(name)))
-    known = content.known("scenario")
+    known = content.all_names("scenario")
     if name in known or any(n.rpartition("/")[2] == name for n in known):
         found.append(("scenario", _scenario(name)))
     if not found:
-        there = [n for k in (*CLASSES, "vessel", "scenario") for n in content.known(k)]
+        there = [n for k in (*CLASSES, "vessel", "scenario") for n in content.all_names(k)]
         raise BadInput(unknown_name("name", name, set(there)))
     return [line for i, (_, lines) in enumerate(found) for line in ([""] if i else []) + lines]
 

@@ -7,7 +7,7 @@ from boatsim.cli.exits import Exit, complain, say, words
 from boatsim.diagnosis.checks.entry import entry_text
 from boatsim.diagnosis.checks.finding import LOG_NOT_BOAT
 from boatsim.diagnosis.pipeline import check
-from boatsim.errors import shown
+from boatsim.errors import printable
 
 CLEAN = "nothing is wrong with this log that could be found"
 
@@ -21,7 +21,7 @@ def check_logs(runs: list[Path], vessel: str | None, load: list[str]) -> int:
         if wrong or not refused:
             say(
                 [
-                    f"{shown(str(path))}: {LOG_NOT_BOAT if faults else 'a diagnosis corrects this automatically' if wrong else CLEAN}"
+                    f"{printable(str(path))}: {LOG_NOT_BOAT if faults else 'a diagnosis corrects this automatically' if wrong else CLEAN}"
                 ]
             )
         for e in wrong:

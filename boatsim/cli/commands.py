@@ -14,8 +14,8 @@ from typer.core import TyperGroup
 from boatsim.cli.exits import FAULTS, Exit, any_terminal, complain, say, words
 from boatsim.cli.trust_prompt import asking
 from boatsim.errors import BadInput
-from boatsim.interruption import heed, struck
-from boatsim.quiet import leave_quietly
+from boatsim.interruption import raise_on_signals, signal_received
+from boatsim.quiet import exit_on_signals
 from boatsim.version import version as installed
 
 P = ParamSpec("P")
@@ -141,7 +141,7 @@ def _code(command: Callable[[], int]) -> int:
         )
         return Exit.BAD_INPUT
     except Exception as error:
-        if struck():  # in the middle of something that could not take it, such as numba
+        if signal_received():  # in the middle of something that could not take it, such as numba
             complain("interrupted")
             return Exit.INTERRUPTED
         if not type(error).__module__.startswith("numba."):
@@ -729,12 +729,12 @@ def _loads(given: list[str] | None) -> list[str]:
 
 def main() -> None:
     """The program from here on; leaves with its exit code. A kill and a terminal that closes are as Ctrl-C is."""
-    heed()
+    raise_on_signals()
     try:
         app()
     except SystemExit as leaving:
-        leave_quietly()
-        if not struck():
+        exit_on_signals()
+        if not signal_received():
             raise
         # Python takes a Ctrl-C that passed through code of its own making for one that nobody
         # handled

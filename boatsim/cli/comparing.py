@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from boatsim.cli.show import reasons, value
-from boatsim.errors import shown
+from boatsim.errors import printable
 from boatsim.files import replacing
 
 if TYPE_CHECKING:
@@ -39,8 +39,8 @@ def compare(runs: Sequence[Done]) -> None:
     folder = Path(os.path.commonpath([run.folder.absolute() for run in runs]))
     path = Path(os.path.relpath(folder if len(runs) > 1 else folder.parent)) / "compare.rrd"
     _write(path, heads, runs)
-    print("\n".join(shown(f"written to {run.folder}") for run in runs))
-    print(shown(f"all boats: {path}"))
+    print("\n".join(printable(f"written to {run.folder}") for run in runs))
+    print(printable(f"all boats: {path}"))
 
 
 def _heads(runs: Sequence[Done]) -> list[tuple[str, ...]]:
@@ -116,13 +116,13 @@ def _print(heads: Sequence[tuple[str, ...]], runs: Sequence[Done]) -> None:
     from rich.text import Text
 
     rows = _rows(runs)
-    table = Table(title=Text(shown(_title(runs))), pad_edge=False)
+    table = Table(title=Text(printable(_title(runs))), pad_edge=False)
     for heading in ("norm", "is"):
         table.add_column(heading, no_wrap=True)
     for head in heads:
-        table.add_column(Text("\n".join(map(shown, head))), justify="right", no_wrap=True)
+        table.add_column(Text("\n".join(map(printable, head))), justify="right", no_wrap=True)
     for row in rows:
-        table.add_row(*(Text(shown(cell), "bold" if BEST in cell else "") for cell in row))
+        table.add_row(*(Text(printable(cell), "bold" if BEST in cell else "") for cell in row))
     console = Console()
     if not console.is_terminal:  # nothing is cut in a file
         wide = console.options.update(max_width=UNCUT)
@@ -137,7 +137,7 @@ def _print(heads: Sequence[tuple[str, ...]], runs: Sequence[Done]) -> None:
         for n, e in run.content["norms"].items()
     }
     for line in [*(["; ".join(said)] if said else []), *reasons(every)]:
-        console.print(Text(shown(line)), soft_wrap=True)
+        console.print(Text(printable(line)), soft_wrap=True)
 
 
 def _title(runs: Sequence[Done]) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from enum import IntEnum
 from io import TextIOWrapper
 
-from boatsim.errors import BoatsimError, shown
+from boatsim.errors import BoatsimError, printable
 from boatsim.quiet import CODE
 
 LONGEST = 300  # characters of a line of ours, its head and its end kept
@@ -35,17 +35,17 @@ def words(error: BaseException) -> str:
 
 def complain(message: str) -> None:
     """One line to stderr."""
-    print(shown(f"boatsim: {message}", LONGEST), file=sys.stderr)
+    print(printable(f"boatsim: {message}", LONGEST), file=sys.stderr)
 
 
 def remark(message: str) -> None:
     """One line to stderr about what was read and not used."""
-    print(shown(f"note: {message}", LONGEST), file=sys.stderr)
+    print(printable(f"note: {message}", LONGEST), file=sys.stderr)
 
 
 def say(lines: Iterable[str]) -> None:
     """Lines of a result to stdout."""
-    print("\n".join(shown(part) for line in lines for part in line.split("\n")))
+    print("\n".join(printable(part) for line in lines for part in line.split("\n")))
 
 
 def any_terminal() -> None:

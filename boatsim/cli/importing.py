@@ -5,7 +5,7 @@ from pathlib import Path
 
 from boatsim.cli.exits import remark, say
 from boatsim.cli.progress import reporting
-from boatsim.errors import BadInput, shown
+from boatsim.errors import BadInput, printable
 from boatsim.files import replacing
 from boatsim.physics import vessel as vessels
 from boatsim.physics.content import vessel_address
@@ -61,7 +61,7 @@ def _show(
         with replacing(propose) as temporary:
             temporary.write_text(text, encoding="utf-8")
         then = f"boatsim import {log.path} --map {propose} --out {out or 'run.csv'}"
-        say(["", shown(f"written to {propose}: check every line, then: {then}")])
+        say(["", printable(f"written to {propose}: check every line, then: {then}")])
     else:
         say(
             [
@@ -96,7 +96,7 @@ def _convert(path: Path, out: Path, map: Path, vessel: str | None, load: Sequenc
         write_csv(recording, out)
     _say(recording.remarks)
     span = f"{len(recording)} rows over {recording.t[-1]:.6g} s"
-    say([shown(f"written to {out}: {span}; {', '.join(recording.signals)}")])
+    say([printable(f"written to {out}: {span}; {', '.join(recording.signals)}")])
     if boat is not None:
         _note(out, boat, position_fix(found))
     try:
@@ -118,7 +118,7 @@ def _note(out: Path, boat: Vessel, fix: str | None) -> None:
         return
     with replacing(file) as temporary:
         temporary.write_text(text, encoding="utf-8")
-    say([shown(f"written to {file}: {boat.name}")])
+    say([printable(f"written to {file}: {boat.name}")])
 
 
 def _say(remarks: Sequence[str]) -> None:

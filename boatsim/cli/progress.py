@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from boatsim.errors import shown
+from boatsim.errors import printable
 from boatsim.progress import Report
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def counting() -> Iterator[Report]:
 
 def say(line: str) -> None:
     """A line of progress to stderr."""
-    print(shown(f"progress: {line}"), file=sys.stderr, flush=True)
+    print(printable(f"progress: {line}"), file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -89,7 +89,7 @@ def _bar() -> Iterator[Report]:
 
     def report(stage: str, share: float = 0.0, detail: str = "") -> None:
         said, taken = (
-            shown(f"{stage}: {detail}" if detail else stage),
+            printable(f"{stage}: {detail}" if detail else stage),
             bars.tasks[row].elapsed or 0.0,
         )
         done = max(share, bars.tasks[row].completed)

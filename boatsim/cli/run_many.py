@@ -16,7 +16,7 @@ from threading import Lock, Thread
 from boatsim.cli import comparing, progress, show
 from boatsim.cli.exits import FAULTS, Exit, complain, remark, words
 from boatsim.errors import BadInput
-from boatsim.interruption import ignored, struck
+from boatsim.interruption import ignored_signals, signal_received
 from boatsim.physics import trust
 from boatsim.simulate.cases import meant
 from boatsim.simulate.controllers import steered
@@ -209,7 +209,7 @@ def _in_turn(
 ) -> list[Outcome]:
     outcomes: list[Outcome] = []
     for number, task in enumerate(tasks):
-        if struck():  # while the files of the one before were written
+        if signal_received():  # while the files of the one before were written
             outcomes.append(Outcome(task))
             break
         outcomes.append(carry_out(task, partial(report, number), viewer, speed))
@@ -225,10 +225,10 @@ def _in_turn(
 
 def _in_processes(tasks: Sequence[Task], jobs: int, report: progress.Reached) -> list[Outcome]:
     context = get_context("spawn")  # a fork would copy MuJoCo's and rerun's threads half alive
-    with ignored():  # processes inherit it, the one that looks after shared memory too
+    with ignored_signals():  # processes inherit it, the one that looks after shared memory too
         stop, reached = context.Event(), context.Array("d", len(tasks))
     with ProcessPoolExecutor(jobs, context, _begin, (stop, reached, trust.now())) as pool:
-        with ignored():
+        with ignored_signals():
             futures = [pool.submit(_work, number, task) for number, task in enumerate(tasks)]
         while True:
             try:

@@ -5,7 +5,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from boatsim.errors import BadInput, shown, unknown_name
+from boatsim.errors import BadInput, printable, unknown_name
 from boatsim.files import read_toml
 from boatsim.physics import content
 from boatsim.simulate import cases
@@ -23,12 +23,14 @@ def norms(found: "RunEntry", folder: Path) -> None:
     from rich.text import Text
 
     state = "" if found["complete"] else ", interrupted"
-    title = Text(shown(f"{found['scenario']}, {found['controller']}, seed {found['seed']}{state}"))
+    title = Text(
+        printable(f"{found['scenario']}, {found['controller']}, seed {found['seed']}{state}")
+    )
     table = Table(title=title, pad_edge=False)
     for heading, justify in _columns(found["norms"].values()).items():
         table.add_column(heading, justify=justify, no_wrap=True)
     for name, norm in found["norms"].items():
-        cells = {"norm": shown(name), **_cells(norm)}
+        cells = {"norm": printable(name), **_cells(norm)}
         table.add_row(*(cells[str(column.header)] for column in table.columns))
     console = Console()
     if found["norms"]:
@@ -36,7 +38,7 @@ def norms(found: "RunEntry", folder: Path) -> None:
     else:
         console.print(title)
     for line in [*meanings(found["norms"]), *reasons(found["norms"]), f"written to {folder}"]:
-        console.print(Text(shown(line)), soft_wrap=True)
+        console.print(Text(printable(line)), soft_wrap=True)
 
 
 def _columns(norms: Iterable["NormEntry"]) -> dict[str, Literal["left", "right"]]:
@@ -124,14 +126,16 @@ def listing(only: str | None, like: str | None = None) -> list[str]:
     )
     lines: list[str] = []
     for kind in kinds:
-        names = [n for n in content.known(kind.removesuffix("s")) if like is None or alike(n, like)]
+        names = [
+            n for n in content.all_names(kind.removesuffix("s")) if like is None or alike(n, like)
+        ]
         if not names and like is not None:
             continue
         width = max(map(len, names), default=0)
         lines += [*([""] if lines else []), f"{kind}:"]
         lines += [f"  {name:{width}}  {_about(kind.removesuffix('s'), name)}" for name in names]
     if like is not None and not lines:
-        there = [n for kind in kinds for n in content.known(kind.removesuffix("s"))]
+        there = [n for kind in kinds for n in content.all_names(kind.removesuffix("s"))]
         raise BadInput(unknown_name(only.removesuffix("s") if only else "name", like, there))
     return lines
 
@@ -142,12 +146,12 @@ def printed(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], left
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(shown(title)), pad_edge=False)
+    table = Table(title=Text(printable(title)), pad_edge=False)
     for number, heading in enumerate(head):
         side: Literal["left", "right"] = "left" if number < left else "right"
-        table.add_column(Text(shown(heading)), justify=side, no_wrap=True)
+        table.add_column(Text(printable(heading)), justify=side, no_wrap=True)
     for row in rows:
-        table.add_row(*(Text(shown(cell)) for cell in row))
+        table.add_row(*(Text(printable(cell)) for cell in row))
     console = Console()
     if not console.is_terminal:
         wide = console.options.update(max_width=UNCUT)

@@ -10,7 +10,7 @@ from time import monotonic
 
 from boatsim.cli import progress, show
 from boatsim.cli.exits import FAULTS, Exit, complain, words
-from boatsim.errors import BadInput, shown
+from boatsim.errors import BadInput, printable
 from boatsim.files import replacing
 from boatsim.simulate import baselines
 from boatsim.simulate.baselines import Pin, PinsFile
@@ -146,7 +146,7 @@ def _print(folder: Path, cases: Sequence[Case]) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(shown(str(folder))), pad_edge=False)
+    table = Table(title=Text(printable(str(folder))), pad_edge=False)
     for heading, justify in (
         ("scenario", "left"),
         ("norms", "right"),
@@ -161,13 +161,16 @@ def _print(folder: Path, cases: Sequence[Case]) -> None:
     }
     for case in cases:
         table.add_row(
-            Text(shown(case.name)), f"{len(case.norms)}", f"{len(case.faults)}", states[case.code]
+            Text(printable(case.name)),
+            f"{len(case.norms)}",
+            f"{len(case.faults)}",
+            states[case.code],
         )
     console = Console()
     console.print(table)
     for case in cases:
         for line in case.faults:
-            console.print(Text(shown(f"{case.name}: {line}")), soft_wrap=True)
+            console.print(Text(printable(f"{case.name}: {line}")), soft_wrap=True)
 
 
 def _as_json(folder: Path, cases: Sequence[Case]) -> dict[str, object]:
@@ -208,20 +211,20 @@ def _write_junit(folder: Path, cases: Sequence[Case], path: Path) -> None:
         "time": f"{sum(c.seconds for c in cases):.3f}",
     }
     top = xml.Element("testsuites", {"name": "boatsim", **total})
-    suite = xml.SubElement(top, "testsuite", {"name": shown(folder.resolve().name), **total})
+    suite = xml.SubElement(top, "testsuite", {"name": printable(folder.resolve().name), **total})
     for case in cases:
         about = {
-            "classname": shown(folder.resolve().name),
-            "name": shown(case.name),
+            "classname": printable(folder.resolve().name),
+            "name": printable(case.name),
             "time": f"{case.seconds:.3f}",
         }
         entry = xml.SubElement(suite, "testcase", about)
         if case.error:
-            xml.SubElement(entry, "error", message=shown(case.error), type="BadInput").text = shown(
-                case.error
-            )
+            xml.SubElement(
+                entry, "error", message=printable(case.error), type="BadInput"
+            ).text = printable(case.error)
         elif case.faults:
-            lines = [shown(line) for line in case.faults]
+            lines = [printable(line) for line in case.faults]
             xml.SubElement(entry, "failure", message=lines[0], type="Norm").text = "\n".join(lines)
     xml.indent(top)
     with replacing(path) as temporary:

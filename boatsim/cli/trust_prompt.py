@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from boatsim.cli.progress import set_aside
-from boatsim.errors import shown
+from boatsim.errors import printable
 
 
 @contextmanager
@@ -40,7 +40,7 @@ def _there() -> bool:
 
 
 def _asked(folder: Path) -> bool:
-    question = f"boatsim: data name Python files in {shown(str(folder))}. Run them? [y/N] "
+    question = f"boatsim: data name Python files in {printable(str(folder))}. Run them? [y/N] "
     with set_aside():
         print(question, end="", file=sys.stderr, flush=True)
         return sys.stdin.readline().strip().lower() in ("y", "yes")

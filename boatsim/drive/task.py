@@ -8,7 +8,7 @@ import tomlkit
 
 from boatsim.drive.stick_mapping import Dials, dials_of
 from boatsim.errors import BadInput
-from boatsim.files import LARGEST, Value
+from boatsim.files import MAX_TOML_BYTES, Value
 from boatsim.physics.content import find, load_class, names
 from boatsim.simulate.cases import Place, content, meant
 from boatsim.simulate.scenario import OFF, Scenario, from_table
@@ -71,7 +71,7 @@ class Task:
             "\n["
         )  # an array of a file itself stands in front of its tables
         text = f"{own.rstrip()}\ngoal = [\n{rows}]\n" + (f"\n[{tables}" if tables else "")
-        return text if len(text.encode()) <= LARGEST else None
+        return text if len(text.encode()) <= MAX_TOML_BYTES else None
 
 
 def _row(t: float, goal: Mapping[str, float] | None) -> str:

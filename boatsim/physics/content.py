@@ -1,7 +1,7 @@
-"""Finds content by name: vessels, controllers and scenarios are files, and a file's name is its name everywhere.
+"""Content by name: vessels, controllers, scenarios and effects are files whose name is the name of the content.
 
-A name stands for what the library has, else for what lies beside the file that says it, else for what lies in a folder
-of the user's own content. What is found may be data, which are read, or a Python file, which `trust` has to allow.
+A name is searched for in the library, then in the folder of the file that uses it, then in the folders of the user's
+own content. Content is data, which is read, or a Python file, which `trust` must allow to run.
 """
 
 import hashlib
@@ -19,7 +19,8 @@ from boatsim.errors import BadInput, unknown_name
 from boatsim.files import read_toml, tables
 from boatsim.physics import trust
 
-PACKAGES = {  # kinds that are modules of ours, one a file
+# Kinds of content that are modules of this package, one per file
+PACKAGES = {
     "kind": "physics.kinds",
     "effect": "physics.effects",
     "measure": "metrics",
@@ -27,30 +28,30 @@ PACKAGES = {  # kinds that are modules of ours, one a file
     "reader": "recordings.readers",
     "log": "recordings.logs",
 }
-ENTRY = re.compile(
-    r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE
-)  # of the shelf of effects
+# Class statement or preset of an effect
+EFFECT_CLASS = re.compile(r"^(?:class (?=\w+\()|(?=\w+ = preset\())([A-Z]\w*)", re.MULTILINE)
 KINDS = {"vessel": "models", "controller": "controllers", "scenario": "scenarios"}
-OWN = {
+# Folders of a user's own content
+USER_FOLDERS = {
     **KINDS,
     "effect": "effects",
     "measure": "measures",
     "sensor": "sensors",
-}  # folders of a user's own content
+}
 
 
 @cache
 def root() -> Path:
-    """Folder that holds models/, controllers/ and scenarios/: inside an installed package, or the repository."""
+    """Return the folder of models/, controllers/ and scenarios/: in an installed package, or the repository."""
     package = Path(__file__).parents[1]
     packed = package / "_content"
     return packed if packed.is_dir() else package.parent
 
 
 def names(kind: str) -> list[str]:
-    """Every vessel, controller, effect, measure or scenario (folder/file, folder/case) of the library."""
+    """Return the names of all content of a kind in the library; scenarios are folder/file or folder/case."""
     if kind == "effect":
-        return sorted(_shelf())
+        return sorted(_effect_files())
     if kind in PACKAGES:
         return sorted(p.stem for p in _package(kind).glob("[!_]*.py"))
     folder = root() / KINDS[kind]
@@ -67,95 +68,90 @@ def _package(kind: str) -> Path:
 
 
 @cache
-def _shelf() -> dict[str, str]:
-    """Every entry of the shelf of effects -> its file: a file may hold several over one law.
+def _effect_files() -> dict[str, str]:
+    """Name of every effect of the library -> its file, which may define several effects over one law.
 
-    Read from the text, so that looking for one imports no other.
+    The names are read from the text, so that none of the files is imported.
     """
-    files = sorted(_package("effect").glob("[!_]*.py"))
-    return {
-        snake_case(name): file.stem
-        for file in files
-        for name in ENTRY.findall(file.read_text(encoding="utf-8"))
-    }
+    files: dict[str, str] = {}
+    for file in sorted(_package("effect").glob("[!_]*.py")):
+        for name in EFFECT_CLASS.findall(file.read_text(encoding="utf-8")):
+            files[snake_case(name)] = file.stem
+    return files
 
 
-def own_names(kind: str) -> list[str]:
-    """What the folders of the user's own content add to `names`."""
+def user_names(kind: str) -> list[str]:
+    """Return the names of the content of a kind that the user's folders add to those of the library."""
     found: set[str] = set()
-    for folder in trust.content() if kind in OWN else ():
-        inside = folder / OWN[kind]
+    for folder in trust.content() if kind in USER_FOLDERS else ():
+        inside = folder / USER_FOLDERS[kind]
         if kind == "scenario":
-            found |= _scenarios(folder).keys()
+            found.update(_scenarios(folder))
         elif kind == "vessel":
-            found |= {
-                p.parent.name for place in (inside, folder) for p in place.glob("*/vessel.toml")
-            }
+            files = (*inside.glob("*/vessel.toml"), *folder.glob("*/vessel.toml"))
+            found.update(file.parent.name for file in files)
         else:
-            found |= {p.stem for p in inside.glob("[!_]*.py")}
+            found.update(file.stem for file in inside.glob("[!_]*.py"))
     return sorted(found - set(names(kind)))
 
 
-def known(kind: str) -> list[str]:
-    """All names that stand for something of a kind."""
-    return sorted([*names(kind), *own_names(kind)])
+def all_names(kind: str) -> list[str]:
+    """Return the names of all content of a kind, of the library and of the user."""
+    return sorted([*names(kind), *user_names(kind)])
 
 
-def whole(kind: str, name: str) -> str:
-    """A scenario's folder/name where its bare name says which, else the name. Raises BadInput where several do."""
+def full_name(kind: str, name: str) -> str:
+    """Return folder/name of a scenario that is given by its bare name; any other name is returned unchanged.
+
+    Raises:
+        BadInput: If several scenarios have the name.
+    """
     if kind != "scenario" or not name or "/" in name or name.endswith(".toml"):
         return name
-    found = [n for n in known(kind) if n.rpartition("/")[2] == name]
+    found = [n for n in all_names(kind) if n.rpartition("/")[2] == name]
     if len(found) > 1:
-        raise BadInput(f"several scenarios are called {name}; say which: {', '.join(found)}")
+        raise BadInput(f"several scenarios are called {name}; give one of {', '.join(found)}")
     return found[0] if found else name
 
 
-def find(kind: str, name: str, beside: Path | None = None) -> Path:
-    """Path of a vessel.toml, controller .py or scenario .toml, given by name or by a path.
+def find(kind: str, name: str, base_folder: Path | None = None) -> Path:
+    """Return the path of a vessel.toml, a controller's .py or a scenario's .toml.
 
-    A relative path starts from `beside`, the folder of the file that says it; without one a user says it, and it starts
-    from the working directory. Raises BadInput.
+    Args:
+        kind: "vessel", "controller" or "scenario".
+        name: Name or path.
+        base_folder: Folder of the file that names the content; relative paths start there. Without one the user names
+            it, and paths start from the working directory.
+
+    Raises:
+        BadInput: If there is none, with the nearest valid name.
     """
-    name = whole(kind, name) if beside is None else name
-    found = (
-        _by_path(kind, name, beside)
-        or _shipped(kind, name)
-        or _in_content(kind, name)
-        or _here(kind, name, beside)
-    )
-    if found is not None:
-        return found
+    if base_folder is None:
+        name = full_name(kind, name)
+    for search in (_by_path, _in_library, _in_user_content, _in_working_directory):
+        if (found := search(kind, name, base_folder)) is not None:
+            return found
     if name.endswith((".py", ".toml")):
         raise BadInput(f"{name}: no such file")
-    raise BadInput(unknown_name(kind, name, known(kind)))
+    raise BadInput(unknown_name(kind, name, all_names(kind)))
 
 
-def _by_path(kind: str, name: str, beside: Path | None) -> Path | None:
-    """The file of a path, or of the bare name of a controller beside the file that says it."""
-    suffix, own = ".py" if kind == "controller" else ".toml", (beside or Path()) / name
-    if own.suffix == suffix and own.is_file():
-        return own.resolve()
-    if (
-        beside
-        and kind == "controller"
-        and name not in names(kind)
-        and (beside / f"{name}{suffix}").is_file()
-    ):
-        return (beside / f"{name}{suffix}").resolve()
-    if kind == "vessel" and "/" in name and (own / "vessel.toml").is_file():
-        return (own / "vessel.toml").resolve()
+def _by_path(kind: str, name: str, base_folder: Path | None) -> Path | None:
+    """The file of a path, or of the bare name of a controller in the folder of the file that names it."""
+    suffix = ".py" if kind == "controller" else ".toml"
+    path = (base_folder or Path()) / name
+    if path.suffix == suffix and path.is_file():
+        return path.resolve()
+    if base_folder and kind == "controller" and name not in names(kind):
+        controller = base_folder / f"{name}{suffix}"
+        if controller.is_file():
+            return controller.resolve()
+    if kind == "vessel" and "/" in name and (path / "vessel.toml").is_file():
+        return (path / "vessel.toml").resolve()
     return None
 
 
-def _here(kind: str, name: str, beside: Path | None) -> Path | None:
-    """The vessel of a folder in the working directory, where it is the user who names it and no file does."""
-    own = Path(name) / "vessel.toml"
-    return own.resolve() if kind == "vessel" and beside is None and name and own.is_file() else None
-
-
-def _shipped(kind: str, name: str) -> Path | None:
-    """What the library has of that name."""
+def _in_library(kind: str, name: str, base_folder: Path | None) -> Path | None:
     if name not in names(kind):
         return None
     folder = root() / KINDS[kind]
@@ -164,47 +160,59 @@ def _shipped(kind: str, name: str) -> Path | None:
     return folder / name / "vessel.toml" if kind == "vessel" else folder / f"{name}.py"
 
 
-def _in_content(kind: str, name: str) -> Path | None:
-    """What the folders of the user's own content have of that name."""
+def _in_user_content(kind: str, name: str, base_folder: Path | None = None) -> Path | None:
     if kind == "scenario":
-        return next(
-            (found[name] for folder in trust.content() if name in (found := _scenarios(folder))),
-            None,
-        )
-    file = (
-        f"{name}/vessel.toml"
-        if kind == "vessel"
-        else name
-        if name.endswith(".py")
-        else f"{name}.py"
-    )
-    places = (place / file for folder in trust.content() for place in (folder / OWN[kind], folder))
-    return next((p.resolve() for p in places if p.is_file()), None)
+        for folder in trust.content():
+            scenarios = _scenarios(folder)
+            if name in scenarios:
+                return scenarios[name]
+        return None
+    file = name if name.endswith(".py") else f"{name}.py"
+    if kind == "vessel":
+        file = f"{name}/vessel.toml"
+    for folder in trust.content():
+        for path in (folder / USER_FOLDERS[kind] / file, folder / file):
+            if path.is_file():
+                return path.resolve()
+    return None
+
+
+def _in_working_directory(kind: str, name: str, base_folder: Path | None) -> Path | None:
+    """The vessel of a folder in the working directory, if the user names it and not a file."""
+    if kind != "vessel" or base_folder is not None or not name:
+        return None
+    file = Path(name) / "vessel.toml"
+    return file.resolve() if file.is_file() else None
 
 
 def _scenarios(home: Path) -> dict[str, Path]:
-    """File of every scenario of the library, or of one's own content, by name: folder/file, or folder/case.
-
-    Raises BadInput.
-    """
+    """Name of every scenario in a folder of content, folder/file or folder/case -> its file. Raises BadInput."""
     found: dict[str, Path] = {}
     for path in sorted((home / KINDS["scenario"]).glob("*/[!_]*.toml")):
-        for name in _cases(path, path.stat().st_mtime_ns) or (path.stem,):
-            full = f"{path.parent.name}/{name}"
-            if full in found:
-                raise BadInput(f"scenario {full} stands in {found[full].name} and in {path.name}")
-            found[full] = path
+        for case in _cases(path, path.stat().st_mtime_ns) or (path.stem,):
+            name = f"{path.parent.name}/{case}"
+            if name in found:
+                raise BadInput(f"scenario {name} is in both {found[name].name} and {path.name}")
+            found[name] = path
     return found
 
 
 @cache
-def _cases(path: Path, _stamp: int) -> tuple[str, ...]:
-    """Names of the cases in a scenario file, as long as it is the same file."""
+def _cases(path: Path, _modified_ns: int) -> tuple[str, ...]:
+    """Names of the cases of a scenario file in one state of the file."""
     return tuple(str(case.get("name")) for case in tables(read_toml(path).get("case")))
 
 
 def module_at(path: Path, name: str) -> ModuleType:
-    """Import one file under a given module name, once."""
+    """Import a file under a module name, or return the module of that name if it was imported before.
+
+    Args:
+        path: The Python file.
+        name: Name of the module.
+
+    Raises:
+        BadInput: If the file raises an exception, with its line.
+    """
     if name in sys.modules:
         return sys.modules[name]
     spec = importlib.util.spec_from_file_location(name, path)
@@ -216,93 +224,101 @@ def module_at(path: Path, name: str) -> ModuleType:
         spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:
         del sys.modules[name]
-        row = next(
-            (
-                f" line {f.lineno}"
-                for f in reversed(traceback.extract_tb(error.__traceback__))
-                if f.filename == str(path)
-            ),
-            "",
-        )
-        raise BadInput(
-            f"{path}:{row} {type(error).__name__}: {error}".replace("\n", " ")
-        ) from error
+        message = f"{path}:{_line_of(error, path)} {type(error).__name__}: {error}"
+        raise BadInput(message.replace("\n", " ")) from error
     return module
 
 
+def _line_of(error: BaseException, path: Path) -> str:
+    """Last line of a file in the traceback of an exception, as a text; "" where it has none."""
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        if frame.filename == str(path):
+            return f" line {frame.lineno}"
+    return ""
+
+
 def camel_case(name: str) -> str:
-    """fan_wind -> FanWind."""
+    """Return the class name of a file name: fan_wind -> FanWind."""
     return "".join(word.capitalize() for word in name.split("_"))
 
 
 def snake_case(name: str) -> str:
-    """FanWind -> fan_wind: the name of an entry in files."""
+    """Return the name in files of a class: FanWind -> fan_wind."""
     return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
 
 
 def module_of(kind: str, name: str) -> ModuleType:
-    """The module of ours that holds an effect, a measure or a reader."""
-    name = _shelf()[name] if kind == "effect" else name
-    return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{name}")
+    """Return the module of this package that defines an effect, a measure, a sensor, a reader or a log format."""
+    file = _effect_files()[name] if kind == "effect" else name
+    return importlib.import_module(f"boatsim.{PACKAGES[kind]}.{file}")
 
 
-def load_class(kind: str, name: str, beside: Path | None = None, named: bool = False) -> type[Any]:
-    """The class of an effect, measure or controller: CamelCase of its file's name.
+def load_class(
+    kind: str, name: str, base_folder: Path | None = None, named: bool = False
+) -> type[Any]:
+    """Return the class of an effect, measure, sensor or controller; its name is the file's in CamelCase.
 
-    `beside` is the folder of the file that says so. `named`: the user himself does, so that it may run wherever it is.
-    Raises BadInput where not found, or where it is a Python file that nobody vouches for.
+    Args:
+        kind: "effect", "measure", "sensor" or "controller".
+        name: Name, or path of a .py file.
+        base_folder: Folder of the file that names the class; relative paths start there.
+        named: Whether the user gives the name directly; then a Python file outside trusted folders may run.
+
+    Raises:
+        BadInput: If there is no such class, or its file is not trusted.
     """
     if kind in PACKAGES and name in names(kind):
         module = module_of(kind, name)
     else:
-        path = (
-            find("controller", name, beside)
-            if kind == "controller"
-            else _own_file(kind, name, beside)
-        )
-        shipped = path.parent == root() / KINDS["controller"]
+        if kind == "controller":
+            path = find("controller", name, base_folder)
+        else:
+            path = _user_file(kind, name, base_folder)
         name = path.stem
-        module = (
-            module_at(path, f"boatsim.controllers.{name}") if shipped else _own_module(path, named)
-        )
+        if path.parent == root() / KINDS["controller"]:
+            module = module_at(path, f"boatsim.controllers.{name}")
+        else:
+            module = _user_module(path, named)
     found = getattr(module, camel_case(name), None)
     if not isinstance(found, type):
         raise BadInput(f"{module.__file__}: no class {camel_case(name)} in it")
-    if not hasattr(found, "from_settings"):  # which each base of these classes has
+    # All base classes of content have this method
+    if not hasattr(found, "from_settings"):
         raise BadInput(
-            f"{module.__file__}: class {camel_case(name)} is no {kind}; it must derive from one's base class"
+            f"{module.__file__}: class {camel_case(name)} is no {kind}; it must be derived from the base class of one"
         )
     return found
 
 
-def _own_file(kind: str, name: str, beside: Path | None) -> Path:
-    """Path of an effect, measure or sensor of one's own. Raises BadInput."""
-    path = (beside or Path()) / (name if name.endswith(".py") else f"{name}.py")
-    found = path if path.is_file() else _in_content(kind, name)
+def _user_file(kind: str, name: str, base_folder: Path | None) -> Path:
+    """Path of a user's effect, measure or sensor. Raises BadInput."""
+    path = (base_folder or Path()) / (name if name.endswith(".py") else f"{name}.py")
+    found = path if path.is_file() else _in_user_content(kind, name)
     if found is None:
-        raise BadInput(unknown_name(kind, name, known(kind)))
+        raise BadInput(unknown_name(kind, name, all_names(kind)))
     return found
 
 
 def address(effect: type) -> str:
-    """What an effect class is found by from anywhere: its name if it is on the shelf, else the path of its file."""
+    """Return the name of an effect class of the library, or the absolute path of the file of another."""
     if effect.__module__.startswith("boatsim.physics.effects."):
         return snake_case(effect.__name__)
     return str(Path(sys.modules[effect.__module__].__file__ or "").resolve())
 
 
 def vessel_address(file: Path) -> str:
-    """The name of a shipped vessel, else the path of its file."""
-    return (
-        file.parent.name if file.parent.parent == root() / KINDS["vessel"] else str(file.resolve())
-    )
+    """Return the name of a shipped vessel, or the absolute path of another vessel.toml."""
+    if file.parent.parent == root() / KINDS["vessel"]:
+        return file.parent.name
+    return str(file.resolve())
 
 
-def _own_module(path: Path, named: bool) -> ModuleType:
-    """A user's own file: two folders may each have a push.py, and it may be edited while we run."""
+def _user_module(path: Path, named: bool) -> ModuleType:
+    """Import a user's file. Path and content make the module name, for the file may change while the program runs."""
     path = path.resolve()
-    stamp = hashlib.sha256(str(path).encode() + path.read_bytes()).hexdigest()[:16]
-    name = f"boatsim_own_{path.stem}_{stamp}"
-    if not named and name not in sys.modules:  # one that has run in this process was vouched for
+    digest = hashlib.sha256(str(path).encode() + path.read_bytes()).hexdigest()[:16]
+    name = f"boatsim_own_{path.stem}_{digest}"
+    # A module that was imported before has been trusted before
+    if not named and name not in sys.modules:
         trust.check(path)
     return module_at(path, name)

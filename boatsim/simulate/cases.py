@@ -18,7 +18,7 @@ from pathlib import Path
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import Value, read_toml, tables
 from boatsim.physics import trust
-from boatsim.physics.content import find, known, root, whole
+from boatsim.physics.content import all_names, find, full_name, root
 
 NAME = re.compile(r"[\w.+-]+")
 OTHERS = (
@@ -65,7 +65,7 @@ def content(given: str) -> tuple[dict[str, Value], Place]:
 
 def meant(given: str) -> list[str]:
     """The scenarios that a word on the command line stands for: a name, a folder, a pattern, or a file's cases."""
-    shipped = known("scenario")
+    shipped = all_names("scenario")
     if not given:
         raise BadInput(
             f"the name of a scenario is empty; {unknown_name('scenario', given, shipped)}"
@@ -85,7 +85,7 @@ def meant(given: str) -> list[str]:
         return found
     if given.endswith(".toml"):
         return [f"{given}:{case}" for case in cases(find("scenario", given))] or [given]
-    return [whole("scenario", given)]
+    return [full_name("scenario", given)]
 
 
 def files_of(folder: Path) -> list[Path]:
@@ -176,7 +176,7 @@ def _base(given: Value, place: Place) -> Place:
         if given in there:
             return Place(place.path, given)
         if "/" not in given and ".toml" not in given:
-            raise BadInput(unknown_name("scenario", given, [*there, *known("scenario")]))
+            raise BadInput(unknown_name("scenario", given, [*there, *all_names("scenario")]))
         return located(given, place.path.parent)
     except BadInput as error:
         raise BadInput(f"{place.label}: base: {error}") from None

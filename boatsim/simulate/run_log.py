@@ -5,7 +5,7 @@ from tempfile import TemporaryFile
 
 import numpy as np
 
-from boatsim.files import Growing
+from boatsim.files import AppendedFile
 from boatsim.physics.base import Array
 from boatsim.recordings.table import Notes, Recording
 
@@ -50,7 +50,7 @@ class FiledLog(Log):
         """`folder` says on which disk."""
         super().__init__(names, PIECE)
         self._file = TemporaryFile(dir=folder, buffering=0)
-        self._whole = Growing(self._file, folder)
+        self._whole = AppendedFile(self._file, folder)
         self._written = 0  # rows
 
     def add(self, row: list[float]) -> None:
@@ -73,7 +73,7 @@ class FiledLog(Log):
             return self._columns[:, start - self._written : end - self._written].copy()
         waiting = self._columns[:, : self.count - self._written].T
         self._whole.add(np.ascontiguousarray(waiting).tobytes())
-        self._whole.take_back(
+        self._whole.discard_end(
             waiting.nbytes
         )  # the next piece is written over it: its last row may change
         found = np.memmap(self._file, np.float64, "r", 8 * width * start, (end - start, width))

@@ -6,7 +6,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
-from boatsim.interruption import noted
+from boatsim.interruption import deferred_signals
 from boatsim.progress import Report, silent
 from boatsim.sweeps.journal import Entry, Journal
 from boatsim.sweeps.workers.base import Backend, Task, Work
@@ -41,7 +41,7 @@ def carry_out(
 
     `what` is the word for several of them. An interruption keeps what is done. Raises BadInput and OSError.
     """
-    with Journal(folder, about) as journal, noted() as stop:
+    with Journal(folder, about) as journal, deferred_signals() as stop:
         before, begun = len(journal.done), monotonic()
         failed = sum(entry["failure"] is not None for entry in journal.done.values())
         left = (task for task in tasks if task[0] not in journal.done)
@@ -56,7 +56,7 @@ def carry_out(
             )
             if stop():
                 break
-        stop.over = True
+        stop.finishing = True
         entries = {number: journal.done[number] for number in sorted(journal.done)}
     return Outcome(entries, len(entries) == count)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO, Any, Self
 
 from boatsim.errors import BadInput
-from boatsim.files import Growing
+from boatsim.files import AppendedFile
 
 NAME = "journal.jsonl"
 Entry = Mapping[str, Any]  # what became of a run, as JSON has it
@@ -37,7 +37,7 @@ class Journal:
             raise
         self.done = {entry["run"]: entry for entry in entries}
         file.truncate(whole)
-        self._growing = Growing(file, path, whole)
+        self._growing = AppendedFile(file, path, whole)
         if not whole:
             self._growing.add(_line(about))
 

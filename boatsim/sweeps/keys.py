@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple, TypeAlias, get_args
 from boatsim.errors import BadInput, unknown_name
 from boatsim.files import tables
 from boatsim.physics import vessel as vessels
-from boatsim.physics.content import find, known, load_class, names
+from boatsim.physics.content import all_names, find, load_class, names
 from boatsim.physics.kinds.effect import Effect
 from boatsim.simulate.cases import Place
 from boatsim.simulate.scenario import Scenario, ScenarioFile, from_table
@@ -122,13 +122,15 @@ def _effect(said: Said, place: Place, rest: Sequence[str], key: str) -> tuple[Sa
     own = from_table(said, place).vessel.names_of(name)
     if own:
         return said, [("set", one, *rest[1:]) for one in own]
-    if name in known("effect"):
+    if name in all_names("effect"):
         return {**said, "effect": [*tables(said.get("effect")), {"use": name}]}, [
             ("effect", len(extra), *rest[1:])
         ]
     mine = [e.name for e in from_table(said, place).vessel.effects]
     keys = [k for k in ScenarioFile.model_fields if k not in NOT_VARIED]
-    raise BadInput(unknown_name("key", name, {*keys, *OF_VESSEL, *extra, *mine, *known("effect")}))
+    raise BadInput(
+        unknown_name("key", name, {*keys, *OF_VESSEL, *extra, *mine, *all_names("effect")})
+    )
 
 
 def _goal(said: Said, rest: Sequence[str]) -> Steps:

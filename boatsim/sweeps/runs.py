@@ -5,7 +5,7 @@ from math import isfinite
 from typing import Any, NamedTuple
 
 from boatsim.errors import BoatsimError
-from boatsim.interruption import struck
+from boatsim.interruption import signal_received
 from boatsim.simulate.cases import Place
 from boatsim.simulate.evaluation import all_norms
 from boatsim.simulate.run import run
@@ -48,7 +48,7 @@ def _finite(value: float | None) -> float | None:
 
 def _ended(t: float) -> None:
     """Ends a run that somebody wants to end."""
-    if struck():
+    if signal_received():
         raise KeyboardInterrupt
 
 

@@ -17,8 +17,8 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from boatsim.errors import BadInput, BoatsimError
-from boatsim.files import Growing, replacing
-from boatsim.interruption import noted
+from boatsim.files import AppendedFile, replacing
+from boatsim.interruption import deferred_signals
 from boatsim.physics.content import vessel_address
 from boatsim.recordings.table import Notes, Recording, csv_header, csv_rows
 from boatsim.simulate import evaluation as judged
@@ -72,7 +72,7 @@ def run_into(
     """
     runner = Runner(scenario, seed)
     runner.pace = pace
-    with noted() as stop, filling(folder, keep="recording.csv") as new:
+    with deferred_signals() as stop, filling(folder, keep="recording.csv") as new:
         runner.folder = new
         _describe(new, runner, runner.notes(), False, steering)
         if steering:
@@ -97,7 +97,7 @@ def run_into(
                 runner.watch = open_files.enter_context(CsvFile(new / f"{CAMERA}.csv")).add
             with steering.beside(listen) if steering else nullcontext(listen) as runner.listen:
                 run = runner.run(progress, stop)
-            stop.over = True  # nothing that comes now may cost the files
+            stop.finishing = True  # nothing that comes now may cost the files
             found = judged.all_norms(run)
             for log in logs:
                 log.finish({name: norm.to_json() for name, norm in found.items()})
@@ -147,7 +147,7 @@ class CsvFile:
     """A CSV of a recording that comes in pieces; it is whole rows at any time."""
 
     def __init__(self, path: Path) -> None:
-        self._file = Growing(path.open("wb", buffering=0), path)
+        self._file = AppendedFile(path.open("wb", buffering=0), path)
         self._begun = False
 
     def add(self, rows: Recording) -> None:
@@ -230,7 +230,7 @@ def filling(folder: Path, keep: str | None = None) -> Iterator[Path]:
     new = Path(tempfile.mkdtemp(prefix=f"{folder.name}{PART}", dir=folder.parent))
     kept = False
     try:
-        with noted():  # of a folder just made, and of one that is half moved
+        with deferred_signals():  # of a folder just made, and of one that is half moved
             yield new
             _move(new, folder)
     except OSError as error:

@@ -10,7 +10,7 @@ from struct import Struct
 
 import rerun as rr
 
-from boatsim.files import Growing
+from boatsim.files import AppendedFile
 
 HEAD = 12  # bytes before the first message of a .rrd: RRF2, version, options
 FRAME = Struct("<QQ")  # kind and length of a message
@@ -27,7 +27,7 @@ class Stream:
         self._begun = False
         if path is not None:
             Path(path).parent.mkdir(parents=True, exist_ok=True)
-            self._file = Growing(Path(path).open("wb", buffering=0), Path(path))
+            self._file = AppendedFile(Path(path).open("wb", buffering=0), Path(path))
             to_file = rr.RecordingStream(name, send_properties=False)
             self._written = rr.binary_stream(to_file)
         if viewer is not None:

@@ -9,7 +9,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 
-from boatsim.interruption import ignored
+from boatsim.interruption import ignored_signals
 from boatsim.physics import trust
 from boatsim.sweeps.journal import Entry
 from boatsim.sweeps.workers.base import POLL, TRIES, Task, Work
@@ -80,7 +80,7 @@ class Processes:
 def _started(work: Work, task: Task) -> Worker:
     mine, its = CONTEXT.Pipe()
     process = CONTEXT.Process(target=_serve, args=(its, work, trust.now()), daemon=True)
-    with ignored():  # a signal is heeded by the one that hands out; the others end with it
+    with ignored_signals():  # a signal is heeded by the one that hands out; the others end with it
         process.start()
     its.close()
     with suppress(OSError):
