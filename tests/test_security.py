@@ -459,9 +459,9 @@ def test_3_a_check_and_an_import_run_what_is_trusted(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("a = " + "[" * 10**5 + "]" * 10**5, f"more than {DEEPEST} deep"),
-        ("a = " + "[" * (DEEPEST + 1) + "]" * (DEEPEST + 1), f"more than {DEEPEST} deep"),
-        (".".join("a" * 10**5) + " = 1", f"more than {DEEPEST} deep"),
+        ("a = " + "[" * 10**5 + "]" * 10**5, f"more than {MAX_DEPTH} deep"),
+        ("a = " + "[" * (MAX_DEPTH + 1) + "]" * (MAX_DEPTH + 1), f"more than {MAX_DEPTH} deep"),
+        (".".join("a" * 10**5) + " = 1", f"more than {MAX_DEPTH} deep"),
         ("#" + "x" * MAX_TOML_BYTES, f"more than {MAX_TOML_BYTES} bytes"),
         (f"a = {1 << 63}", "a is an integer of 19 digits"),
         ("a = " + "9" * 5000, "not a TOML file"),
@@ -473,7 +473,7 @@ def test_17_toml_has_its_limits(tmp_path: Path, text: str, said: str) -> None:
     file.write_text(text)
     with pytest.raises(BadInput, match=said):
         read_toml(file)
-    file.write_text("a = " + "[" * (DEEPEST - 1) + f"{(1 << 63) - 1}" + "]" * (DEEPEST - 1))
+    file.write_text("a = " + "[" * (MAX_DEPTH - 1) + f"{(1 << 63) - 1}" + "]" * (MAX_DEPTH - 1))
     assert read_toml(file)
 
 
