@@ -1,9 +1,9 @@
-"""What a diagnosis costs: `python -m benchmarks.cost [--quick]`.
+"""Measure the cost of a diagnosis: `python -m benchmarks.cost [--quick]`.
 
-CPU seconds and peak memory of whole commands `boatsim diagnose`, files read and written, each in a process of its own,
-on runs of trial_boat: multi-level random joystick steps on the project's own twin, with camera noise. `analysis` is
-wall time without start and files. The last rows are a program's first diagnosis, which compiles everything into an
-empty cache, and the same one again.
+It prints CPU seconds and peak memory of complete `boatsim diagnose` commands, including reading and
+writing of files, each in a separate process. The recordings are runs of trial_boat on the compiled
+engine with random multi-level joystick steps and camera noise. `analysis` is the wall time without
+start and files. The last rows are the first diagnosis with an empty cache and its repetition.
 """
 
 import argparse
@@ -22,11 +22,9 @@ from boatsim.physics import vessel
 from boatsim.recordings.table import Recording, read, write_csv
 from boatsim.simulate.compiled_engine import Twin
 
-BOAT, HELD, STEP = (
-    "trial_boat",
-    5 / 6,
-    1 / 60,
-)  # vessel, [s] between joystick steps, [s] of integration
+BOAT = "trial_boat"
+HELD = 5 / 6  # [s] between joystick steps
+STEP = 1 / 60  # [s] integration step
 NOISE = (0.003, 0.003, 0.012)  # [m, m, rad] of camera and compass
 TRIAL = (80.0, 6.0)  # [s], [Hz] of a practice trial
 COLUMNS = {
@@ -38,7 +36,7 @@ COLUMNS = {
 
 
 def simulated(seconds: float, rate: float, seed: int) -> Recording:
-    """A run of random joystick steps, seen by a camera."""
+    """Return a run of random joystick steps, recorded by a camera at `rate` [Hz]."""
     rng = np.random.default_rng(seed)
     boat = vessel.load(BOAT)
     steps = rng.uniform(-1.0, 1.0, (int(seconds / HELD) + 1, 4)) * (0.9, 0.9, 0.6, 0.6)
@@ -53,7 +51,7 @@ def simulated(seconds: float, rate: float, seed: int) -> Recording:
 
 
 def one(run: str, out: str) -> None:
-    """Diagnose in this process and print its cost as JSON."""
+    """Diagnose in this process and print the cost as JSON."""
     from boatsim.cli import app
 
     try:
@@ -66,7 +64,7 @@ def one(run: str, out: str) -> None:
 
 
 def cost(run: Recording, folder: Path, cache: Path | None = None) -> dict[str, float]:
-    """CPU [s], peak memory and files [MB] of one command."""
+    """Return CPU [s], wall time [s], peak memory [MB] and size of the files [MB] of one command."""
     write_csv(run, folder / "run.csv")
     environment = os.environ | ({"BOATSIM_CACHE": str(cache)} if cache else {})
     command = [
@@ -84,7 +82,7 @@ def cost(run: Recording, folder: Path, cache: Path | None = None) -> dict[str, f
 
 
 def show(name: str, found: dict[str, float]) -> None:
-    """A row of the table, as soon as it is known."""
+    """Print a row of the table."""
     print(f"{name:28s}" + "".join(f"{found[key]:14.1f}" for key in COLUMNS), flush=True)
 
 
@@ -101,7 +99,7 @@ def main() -> None:
     print(" " * 28 + "".join(f"{heading:>14s}" for heading in COLUMNS.values()))
     with TemporaryDirectory() as base:
         folder = Path(base)
-        cost(simulated(*TRIAL, 0), folder)  # compiles, if nobody has yet
+        cost(simulated(*TRIAL, 0), folder)  # fills the cache of compiled programs
         run = simulated(180.0, 50.0, 1)
         write_csv(run, folder / "long.csv")
         begin = time.process_time()
@@ -115,7 +113,7 @@ def main() -> None:
             for minutes in (1,) if given.quick else (1, 2, 5, 10):
                 run = simulated(60.0 * minutes, rate, minutes)
                 show(f"{minutes} min at {rate:g} Hz", cost(run, folder))
-        for minutes in () if given.quick else (20, 60):  # of which fewer rows a second are used
+        for minutes in () if given.quick else (20, 60):  # fewer rows per second are used
             show(f"{minutes} min at 50 Hz", cost(simulated(60.0 * minutes, 50.0, minutes), folder))
         for state in () if given.quick else ("empty", "filled"):
             run = simulated(*TRIAL, 0)

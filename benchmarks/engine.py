@@ -1,10 +1,11 @@
-"""Speed of the physics, of a whole scenario and of a fresh process: `python -m benchmarks.engine`, about two minutes.
+"""Measure the speed of the physics, of a whole scenario and of a fresh process.
 
-`--scenarios` times every scenario of the repository instead, sensors, controller and log included.
+    python -m benchmarks.engine               about two minutes
+    python -m benchmarks.engine --scenarios   every scenario, with sensors, controller and log
 
-RK4 steps/s are medians of five rounds in which the variants take turns, so that a busy machine slows all of them: the
-joystick boat with all its effects and four more, in a tank so large that it touches nothing, collision on; the Otter is
-the vessel that is free in all six ways.
+Runge-Kutta steps per second are medians of five rounds in which the variants alternate, so that a
+busy machine slows all of them. The vessel is the joystick boat with its own and four more effects,
+with collision detection, in a tank too large to touch; the Otter has six degrees of freedom.
 """
 
 import argparse
@@ -46,7 +47,7 @@ EXTRA = (
     {"use": "shallow_water", "factor": 1.3},
 )
 SCENARIO = "joystick_boat/sway_1"
-FAST = 100.0  # times real time that each scenario is to reach
+FAST = 100.0  # real-time factor that each scenario should reach
 OPEN = {
     "until": {},
     "tank": {"length": 1e4, "width": 1e4},
@@ -56,7 +57,7 @@ CLI = [sys.executable, "-c", "from boatsim.cli import main; main()"]
 
 @dataclass
 class Variant:
-    """One way to step the boat."""
+    """One way to step the vessel."""
 
     name: str
     steps: int
@@ -64,7 +65,7 @@ class Variant:
     rates: list[float] = field(default_factory=list)  # [steps/s]
 
     def measure(self) -> None:
-        """One more round."""
+        """Measure one more round."""
         start = perf_counter()
         self.advance()
         self.rates.append(self.steps / (perf_counter() - start))
@@ -72,7 +73,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class Figure:
-    """A measured number beside what it is to reach."""
+    """A measured number and its target."""
 
     name: str
     value: float
@@ -81,7 +82,7 @@ class Figure:
     at_least: bool = True
 
     def row(self) -> tuple[str, str, str, str]:
-        """Cells of the printed table."""
+        """Return the cells of the printed table."""
         reached = self.value >= self.target if self.at_least else self.value <= self.target
         sign = ">=" if self.at_least else "<="
         target = (
@@ -96,7 +97,7 @@ class Figure:
 
 
 def stepping() -> list[Figure]:
-    """RK4 steps/s of engine, floor and twin."""
+    """Return the steps per second of MuJoCo with and without forces, and of the compiled engine."""
     boat = vessel.load("joystick_boat", extra=EXTRA)
     tank = Tank(1e4, 1e4, 1.0)
     engines = {
@@ -119,7 +120,7 @@ def stepping() -> list[Figure]:
         "six": Variant("six", 300_000, lambda: six.coast([0.0] * 12, SHAFTS, 300_000)),
     }
     for variant in variants.values():
-        variant.advance()  # compiles, warms up
+        variant.advance()  # the first call compiles
     for _ in range(ROUNDS):
         for variant in variants.values():
             variant.measure()
@@ -136,7 +137,7 @@ def stepping() -> list[Figure]:
 
 
 def scenario_speed() -> Figure:
-    """A minute with controller, sensors and log, after imports and compilation."""
+    """Return the real-time factor of a minute with controller, sensors and log, once compiled."""
     seconds = []
     run(scenario.load(SCENARIO, OPEN | {"duration": 1.0}))
     for _ in range(ROUNDS):
@@ -150,14 +151,18 @@ def scenario_speed() -> Figure:
 
 
 def process(arguments: list[str], **environment: str) -> tuple[float, float]:
-    """Wall time [s] and peak memory [MB] of a process. Raises RuntimeError with what it said if it broke."""
+    """Return the wall time [s] and peak memory [MB] of a process.
+
+    Raises:
+        RuntimeError: The process failed; the message contains its output.
+    """
     with tempfile.TemporaryFile() as said:
         start = perf_counter()
         child = subprocess.Popen(arguments, stdout=said, stderr=said, env=os.environ | environment)
         _, status, usage = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
         took = perf_counter() - start
-        if child.returncode not in (0, 1):  # 1: a bar was missed, which is no matter here
+        if child.returncode not in (0, 1):  # 1: a metric is outside its band, irrelevant here
             said.seek(0)
             raise RuntimeError(f"exit code {child.returncode}: {said.read().decode()}")
     unit = 1e6 if sys.platform == "darwin" else 1e6 / 1024  # ru_maxrss: bytes there, KiB elsewhere
@@ -165,7 +170,7 @@ def process(arguments: list[str], **environment: str) -> tuple[float, float]:
 
 
 def processes() -> list[Figure]:
-    """The command line: first start with nothing compiled, later starts, an hour."""
+    """Measure the command line: first start with an empty cache, later starts, one hour."""
     with tempfile.TemporaryDirectory() as folder:
         out, cache = f"{folder}/out", f"{folder}/cache"
         cold, _ = process([*CLI, "run", SCENARIO, "--out", out], BOATSIM_CACHE=cache)
@@ -184,7 +189,7 @@ def processes() -> list[Figure]:
 
 
 def an_hour(folder: Path) -> Path:
-    """A scenario file of one hour in open water, in that folder."""
+    """Write a scenario of one hour in open water and return its path."""
     path = folder / "an_hour.toml"
     path.write_text(
         'about = "An hour under way."\nvessel = "joystick_boat"\nduration = 3600.0\n'
@@ -194,7 +199,7 @@ def an_hour(folder: Path) -> Path:
 
 
 def every_scenario(console: Console) -> None:
-    """Real-time factor of each, the better of two runs, as the first compiles; slowest first."""
+    """Print the real-time factor of each scenario, the better of two runs, slowest first."""
     found = []
     for name in cases.meant("*"):
         took = []
@@ -225,7 +230,7 @@ def every_scenario(console: Console) -> None:
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure and print the table."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.engine", description="Speed of the physics."
     )
@@ -236,7 +241,7 @@ def main() -> None:
     if parser.parse_args().scenarios:
         every_scenario(console)
         return
-    table = Table("", "measured", "to reach", "reached")
+    table = Table("", "measured", "target", "reached")
     for name, part in (
         ("steps/s of engine and twin", stepping),
         ("a scenario", lambda: [scenario_speed()]),

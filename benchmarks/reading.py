@@ -1,7 +1,7 @@
-"""What reading large files costs, and refusing larger ones: `python -m benchmarks.reading`.
+"""Measure the cost of reading large files and of refusing larger ones: `python -m benchmarks.reading`.
 
-Each file is read in a process of its own. Seconds are CPU of the reading alone, without the start of Python; memory is
-the most that the process takes, libraries included.
+Each file is read in a separate process. Seconds are the CPU time of reading, without the start of
+Python; memory is the peak of the process, libraries included.
 """
 
 import json
@@ -30,14 +30,12 @@ NAMES = (
     "steer_starboard_rad",
 )
 WIDE = 30_000  # columns
-PIECE, PIECES = (
-    2_000_000,
-    64,
-)  # rows written together, and how many of those: 5.1 GB of five columns
+PIECE = 2_000_000  # rows written together
+PIECES = 64  # number of pieces: 5.1 GB of five columns
 
 
 def long_run() -> Recording:
-    """Ten hours of a boat that turns to and fro."""
+    """Return ten hours of slow oscillations with noise."""
     rng, t = np.random.default_rng(0), np.arange(round(HOURS * 3600 * RATE)) / RATE
     slow = [
         0.3 * np.sin(0.01 * (i + 1) * t) + 0.003 * rng.standard_normal(len(t))
@@ -47,7 +45,7 @@ def long_run() -> Recording:
 
 
 def make(folder: Path) -> None:
-    """The files."""
+    """Write the files."""
     run = long_run()
     write_csv(run, folder / "ten_hours.csv")
     parquet.write_table(pa.table({"t_s": run.t, **run.signals}), folder / "ten_hours.parquet")
@@ -71,21 +69,20 @@ def make(folder: Path) -> None:
 
 
 def one(path: Path, as_log: bool) -> None:
-    """Read a file in this process and print as JSON what that was."""
+    """Read a file in this process and print seconds, memory [MB] and the result as JSON."""
     begin = time.process_time()
     try:
-        found = (
-            f"{len(next(iter(open_log(path).signals.values())).t)} rows"
-            if as_log
-            else f"{len(read(path))} rows"
-        )
+        if as_log:
+            rows = len(next(iter(open_log(path).signals.values())).t)
+        else:
+            rows = len(read(path))
+        found = f"{rows} rows"
     except BadInput as error:
         found = str(error).removeprefix(f"{path}: ")
     took = time.process_time() - begin
-    said = Path("/proc/self/status").read_text(encoding="ascii")
-    peak = (
-        int(said.partition("VmHWM:")[2].split()[0]) / 1024
-    )  # getrusage counts what its parent took too
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    # getrusage would include the memory of the parent process
+    peak = int(status.partition("VmHWM:")[2].split()[0]) / 1024
     print(json.dumps([took, peak, found]))
 
 
