@@ -1,8 +1,8 @@
-"""Speed of many boats at once: `python -m benchmarks.batch`, about a minute; `--boats` says how many (10,000).
+"""Measure the speed of many boats in one call: `python -m benchmarks.batch [--boats 10000]`.
 
-Boat-steps/s of Runge-Kutta steps on all cores, medians of three rounds: the joystick boat with all its effects and four
-more, in open loop under commands that stay and under ones that all change every control period; and in a closed loop
-with sensors and their noise.
+It takes about a minute and prints Runge-Kutta boat-steps per second on all cores, medians of three
+rounds. The vessel is the joystick boat with its own and four more effects: in open loop with constant
+commands and with commands that all change every control period, and in a closed loop with sensor noise.
 """
 
 import argparse
@@ -23,13 +23,13 @@ from boatsim.simulate.fleet import Fleet
 
 ROUNDS = 3
 PERIOD = 4  # [steps]
-BESIDE = 25  # periods of a round in open loop
+PERIODS = 25  # control periods of a round in open loop
 SECONDS = 60.0  # of the closed loop
 CASE = "joystick_boat/sway_1_wind"
 
 
 def rate(steps: int, advance: Callable[[], object]) -> float:
-    """Median of steps per second."""
+    """Return the median of steps per second."""
     found = []
     for _ in range(ROUNDS):
         start = perf_counter()
@@ -39,11 +39,11 @@ def rate(steps: int, advance: Callable[[], object]) -> float:
 
 
 def open_loop(boats: int) -> list[Figure]:
-    """Commands held, and commands of all boats that jump every period."""
+    """Measure constant commands, and commands of all boats that jump every period."""
     batch = Batch(vessel.load("joystick_boat", extra=EXTRA), boats, STEP)
     row = batch.program.command_array(COMMANDS)
     jumps = (
-        np.random.default_rng(0).uniform(-1.0, 1.0, (BESIDE, boats, len(row))) * np.abs(row) * 0.2
+        np.random.default_rng(0).uniform(-1.0, 1.0, (PERIODS, boats, len(row))) * np.abs(row) * 0.2
     )
 
     def changing() -> None:
@@ -52,8 +52,8 @@ def open_loop(boats: int) -> list[Figure]:
 
     batch.reset(commands=row)
     batch.advance(steps=PERIOD)  # compiles
-    steps = boats * BESIDE * PERIOD
-    held = rate(steps, lambda: batch.advance(row, BESIDE * PERIOD))
+    steps = boats * PERIODS * PERIOD
+    held = rate(steps, lambda: batch.advance(row, PERIODS * PERIOD))
     return [
         Figure(f"open loop, {boats:,} boats, commands held", held / 1e6, "M boat-steps/s", 8.0),
         Figure(
@@ -67,7 +67,7 @@ def open_loop(boats: int) -> list[Figure]:
 
 
 def closed_loop(boats: int) -> list[Figure]:
-    """A minute of all boats with a compiled controller, noise and wind."""
+    """Measure a minute of all boats with a compiled controller, noise and wind."""
     found = []
     for use in ("l1_joystick", "pid_autopilot"):
         fleet = Fleet(scenario.load(CASE, OPEN | {"controller": {"use": use}}), boats)
@@ -88,14 +88,14 @@ def closed_loop(boats: int) -> list[Figure]:
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure and print the table."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.batch", description="Speed of many boats at once."
+        prog="python -m benchmarks.batch", description="Speed of many boats in one call."
     )
     parser.add_argument("--boats", type=int, default=10_000)
     boats = parser.parse_args().boats
     table = Table(
-        "", "measured", "to reach", "reached", title=f"{len(os.sched_getaffinity(0))} cores"
+        "", "measured", "target", "reached", title=f"{len(os.sched_getaffinity(0))} cores"
     )
     for figure in (*open_loop(boats), *closed_loop(boats)):
         table.add_row(*figure.row())

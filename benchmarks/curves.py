@@ -1,8 +1,10 @@
-"""How cost grows: `python -m benchmarks.curves`, with the exponent of a power law fitted to each column.
+"""Print how the cost grows, with the exponent of a power law fitted to each column.
 
-Time of the twin against simulated length (a minute to a day), of a batch against their number (1 to 100,000), and
-of the twin against the entries of the library at work on one boat. An exponent of 1 is proportional; below it, what
-every call costs counts.
+    python -m benchmarks.curves
+
+The columns are the time of the compiled engine against the simulated length (a minute to a day), of a
+batch against the number of boats (1 to 100,000), and of the compiled engine against the number of
+effects on one boat. An exponent of 1 means proportional; a smaller one shows a fixed cost.
 """
 
 import argparse
@@ -19,7 +21,7 @@ from boatsim.simulate.compiled_engine import Twin
 STEP, ROUNDS = 0.02, 5  # [s] of integration
 MINUTES = (1, 10, 60, 360, 1440)
 BOATS = (1, 10, 100, 1_000, 10_000, 100_000)
-ENTRIES = (0, 2, 4, 8, 16)  # beside those of the vessel's own file
+ENTRIES = (0, 2, 4, 8, 16)  # effects in addition to those of the vessel file
 STEPS = {"boats": 100, "entries": 200_000}
 COMMANDS = {
     "pwm_port": 120.0,
@@ -29,8 +31,8 @@ COMMANDS = {
 }
 
 
-def took(work: Callable[[], object]) -> float:
-    """Median wall time [s], the first call not counted."""
+def median_time(work: Callable[[], object]) -> float:
+    """Return the median wall time [s] without the first call."""
     work()
     seconds = []
     for _ in range(ROUNDS):
@@ -41,7 +43,7 @@ def took(work: Callable[[], object]) -> float:
 
 
 def column(what: str, sizes: Sequence[int], seconds: Sequence[float], steps: Sequence[int]) -> str:
-    """A column of the table, with the exponents of its whole and of its second half."""
+    """Return a column of the table, with the exponents of the whole and of its second half."""
     lines = [f"{what:>12}{'[s]':>12}{'million steps/s':>18}"]
     lines += [
         f"{n:12,}{s:12.3g}{k / s / 1e6:18.3g}"
@@ -53,28 +55,28 @@ def column(what: str, sizes: Sequence[int], seconds: Sequence[float], steps: Seq
 
 
 def lengths() -> str:
-    """Simulated length."""
+    """Return the column for the simulated length."""
     twin = Twin(vessel.load("joystick_boat"), STEP)
     steps = [round(60 * m / STEP) for m in MINUTES]
     return column(
         "minutes",
         MINUTES,
-        [took(lambda n=n: twin.coast([0.0] * 6, COMMANDS, n)) for n in steps],
+        [median_time(lambda n=n: twin.coast([0.0] * 6, COMMANDS, n)) for n in steps],
         steps,
     )
 
 
 def boats() -> str:
-    """Number of boats, on all cores."""
+    """Return the column for the number of boats, on all cores."""
     made, seconds = vessel.load("joystick_boat"), []
     for n in BOATS:
         batch = Batch(made, n, STEP)
-        seconds.append(took(lambda batch=batch: batch.advance(COMMANDS, STEPS["boats"])))
+        seconds.append(median_time(lambda batch=batch: batch.advance(COMMANDS, STEPS["boats"])))
     return column("boats", BOATS, seconds, [n * STEPS["boats"] for n in BOATS])
 
 
 def entries() -> str:
-    """Entries of the library at work; each further boat is compiled first, which is not counted."""
+    """Return the column for the number of effects, without the time to compile each vessel."""
     own, sizes, seconds = len(vessel.load("joystick_boat").effects), [], []
     for extra in ENTRIES:
         effects = [
@@ -83,7 +85,9 @@ def entries() -> str:
         ]
         twin = Twin(vessel.load("joystick_boat", extra=effects), STEP)
         sizes.append(own + extra)
-        seconds.append(took(lambda twin=twin: twin.coast([0.0] * 6, COMMANDS, STEPS["entries"])))
+        seconds.append(
+            median_time(lambda twin=twin: twin.coast([0.0] * 6, COMMANDS, STEPS["entries"]))
+        )
     return column("entries", sizes, seconds, [STEPS["entries"]] * len(sizes))
 
 

@@ -1,6 +1,7 @@
-"""Why a hull hangs on slides and hinges: the order of MuJoCo's Runge-Kutta method on a body that turns freely.
+"""Print the order of convergence of MuJoCo's Runge-Kutta method: `python -m benchmarks.joints`.
 
-python -m benchmarks.joints
+A freely rotating body is integrated with a free joint and with three hinges. The result is the reason
+why the hull of a vessel has slide and hinge joints.
 """
 
 from math import log2
@@ -10,7 +11,7 @@ import numpy as np
 
 from boatsim.physics.signals import Array
 
-JOINTS = {  # of a body without forces, with the rates it starts with [rad/s]
+JOINTS = {  # joints of a body without forces, and its initial rates [rad/s]
     "free joint": ("<freejoint/>", (0.0, 0.0, 0.0, 0.3, 0.5, 0.4)),
     "three hinges": (
         '<joint axis="0 0 1"/><joint axis="0 1 0"/><joint axis="1 0 0"/>',
@@ -20,12 +21,12 @@ JOINTS = {  # of a body without forces, with the rates it starts with [rad/s]
 MODEL = """<mujoco><option integrator="RK4" timestep="{step}" gravity="0 0 0"/><worldbody><body>{joints}
 <inertial pos="0 0 0" mass="1" diaginertia="1 2 2.8"/></body></worldbody></mujoco>"""
 STEPS = (0.08, 0.04, 0.02)  # [s]
-FINE = 0.00125  # [s] taken for exact
+FINE = 0.00125  # [s] step of the reference solution
 DURATION = 2.0  # [s]
 
 
 def attitude(joints: str, rates: tuple[float, ...], step: float) -> Array:
-    """Rotation matrix (9,) of the body at the end."""
+    """Return the rotation matrix (9,) of the body at the end of the run."""
     model = mujoco.MjModel.from_xml_string(MODEL.format(step=step, joints=joints))
     data = mujoco.MjData(model)
     data.qvel[:] = rates
@@ -35,13 +36,13 @@ def attitude(joints: str, rates: tuple[float, ...], step: float) -> Array:
 
 
 def errors(kind: str) -> list[float]:
-    """Largest error of the attitude after the run, for each of `STEPS`."""
+    """Return the largest error of the rotation matrix after the run, for each of `STEPS`."""
     exact = attitude(*JOINTS[kind], FINE)
     return [float(np.abs(attitude(*JOINTS[kind], step) - exact).max()) for step in STEPS]
 
 
 def main() -> None:
-    """Errors of the attitude by step, and the order they fall with."""
+    """Print the errors for each step and the order of convergence."""
     for kind in JOINTS:
         found = errors(kind)
         listed = ", ".join(f"{e:.1e} at {s:g} s" for s, e in zip(STEPS, found, strict=True))

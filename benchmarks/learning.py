@@ -1,8 +1,8 @@
-"""How many control steps a second the environments for learning make: python -m benchmarks.learning.
+"""Measure the control steps per second of the learning environments: `python -m benchmarks.learning`.
 
-One boat on one core, by `gymnasium.make`, then many on all cores, by `gymnasium.make_vec`; observations, rewards, ends
-and new episodes with their draws included, actions held. The best of 25 short stretches
-counts: others may use the machine too.
+The table has one boat on one core (`gymnasium.make`) and many on all cores (`gymnasium.make_vec`),
+including observations, rewards, ends and new episodes with their samples, with constant actions. Each
+figure is the best of 25 short intervals, because other programs may use the machine.
 """
 
 import os
@@ -17,11 +17,11 @@ from boatsim.learn.environment_options import play
 from boatsim.simulate import env
 
 BEST_OF = 25
-ALONE, MANY = 1000, 4096  # control steps of a stretch; boats
+ALONE, MANY = 1000, 4096  # control steps of an interval with one boat; boats
 
 
 def alone(name: str, period: float, step: float) -> float:
-    """Control steps a second of one boat."""
+    """Return the control steps per second of one boat."""
     boat = gymnasium.make(name, period=period, step=step)
     boat.reset(seed=1)
     action, found = 0.3 * np.ones(boat.action_space.shape or (), dtype=np.float32), 0.0
@@ -36,7 +36,7 @@ def alone(name: str, period: float, step: float) -> float:
 
 
 def crowd(name: str, period: float, step: float) -> float:
-    """The same of many boats together."""
+    """Return the control steps per second of many boats together."""
     boats = gymnasium.make_vec(
         name,
         num_envs=MANY,
@@ -57,14 +57,14 @@ def crowd(name: str, period: float, step: float) -> float:
 
 
 def coarse(name: str, step: float) -> float:
-    """How far [m] apart coarse and fine steps put a boat at most, of 200 under the same random actions."""
+    """Return the largest distance [m] between 200 boats with a coarse and a fine integration step."""
     places = []
     for one in (0.005, step):
         game = play(n=200, **{**registration.says(name), "step": one})
         game.begin(np.arange(200, dtype=np.uint64), np.arange(200))
-        random = np.random.default_rng(1)
+        random = np.random.default_rng(1)  # equal actions for both steps
         for k in range(100):
-            if k % 10 == 0:  # a new one every 2 s
+            if k % 10 == 0:  # a new action every 2 s
                 actions = random.uniform(-1.0, 1.0, (200, len(game.controls.names)))
             game.step(actions)
         places.append(np.array(game.motion[:2]))
@@ -72,7 +72,7 @@ def coarse(name: str, step: float) -> float:
 
 
 def dm(boat: Environment) -> float:
-    """Control steps a second of the dm_env environment, on MuJoCo."""
+    """Return the control steps per second of the dm_env environment, on MuJoCo."""
     boat.reset()
     action, found = 0.3 * boat.action_spec().maximum, 0.0
     for _ in range(BEST_OF):

@@ -1,8 +1,9 @@
-"""Margins of the low-speed heading control of the water-jet craft: `python -m benchmarks.low_speed_margins`.
+"""Print margins of the water-jet craft's heading control: `python -m benchmarks.low_speed_margins`.
 
-Crossover, phase margin and delay margin of the exact sampled loop, broken at the yaw acceleration, for PD and L1 with
-and without wave filter; then the delay margins of PD and L1 with the filter where the input gain omega (true over
-assumed) or the time constant T_n of the craft is not the one assumed.
+The first table has crossover frequency, phase margin and delay margin of the exact sampled loop,
+opened at the yaw acceleration, for PD and L1 with and without wave filter. The second has the delay
+margins of PD and L1 with the filter if the input gain omega (true over assumed) or the time constant
+T_n of the craft differs from the assumed one.
 """
 
 from dataclasses import replace
@@ -26,7 +27,7 @@ TIME_CONSTANTS = (0.5, 0.8, 1.67, 2.5, 4.0)  # [s]
 
 
 def channel(**switches: float) -> SampledChannel:
-    """The loop of a controller with these switches, on the craft that it assumes."""
+    """Return the loop of a controller with these switches, on the craft that it assumes."""
     controller: Any = load_class("controller", "l1_heading_discrete")(**switches)
     (found,) = controller.loop_channels()
     assert isinstance(found, SampledChannel)
@@ -36,7 +37,7 @@ def channel(**switches: float) -> SampledChannel:
 def margins(
     of: SampledChannel, gain: float = 1.0, time_constant: float | None = None
 ) -> LoopMargins:
-    """Margins for a craft with another input gain or time constant [s] than assumed."""
+    """Return the margins for a craft with another input gain or time constant [s] than assumed."""
     craft = replace(of, damping=1.0 / time_constant) if time_constant else of
     return loop_margins(craft.loop(gain), high=craft.highest)
 

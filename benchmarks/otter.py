@@ -1,6 +1,6 @@
-"""The Otter's reference run on MuJoCo in all six freedoms: from rest, propellers told to turn at 80 and 60 rad/s.
+"""Print the Otter's reference run on MuJoCo in six degrees of freedom: `python -m benchmarks.otter`.
 
-python -m benchmarks.otter
+The run starts from rest with propeller commands of 80 and 60 rad/s.
 """
 
 from math import pi
@@ -8,20 +8,24 @@ from math import pi
 from boatsim.physics import vessel
 from boatsim.simulate.engine import Engine, State
 
-SIGNALS = {
-    "roll": "phi",
-    "pitch": "theta",
-    "yaw": "psi",
-}  # as the table of papers calls them; others as they are
+# Names in the table of published figures that differ from the symbols of a state.
+SIGNALS = {"roll": "phi", "pitch": "theta", "yaw": "psi"}
 
 
 def figures() -> dict[str, float]:
-    """Velocities [m/s, rad/s] and pose [m, rad] after 20 s of a turn; speed and distance after 40 s straight ahead."""
+    """Return velocities [m/s, rad/s] and pose [m, rad] after 20 s of a turn, and 40 s straight ahead."""
     return after_20_s(21, "stations") | after_20_s(0, "exact") | straight()
 
 
-def sailed(port: float, starboard: float, seconds: float, stations: int = 0) -> State:
-    """State after a run from rest with these rates [rad/s]; cross-flow drag by stations, or exact (0)."""
+def final_state(port: float, starboard: float, seconds: float, stations: int = 0) -> State:
+    """Return the state after a run from rest.
+
+    Args:
+        port: Commanded propeller rate on the port side [rad/s].
+        starboard: Commanded propeller rate on the starboard side [rad/s].
+        seconds: Length of the run [s].
+        stations: Number of hull sections for the cross-flow drag; 0 for the exact integral.
+    """
     boat = vessel.load("otter", settings={"cross_flow_drag": {"stations": stations}})
     engine = Engine(boat)
     engine.command({"n_port_radps": port, "n_starboard_radps": starboard})
@@ -30,8 +34,8 @@ def sailed(port: float, starboard: float, seconds: float, stations: int = 0) -> 
 
 
 def after_20_s(stations: int, words: str) -> dict[str, float]:
-    """State at the end of the turn; the heading counts on from a half turn."""
-    state = sailed(80.0, 60.0, 20.0, stations)
+    """Return the state at the end of the turn, with the heading between 0 and 2 pi."""
+    state = final_state(80.0, 60.0, 20.0, stations)
     found = {
         n: getattr(state, SIGNALS.get(n, n))
         for n in ("u", "v", "w", "p", "q", "r", "x", "y", "z", *SIGNALS)
@@ -41,8 +45,8 @@ def after_20_s(stations: int, words: str) -> dict[str, float]:
 
 
 def straight() -> dict[str, float]:
-    """Both propellers at 60 rad/s."""
-    state = sailed(60.0, 60.0, 40.0)
+    """Return speed and distance with both propellers at 60 rad/s."""
+    state = final_state(60.0, 60.0, 40.0)
     return {"u, straight": state.u, "x, straight": state.x}
 
 

@@ -1,6 +1,8 @@
-"""Picture of a log in rerun's own viewer, without a display: python -m benchmarks.screenshot RUN.rrd OUT.png [SECONDS].
+"""Save a picture of a log in rerun's viewer, without a display.
 
-Needs a Vulkan driver; Mesa's software one will do (Debian and Ubuntu: mesa-vulkan-drivers).
+    python -m benchmarks.screenshot RUN.rrd OUT.png [SECONDS]
+
+It needs a Vulkan driver, such as Mesa's software driver (Debian and Ubuntu: mesa-vulkan-drivers).
 """
 
 import os
@@ -24,9 +26,16 @@ SIZE = "1600x900"
 
 
 def screenshot(rrd: Path, png: Path, at: float | None = None, settle: float = 4.0) -> None:
-    """Open `rrd` in a viewer without a window and save what it shows at time `at` [s], or at its end.
+    """Open a log in a viewer without a window and save what it shows.
 
-    `settle` is how long the viewer may take to load and draw [s]. Raises RuntimeError where no viewer starts.
+    Args:
+        rrd: The log.
+        png: The picture to write.
+        at: Time of the log to show [s]; its end by default.
+        settle: Time that the viewer gets to load and draw [s].
+
+    Raises:
+        RuntimeError: No viewer starts.
     """
     with _viewer() as viewer:
         viewer.open(str(rrd.resolve()))
@@ -41,7 +50,7 @@ def screenshot(rrd: Path, png: Path, at: float | None = None, settle: float = 4.
 
 @contextmanager
 def _viewer(patience: float = 30.0) -> Iterator[ViewerClient]:
-    """A viewer of our own; ViewerClient.spawn would do the same but has no window size."""
+    """Start a viewer; ViewerClient.spawn would do the same but cannot set the window size."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -75,12 +84,10 @@ def _connected(process: "subprocess.Popen[bytes]", port: int, until: float) -> V
             return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
         except OSError:
             time.sleep(0.2)
-    said = (
-        process.stderr.read().decode(errors="replace")
-        if process.poll() is not None and process.stderr
-        else ""
-    )
-    raise RuntimeError(f"no viewer started; is a Vulkan driver installed? {said[-500:]}")
+    output = ""
+    if process.poll() is not None and process.stderr:
+        output = process.stderr.read().decode(errors="replace")
+    raise RuntimeError(f"no viewer started; is a Vulkan driver installed? {output[-500:]}")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
-"""What the L1 loops of the high-speed water-jet craft can bear: `python -m benchmarks.svendsen`.
+"""Print the robustness of the L1 loops of the high-speed water-jet craft: `python -m benchmarks.svendsen`.
 
-The L1-norm condition of the cruise control over its bandwidth (Fig. 8) and where it is met; what a delay of the jet
-does to the heading control, over its bandwidth; what the time between two control steps does to both.
+The tables contain the L1-norm condition of the cruise control against its bandwidth (Fig. 8) and the
+bandwidth that satisfies it; the effect of a delay of the jet on the heading control, against its
+bandwidth; and the effect of the control period on both.
 """
 
 import numpy as np
@@ -33,38 +34,41 @@ PERIODS = (0.0005, 0.001, 0.002, 0.004, 0.008)  # [s]
 
 
 def condition(bandwidth: float) -> float:
-    """L1 norm times slope of the cruise control at one bandwidth."""
+    """Return L1 norm times slope of the cruise control at a bandwidth [1/s]."""
     found: float = load_class("controller", "l1_cruise")(bandwidth=bandwidth).l1_condition()
     return found
 
 
 def threshold(low: float = 5.0, high: float = 60.0) -> float:
-    """Bandwidth [1/s] at which the condition is 1, by bisection."""
+    """Return the bandwidth [1/s] at which the condition equals 1, by bisection."""
     for _ in range(40):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if condition(middle) > 1.0 else (low, middle)
+        if condition(middle) > 1.0:
+            low = middle
+        else:
+            high = middle
     return 0.5 * (low + high)
 
 
 def value(name: str, norm: str, **changes: object) -> float:
-    """A norm of a scenario with some of its top-level keys replaced."""
+    """Return a metric of a scenario with some of its top-level keys replaced."""
     found = norms(run(scenario.load(f"jet_ski/{name}", changes), 0))[norm].value
     return float("nan") if found is None else found
 
 
 def with_control(name: str, **settings: float) -> dict[str, object]:
-    """Settings of a scenario's controller, the plant stepped as often."""
+    """Return changes of a scenario: settings of its controller, and a matching integration step."""
     own = scenario.load(f"jet_ski/{name}").file.controller | settings
     return {"controller": own, "step": min(settings.get("period", 0.002), 0.004)}
 
 
-def delayed(bandwidth: float, delay: float) -> float:
-    """Rms rate [deg/s] of the jet's command along the sine, so late."""
-    late = [{"use": "command_delay", "delay": delay}]
+def rate_with_delay(bandwidth: float, delay: float) -> float:
+    """Return the rms rate [deg/s] of the jet's command on the sine with a command delay [s]."""
+    effects = [{"use": "command_delay", "delay": delay}]
     return value(
         "heading_delay",
         "rate_rms",
-        effect=late,
+        effect=effects,
         **with_control("heading_delay", bandwidth=bandwidth),
     )
 
@@ -74,12 +78,13 @@ def main() -> None:
     print("k_u [1/s]   L1 norm x slope")
     for bandwidth in BANDWIDTHS:
         print(f"{bandwidth:9.1f}   {condition(bandwidth):.3f}")
-    print(f"met from k_u = {threshold():.2f} 1/s on\n")
+    print(f"satisfied for k_u above {threshold():.2f} 1/s\n")
     print("rms rate of the jet's command [deg/s] along the sine, no rate limit; delay [ms]")
     print("k_h [1/s]" + "".join(f"{1e3 * delay:9.0f}" for delay in DELAYS))
     for bandwidth in FILTERS:
         print(
-            f"{bandwidth:9.0f}" + "".join(f"{delayed(bandwidth, delay):9.1f}" for delay in DELAYS),
+            f"{bandwidth:9.0f}"
+            + "".join(f"{rate_with_delay(bandwidth, delay):9.1f}" for delay in DELAYS),
             flush=True,
         )
     print(

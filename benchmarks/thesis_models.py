@@ -1,6 +1,6 @@
-"""Figures of the thesis that need no run: reference models (T7, T8), neutral steering angles (F8), derivatives (T27).
+"""Print figures of the thesis that need no run: `python -m benchmarks.thesis_models`.
 
-python -m benchmarks.thesis_models
+These are the reference models (T7, T8), the neutral steering angles (F8) and the derivatives (T27).
 """
 
 from math import degrees, pi, sqrt
@@ -22,14 +22,14 @@ RESPONSES = {  # name -> model, input, state
     "r from sway force": (SWAY_YAW, 0, 1),
     "r from yaw moment": (SWAY_YAW, 1, 1),
 }
-LENGTH, BEAM, DRAUGHT, BLOCK = 1.2, 0.30, 0.06, 0.86  # [m] and block coefficient as T27 has them
+LENGTH, BEAM, DRAUGHT, BLOCK = 1.2, 0.30, 0.06, 0.86  # [m] and block coefficient in T27
 SWAY = 0.07  # [m/s] speed commanded in the sway tests
 GRAVITY = 9.81  # [m/s^2]
 ARM = {"light": 0.60, "heavy": 0.64}  # [m] motors to centre of lateral resistance, T10 to T14
 
 
 def figures() -> dict[str, float]:
-    """Every figure by name: times in s, angles in deg."""
+    """Return every figure by name: times in s, angles in deg."""
     found = {}
     for name, (model, force, state) in RESPONSES.items():
         rise, peak, settling = response(model, force, state)
@@ -43,7 +43,7 @@ def figures() -> dict[str, float]:
 
 
 def derivatives() -> dict[str, float]:
-    """T27's derivatives: Clarke's regressions (1983) over -pi (T/L)^2."""
+    """Return the derivatives of T27: Clarke's regressions (1983) divided by -pi (T/L)^2."""
     b, t, h = BEAM / LENGTH, BEAM / DRAUGHT, DRAUGHT / LENGTH
     return {
         "Y_vdot": 1.0 + 0.16 * BLOCK * t - 5.1 * b**2,
@@ -58,9 +58,16 @@ def derivatives() -> dict[str, float]:
 
 
 def response(model: Array, force: int, state: int) -> tuple[float, float, float]:
-    """Rise (10 to 90 %), peak and settling (2 %) of one state after a unit step of one force, b = I.
+    """Return rise time, peak and settling time of a state after a unit step of a force.
 
-    Where the last value is zero there is no rise, and settling is 2 % of the peak.
+    Args:
+        model: State matrix (n, n); the input matrix is the identity.
+        force: Index of the force.
+        state: Index of the state.
+
+    Returns:
+        Rise time from 10 to 90 % [s], peak, and settling time to 2 % [s]. If the final value is zero,
+        the rise time is 0 and the settling time refers to 2 % of the peak.
     """
     n = len(model)
     x = step_response(LinearSystem(model, np.eye(n)[:, [force]], np.eye(n)[[state]]), STEP, 30_000)[
@@ -74,13 +81,13 @@ def response(model: Array, force: int, state: int) -> tuple[float, float, float]
 
 
 def _crossing(x: Array, level: float) -> float:
-    """Time [s] at which a rising signal first reaches a level."""
+    """Return the time [s] at which a rising signal first reaches a level."""
     i = int(np.argmax(x >= level))
     return float(STEP * (i - 1 + (level - x[i - 1]) / (x[i] - x[i - 1])))
 
 
 def neutral_angle(load: str, spacing: str) -> float:
-    """Inward angle [deg] at which thrust ahead on one side and astern on the other turn the boat neither way."""
+    """Return the inward angle [deg] at which opposite thrusts of both motors cause no yaw moment."""
     port, starboard = vessel.load("joystick_boat", [load, spacing]).effects_of("thruster")
     assert isinstance(port, Force) and isinstance(starboard, Force)
     resistance = port.x + ARM[load]  # type: ignore[attr-defined]  # [m] centre of lateral resistance ahead of the CG
