@@ -1,10 +1,13 @@
-"""The joystick without a speed sensor: `python -m benchmarks.blind [--boats 24] [--test sway_1]`.
+"""Evaluate the joystick controller without a speed sensor.
 
-Boats of the Monte Carlo study on the thesis' tests: thrust 0.2 to 0.8 N at PWM 150 with an exponent of 1 to 1.6, drag
-coefficient 0.7 to 2.5, thrust astern 0.55 to 0.85 of that ahead, motors shifted by 0.08 m, each steering off by 3 deg,
-yaw inertia 0.5 to 2 kg m2, wind to 0.5 m/s from anywhere. Each boat tries its motors in a run of its own; then it
-starts from rest with what it found, and once more knowing nothing. Then: all tests, six seeds, as shipped; and what
-the noise of the speed logs does to the motors while the boat sways.
+    python -m benchmarks.blind [--boats 24] [--test sway_1]
+
+The boats are those of the Monte Carlo study on the tests of the thesis: thrust 0.2 to 0.8 N at PWM 150
+with an exponent of 1 to 1.6, drag coefficient 0.7 to 2.5, thrust astern 0.55 to 0.85 of that ahead,
+motors shifted by up to 0.08 m, each steering angle wrong by up to 3 deg, yaw inertia 0.5 to 2 kg m2,
+wind up to 0.5 m/s from any direction. Each boat identifies its motors in a separate run. Then it starts
+from rest with the result, and once more without. The other tables contain all tests with six seeds as
+shipped, and the effect of the noise of the speed logs on the motors while the boat sways.
 """
 
 import argparse
@@ -19,15 +22,15 @@ from boatsim.simulate.run import Runner, run
 
 TESTS = [f"{kind}_{n}" for kind in ("sway", "yaw") for n in (1, 2, 3, 4)]
 BELIEFS = {"rated_thrust": 0.35, "sway_thrust": 0.55}  # [N]
-LONGEST = 90.0  # [s] of a check
-ASKED = {
+LONGEST = 90.0  # [s] maximum length of an identification
+REQUIREMENTS = {
     "sway": (("surge_offset", 0.15), ("heading_at_end", 10.0)),
     "yaw": (("moved", 1.2), ("excursion", 1.2)),
 }
 
 
 def boat(test: str, rng: np.random.Generator) -> dict[str, Any]:
-    """Settings of a scenario: a boat by chance, in open water."""
+    """Return the settings of a scenario with a random boat in open water."""
     heavy, wide = test[-1] in "34", test in ("sway_2", "sway_4")
     thrust, power, drag, astern, shift, inertia, wind = rng.uniform(
         (0.2, 1.0, 0.7, 0.55, -0.08, 0.5, 0.0), (0.8, 1.6, 2.5, 0.85, 0.08, 2.0, 0.5)
@@ -53,7 +56,7 @@ def boat(test: str, rng: np.random.Generator) -> dict[str, Any]:
 
 
 def known(test: str, settings: dict[str, Any], seed: int) -> dict[str, Any]:
-    """Controller that has tried the motors of this boat, in a run of its own."""
+    """Return a controller with the motors of this boat identified in a separate run."""
     blind = {"use": "l1_joystick_blind", "check_pwm": 118.0, **BELIEFS}
     checked = scenario.load(
         f"joystick_boat/{test}_gyro", {**settings, "controller": blind, "until": {}, "goal": [{}]}
@@ -65,7 +68,7 @@ def known(test: str, settings: dict[str, Any], seed: int) -> dict[str, Any]:
 
 
 def study(test: str, boats: int) -> list[str]:
-    """Lines of the first table: median, 95 % and largest of what is asked for, with and without a check."""
+    """Return lines of the first table: median, 95 % and largest value of each required metric."""
     rng = np.random.default_rng(sum(map(ord, test)))
     found: dict[str, list[dict[str, float]]] = {"l1_joystick": [], "l1_joystick_blind": []}
     for seed in range(boats):
@@ -80,7 +83,7 @@ def study(test: str, boats: int) -> list[str]:
     lines = []
     for name, rows in found.items():
         cells = []
-        for norm, limit in ASKED[test.partition("_")[0]]:
+        for norm, limit in REQUIREMENTS[test.partition("_")[0]]:
             x = np.array([row[norm] for row in rows])
             cells.append("{:7.3f}{:7.3f}{:7.3f}".format(*np.percentile(x, (50, 95, 100))))
             cells.append(f"{100 * np.mean(x < limit):6.0f} %")
@@ -89,7 +92,7 @@ def study(test: str, boats: int) -> list[str]:
 
 
 def unrest(test: str, controller: dict[str, Any], settled: float = 6.0) -> str:
-    """Standard deviation of both PWM of 255 from `settled` [s] on."""
+    """Return the standard deviations of both PWM values (of 255) after the time `settled` [s]."""
     log = run(scenario.load(f"joystick_boat/{test}", {"controller": controller}), 0).recording
     port, starboard = (
         float(np.std(log[f"pwm_{side}"][log.t > settled])) for side in ("port", "starboard")
@@ -103,7 +106,7 @@ def main() -> None:
     parser.add_argument("--boats", type=int, default=24)
     parser.add_argument("--test", choices=TESTS, action="append")
     given = parser.parse_args()
-    print("boats by chance: median, 95 %, largest, share within the requirement")
+    print("random boats: median, 95 %, largest, share within the requirement")
     print(
         "  sway: surge offset [m] (0.15), heading [deg] (10); yaw: light moved [m], mass centre away [m] (both 1.2)"
     )
@@ -113,7 +116,7 @@ def main() -> None:
     for test in given.test or TESTS:
         rows = [norms(run(scenario.load(f"joystick_boat/{test}_blind"), seed)) for seed in range(6)]
         cells = []
-        for norm, _ in ASKED[test.partition("_")[0]]:
+        for norm, _ in REQUIREMENTS[test.partition("_")[0]]:
             x = np.array([row[norm].value for row in rows], dtype=float)
             cells.append(f"{norm} {x.mean():.3f} ({np.abs(x).max():.3f})")
         print(f"{test:8}" + ", ".join(cells), flush=True)

@@ -1,9 +1,12 @@
-"""How long a stick takes to the log, and whether control keeps time: `python -m benchmarks.driving [--seconds 60]`.
+"""Measure the latency from a stick to the log, and late control periods.
 
-A real Chromium without a window drives `joystick_boat` under `l1_joystick`; a gamepad is simulated in its page. A stick
-is pushed at random times; the page's clock and the log's are this machine's. Log: the first row whose goal is another
-one. Commands: the first row in which something else is sent, which waits for the controller's period. Picture: the page
-has the state that shows the goal. `--picture FILE.png` draws the page instead, with a fan on.
+    python -m benchmarks.driving [--seconds 60]
+    python -m benchmarks.driving --picture FILE.png   a picture of the page, with a fan on
+
+A headless Chromium drives `joystick_boat` with `l1_joystick` and a gamepad that is simulated in the
+page. The stick is pushed at random times; page and log use the clock of this machine. "log" is the
+first row with another goal, "commands" the first row with another command, which waits for the
+controller's period, and "picture" the time at which the page has the state with the new goal.
 """
 
 import argparse
@@ -30,11 +33,11 @@ PUSH = """new Promise(done => {
   const look = () => frame.goals[0][0] !== before ? done([at, (performance.timeOrigin + performance.now()) / 1000])
     : setTimeout(look, 1);
   look();
-})"""  # when the stick was pushed and when the page saw the goal change [s since 1970]
+})"""  # returns when the stick was pushed and when the page saw the goal change [s since 1970]
 
 
 def pushes(page: Page, seconds: float) -> Array:
-    """(N, 2) when a stick was pushed and when the page showed it, until so long [s] of the run."""
+    """Return the times (N, 2) of pushing the stick and of its display, during a run of `seconds`."""
     rng, found = random.Random(0), []
     page.until("frame && frame.t > 1 && !frame.away")
     while page.run("frame.t") < seconds - 1.5:
@@ -44,20 +47,20 @@ def pushes(page: Page, seconds: float) -> Array:
 
 
 def after(log: Recording, column: str, begin: float, at: Array) -> Array:
-    """How long [s] after each of these times [s since 1970] a column first changed, by the log's own time."""
+    """Return the delay [s] from each time in `at` [s since 1970] to the next change of a column."""
     changed = begin + log.t[1:][np.diff(log[column]) != 0.0]
     return np.array([changed[changed > when - 0.001][0] - when for when in at])
 
 
 def line(name: str, seconds: Array) -> str:
-    """A row of the table, in ms."""
+    """Return a row of the table, in ms."""
     ms = 1e3 * seconds
     return f"{name:20}{np.median(ms):8.0f}{np.percentile(ms, 95):8.0f}{ms.max():8.0f}"
 
 
 @contextmanager
 def driven(folder: Path, seconds: float, *more: str) -> Iterator[Page]:
-    """The page of a run under way; at the end of the block it is awaited."""
+    """Start a run and yield its page; wait for its end when the block is left."""
     command = [sys.executable, "-m", "boatsim", "drive", "joystick_boat", "--no-open", *more]
     command += ["--seconds", f"{seconds:g}", "--out", str(folder)]
     running = subprocess.Popen(
@@ -72,7 +75,7 @@ def driven(folder: Path, seconds: float, *more: str) -> Iterator[Page]:
 
 
 def picture(folder: Path, path: Path) -> None:
-    """The page as it is after some seconds of turning."""
+    """Save a picture of the page after some seconds of turning."""
     with driven(folder, 21.0, "--scenario", str(SHOWN)) as page:
         page.until("frame && frame.t > 1 && !frame.away")
         for until, push in (
@@ -86,7 +89,7 @@ def picture(folder: Path, path: Path) -> None:
 
 
 def measured(folder: Path, seconds: float) -> None:
-    """One run, and what it shows."""
+    """Drive one run and print its latencies."""
     with driven(folder, seconds, "--controller", "l1_joystick") as page:
         moved = pushes(page, seconds)
     log = read(folder / "recording.csv")
@@ -104,7 +107,7 @@ def measured(folder: Path, seconds: float) -> None:
 
 
 def main(given: Sequence[str] | None = None) -> None:
-    """As the command says."""
+    """Measure, or save the picture."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--picture", type=Path)

@@ -1,8 +1,11 @@
-"""A day without losing energy: `python -m benchmarks.energy_day [--hours 24] [--step 0.01]`.
+"""Measure the loss of energy and momentum in a simulated day.
 
-A boat of 6 kg that nothing brakes or drives (case P3 of the reference cases: added mass of 0.6, 3 and 0.3 in surge,
-sway and yaw, 1 m/s ahead, 0.1 m/s abeam, 0.2 rad/s), on MuJoCo and on the twin. Two things must last whatever the added
-mass: energy, and momentum in earth axes. What is lost of them is the integrator's, what memory grows is the program's.
+    python -m benchmarks.energy_day [--hours 24] [--step 0.01]
+
+The vessel is a boat of 6 kg without damping and thrust (case P3 of the reference cases: added mass of
+0.6, 3 and 0.3 in surge, sway and yaw, 1 m/s ahead, 0.1 m/s abeam, 0.2 rad/s), on MuJoCo and on the
+compiled engine. Energy and momentum in earth-fixed axes are constants of the motion; their change is
+the error of the integrator. Growing memory would be a defect of the program.
 """
 
 import argparse
@@ -53,18 +56,18 @@ yaw = 0.3
 use = "thruster"
 on = { thrust = "thrust_N", angle = 0.0 }
 """
-Advance = Callable[[int], Array]  # so many steps -> x, y, psi, u, v, r
+Advance = Callable[[int], Array]  # number of steps -> x, y, psi, u, v, r
 
 
 def boat(folder: Path) -> Vessel:
-    """The vessel, written into that folder."""
+    """Write the vessel into a folder and load it."""
     (folder / "hull.xml").write_text(HULL, encoding="utf-8")
     (folder / "vessel.toml").write_text(BOAT, encoding="utf-8")
     return vessel.load(str(folder / "vessel.toml"))
 
 
-def kept(state: Array) -> Array:
-    """Energy [J] and momentum north and east [N s]."""
+def constants_of_motion(state: Array) -> Array:
+    """Return energy [J] and momentum north and east [N s]."""
     psi, nu = state[2], state[3:]
     p = MASS * nu
     return np.array(
@@ -77,7 +80,7 @@ def kept(state: Array) -> Array:
 
 
 def of_engine(made: Vessel, step: float) -> Advance:
-    """MuJoCo."""
+    """Return a function that steps the vessel on MuJoCo."""
     engine = Engine(made, step=step, show=False)
     x, y, psi, u, v, r = START
     engine.reset(State(x=x, y=y, psi=psi, u=u, v=v, r=r), {})
@@ -91,7 +94,7 @@ def of_engine(made: Vessel, step: float) -> Advance:
 
 
 def of_twin(made: Vessel, step: float) -> Advance:
-    """The same laws without it."""
+    """Return a function that steps the vessel on the compiled engine."""
     twin, state = Twin(made, step), np.array(START)
 
     def advance(steps: int) -> Array:
@@ -103,19 +106,20 @@ def of_twin(made: Vessel, step: float) -> Advance:
 
 
 def memory() -> float:
-    """Largest memory of this process so far [MB]."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (
-        1e6 if sys.platform == "darwin" else 1e6 / 1024
-    )
+    """Return the peak memory of this process [MB]."""
+    unit = 1e6 / 1024  # ru_maxrss is in KiB
+    if sys.platform == "darwin":
+        unit = 1e6
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
 
 
 def lost(advance: Advance, hours: float, step: float) -> str:
-    """A row of the table: after every hour the constants are looked at, and their largest change is kept."""
-    first, worst = kept(np.array(START)), np.zeros(3)
+    """Return a row of the table with the largest change of the constants, evaluated every hour."""
+    first, worst = constants_of_motion(np.array(START)), np.zeros(3)
     advance(0)
     before, begin = memory(), time.perf_counter()
     for _ in range(round(hours)):
-        worst = np.maximum(worst, np.abs(kept(advance(round(HOUR / step))) - first))
+        worst = np.maximum(worst, np.abs(constants_of_motion(advance(round(HOUR / step))) - first))
     took, grown = time.perf_counter() - begin, memory() - before
     total = np.hypot(*first[1:])
     energy, momentum = worst[0] / first[0], np.max(worst[1:]) / total

@@ -1,11 +1,12 @@
-"""Speed of batches on one of Warp's devices, and how far they are from the twin.
+"""Measure the speed of batches on a Warp device, and their distance to the compiled engine.
 
-python -m benchmarks.gpu                     boat-steps/s against the number of boats, about a minute
-python -m benchmarks.gpu --device cuda:0     the same on a GPU, up to a million boats
-python -m benchmarks.gpu --agreement         largest difference to the twin, vessel by vessel, about two minutes
+    python -m benchmarks.gpu                   boat-steps/s against the number of boats, a minute
+    python -m benchmarks.gpu --device cuda:0   the same on a GPU, up to a million boats
+    python -m benchmarks.gpu --agreement       largest difference for each vessel, two minutes
 
-A boat-step is one Runge-Kutta step of 20 ms with all effects of the vessel. Each boat begins at its own state and has
-its own commands, which jump once a second; what it takes to end steps where a lag or a rate bends is in the time.
+A boat-step is one Runge-Kutta step of 20 ms with all effects of the vessel. Each boat has its own
+initial state and its own commands, which jump once a second; the time includes the division of steps
+at kinks of lags and rate limits.
 """
 
 import argparse
@@ -29,14 +30,19 @@ from boatsim.warp.runtime import device as known
 STEP, SECOND = 0.02, 50  # [s], steps in a second
 ROUNDS = 3
 SIZES = (1, 10, 100, 1_000, 10_000, 100_000, 1_000_000)
-LARGEST = {"cpu": 10_000}  # boats; on anything else all sizes
+LARGEST = {"cpu": 10_000}  # boats; on other devices all sizes
 WAYS = {"on mujoco_warp": True, "without MuJoCo": False}
-WIDEST = 1e3  # of a command
-SECONDS, BOATS = 10, 1_000  # of the agreement
+WIDEST = 1e3  # largest magnitude of a command
+SECONDS, BOATS = 10, 1_000  # length and size of the comparison
 
 
-def drawn(boat: Vessel, *shape: int) -> tuple[Array, Array]:
-    """States (n, 2 NQ) about the origin, and commands (rows, n, C) anywhere in their ranges; `shape` is (rows, n)."""
+def random_case(boat: Vessel, *shape: int) -> tuple[Array, Array]:
+    """Return random states (n, 2 NQ) near the origin and commands (rows, n, C) within their ranges.
+
+    Args:
+        boat: The vessel.
+        *shape: Numbers of rows and of boats.
+    """
     rng = np.random.default_rng(1)
     ranges = np.clip(np.array(list(boat.limits().values())).reshape(-1, 2), -WIDEST, WIDEST)
     starts = rng.uniform(-0.3, 0.3, (shape[-1], 2 * len(boat.dof)))
@@ -44,10 +50,10 @@ def drawn(boat: Vessel, *shape: int) -> tuple[Array, Array]:
 
 
 def rate(batch: Batch) -> float:
-    """Boat-steps/s, the median of some seconds of sailing."""
-    starts, commands = drawn(batch.vessels[0], ROUNDS + 1, batch.n)
+    """Return the median of boat-steps per second over some simulated seconds."""
+    starts, commands = random_case(batch.vessels[0], ROUNDS + 1, batch.n)
     batch.reset(starts, commands[0])
-    batch.advance(commands[0], SECOND)  # compiles, warms up
+    batch.advance(commands[0], SECOND)  # compiles
     found = []
     for row in commands[1:]:
         begin = perf_counter()
@@ -58,7 +64,7 @@ def rate(batch: Batch) -> float:
 
 
 def speed(boat: Vessel, device: str, largest: int) -> Table:
-    """The table of rates."""
+    """Return the table of rates."""
     table = Table("boats", *(f"{way} [boat-steps/s]" for way in WAYS), box=None)
     for n in (n for n in SIZES if n <= largest):
         rates = (
@@ -68,10 +74,10 @@ def speed(boat: Vessel, device: str, largest: int) -> Table:
     return table
 
 
-def furthest(boat: Vessel, device: str, on_mujoco: bool) -> float:
-    """Largest difference to the twin, each state by its largest size over all boats and times."""
+def largest_difference(boat: Vessel, device: str, on_mujoco: bool) -> float:
+    """Return the largest difference to the compiled engine, relative to the magnitude of each state."""
     batch, twin = Batch(boat, BOATS, STEP, device, mujoco=on_mujoco), Twin(boat, STEP)
-    starts, commands = drawn(boat, SECONDS, BOATS)
+    starts, commands = random_case(boat, SECONDS, BOATS)
     batch.reset(starts, commands[0])
     found = [batch.states]
     for row in commands:
@@ -82,12 +88,13 @@ def furthest(boat: Vessel, device: str, on_mujoco: bool) -> float:
 
 
 def agreement(device: str) -> Table:
-    """The table of differences."""
+    """Return the table of differences."""
     table = Table("vessel", *WAYS, box=None)
     for path in sorted(Path("models").glob("*/vessel.toml")):
         boat = vessel.load(path.parent.name)
         table.add_row(
-            boat.name, *(f"{furthest(boat, device, on_mujoco):.1e}" for on_mujoco in WAYS.values())
+            boat.name,
+            *(f"{largest_difference(boat, device, on_mujoco):.1e}" for on_mujoco in WAYS.values()),
         )
     return table
 

@@ -1,8 +1,10 @@
-"""What a long run takes and what is left of one that is killed: `python -m benchmarks.long_run [--hours 24]`.
+"""Measure a long run, and what remains of a run that is killed.
 
-Runs of joystick_boat with a row every 20 ms, in processes of their own: peak memory of an hour and of so many, that of
-the process alone and with the pages of its log that the system keeps, which it gives back when others need them. Then
-one is killed, as by `kill -9`, after a minute, and what lies on the disk is read.
+    python -m benchmarks.long_run [--hours 24]
+
+Runs of joystick_boat with a row every 20 ms in separate processes: peak memory for an hour and for the
+given time, of the process alone and with the pages of its log that the system caches. Then a run is
+killed after a minute, as by `kill -9`, and the files on the disk are read.
 """
 
 import argparse
@@ -35,7 +37,7 @@ below = 1.0
 
 
 def begin(folder: Path, hours: float) -> "subprocess.Popen[bytes]":
-    """A run, going on."""
+    """Start a run in a process."""
     (folder / "long.toml").write_text(SCENARIO.format(hours * HOUR))
     words = [
         sys.executable,
@@ -50,7 +52,7 @@ def begin(folder: Path, hours: float) -> "subprocess.Popen[bytes]":
 
 
 def memory(process: int) -> tuple[float, float]:
-    """Memory [MB] of a process that is running: its own, and with pages of files; zero once it is not."""
+    """Return the memory [MB] of a process: alone, and with pages of files; zero if it has ended."""
     try:
         lines = Path(f"/proc/{process}/status").read_text(encoding="ascii").splitlines()
     except OSError:
@@ -64,7 +66,7 @@ def memory(process: int) -> tuple[float, float]:
 
 
 def whole(hours: float) -> str:
-    """A row of the table: a run to its end."""
+    """Run to the end and return a row of the table."""
     with TemporaryDirectory() as base:
         folder, since, own, all_of_it = Path(base), time.monotonic(), 0.0, 0.0
         run = begin(folder, hours)
@@ -79,7 +81,7 @@ def whole(hours: float) -> str:
 
 
 def killed(hours: float) -> list[str]:
-    """What a run that is killed leaves."""
+    """Kill a run and return lines that describe its files."""
     with TemporaryDirectory() as base:
         folder = Path(base)
         run = begin(folder, hours)
