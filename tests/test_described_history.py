@@ -183,20 +183,20 @@ def test_a_term_that_looks_back_is_said_in_words_with_its_unit() -> None:
         term = DescribedForce(axis=axis, of=of, memory=5.0)
         return factors(term, BOAT), unit_of(term, BOAT)
 
-    assert said("sway", "recent_thrust_port_N") == ("thrust port of the last 5.00 s", "")
+    assert said("sway", "recent_thrust_port_N") == ("the average over the last 5.00 s of thrust port", "")
     assert said("yaw", "recent_thrust", "surge_speed") == (
-        "thrust of the last 5.00 s times surge speed",
+        "the average over the last 5.00 s of thrust times surge speed",
         "s",
     )
     assert said("yaw", "changed_steer_port_rad") == (
-        "what steer port is beyond that of the last 5.00 s",
+        "the deviation of steer port from its average over the last 5.00 s",
         "N m",
     )
     assert said("sway", "recent_abs_thrust_port_N") == (
-        "the size of thrust port of the last 5.00 s",
+        "the average over the last 5.00 s of the size of thrust port",
         "",
     )
-    assert over_words("recent_abs_thrust_port_N") == "the size of thrust port of late"
+    assert over_words("recent_abs_thrust_port_N") == "the recent average of the size of thrust port"
 
 
 def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
@@ -233,6 +233,6 @@ def test_a_side_force_with_the_thrust_of_the_last_seconds_is_described(
     assert term.memory == pytest.approx(late[0], rel=0.3) and term.coefficient == pytest.approx(
         0.6, rel=0.1
     )
-    assert f"of the last {term.memory:.3g}" in found.findings.answer["sentence"]
+    assert f"over the last {term.memory:.3g}" in found.findings.answer["sentence"]
     assert written.carries and written.curve is not None and halved(found, "position_rms_m")
     replays(found, sail("run_3", 42, wake, late=late)[0], tmp_path)

@@ -10,9 +10,9 @@ from test_report import MODELS, described, nothing, planar, rolling, unknown
 
 from boatsim.diagnosis.report import before_after
 from boatsim.diagnosis.report import page as report
-from boatsim.diagnosis.report.animation import FRAMES, LASTS
+from boatsim.diagnosis.report.animation import FRAMES, LONGEST_ANIMATION
 from boatsim.diagnosis.report.findings import Findings, FreeRun, Missing
-from boatsim.diagnosis.report.replay_section import LARGEST, SHOWN, SMALLEST, replay
+from boatsim.diagnosis.report.replay_section import LARGEST, MOST_PATHS, SMALLEST, replay
 from boatsim.diagnosis.report.sentences import mean_force
 
 LIMIT = 2_000_000  # bytes of a page
@@ -89,7 +89,7 @@ def test_a_boat_that_only_rolls_shows_its_roll_over_time():
     assert (
         not found.film["plan"]
         and found.film["unit"] == "°"
-        and found.title.startswith("Roll on unseen data")
+        and found.title.startswith("Roll on held-out data")
     )
     run = f.free_runs[0]
     shown = np.interp(found.film["t"], run.t, np.degrees(run.channels["patched"]["phi_rad"]))
@@ -123,7 +123,7 @@ def test_a_boat_that_only_yaws_shows_its_heading_over_time():
         for r in f.free_runs
     )
     found, boats = film_of(replace(f, free_runs=yawing))
-    assert not found.film["plan"] and found.title.startswith("Heading on unseen data")
+    assert not found.film["plan"] and found.title.startswith("Heading on held-out data")
     assert np.degrees(boats["patched"]["turned"]) == pytest.approx(
         np.array(boats["patched"]["y"]), abs=0.1
     )
@@ -203,8 +203,10 @@ def test_the_page_of_logs_of_an_hour_stays_small_and_its_film_can_be_watched(tmp
     assert (tmp_path / "report.html").stat().st_size < LIMIT
     found, _ = film_of(f)
     seconds = found.film["t"][-1] - found.film["t"][0]
-    assert seconds / found.film["rate"] <= LASTS and len(found.film["t"]) <= 1.1 * FRAMES
-    assert f"Shown are {SHOWN} of" in found.about
+    assert (
+        seconds / found.film["rate"] <= LONGEST_ANIMATION and len(found.film["t"]) <= 1.1 * FRAMES
+    )
+    assert f"The figure shows {MOST_PATHS} of" in found.about
 
 
 def test_every_line_can_be_read_back_with_its_quantity_and_unit(tmp_path):

@@ -1,6 +1,6 @@
-"""The film of a report: free runs as frames of numbers that the page's script plays."""
+"""The animation of a report: free runs as frames that the script of the page plays."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TypedDict
 
 import numpy as np
@@ -11,33 +11,32 @@ from boatsim.diagnosis.report.svg_plots import every
 from boatsim.physics.base import Array
 
 FRAMES = 1200
-LASTS = 40.0  # [s] at most; a longer run is played faster
-FASTER = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-BRIDGED = 3.0  # [s] at most between two fixes that the film joins
-ANGLES = ("phi_rad", "psi_rad")  # by which what is drawn of a boat is turned
+LONGEST_ANIMATION = 40.0  # [s]; a longer recording is played faster
+SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)  # times real time
+LONGEST_GAP = 3.0  # [s] between two position fixes that the animation interpolates
+ANGLES = ("phi_rad", "psi_rad")  # signals that rotate the outline of a boat
 
 Outline = list[tuple[float, float]]
 
 
 class Boat(TypedDict):
-    """A boat of the film: at each frame its place in the picture, and how far it is turned clockwise."""
+    """A boat of the animation, frame by frame; None where nothing was recorded."""
 
-    look: str
+    look: str  # class of the style sheet
     x: list[float | None]
     y: list[float | None]
-    turned: list[float | None]  # [rad]
+    turned: list[float | None]  # [rad] clockwise
 
 
 class Film(TypedDict):
-    """What the page's script plays."""
+    """Data of the animation."""
 
-    t: list[float]  # [s] a time twice is where the boats start anew
-    start: int  # frame it begins with
+    t: list[float]  # [s]; two equal times where a new free run starts
+    start: int  # first frame shown
     rate: int  # times real time
-    # seen from above, in metres: the distance from the recording is told, otherwise the value
-    plan: bool
+    plan: bool  # seen from above [m], with the distance from the recording as text
     unit: str
-    outline: Outline  # to the right and down, in units of the picture's height axis
+    outline: Outline  # to the right and down, in units of the vertical axis of the figure
     boats: list[Boat]
 
 
@@ -49,57 +48,98 @@ def film(
     outline: Outline,
     start: float,
 ) -> Film:
-    """Frames of consecutive free runs, seen from above (`signal` is None) or of a signal over time.
+    """Return the frames of consecutive free runs.
 
-    `height` is what the picture's height stands for, to which frames are exact enough; it begins at `start` [s].
+    Args:
+        runs: Free runs over one recording.
+        models: Models to show in addition to the recording.
+        signal: Signal to show over time; None for a view from above.
+        height: Range of the vertical axis, which sets the rounding of the frames.
+        outline: Outline of a boat.
+        start: Time [s] of the first frame shown.
     """
     rows = [every(len(r.t), max(2, FRAMES // len(runs))) for r in runs]
     t = np.concatenate([r.t[k] for r, k in zip(runs, rows, strict=True)])
     decimals = max(0, 4 - int(np.floor(np.log10(height))))
-    unit, factor = in_unit(signal, runs) if signal else ("m", 1.0)
+    unit, factor = ("m", 1.0)
+    if signal:
+        unit, factor = in_unit(signal, runs)
 
     def joined(model: str, name: str) -> Array:
-        parts = [bridged(r.t, r.channels[model].get(name, np.zeros(len(r.t)))) for r in runs]
-        return np.concatenate([part[k] for part, k in zip(parts, rows, strict=True)])
+        parts = []
+        for run, k in zip(runs, rows, strict=True):
+            values = run.channels[model].get(name, np.zeros(len(run.t)))
+            parts.append(bridged(run.t, values)[k])
+        return np.concatenate(parts)
 
-    def boat(model: str) -> Boat:
-        x, y = (
-            (t, factor * joined(model, signal))
-            if signal
-            else (joined(model, "y_m"), joined(model, "x_m"))
-        )
-        turned = joined(model, signal if signal in ANGLES else "" if signal else "psi_rad")
-        return {
-            "look": model,
-            "x": _told(x, decimals),
-            "y": _told(y, decimals),
-            "turned": _told(turned, 3),
-        }
-
-    seconds = float(t[-1] - t[0])
+    boats = []
+    for model in ("recorded", *models):
+        boats.append(_boat(model, joined, t, signal, factor, decimals))
     return {
         "t": np.round(t, 3).tolist(),
         "start": int(np.argmin(np.abs(t - start))),
-        "rate": next((f for f in FASTER if seconds <= f * LASTS), FASTER[-1]),
+        "rate": _speed(float(t[-1] - t[0])),
         "plan": signal is None,
         "unit": unit,
         "outline": outline,
-        "boats": [boat(m) for m in ("recorded", *models)],
+        "boats": boats,
     }
 
 
+def _boat(
+    model: str,
+    joined: Callable[[str, str], Array],
+    t: Array,
+    signal: str | None,
+    factor: float,
+    decimals: int,
+) -> Boat:
+    """Return the frames of one boat; `joined` returns a signal of a model in all frames."""
+    if signal is None:
+        x, y, turned = joined(model, "y_m"), joined(model, "x_m"), joined(model, "psi_rad")
+    else:
+        x, y, turned = t, factor * joined(model, signal), np.zeros(len(t))
+        if signal in ANGLES:
+            turned = joined(model, signal)
+    return {
+        "look": model,
+        "x": _as_json(x, decimals),
+        "y": _as_json(y, decimals),
+        "turned": _as_json(turned, 3),
+    }
+
+
+def _speed(seconds: float) -> int:
+    """Return the slowest speed at which the animation is short enough."""
+    for speed in SPEEDS:
+        if seconds <= speed * LONGEST_ANIMATION:
+            return speed
+    return SPEEDS[-1]
+
+
 def bridged(t: Array, values: Array) -> Array:
-    """What was measured less often than rows are written, straight between two measurements; gaps stay gaps."""
+    """Return values with short gaps between measurements filled linearly.
+
+    Args:
+        t: Times (N,) [s].
+        values: Values (N,); nan where nothing was measured.
+
+    Returns:
+        Values (N,); gaps longer than `LONGEST_GAP` remain nan.
+    """
     seen = np.flatnonzero(np.isfinite(values))
     if len(seen) < 2:
         return values
     rows = np.arange(len(values))
     after = np.clip(np.searchsorted(seen, rows), 1, len(seen) - 1)
-    near = t[seen[after]] - t[seen[after - 1]] <= BRIDGED
+    near = t[seen[after]] - t[seen[after - 1]] <= LONGEST_GAP
     within = (rows >= seen[0]) & (rows <= seen[-1])
     return np.where(np.isnan(values) & near & within, np.interp(t, t[seen], values[seen]), values)
 
 
-def _told(values: Array, decimals: int) -> list[float | None]:
-    """Numbers as JSON has them: nothing where nothing was recorded."""
-    return [v if np.isfinite(v) else None for v in np.round(values, decimals).tolist()]
+def _as_json(values: Array, decimals: int) -> list[float | None]:
+    """Return rounded numbers with None in the place of nan."""
+    rounded = np.round(values, decimals).astype(object)
+    rounded[~np.isfinite(values)] = None
+    numbers: list[float | None] = rounded.tolist()
+    return numbers

@@ -1,4 +1,4 @@
-"""What a report is made of: paragraphs, lists, tables and figures under headings, and how each reads as plain text."""
+"""Blocks of a report: paragraphs, lists, tables and figures, and their text in Markdown."""
 
 import re
 from dataclasses import dataclass, field, replace
@@ -15,7 +15,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Heading:
-    """A heading within a section, with a line of facts under it."""
+    """A heading within a section, with a line of facts below it."""
 
     kind: ClassVar[str] = "heading"
     words: str
@@ -24,7 +24,7 @@ class Heading:
 
 @dataclass(frozen=True)
 class Items:
-    """A list; pairs of a term and what it means, or plain lines with no term."""
+    """A list of pairs: a term and its meaning, or "" and a line."""
 
     kind: ClassVar[str] = "items"
     lines: tuple[tuple[str, str], ...]
@@ -32,34 +32,53 @@ class Items:
 
 @dataclass(frozen=True)
 class Table:
-    """A table; the first column is text, so are those named in `prose`, the rest are numbers."""
+    """A table.
+
+    Attributes:
+        caption: Title of the table.
+        header: Titles of the columns.
+        rows: Cells of each row.
+        prose: Columns of words in addition to the first one; all others are numbers.
+        bars: Length of the bar behind the second column of each row, 0 to 1.
+        folded: Whether the page shows the table on request only.
+        aside: Whether the last column is omitted on narrow screens.
+    """
 
     kind: ClassVar[str] = "table"
     caption: str
     header: list[str]
     rows: list[list[str]]
     prose: tuple[int, ...] = ()
-    bars: tuple[float, ...] = ()  # share of a row's bar, 0 to 1, behind its second column
-    folded: bool = False  # on the page, shown on request
-    aside: bool = False  # the last column is left out where the screen is narrow
+    bars: tuple[float, ...] = ()
+    folded: bool = False
+    aside: bool = False
 
 
 def without_empty(table: Table) -> Table:
-    """The table without prose columns that say nothing in any row."""
-    kept = [
-        i
-        for i in range(len(table.header))
-        if i not in table.prose or any(row[i] for row in table.rows)
-    ]
-    prose = tuple(new for new, old in enumerate(kept) if old in table.prose)
-    header, *rows = ([row[i] for i in kept] for row in (table.header, *table.rows))
+    """Return a table without the prose columns that are empty in every row.
+
+    Args:
+        table: The table.
+    """
+    kept: list[int] = []
+    prose: list[int] = []
+    for i in range(len(table.header)):
+        if i in table.prose:
+            if not any(row[i] for row in table.rows):
+                continue
+            prose.append(len(kept))
+        kept.append(i)
+    rows = []
+    for row in table.rows:
+        rows.append([row[i] for i in kept])
+    header = [table.header[i] for i in kept]
     aside = table.aside and len(table.header) - 1 in kept
-    return replace(table, header=header, rows=rows, prose=prose, aside=aside)
+    return replace(table, header=header, rows=rows, prose=tuple(prose), aside=aside)
 
 
 @dataclass(frozen=True)
 class Figures:
-    """Pictures of the page; the text has the tables beside them."""
+    """Figures of the page; the Markdown text has the tables only."""
 
     kind: ClassVar[str] = "figures"
     legend: str
@@ -71,7 +90,7 @@ Block = Text | Heading | Items | Table | Figures
 
 @dataclass(frozen=True)
 class Section:
-    """What one heading stands over."""
+    """A section of the report; `key` is its anchor on the page."""
 
     key: str
     title: str
@@ -79,32 +98,44 @@ class Section:
 
 
 def safe(words: str) -> str:
-    """Names from files do not become mark-up."""
+    """Return words in which names from files are not read as mark-up."""
     words = words.replace("&", "&amp;").replace("<", "&lt;").replace("\n", " ")
     return re.sub(r"([|*`]|(?<=\])\()", r"\\\1", words)
 
 
 def as_text(block: Block) -> list[str]:
-    """Lines of a block in Markdown; figures have none."""
+    """Return the lines of a block in Markdown; figures have none.
+
+    Args:
+        block: The block.
+    """
     match block:
         case Text():
             return ["", safe(block.words)]
         case Heading():
-            return [
-                "",
-                f"### {safe(block.words)}",
-                *(["", safe(block.facts)] if block.facts else []),
-            ]
+            lines = ["", f"### {safe(block.words)}"]
+            if block.facts:
+                lines += ["", safe(block.facts)]
+            return lines
         case Items():
-            return ["", *(f"- {f'**{safe(a)}**: ' if a else ''}{safe(b)}" for a, b in block.lines)]
+            return ["", *map(_item, block.lines)]
         case Table():
-            head, *rows = ([safe(cell) for cell in row] for row in (block.header, *block.rows))
-            rule = ["---" if i in (0, *block.prose) else "---:" for i in range(len(head))]
-            return [
-                "",
-                safe(block.caption),
-                "",
-                *(f"| {' | '.join(row)} |" for row in (head, rule, *rows)),
-            ]
+            rule = ["---:"] * len(block.header)
+            for i in (0, *block.prose):
+                rule[i] = "---"
+            head, *rows = map(_cells, (block.header, *block.rows))
+            lines = [f"| {' | '.join(row)} |" for row in (head, rule, *rows)]
+            return ["", safe(block.caption), "", *lines]
         case Figures():
             return []
+
+
+def _item(line: tuple[str, str]) -> str:
+    term, meaning = line
+    if not term:
+        return f"- {safe(meaning)}"
+    return f"- **{safe(term)}**: {safe(meaning)}"
+
+
+def _cells(row: list[str]) -> list[str]:
+    return list(map(safe, row))

@@ -1,4 +1,4 @@
-"""Described laws in words: what a term goes with, its unit, and the statement that a person reads."""
+"""Formulas in words: what a term varies with, its unit, and the statement of a formula."""
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence
@@ -36,68 +36,108 @@ FACTORS = {
     "sin_heading": "the sine of the heading",
     "cos_twice_heading": "the cosine of twice the heading",
     "sin_twice_heading": "the sine of twice the heading",
-    "north": "how far north she is",
-    "east": "how far east she is",
-    "depth": "how deep she floats",
+    "north": "the position north",
+    "east": "the position east",
+    "depth": "the depth",
 }
+SIDES = {"all": "", "port": " to port", "starboard": " to starboard"}
+SENSES = {"both": "", "ahead": " when pushing ahead", "astern": " when pushing astern"}
 POWERS = {2: " squared", 3: " cubed"}
 TURNING = ("roll", "pitch", "yaw")
-FADED = 37  # [%] what is left after one span of what fades: exp(-1)
+FADED = 37  # [%] what remains of a fading term after one time span: exp(-1)
 
 
 def described_entries(description: Description | None, vessel: Vessel) -> list[DescribedEntry]:
-    """The laws of a description, those that gain most first; what carries over apart from what does not."""
+    """Return the formulas of a description as entries of the answer.
+
+    Args:
+        description: Terms found by symbolic regression; None if there are none.
+        vessel: The vessel, for the units of its commands.
+
+    Returns:
+        One entry for each axis, recording of events, and whether it generalizes; those with most
+        evidence first.
+    """
     if description is None:
         return []
-
-    def key(w: Written) -> tuple[str, bool, str]:
-        return axis_of(w.term), w.carries, w.term.run
-
     gains = defaultdict[tuple[str, bool, str], float](float)
     for w in description.terms:
-        gains[key(w)] += w.gain
-    ordered = sorted(description.terms, key=lambda w: (-gains[key(w)], key(w), -w.gain))
-    return [_entry(list(group), vessel) for _, group in groupby(ordered, key)]
+        gains[_group(w)] += w.gain
+    ordered = sorted(description.terms, key=lambda w: (-gains[_group(w)], _group(w), -w.gain))
+    entries = []
+    for _, group in groupby(ordered, _group):
+        entries.append(_entry(list(group), vessel))
+    return entries
+
+
+def _group(w: Written) -> tuple[str, bool, str]:
+    """Return what the terms of one formula have in common."""
+    return axis_of(w.term), w.carries, w.term.run
 
 
 def axis_of(term: Described) -> str:
-    """Axis of a described law; "thrust" of one that is about the drives."""
-    return term.axis if isinstance(term, DescribedForce) else "thrust"
+    """Return the axis of a term; "thrust" if it changes the thrust of the drives."""
+    if isinstance(term, DescribedForce):
+        return term.axis
+    return "thrust"
 
 
 def what_of(axis: str) -> str:
-    """What a described law is of: a side force."""
+    """Return what a formula of an axis describes, such as "a side force"."""
     return FORCES.get(axis, "a change of thrust")
 
 
 def over_words(over: str) -> str:
-    """What a curve is drawn over, with its unit."""
+    """Return the label of the axis over which a curve is drawn, with its unit.
+
+    Args:
+        over: Name of a factor, "time" or "product".
+    """
+    if over == "time":
+        return "time [s]"
+    if over == "product":
+        return "product of the factors [SI]"
     if over in RIPPLES:
-        return f"how far {over.removeprefix('ripple_')} she is [m]"
-    if over in ("time", "product"):
-        return "time [s]" if over == "time" else "product of the factors [SI]"
+        return f"position {over.removeprefix('ripple_')} [m]"
     how, signal = looking(over, ())
     if how:
-        words = "of late" if how == "recent" else "beyond what it was of late"
-        size = "the size of " if signal.startswith("abs_") else ""
-        name, _, unit = over_words(signal.removeprefix("abs_")).partition(" [")
-        return f"{size}{name} {words} [{unit}" if unit else f"{size}{name} {words}"
-    unit = UNITS.get(over, "")
-    return f"{FACTORS.get(over, plain(over))} [{unit}]" if unit else parameter(over)[0]
+        return _recent_words(how, signal)
+    if unit := UNITS.get(over, ""):
+        return f"{FACTORS.get(over, plain(over))} [{unit}]"
+    return parameter(over)[0]
+
+
+def _recent_words(how: str, signal: str) -> str:
+    """Return the label of the recent average of a signal, or of the deviation from it."""
+    name, _, unit = over_words(signal.removeprefix("abs_")).partition(" [")
+    if signal.startswith("abs_"):
+        name = f"the size of {name}"
+    words = f"the recent average of {name}"
+    if how != "recent":
+        words = f"the deviation of {name} from its recent average"
+    if unit:
+        return f"{words} [{unit}"
+    return words
 
 
 def share_or_force(term: Described) -> str:
-    """Unit of what a term amounts to: "N", "N m", or "" of a share of the thrust."""
+    """Return the unit of a term: "N", "N m", or "" for a share of the thrust."""
     axis = axis_of(term)
-    return "" if axis == "thrust" else "N m" if axis in TURNING else "N"
+    if axis == "thrust":
+        return ""
+    if axis in TURNING:
+        return "N m"
+    return "N"
 
 
 def _entry(written: Sequence[Written], vessel: Vessel) -> DescribedEntry:
+    """Return the entry of the terms of one formula."""
     axis, first = axis_of(written[0].term), written[0]
-    statement = f"{what_of(axis)} that no entry explains: {listed((_said(w, vessel) for w in written), 'plus')}"
+    sum_of_terms = listed((_statement(w, vessel) for w in written), "plus")
+    statement = f"{what_of(axis)} that no candidate effect explains: {sum_of_terms}"
     if not first.carries:
-        where = f"of {first.term.run}" if first.term.run else "of the recordings fitted"
-        statement += f" (an event {where}: no law that unseen recordings bear out)"
+        recording = first.term.run or "the fitted recordings"
+        statement += f" (an event of {recording}, not confirmed by held-out recordings)"
     return {
         "axis": axis,
         "statement": statement,
@@ -108,7 +148,7 @@ def _entry(written: Sequence[Written], vessel: Vessel) -> DescribedEntry:
 
 def _term(w: Written, vessel: Vessel) -> TermEntry:
     entry: TermEntry = {
-        "of": _of(w.term, vessel),
+        "of": _varies_with(w.term, vessel),
         "value": w.term.coefficient,
         "sd": w.sd,
         "unit": unit_of(w.term, vessel),
@@ -119,63 +159,77 @@ def _term(w: Written, vessel: Vessel) -> TermEntry:
     return entry
 
 
-def _said(w: Written, vessel: Vessel) -> str:
-    """One term: 4.1 ± 0.2 N s²/m² times surge speed times yaw rate."""
-    term = w.term
+def _statement(w: Written, vessel: Vessel) -> str:
+    """Return a term with its coefficient: 4.1 ± 0.2 N s²/m² times surge speed times yaw rate."""
+    term, unit = w.term, unit_of(w.term, vessel)
     if isinstance(term, DescribedThrust):
-        more = "more" if term.coefficient > 0.0 else "less"
-        per = unit_words(unit_of(term, vessel)).removeprefix("1")
-        size = f"{spread(100.0 * abs(term.coefficient), 100.0 * w.sd)} %{f' {per}' if per else ''} {more}"
-        size += {"all": "", "port": " to port", "starboard": " to starboard"}[term.side]
-        size += {"both": "", "ahead": " when pushing ahead", "astern": " when pushing astern"}[
-            term.sense
-        ]
+        text = _change_of_thrust(term, unit, w.sd)
     else:
-        size = quantity(term.coefficient, unit_of(term, vessel), w.sd)
-    times = f" times {factors(term, vessel)}" if term.of else ""
-    when = _when(term).removeprefix(", ")
-    return f"{size}{times}{f' ({when})' if when else ''}"
+        text = quantity(term.coefficient, unit, w.sd)
+    if term.of:
+        text += f" times {factors(term, vessel)}"
+    if when := _when(term):
+        text += f" ({when})"
+    return text
 
 
-def _of(term: Described, vessel: Vessel) -> str:
-    """What a term goes with."""
+def _change_of_thrust(term: DescribedThrust, unit: str, sd: float) -> str:
+    """Return the size of a change of thrust: 15.0 ± 2.0 % less to port when pushing astern."""
+    text = f"{spread(100.0 * abs(term.coefficient), 100.0 * sd)} %"
+    if per := unit_words(unit).removeprefix("1"):
+        text += f" {per}"
+    more = "more" if term.coefficient > 0.0 else "less"
+    return f"{text} {more}{SIDES[term.side]}{SENSES[term.sense]}"
+
+
+def _varies_with(term: Described, vessel: Vessel) -> str:
+    """Return what a term varies with, and when it acts."""
+    parts = []
     if isinstance(term, DescribedThrust):
-        side = {"all": "", "port": " to port", "starboard": " to starboard"}[term.side]
-        thrust = f"thrust{side}{'' if term.sense == 'both' else f' {term.sense}'}"
-        return f"{thrust}{f' times {factors(term, vessel)}' if term.of else ''}{_when(term)}"
-    return f"{factors(term, vessel) or 'nothing, it is constant'}{_when(term)}"
+        sense = "" if term.sense == "both" else f" {term.sense}"
+        thrust = f"thrust{SIDES[term.side]}{sense}"
+        if term.of:
+            thrust += f" times {factors(term, vessel)}"
+        parts.append(thrust)
+    else:
+        constant = "nothing (constant)" if term.acts == "always" else "time"
+        parts.append(factors(term, vessel) or constant)
+    if when := _when(term):
+        parts.append(when)
+    return ", ".join(parts)
 
 
 def _when(term: Described) -> str:
-    """When it acts, with a comma; nothing of what always does."""
+    """Return when a term acts; "" if it always does."""
     begin, span = number(term.begin), term.end - term.begin
+    recording = f" of {term.run}" if term.run else ""
+    if term.acts == "within" and term.end >= EVER:
+        return f"from {begin} s on{recording}"
     if term.acts == "within":
-        until = (
-            f", from {begin} s on"
-            if term.end >= EVER
-            else f", from {begin} to {number(term.end)} s"
-        )
-        return until + (f" of {term.run}" if term.run else "")
+        return f"from {begin} to {number(term.end)} s{recording}"
     if term.acts == "rising":
-        return f", rising from nothing at {begin} s to all of it at {number(term.end)} s"
+        return f"rising from zero at {begin} s to its full value at {number(term.end)} s"
     if term.acts == "fading":
-        return f", fading from {begin} s on, to {FADED} % of it {number(span)} s later"
+        return f"fading from {begin} s on, to {FADED} % after {number(span)} s"
     if term.acts == "swinging":
-        return f", swinging with a period of {number(span)} s" + (
-            f" in {term.run}" if term.run else ""
-        )
+        period = f"oscillating with a period of {number(span)} s"
+        return f"{period} in {term.run}" if term.run else period
     return ""
 
 
 def factors(term: Described, vessel: Vessel) -> str:
-    """The product of its factors in words."""
+    """Return the product of the factors of a term in words; "" if it is constant.
+
+    Args:
+        term: The term.
+        vessel: The vessel.
+    """
     parts = []
     for name, power in Counter(term.of).items():
-        own = f"abs_{name}"
         if name.startswith("abs_") and name.removeprefix("abs_") in term.of:
             continue
         parts.append(_factor(name, term) + POWERS.get(power, ""))
-        if own in term.of:
+        if f"abs_{name}" in term.of:
             parts.append("its size")
     return " times ".join(parts)
 
@@ -185,23 +239,36 @@ def _factor(name: str, term: Described) -> str:
         return FACTORS[name]
     if name in RIPPLES:
         along = name.removeprefix("ripple_")
-        return f"a pattern that repeats every {number(term.wavelength)} m {along}, with a crest at {number(term.crest)} m"
+        wavelength, crest = number(term.wavelength), number(term.crest)
+        return f"a pattern that repeats every {wavelength} m {along}, with a crest at {crest} m"
     if name in BEYOND:
         speed = name.removeprefix("beyond_")
-        return f"what {plain(speed)} is beyond {quantity(term.beyond, UNITS[speed])}"
-    for mark, words in (("abs_", "the size of "), ("sign_", "the sense of ")):
-        if name.startswith(mark):
-            return words + _factor(name.removeprefix(mark), term)
-    if term.looks_back and (looks := looking(name, ()))[0]:
-        how, signal = looks
-        said = _factor(signal, term)
-        late = f"of the last {number(term.memory)} s"
-        return f"{said} {late}" if how == "recent" else f"what {said} is beyond that {late}"
-    return parameter(name)[0] if name not in UNITS else plain(name)
+        return f"the excess of {plain(speed)} over {quantity(term.beyond, UNITS[speed])}"
+    if name.startswith("abs_"):
+        return f"the size of {_factor(name.removeprefix('abs_'), term)}"
+    if name.startswith("sign_"):
+        return f"the sign of {_factor(name.removeprefix('sign_'), term)}"
+    how, signal = looking(name, ()) if term.looks_back else ("", "")
+    if how:
+        average = f"average over the last {number(term.memory)} s"
+        if how == "recent":
+            return f"the {average} of {_factor(signal, term)}"
+        return f"the deviation of {_factor(signal, term)} from its {average}"
+    if name in UNITS:
+        return plain(name)
+    return parameter(name)[0]
 
 
 def unit_of(term: Described, vessel: Vessel) -> str:
-    """Unit of its coefficient: force or moment per product of the factors, radians left out; "" of a share."""
+    """Return the unit of the coefficient of a term.
+
+    Args:
+        term: The term.
+        vessel: The vessel, for the units of its commands.
+
+    Returns:
+        Force or moment per product of the factors, without radians; "" for a share of the thrust.
+    """
     powers = Counter[str]()
     if isinstance(term, DescribedForce):
         powers["N"] = 1
@@ -210,15 +277,24 @@ def unit_of(term: Described, vessel: Vessel) -> str:
         signal = looking(name, vessel.described_signals)[1] or name
         unit = UNITS.get(name) or vessel.unit(signal.removeprefix("abs_"))
         above, _, below = unit.partition("/")
-        for part, sign in ((above, -1), (below, 1)):
-            for symbol in part.split():
-                base, _, power = symbol.partition("^")
-                powers[base] += sign * int(power or 1)
+        _multiply(powers, above, -1)
+        _multiply(powers, below, 1)
     del powers["rad"], powers["1"], powers[""]
-    above = " ".join(_power(b, n) for b, n in powers.items() if n > 0)
-    below = " ".join(_power(b, -n) for b, n in powers.items() if n < 0)
-    return f"{above or '1'}/{below}" if below else above
+    above = " ".join(_power(symbol, n) for symbol, n in powers.items() if n > 0)
+    below = " ".join(_power(symbol, -n) for symbol, n in powers.items() if n < 0)
+    if below:
+        return f"{above or '1'}/{below}"
+    return above
+
+
+def _multiply(powers: Counter[str], unit: str, sign: int) -> None:
+    """Multiply the powers of a unit by another unit, or divide by it (sign -1)."""
+    for part in unit.split():
+        base, _, power = part.partition("^")
+        powers[base] += sign * int(power or 1)
 
 
 def _power(symbol: str, n: int) -> str:
-    return symbol if n == 1 else f"{symbol}^{n}"
+    if n == 1:
+        return symbol
+    return f"{symbol}^{n}"

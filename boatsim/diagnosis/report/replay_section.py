@@ -1,4 +1,4 @@
-"""The first picture of a report: where the boats went in free runs over unseen data, with a film of it."""
+"""The first figure of a report: recorded and simulated paths over held-out data, animated."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,119 +14,152 @@ from boatsim.diagnosis.report.findings import Findings
 from boatsim.diagnosis.report.formatting import listed, number
 from boatsim.diagnosis.report.svg_plots import Panel, legend, stacked
 
-SHOWN = 16  # consecutive free runs; where there are more, those about the largest error
-SWUNG = 4  # of a boat without a path: more of its swings make a comb
-AIR = 0.06  # of the picture, on each side
-SMALLEST, LARGEST = 0.08, 0.25  # length of a boat that is drawn, by the height of the picture
-BREADTH, DOT = 0.2, 0.03  # of a midship section and of a mark, by the height of the picture
+MOST_PATHS = 16  # consecutive free runs in a view from above
+MOST_COURSES = 4  # consecutive free runs of a signal over time, which may oscillate
+MARGIN = 0.06  # of the range of each axis, on each side
+SMALLEST, LARGEST = 0.08, 0.25  # length of the drawn boat, relative to the height of the figure
+SECTION_SIZE = 0.2  # size of the drawn midship section, relative to the height of the figure
+MARK_SIZE = 0.03  # size of the mark, relative to the height of the figure
 AGE = {"recorded": "", "recalibrated": " (before)", "patched": " (after)"}
-BOW = (
-    (0.0, -0.5),
-    (0.5, -0.2),
-    (0.5, 0.5),
-    (-0.5, 0.5),
-    (-0.5, -0.2),
-)  # to starboard and astern, by beam and length
-SECTION = (
-    (-0.5, -0.3),
-    (0.5, -0.3),
-    (0.5, 0.1),
-    (0.3, 0.3),
-    (-0.3, 0.3),
-    (-0.5, 0.1),
-)  # to starboard and down
+# outlines: to starboard and astern, relative to beam and length
+BOAT = ((0.0, -0.5), (0.5, -0.2), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.2))
+# to starboard and down
+SECTION = ((-0.5, -0.3), (0.5, -0.3), (0.5, 0.1), (0.3, 0.3), (-0.3, 0.3), (-0.5, 0.1))
 MARK = tuple((0.5 * cos(k * pi / 4), 0.5 * sin(k * pi / 4)) for k in range(8))
 
 
 @dataclass(frozen=True)
 class Replay:
-    """Picture and film."""
+    """Figure and animation; `legend` and `picture` are mark-up."""
 
     title: str
     about: str
-    legend: str  # mark-up
-    picture: str  # mark-up
+    legend: str
+    picture: str
     film: Film
 
 
 def replay(f: Findings) -> Replay | None:
-    """That of the first unseen recording; None where nothing was run freely."""
-    runs = next((list(group) for _, group in groupby(f.free_runs, key=lambda r: r.run)), [])
-    there = runs[0].channels["recorded"].keys() if runs else ()
-    plan = "x_m" in there and "y_m" in there
-    signals = [] if plan else [s for s in ("phi_rad", "psi_rad", "theta_rad", "z_m") if s in there]
-    models = [
-        m
-        for m in ("recalibrated", *(["patched"] if f.patched else []))
-        if runs and m in runs[0].channels
-    ]
-    if not models or not (plan or signals):
+    """Return the animated figure of the first held-out recording.
+
+    Args:
+        f: Findings of a diagnosis.
+
+    Returns:
+        The figure; None without free runs or without signals that can be drawn.
+    """
+    if not f.free_runs:
         return None
-    shown, worst = _about_the_worst(
-        runs, "position" if plan else signals[0], SHOWN if plan else SWUNG
-    )
-    panels = (
-        [_airy(plan_view(shown, models))]
-        if plan
-        else [course_of(shown, s, models) for s in signals]
-    )
-    height = panels[0].y[1] - panels[0].y[0]
-    outline, scale = _outline(
-        height, "psi_rad" if plan and "psi_rad" in there else (signals or ["x_m"])[0], f.size
-    )
-    looks = {m: m + (AGE[m] if "patched" in models else "") for m in ("recorded", *models)}
-    what = "Paths" if plan else listed(SIGNALS[s] for s in signals).capitalize()
+    runs = list(next(group for _, group in groupby(f.free_runs, key=lambda r: r.run)))
+    recorded = runs[0].channels["recorded"].keys()
+    wanted = ("recalibrated", "patched") if f.patched else ("recalibrated",)
+    models = [m for m in wanted if m in runs[0].channels]
+    if not models:
+        return None
+    if {"x_m", "y_m"} <= recorded:
+        return _paths(f, runs, models)
+    signals = [s for s in ("phi_rad", "psi_rad", "theta_rad", "z_m") if s in recorded]
+    if not signals:
+        return None
+    return _courses(f, runs, models, signals)
+
+
+def _paths(f: Findings, runs: Sequence[FreeRun], models: Sequence[str]) -> Replay:
+    """Return paths seen from above."""
+    drawn, worst = _around_largest_error(runs, "position", MOST_PATHS)
+    panel = plan_view(drawn, models)
+    panel = replace(panel, x=_with_margin(panel.x), y=_with_margin(panel.y))
+    height = panel.y[1] - panel.y[0]
+    if "psi_rad" in runs[0].channels["recorded"]:
+        outline, scale = _boat(height, f.size)
+    else:
+        scale, outline = 1.0, _sized(MARK, MARK_SIZE * height, MARK_SIZE * height)
     return Replay(
-        f"{what} on unseen data, {runs[0].run}: recorded and free runs of the {listed(models)} vessel",
-        _about(runs, shown, scale if plan else 1.0),
-        legend(looks),
-        stacked(panels),
-        film(shown, models, None if plan else signals[0], height, outline, worst),
+        _title("Paths", runs, models),
+        _about(runs, drawn, scale),
+        _legend(models),
+        stacked([panel]),
+        film(drawn, models, None, height, outline, worst),
     )
 
 
-def _airy(panel: Panel) -> Panel:
-    """The panel with room for boats at the ends of their paths."""
-    x, y = ((a - AIR * (b - a), b + AIR * (b - a)) for a, b in (panel.x, panel.y))
-    return replace(panel, x=x, y=y)
+def _courses(
+    f: Findings, runs: Sequence[FreeRun], models: Sequence[str], signals: Sequence[str]
+) -> Replay:
+    """Return signals over time; the first one is animated."""
+    drawn, worst = _around_largest_error(runs, signals[0], MOST_COURSES)
+    panels: list[Panel] = []
+    for signal in signals:
+        panels.append(course_of(drawn, signal, models))
+    height = panels[0].y[1] - panels[0].y[0]
+    outline = _sized(MARK, MARK_SIZE * height, MARK_SIZE * height)
+    if signals[0] == "psi_rad":
+        outline, _ = _boat(height, f.size)
+    if signals[0] == "phi_rad":
+        outline = _sized(SECTION, SECTION_SIZE * height, SECTION_SIZE * height)
+    return Replay(
+        _title(listed(SIGNALS[s] for s in signals).capitalize(), runs, models),
+        _about(runs, drawn, 1.0),
+        _legend(models),
+        stacked(panels),
+        film(drawn, models, signals[0], height, outline, worst),
+    )
 
 
-def _about_the_worst(
+def _title(what: str, runs: Sequence[FreeRun], models: Sequence[str]) -> str:
+    return (
+        f"{what} on held-out data, {runs[0].run}: recorded, and free runs of the {listed(models)} "
+        "vessel"
+    )
+
+
+def _legend(models: Sequence[str]) -> str:
+    looks = {}
+    for model in ("recorded", *models):
+        looks[model] = model + AGE[model] if "patched" in models else model
+    return legend(looks)
+
+
+def _with_margin(limits: tuple[float, float]) -> tuple[float, float]:
+    """Return limits with room for boats at the ends of their paths."""
+    low, high = limits
+    return low - MARGIN * (high - low), high + MARGIN * (high - low)
+
+
+def _around_largest_error(
     runs: Sequence[FreeRun], signal: str, most: int
 ) -> tuple[list[FreeRun], float]:
-    """So many consecutive free runs with the largest error of the recalibrated boat among them, and when [s]."""
+    """Return at most so many consecutive free runs around the largest error, and its time [s]."""
     errors = [np.nan_to_num(np.abs(error_of(r, "recalibrated", signal))) for r in runs]
-    at = int(np.argmax([e.max(initial=0.0) for e in errors]))
-    first = min(max(at - most // 2, 0), max(len(runs) - most, 0))
-    return list(runs[first : first + most]), float(runs[at].t[int(np.argmax(errors[at]))])
+    worst = int(np.argmax([e.max(initial=0.0) for e in errors]))
+    first = min(max(worst - most // 2, 0), max(len(runs) - most, 0))
+    time = float(runs[worst].t[int(np.argmax(errors[worst]))])
+    return list(runs[first : first + most]), time
 
 
-def _about(runs: Sequence[FreeRun], shown: Sequence[FreeRun], scale: float) -> str:
-    """How to read the picture."""
+def _about(runs: Sequence[FreeRun], drawn: Sequence[FreeRun], scale: float) -> str:
+    """Return how to read the figure."""
     seconds = number(float(runs[0].t[-1] - runs[0].t[0]), 2)
-    again = f"Every {seconds} s the boats start" if len(runs) > 1 else "The boats start"
-    said = [f"{again} where the real one is and then follow the recorded commands alone."]
-    if len(shown) < len(runs):
-        said.append(f"Shown are {len(shown)} of {len(runs)} such runs, about the largest error.")
+    start = f"Every {seconds} s the simulated boats start" if len(runs) > 1 else "The boats start"
+    sentences = [f"{start} at the recorded state and then receive the recorded commands only."]
+    if len(drawn) < len(runs):
+        sentences.append(
+            f"The figure shows {len(drawn)} of {len(runs)} such runs, around the largest error."
+        )
     if scale > 1.05:
-        said.append(f"Boats are drawn {number(scale, 2)} times their size.")
+        sentences.append(f"Boats are drawn {number(scale, 2)} times their size.")
     elif scale < 0.95:
-        said.append(f"Boats are drawn smaller than they are, 1 : {number(1.0 / scale, 2)}.")
-    return " ".join(said)
+        sentences.append(f"Boats are drawn smaller than they are, 1 : {number(1.0 / scale, 2)}.")
+    return " ".join(sentences)
 
 
-def _outline(height: float, turned_by: str, size: tuple[float, float]) -> tuple[Outline, float]:
-    """What is drawn of a boat of (length, beam) [m], and its scale; a mark where nothing is known to turn it.
-
-    A heading turns what is seen from above, roll what is seen from astern.
-    """
-    if turned_by == "psi_rad":
-        length, beam = size
-        scale = float(np.clip(length, SMALLEST * height, LARGEST * height)) / length
-        return _sized(BOW, scale * beam, scale * length), scale
-    wide, shape = (BREADTH, SECTION) if turned_by == "phi_rad" else (DOT, MARK)
-    return _sized(shape, wide * height, wide * height), 1.0
+def _boat(height: float, size: tuple[float, float]) -> tuple[Outline, float]:
+    """Return the outline of a boat of this length and beam [m], and its scale."""
+    length, beam = size
+    scale = float(np.clip(length, SMALLEST * height, LARGEST * height)) / length
+    return _sized(BOAT, scale * beam, scale * length), scale
 
 
 def _sized(shape: Sequence[tuple[float, float]], across: float, down: float) -> Outline:
+    """Return an outline in units of the figure, to four digits."""
     return [(float(f"{across * a:.4g}"), float(f"{down * b:.4g}")) for a, b in shape]
