@@ -183,7 +183,10 @@ def test_a_term_that_looks_back_is_said_in_words_with_its_unit() -> None:
         term = DescribedForce(axis=axis, of=of, memory=5.0)
         return factors(term, BOAT), unit_of(term, BOAT)
 
-    assert said("sway", "recent_thrust_port_N") == ("the average over the last 5.00 s of thrust port", "")
+    assert said("sway", "recent_thrust_port_N") == (
+        "the average over the last 5.00 s of thrust port",
+        "",
+    )
     assert said("yaw", "recent_thrust", "surge_speed") == (
         "the average over the last 5.00 s of thrust times surge speed",
         "s",
