@@ -123,5 +123,5 @@ def test_a_misspelt_column_is_named_with_the_nearest_right_one(tmp_path):
 def test_a_column_that_other_runs_of_the_folder_have_is_a_remark(tmp_path):
     run = read(folder(tmp_path, 'psi_rad = "heading_deg * deg"\nn_rps = "shaft speed"\n'))
     assert any(
-        "names columns that it has not: n_rps = 'shaft speed'" in line for line in run.remarks
+        "names columns that do not exist: n_rps = 'shaft speed'" in line for line in run.remarks
     )

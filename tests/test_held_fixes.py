@@ -8,7 +8,7 @@ import pytest
 from answers import diagnosed
 from real_boat import Real, recorded
 
-from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions, repeats
+from boatsim.diagnosis.checks.repeated_positions import drop_repeated_positions, repeated_rows
 from boatsim.recordings.table import Recording
 
 
@@ -22,7 +22,7 @@ def held(run: Recording, rows: int) -> Recording:
 
 def test_repetitions_are_found_and_nothing_else() -> None:
     run = recorded(Real(), 1)
-    assert not repeats(np.column_stack([run["x_m"], run["y_m"]])).any()
+    assert not repeated_rows(np.column_stack([run["x_m"], run["y_m"]])).any()
     found = drop_repeated_positions(held(run, 4))
     assert np.flatnonzero(np.isfinite(found["x_m"])).tolist() == list(range(0, len(run), 4))
     assert np.isfinite(found["psi_rad"]).all() and "x_m, y_m repeat each fix" in found.remarks[-1]
@@ -32,8 +32,8 @@ def test_a_boat_that_lies_still_between_moves_repeats_nothing() -> None:
     """Rows alike without a rhythm: a coarse instrument, or a boat at rest."""
     rng = np.random.default_rng(0)
     steps = np.cumsum(rng.random(400) < 0.2).astype(float)
-    assert not repeats(np.column_stack([steps, steps])).any()
-    assert not repeats(np.zeros((100, 2))).any()
+    assert not repeated_rows(np.column_stack([steps, steps])).any()
+    assert not repeated_rows(np.zeros((100, 2))).any()
 
 
 @pytest.mark.slow

@@ -218,7 +218,7 @@ def test_the_unit_is_the_end_of_the_name(name, unit):
         (changed(7, "0.5,0,0,0"), "row 7: has 4 cells; the header has 5 columns"),
         (changed(7, "0.5,0,nan,0,0"), "row 7, column y_m: the cell is empty or not a number"),
         (changed(7, "0.5,0,0,,0"), "row 7, column psi_rad: the cell is empty"),
-        (changed(7, "0.5,0,0,0,inf"), "row 7, column thrust_port_N: inf can not be right"),
+        (changed(7, "0.5,0,0,0,inf"), "row 7, column thrust_port_N: inf is too large"),
         (changed(7, "0.5,zero,0,0,0"), "row 7, column x_m: 'zero' is not a number"),
         (changed(7, "0.5,1_0,0,0,0"), "row 7, column x_m: '1_0' is not a number"),
         (changed(7, "0.4,0,0,0,0"), "row 7, column t_s: time 0.4 s after 0.4 s; it must increase"),

@@ -487,10 +487,10 @@ def test_18_too_many_columns_are_refused(tmp_path: Path) -> None:
     )
     for file, found in (("wide.csv", len(names)), ("wide.parquet", 3000)):
         with pytest.raises(
-            BadInput, match=rf"has {found} columns; a recording has at most {limits.MOST_COLUMNS}"
+            BadInput, match=rf"has {found} columns; a recording has at most {limits.MAX_COLUMNS}"
         ):
             read(tmp_path / file)
-    (tmp_path / "line.csv").write_bytes(b"t_s" * limits.LONGEST_HEADER)
+    (tmp_path / "line.csv").write_bytes(b"t_s" * limits.MAX_HEADER_BYTES)
     with pytest.raises(BadInput, match="the first line has more"):
         read(tmp_path / "line.csv")
 
@@ -678,11 +678,11 @@ def test_every_line_of_the_page_has_its_test() -> None:
 def test_the_page_states_the_limits_that_are() -> None:
     said = " ".join(PAGE.split())
     assert (
-        f"at most {limits.MOST_COLUMNS} columns" in said
-        and f"{limits.MOST_CELLS // 10**6} million cells" in said
+        f"at most {limits.MAX_COLUMNS} columns" in said
+        and f"{limits.MAX_CELLS // 10**6} million cells" in said
     )
     assert (
-        f"{limits.LARGEST_FILE >> 30} GiB" in said
+        f"{limits.MAX_FILE_BYTES >> 30} GiB" in said
         and f"{limits.BYTES_PER_CELL} bytes for each cell" in said
     )
     assert (
@@ -690,4 +690,4 @@ def test_the_page_states_the_limits_that_are() -> None:
         and f"at most {LONGEST} characters" in said
     )
     assert f"at most {MESSAGE} bytes" in said and f"silent for {PATIENCE:g} s" in said
-    assert limits.GROWS == 12 and limits.LONGEST_HEADER == 1 << 20
+    assert limits.MEMORY_PER_BYTE == 12 and limits.MAX_HEADER_BYTES == 1 << 20

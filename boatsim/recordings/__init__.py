@@ -1,1 +1,1 @@
-"""Recordings of a boat: a table of named signals with notes, read from the formats in `readers/`."""
+"""Recordings: tables of named signals with notes, read from the formats in `readers/` and converted from logs."""

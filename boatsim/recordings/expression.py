@@ -1,4 +1,7 @@
-"""What a column is made of, `[-] name [* unit or number]... [+ number [* unit]]`: nothing in it is run as code."""
+"""Expressions that compute a column from a signal: `[-] name [* unit or number]... [+ number [* unit]]`.
+
+The text is parsed, never executed as code.
+"""
 
 import math
 import re
@@ -9,7 +12,7 @@ from difflib import get_close_matches
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 
-UNITS = {  # word -> how much of the SI unit (rad, s, m, m/s, rad/s, N, m/s^2, 1) it is
+UNITS = {  # word -> factor to the SI unit (rad, s, m, m/s, rad/s, N, m/s^2, 1)
     "rad": 1.0, "deg": math.pi / 180.0, "rev": 2.0 * math.pi,
     "radps": 1.0, "degps": math.pi / 180.0, "degpmin": math.pi / 180.0 / 60.0,
     "rpm": 2.0 * math.pi / 60.0, "rps": 2.0 * math.pi,
@@ -23,26 +26,37 @@ UNITS = {  # word -> how much of the SI unit (rad, s, m, m/s, rad/s, N, m/s^2, 1
 NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 OFFSET = re.compile(rf"(?<![*/\s])\s+([+-])\s*({NUMBER})(?:\s*\*\s*([A-Za-z]\w*))?\s*$")
 FACTOR = re.compile(r"(?:\s*\*\s*|\s+(/)\s+)([^\s*/]+)\s*$")
-MOST_FACTORS = 6
+MAX_FACTORS = 6
 
 
 @dataclass(frozen=True)
 class Expression:
-    """A signal by its name in a log or table, times a factor, plus an offset."""
+    """A signal times a factor plus an offset.
+
+    Attributes:
+        signal: Name of the signal in a log or table.
+        factor: Factor to the unit of the column.
+        offset: Offset in the unit of the column.
+    """
 
     signal: str
     factor: float = 1.0
     offset: float = 0.0
 
     def of(self, values: Array) -> Array:
-        """The column (N,) from the signal's values (N,)."""
+        """Return the column (N,) of the signal's values (N,)."""
         return values * self.factor + self.offset
 
 
 def parse(text: str, known: Collection[str] = ()) -> Expression:
-    """An expression from its text; one of the `known` names is taken for that name, whatever characters it has.
+    """Return the expression of a text.
 
-    Raises BadInput, which says what is allowed, without file and key.
+    Args:
+        text: The text.
+        known: Names of signals; a text that is one of them is the name, whatever characters it has.
+
+    Raises:
+        BadInput: With what is allowed, without file and key.
     """
     rest = text.strip()
     if rest in known:
@@ -53,9 +67,11 @@ def parse(text: str, known: Collection[str] = ()) -> Expression:
         return Expression(rest, sign)
     offset, factor = 0.0, sign
     if found := OFFSET.search(rest):
-        offset = float(f"{found[1]}{found[2]}") * (_unit(found[3]) if found[3] else 1.0)
+        offset = float(f"{found[1]}{found[2]}")
+        if found[3]:
+            offset *= _unit(found[3])
         rest = rest[: found.start()]
-    for _ in range(MOST_FACTORS):
+    for _ in range(MAX_FACTORS):
         found = None if rest in known else FACTOR.search(rest)
         if found is None:
             break

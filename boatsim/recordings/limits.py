@@ -1,4 +1,4 @@
-"""How large a recording may be: what is beyond is refused before it is read, or memory taken for it.
+"""Limits of the size of recordings, which are checked before a file is read and memory is allocated.
 
 A log of 10 h at 50 Hz with 25 columns has 45 million cells.
 """
@@ -7,61 +7,65 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from boatsim.recordings.raw_table import refuse
+from boatsim.recordings.raw_table import file_error
 
-MOST_COLUMNS = 2000
-MOST_CELLS = 100_000_000  # 0.8 GB as floats
-LARGEST_FILE = 4 << 30  # bytes
-LONGEST_HEADER = 1 << 20  # bytes of the first line of a text
-# memory that a text takes while it is read, by its size: a cell of 8 characters is an object of 57
-# bytes
-GROWS = 12
-# of memory that a binary table takes: as it is read, as floats, and what is asked of them
+MAX_COLUMNS = 2000
+MAX_CELLS = 100_000_000  # 0.8 GB as floats
+MAX_FILE_BYTES = 4 << 30  # bytes
+MAX_HEADER_BYTES = 1 << 20  # bytes of the first line of a text
+# Memory to read a text file per byte of it: a cell of 8 characters is an object of 57 bytes
+MEMORY_PER_BYTE = 12
+# Memory of a binary table: as it is read, as floats, and in computations
 BYTES_PER_CELL = 24
-GROUPS = (
+# Memory limit of a container, cgroup versions 2 and 1
+CGROUP_LIMITS = (
     "/sys/fs/cgroup/memory.max",
     "/sys/fs/cgroup/memory/memory.limit_in_bytes",
-)  # of a container, v2 and v1
+)
 
 
 def check_file(path: Path) -> None:
-    """Raises BadInput for a file that can not be read in the memory there is."""
+    """Check the size of a file. Raises BadInput if it is too large or does not fit into the free memory."""
     size = path.stat().st_size
-    if size > LARGEST_FILE:
-        raise refuse(
-            path, f"has {size / 1e9:.1f} GB; a recording has at most {LARGEST_FILE / 1e9:.1f} GB"
+    if size > MAX_FILE_BYTES:
+        raise file_error(
+            path, f"has {size / 1e9:.1f} GB; a recording has at most {MAX_FILE_BYTES / 1e9:.1f} GB"
         )
-    check_memory(path, GROWS * size)
+    check_memory(path, MEMORY_PER_BYTE * size)
 
 
 def check_shape(path: Path, columns: int, cells: int = 0) -> None:
-    """Raises BadInput for more columns or cells than a recording may have; `cells` 0 where they are not known yet."""
-    if columns > MOST_COLUMNS:
-        raise refuse(path, f"has {columns} columns; a recording has at most {MOST_COLUMNS}")
-    if cells > MOST_CELLS:
-        raise refuse(path, f"has {cells:.3g} cells; a recording has at most {MOST_CELLS:.3g}")
+    """Check the shape of a table; `cells` is 0 where it is not known yet.
+
+    Raises:
+        BadInput: If it is too large or does not fit into the free memory.
+    """
+    if columns > MAX_COLUMNS:
+        raise file_error(path, f"has {columns} columns; a recording has at most {MAX_COLUMNS}")
+    if cells > MAX_CELLS:
+        raise file_error(path, f"has {cells:.3g} cells; a recording has at most {MAX_CELLS:.3g}")
     check_memory(path, BYTES_PER_CELL * cells)
 
 
 def check_memory(path: Path, needed: float) -> None:
-    """Raises BadInput where reading would take more memory [bytes] than is free."""
+    """Check that memory [bytes] is free. Raises BadInput if it is not."""
     free = free_memory()
     if needed > free:
-        raise refuse(
+        raise file_error(
             path,
             f"needs about {needed / 1e9:.1f} GB of memory to be read; {free / 1e9:.1f} GB are free",
         )
 
 
 def free_memory() -> float:
-    """Memory [bytes] that can be taken without swapping, by the machine and by the container; inf where none says."""
+    """Return the free memory of machine and container [bytes]; infinity where it is unknown."""
     found = [float("inf")]
     with suppress(OSError, ValueError, StopIteration):
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
         found.append(
             1024.0 * int(_second(line for line in lines if line.startswith("MemAvailable:")))
         )
-    for file in GROUPS:
+    for file in CGROUP_LIMITS:
         with suppress(OSError, ValueError):  # "max" where there is no limit
             found.append(float(int(Path(file).read_text(encoding="ascii"))))
     return min(found)

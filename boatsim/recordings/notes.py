@@ -1,7 +1,7 @@
-"""What a `recording.toml` says about the recordings in its folder: vessel, loads, columns, noise, facts."""
+"""Notes of recordings: the content of a `recording.toml` that applies to one recording."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from itertools import pairwise
@@ -25,8 +25,8 @@ NOISE = (
 AMBIENT = ("axes", "force_rms", "time_constant_s")
 TABLES = ("columns", "noise", "ambient", "coefficient_uncertainty", "facts", "set")
 KEYS = ("vessel", "load", "scale", "use", *TABLES, "runs")
-HUGE = 1e300  # larger integers do not fit a float
-# endings that say the unit of a column or key, longest first so that `_mps2` is not taken for `_s`
+MAX_NUMBER = 1e300  # larger integers do not fit a float
+# Suffix of a column or key -> unit
 UNITS = {
     "Nspm": "N s/m",
     "radps2": "rad/s^2",
@@ -53,65 +53,93 @@ UNITS = {
 
 
 def unit_of(name: str) -> str:
-    """Unit a column's or key's ending stands for: `r_radps` -> "rad/s"; "" where the name has no unit."""
-    for bound in ("_low", "_high"):  # of an adaptive estimate: the bound has the estimate's unit
+    """Return the unit by the suffix of a column or key: `r_radps` -> "rad/s"; "" where it has none."""
+    for bound in ("_low", "_high"):  # bounds of an adaptive estimate have the unit of the estimate
         name = name.removesuffix(bound)
     _, separator, ending = name.rpartition("_")
     return UNITS.get(ending, "") if separator else ""
 
 
 class Ambient(TypedDict, total=False):
-    """What [ambient] states of the force that no model explains."""
+    """The [ambient] table: the unmodelled disturbance.
+
+    Attributes:
+        axes: Axes to which the list `force_rms` belongs.
+        force_rms: Rms of force and moment [N, N m], by axis or in the order of `axes`.
+        time_constant_s: Correlation time [s].
+    """
 
     axes: list[str]
-    force_rms: list[float] | dict[str, float]  # [N, N m] by axis, or of those in `axes` in turn
+    force_rms: list[float] | dict[str, float]
     time_constant_s: float
 
 
 @dataclass(frozen=True)
 class Notes:
-    """What is known about a recording besides its columns; empty where nobody wrote a `recording.toml`."""
+    """What is known of a recording besides its columns; all empty without a `recording.toml`.
+
+    Attributes:
+        vessel: Name or path of the vessel.
+        load: Load conditions.
+        settings: Values of the vessel's effects in this run: effect -> parameter -> value.
+        use: Part of the recording that is used, from and to [s].
+        scale: Full-scale length / model length.
+        noise: Standard deviation of the sensors, by the names in NOISE.
+        ambient: The unmodelled disturbance.
+        coefficient_uncertainty: Relative standard deviation of the model's coefficients, by kind.
+        facts: Facts such as `walls_m` and `position_fix`, and free text.
+    """
 
     vessel: str | None = None
     load: tuple[str, ...] = ()
-    # [set.<effect>]: the vessel's own, this run
     settings: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
-    use: tuple[float, float] | None = None  # [s] the part of the recording that counts
-    scale: float | None = None  # full scale length / model length
-    noise: dict[str, float] = field(default_factory=dict)  # names in NOISE, one standard deviation
+    use: tuple[float, float] | None = None
+    scale: float | None = None
+    noise: dict[str, float] = field(default_factory=dict)
     ambient: Ambient = field(default_factory=Ambient)
-    # relative, one standard deviation
     coefficient_uncertainty: dict[str, float] = field(default_factory=dict)
-    # forward_speed_mps, walls_m, fan position, free text
     facts: Mapping[str, Value] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class NotesFile:
-    """A `recording.toml` as it applies to one run: the notes, the names of columns, and what was not understood."""
+    """A `recording.toml` as it applies to one recording.
+
+    Attributes:
+        notes: The notes.
+        columns: Signal -> expression of the file's column: "-delta", "heading_deg * deg".
+        remarks: Messages about unknown keys.
+        folder: Folder of the file, from which its paths start; None without a file.
+    """
 
     notes: Notes = field(default_factory=Notes)
-    # our name -> expression of their column: "-delta", "heading_deg * deg"
     columns: dict[str, str] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
-    folder: Path | None = None  # in which it lies, and where its own paths start
+    folder: Path | None = None
 
 
 def notes_for(recording: Path) -> NotesFile:
-    """Notes of one recording from the `recording.toml` in its folder or the nearest folder above that it belongs to."""
-    if not recording.is_file():  # nor is a ring of links
+    """Return the notes of a recording, from the `recording.toml` in its folder or the nearest folder above it.
+
+    Args:
+        recording: File of the recording.
+
+    Raises:
+        BadInput: With all mistakes of the `recording.toml`.
+    """
+    if not recording.is_file():  # false for a ring of links too
         return NotesFile()
-    for folder in _belonging(recording.resolve().parent):
+    for folder in _own_folders(recording.resolve().parent):
         file = folder / "recording.toml"
         if file.is_file():
             return _parse(file, recording.stem)
     return NotesFile()
 
 
-def _belonging(folder: Path) -> Iterator[Path]:
-    """A recording's folder and those above it, up to the user's home or the repository, whichever comes first.
+def _own_folders(folder: Path) -> Iterator[Path]:
+    """The folder of a recording and those above it, up to the user's home or the root of a repository.
 
-    A folder that everybody may write to, such as /tmp, ends it too: what lies there may be anybody's.
+    The search ends below a folder that all users may write to, such as /tmp, for its files may be of other users.
     """
     home = home_folder()
     yield folder
@@ -131,7 +159,7 @@ def _parse(file: Path, stem: str) -> NotesFile:
 
 
 def _merge(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Value]:
-    """A run's own entries over those of all runs, table by table."""
+    """The entries of all runs with those of one run in their place, table by table."""
     both = {**base, **over}
     for key, value in over.items():
         lower = base.get(key)
@@ -141,23 +169,29 @@ def _merge(base: Mapping[str, Value], over: Mapping[str, Value]) -> dict[str, Va
 
 
 def _numbers(value: Value) -> list[float]:
-    """The numbers of a list; none where it is no list, or holds anything else."""
-    listed = value if isinstance(value, list) else []
-    found = [x for x in listed if isinstance(x, int | float) and not isinstance(x, bool)]
-    return found if len(found) == len(listed) and all(abs(x) <= HUGE for x in found) else []
+    """The numbers of a list; [] for a value that is not a list of numbers."""
+    if not isinstance(value, list) or not all(map(_is_number, value)):
+        return []
+    return [x for x in value if isinstance(x, int | float)]
 
 
-def _tried(wrong: list[str], part: Callable[[], T], instead: T) -> T:
-    """A part of the notes; what is wrong with it is kept aside, so that all of a file's mistakes are said at once."""
+def _is_number(value: object) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= MAX_NUMBER
+
+
+def _collect(mistakes: list[str], read: Callable[[], T], default: T) -> T:
+    """A part of the notes. Its mistake is added to a list, so that one message has all mistakes of a file."""
     try:
-        return part()
+        return read()
     except BadInput as error:
-        wrong.append(str(error))
-        return instead
+        mistakes.append(str(error))
+        return default
 
 
 class _Reader:
-    """Checked look-ups in one table; each refusal is a line with file, key, value found and what is allowed."""
+    """Checked access to one table; errors have file, key, value found and what is allowed."""
 
     def __init__(self, file: Path, table: Mapping[str, Value], prefix: str = "") -> None:
         self.file, self.content, self.prefix = file, table, prefix
@@ -183,21 +217,19 @@ class _Reader:
 
     def texts(self, key: str) -> tuple[str, ...]:
         value = self.content.get(key, [])
-        given = [value] if isinstance(value, str) else value
-        found = [text for text in given if isinstance(text, str)] if isinstance(given, list) else []
-        if not isinstance(given, list) or len(found) < len(given):
-            raise self.bad(key, "a text or a list of texts")
-        return tuple(found)
+        texts: list[str] = []
+        for text in value if isinstance(value, list) else [value]:
+            if not isinstance(text, str):
+                raise self.bad(key, "a text or a list of texts")
+            texts.append(text)
+        return tuple(texts)
 
     def number(self, key: str, *, low: float = -math.inf) -> float:
         value = self.content[key]
-        if (
-            isinstance(value, bool)
-            or not isinstance(value, int | float)
-            or not low <= value <= HUGE
-        ):
-            raise self.bad(key, "a number" if low < 0 else f"a number of at least {low:g}")
-        return float(value)
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            if low <= value <= MAX_NUMBER:
+                return float(value)
+        raise self.bad(key, "a number" if low < 0 else f"a number of at least {low:g}")
 
     def numbers(self, *, low: float = -math.inf) -> dict[str, float]:
         return {key: self.number(key, low=low) for key in self.content}
@@ -228,21 +260,14 @@ class _Reader:
         return found
 
     def sizes(self, key: str) -> list[float] | dict[str, float]:
-        """Numbers by axis, or in turn."""
+        """Numbers of at least 0, by axis or in a list."""
         value = self.content[key]
-        given = (
-            list(value.values())
-            if isinstance(value, dict)
-            else value
-            if isinstance(value, list)
-            else [value]
-        )
-        found = [
-            x
-            for x in given
-            if isinstance(x, int | float) and not isinstance(x, bool) and 0 <= x <= HUGE
-        ]
-        if len(found) < len(given):
+        if isinstance(value, dict):
+            listed = list(value.values())
+        else:
+            listed = value if isinstance(value, list) else [value]
+        found = _numbers(listed)
+        if len(found) < len(listed) or any(x < 0 for x in found):
             raise self.bad(key, "a number of at least 0 for each axis")
         if isinstance(value, dict):
             return dict(zip(value, found, strict=True))
@@ -254,52 +279,59 @@ class _Reader:
         return dict(self.content)
 
     def notes(self) -> NotesFile:
-        """All of it. Raises one BadInput that says everything that is wrong."""
+        """The notes of the whole file. Raises one BadInput with all mistakes."""
         known = [key for key in self.content if key in KEYS]
-        # a key that carries a unit, such as a run's own `forward_speed_mps`, is a fact about the
-        # run
+        # A key with a unit, such as `forward_speed_mps`, is a fact about the run
         facts = {key: self.content[key] for key in self.content if key not in KEYS and unit_of(key)}
-        wrong: list[str] = []
+        mistakes: list[str] = []
         notes = Notes(
-            vessel=_tried(wrong, lambda: self.text("vessel"), None),
-            load=_tried(wrong, lambda: self.texts("load"), ()),
-            settings=_tried(wrong, self.settings, {}),
-            use=_tried(wrong, self.use, None),
-            scale=_tried(
-                wrong,
-                lambda: self.number("scale", low=1e-9) if "scale" in self.content else None,
-                None,
+            vessel=_collect(mistakes, lambda: self.text("vessel"), None),
+            load=_collect(mistakes, lambda: self.texts("load"), ()),
+            settings=_collect(mistakes, self.settings, {}),
+            use=_collect(mistakes, self.use, None),
+            scale=_collect(mistakes, self.scale, None),
+            noise=_collect(mistakes, lambda: self.inner("noise").numbers(low=0.0), {}),
+            ambient=_collect(mistakes, self.ambient, Ambient()),
+            coefficient_uncertainty=_collect(
+                mistakes, lambda: self.inner("coefficient_uncertainty").numbers(low=0.0), {}
             ),
-            noise=_tried(wrong, lambda: self.inner("noise").numbers(low=0.0), {}),
-            ambient=_tried(wrong, self.ambient, Ambient()),
-            coefficient_uncertainty=_tried(
-                wrong, lambda: self.inner("coefficient_uncertainty").numbers(low=0.0), {}
-            ),
-            facts=_tried(wrong, lambda: self.all_facts(facts), {}),
+            facts=_collect(mistakes, lambda: self.all_facts(facts), {}),
         )
         notes = replace(notes, noise={k: v for k, v in notes.noise.items() if k in NOISE})
-        columns: dict[str, str] = _tried(wrong, self.columns, dict[str, str]())
-        if wrong:
-            raise BadInput(
-                "; ".join([wrong[0], *(w.removeprefix(f"{self.file}: ") for w in wrong[1:])])
-            )
-        strange = [
-            self.strange(key, KEYS) for key in self.content if key not in known and key not in facts
-        ]
+        columns: dict[str, str] = _collect(mistakes, self.columns, dict[str, str]())
+        if mistakes:
+            raise BadInput(joined_mistakes(mistakes, self.file))
+        unknown: list[str] = []
+        for key in self.content:
+            if key not in known and key not in facts:
+                unknown.append(_with_hint(key, KEYS))
         for table, allowed in (("noise", NOISE), ("ambient", AMBIENT)):
-            strange += [
-                self.strange(f"{table}.{k}", allowed) for k in self.table(table) if k not in allowed
-            ]
-        remarks = (f"{self.file}: not used: {', '.join(strange)}",) if strange else ()
+            for key in self.table(table):
+                if key not in allowed:
+                    unknown.append(_with_hint(f"{table}.{key}", allowed))
+        remarks = (f"{self.file}: not used: {', '.join(unknown)}",) if unknown else ()
         return NotesFile(notes, columns, remarks, self.file.parent)
 
     def settings(self) -> dict[str, dict[str, float]]:
         settings = self.inner("set")
         return {effect: settings.inner(effect).numbers() for effect in settings.content}
 
-    def all_facts(self, beside: Mapping[str, Value]) -> dict[str, Value]:
-        return _Reader(self.file, {**beside, **self.table("facts")}, f"{self.prefix}facts.").facts()
+    def scale(self) -> float | None:
+        return self.number("scale", low=1e-9) if "scale" in self.content else None
 
-    def strange(self, key: str, allowed: tuple[str, ...]) -> str:
-        near = get_close_matches(key.rpartition(".")[2], allowed, n=1, cutoff=0.5)
-        return f"{key} (did you mean {near[0]}?)" if near else key
+    def all_facts(self, outside: Mapping[str, Value]) -> dict[str, Value]:
+        """The [facts] table, with the facts outside it."""
+        facts = {**outside, **self.table("facts")}
+        return _Reader(self.file, facts, f"{self.prefix}facts.").facts()
+
+
+def _with_hint(key: str, allowed: tuple[str, ...]) -> str:
+    """An unknown key, with the nearest valid one."""
+    near = get_close_matches(key.rpartition(".")[2], allowed, n=1, cutoff=0.5)
+    return f"{key} (did you mean {near[0]}?)" if near else key
+
+
+def joined_mistakes(mistakes: Sequence[str], file: Path) -> str:
+    """Return one message of several that begin with the name of one file."""
+    first, *others = mistakes
+    return "; ".join([first, *(one.removeprefix(f"{file}: ") for one in others)])

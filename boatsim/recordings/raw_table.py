@@ -1,4 +1,4 @@
-"""A table as a reader found it: named columns of cells, with the row each bad cell stands in."""
+"""Tables as readers return them: columns of numbers, and the row of the first cell that is not a number."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -13,51 +13,76 @@ from boatsim.physics.base import Array
 
 @dataclass(frozen=True)
 class Raw:
-    """A table as read: empty cells are nan, cells that are not numbers are kept aside with their row."""
+    """A table as a reader returns it.
+
+    Attributes:
+        path: The file.
+        columns: Name -> values (N,); empty cells and cells that are not numbers are nan.
+        rows: Line of the file (CSV) or number of the row (Parquet) of each row, counted from 1.
+        text: Column -> row and content of its first cell that is not a number.
+    """
 
     path: Path
-    columns: dict[str, Array]  # each (N,)
-    rows: Sequence[int]  # line of the file (CSV) or number of the row (Parquet), counted from 1
-    # column -> row and content of its first bad cell
+    columns: dict[str, Array]
+    rows: Sequence[int]
     text: dict[str, tuple[int, str]] = field(default_factory=dict)
 
 
-def refuse(path: Path, message: str, row: int | None = None, column: str | None = None) -> BadInput:
-    """The one line of a bad recording: file, row, column, what is wrong."""
-    where = "".join(
-        f" {what} {value},"
-        for what, value in (("row", row), ("column", column))
-        if value is not None
-    )
-    return BadInput(" ".join(f"{path}:{where.rstrip(',')}{':' if where else ''} {message}".split()))
+def file_error(
+    path: Path, message: str, row: int | None = None, column: str | None = None
+) -> BadInput:
+    """Return the error for a recording that can not be used.
+
+    Args:
+        path: The file.
+        message: The reason.
+        row: Row of the mistake, counted from 1.
+        column: Column of the mistake.
+    """
+    places = []
+    if row is not None:
+        places.append(f"row {row}")
+    if column is not None:
+        places.append(f"column {column}")
+    where = f"{path}: {', '.join(places)}:" if places else f"{path}:"
+    return BadInput(" ".join(f"{where} {message}".split()))
 
 
-def no_twins(path: Path, header: list[str]) -> None:
-    """Refuse a header that names a column twice. Raises BadInput."""
+def check_unique_names(path: Path, header: list[str]) -> None:
+    """Check that no two columns have one name. Raises BadInput."""
     for name, count in Counter(header).items():
         if count > 1:
-            raise refuse(path, "there are two columns of this name", 1, name or "(no name)")
+            raise file_error(path, "there are two columns of this name", 1, name or "(no name)")
 
 
-def numbers(raw: Raw, name: str, cells: Sequence[object]) -> Array:
-    """(N,) floats; empty cells become nan, and the first cell that is no number is noted in `raw.text`."""
+def parse_numbers(raw: Raw, name: str, cells: Sequence[object]) -> Array:
+    """Return the numbers (N,) of the cells of a column.
+
+    Args:
+        raw: The table; its `text` gets the first cell that is not a number.
+        name: Name of the column.
+        cells: The cells; empty ones become nan.
+    """
     try:
-        return np.array(list(map(_plain, cells)), dtype=float)
+        return np.array(list(map(_number, cells)), dtype=float)
     except (ValueError, TypeError, OverflowError):
-        return np.array(
-            [_lenient(raw, name, row, cell) for row, cell in zip(raw.rows, cells, strict=True)]
-        )
+        values = []
+        for row, cell in zip(raw.rows, cells, strict=True):
+            values.append(_number_or_nan(raw, name, row, cell))
+        return np.array(values)
 
 
-def _plain(cell: object) -> float:
-    if isinstance(cell, str) and "_" in cell:  # Python reads 1_000, a CSV file should not say so
+def _number(cell: object) -> float:
+    if isinstance(cell, str) and "_" in cell:  # Python accepts 1_000, a recording must not
         raise ValueError(cell)
     return float(cell)  # type: ignore[arg-type]
 
 
-def _lenient(raw: Raw, name: str, row: int, cell: object) -> float:
+def _number_or_nan(raw: Raw, name: str, row: int, cell: object) -> float:
     try:
-        return float("nan") if isinstance(cell, str) and not cell.strip() else _plain(cell)
+        if isinstance(cell, str) and not cell.strip():
+            return float("nan")
+        return _number(cell)
     except (ValueError, TypeError, OverflowError):
         raw.text.setdefault(name, (row, str(cell)[:40]))
         return float("nan")

@@ -1,19 +1,19 @@
-"""Values that a logger repeats until the next one comes: the repetitions are no measurements."""
+"""Detection of values that a logger repeats until the next measurement."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-FEWEST = 10  # fixes from which a rhythm is told from chance
-# share of the gaps between fixes that are as long as the usual one, to a row or a tenth
-REGULAR = 0.8
+MIN_GAPS = 10  # fewer gaps between new values do not show a regular period
+# Share of the gaps that must be as long as the median one, to a row or a tenth
+MIN_REGULAR_SHARE = 0.8
 
 
-def repeats(fixes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Rows (N,) that repeat the fix (N, C) before them, if new ones come with a rhythm; else none."""
+def repeated_rows(fixes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return which rows (N,) repeat the values (N, C) of the row before, if new values come at a regular period."""
     new = np.append(True, (np.diff(fixes, axis=0) != 0.0).any(axis=1))
     gaps = np.diff(np.flatnonzero(new))
     none = np.zeros(len(fixes), dtype=np.bool_)
-    if len(gaps) < FEWEST or (usual := float(np.median(gaps))) < 2.0:
+    if len(gaps) < MIN_GAPS or (usual := float(np.median(gaps))) < 2.0:
         return none
     regular = np.abs(gaps - usual) <= max(1.0, 0.1 * usual)
-    return ~new if regular.mean() >= REGULAR else none
+    return ~new if regular.mean() >= MIN_REGULAR_SHARE else none

@@ -1,10 +1,11 @@
-"""Recordings of a boat: time, named signals with units, notes; CSV, Parquet and the `.rrd` of our own runs in."""
+"""The `Recording` of a vessel: time, named signals with units and notes; read with checks, written as CSV."""
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,41 +16,47 @@ from boatsim.physics.content import module_of, names
 from boatsim.physics.signals import POSE, RATES, Array
 from boatsim.recordings import limits, units
 from boatsim.recordings.expression import Expression, parse
-from boatsim.recordings.notes import Notes, notes_for, unit_of
-from boatsim.recordings.raw_table import Raw, refuse
+from boatsim.recordings.notes import Notes, joined_mistakes, notes_for, unit_of
+from boatsim.recordings.raw_table import Raw, file_error
 
 __all__ = ["POSE", "RATES", "Notes", "Recording", "read", "write_csv"]
 
 FEWEST_ROWS = 20
-# columns of our own runs beside pose, rates and commands; a sensor the boat has not got is nan
-OWN = re.compile(r"(sent|stick|actual|sensed|camera|estimate|reference|goal|force|wind)_|contacts$")
-# what command channels of boats are called; others are known by the vessel
+# Columns of runs of boatsim other than pose, rates and commands; missing sensors are nan
+RUN_COLUMN = re.compile(
+    r"(sent|stick|actual|sensed|camera|estimate|reference|goal|force|wind)_|contacts$"
+)
+# Usual names of command channels; others are known from the vessel
 COMMAND = re.compile(
     r"(thrust|steer|pwm|delta|rudder|throttle|nozzle|jet|elevator|azimuth|n)(_|$)(?!.*(sd|rate))"
 )
-HUGE = 1e12  # no time, place, speed or command here is anywhere near
-GAP = 60.0  # [s] between two rows; over a longer one no boat here can be followed
-NEAR = 0.8  # likeness from which a name that is not there is a misspelt one
-# share of empty rows from which a pose or rate is one that is measured less often than rows are
-# written
-SLOW = 0.1
-# share of a channel's range by which a command rounded for the file may pass its limit
+HUGE = 1e12  # larger times, positions, speeds and commands are mistakes
+MAX_GAP = 60.0  # [s] between rows; no filter follows a vessel over a longer gap
+MISSPELT = 0.8  # similarity from which an unknown column is a misspelt name
+# Share of empty rows from which a pose or rate is measured less often than rows are written
+SPARSE_SHARE = 0.1
+# Share of a channel's range by which a rounded command may exceed its limit
 ROUNDING = 1e-3
 
 
 class NoSignal(BadInput):
-    """A recording lacks a signal that somebody asks for."""
+    """A requested signal is not in the recording."""
 
 
 @dataclass(frozen=True)
 class Orders:
-    """Commands at their own times, each held until the next."""
+    """Commands at their own times; each is in force until the next.
 
-    t: Array  # (K,) s
-    signals: Mapping[str, Array]  # each (K,)
+    Attributes:
+        t: Times (K,) [s].
+        signals: Command channel -> values (K,).
+    """
+
+    t: Array
+    signals: Mapping[str, Array]
 
     def between(self, from_s: float, to_s: float) -> "Orders":
-        """Those in force from one time to another."""
+        """Return the commands that are in force between two times [s]."""
         begin = max(int(np.searchsorted(self.t, from_s + 1e-9, side="right")) - 1, 0)
         end = int(np.searchsorted(self.t, to_s + 1e-9, side="right"))
         return Orders(self.t[begin:end], {k: v[begin:end] for k, v in self.signals.items()})
@@ -57,46 +64,61 @@ class Orders:
 
 @dataclass(frozen=True)
 class Recording:
-    """One run of a boat, SI units, SNAME axes. Commands are held from their row to the next; headings unwrapped."""
+    """One run of a vessel, in SI units and SNAME axes. A command is in force until the next row.
+
+    Headings are unwrapped. `boatsim.read` returns the recording of a file; `recording["psi_rad"]` is a signal.
+
+    Attributes:
+        name: Name of the recording.
+        t: Times (N,) [s], strictly increasing.
+        signals: Name with the unit as suffix ("psi_rad") -> values (N,).
+        notes: Vessel, load conditions, noise and facts.
+        path: File of the recording, None for one in memory.
+        remarks: Messages about content of the files that is not used.
+        orders: Commands at a higher rate than the rows; None where the rows have all commands.
+    """
 
     name: str
-    t: Array  # (N,) s, strictly increasing
-    signals: dict[str, Array]  # each (N,), named with the unit at the end: psi_rad
+    t: Array
+    signals: dict[str, Array]
     notes: Notes = field(default_factory=Notes)
     path: Path | None = None
-    remarks: tuple[str, ...] = ()  # what was found in the files and not used, one line each
-    orders: Orders | None = None  # commands more often than in its rows; None: those of its rows
+    remarks: tuple[str, ...] = ()
+    orders: Orders | None = None
 
     def __len__(self) -> int:
         return len(self.t)
 
     def __getitem__(self, name: str) -> Array:
-        """The signal (N,) of this name. Raises NoSignal."""
+        """Return the values (N,) of a signal. Raises NoSignal."""
         if name not in self.signals:
             raise NoSignal(unknown_name(f"{self.name}: signal", name, self.signals))
         return self.signals[name]
 
     def unit(self, name: str) -> str:
-        """Unit of a signal, from the end of its name; "" for a plain number."""
+        """Return the unit of a signal by the suffix of its name; "" for a plain number."""
         return unit_of(name)
 
     def between(self, from_s: float, to_s: float) -> "Recording":
-        """The rows with from_s <= t <= to_s; times stay as they are."""
+        """Return the rows with from_s <= t <= to_s [s]; times are not shifted. Raises BadInput if there are none."""
         inside = (self.t >= from_s - 1e-9) & (self.t <= to_s + 1e-9)
         if not inside.any():
             message = (
                 f"no rows from {from_s:g} to {to_s:g} s; it has {self.t[0]:g} to {self.t[-1]:g} s"
             )
-            raise refuse(self.path or Path(self.name), message, column="t_s")
+            raise file_error(self.path or Path(self.name), message, column="t_s")
         signals = {k: v[inside] for k, v in self.signals.items()}
         orders = self.orders.between(from_s, to_s) if self.orders else None
         return replace(self, t=self.t[inside], signals=signals, orders=orders)
 
     def thinned(self, rate: float) -> "Recording":
-        """Every n-th row, so that about `rate` rows a second are left, each with the mean command until the next.
+        """Return every n-th row, with the mean command until the next of these rows.
 
-        Of poses and rates that are not measured in every row, each keeps every n-th of its own samples. The commands
-        themselves stay at their own times, as its `orders`.
+        Poses and rates that are not measured in every row keep every n-th of their own samples. `orders` of the
+        result are all commands.
+
+        Args:
+            rate: Rows per second of the result, approximately [Hz].
         """
         measured = {k: v for k, v in self.signals.items() if k in (*POSE, *RATES)}
         if any(np.isnan(v).any() for v in measured.values()):
@@ -104,9 +126,7 @@ class Recording:
         n = max(1, round(1.0 / (rate * float(np.median(np.diff(self.t))))))
         if n == 1:
             return self
-        commands = {
-            k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)
-        }  # whatever the vessel calls them
+        commands = {k: v for k, v in self.signals.items() if k not in (*POSE, *RATES)}
         ends = np.append(np.arange(0, len(self.t), n), len(self.t))
         signals = {k: v[::n] for k, v in self.signals.items()}
         signals |= {k: np.add.reduceat(v, ends[:-1]) / np.diff(ends) for k, v in commands.items()}
@@ -115,14 +135,15 @@ class Recording:
         )
 
     def _thinned_each(self, rate: float, measured: Mapping[str, Array]) -> "Recording":
-        """The rows in which some signal has a sample that it keeps."""
+        """Return the rows in which at least one signal keeps a sample."""
         kept = {}
         for name, values in measured.items():
-            there = np.flatnonzero(np.isfinite(values))
-            steps = np.diff(self.t[there])
-            kept[name] = there[
-                :: max(1, round(1.0 / (rate * float(np.median(steps))))) if len(steps) else 1
-            ]
+            samples = np.flatnonzero(np.isfinite(values))
+            steps = np.diff(self.t[samples])
+            n = 1
+            if len(steps):
+                n = max(1, round(1.0 / (rate * float(np.median(steps)))))
+            kept[name] = samples[::n]
         rows = np.unique(np.concatenate(list(kept.values())))
         if len(rows) < 2:
             return self
@@ -141,7 +162,7 @@ class Recording:
         )
 
     def used(self) -> "Recording":
-        """The part its notes name in `use`, or all of it."""
+        """Return the part that `use` of the notes selects, or the whole recording."""
         return self.between(*self.notes.use) if self.notes.use else self
 
 
@@ -150,11 +171,15 @@ def read(
     channels: Mapping[str, tuple[float, float]] | None = None,
     columns: Mapping[str, str] | None = None,
 ) -> Recording:
-    """A recording with the notes of the nearest `recording.toml`.
+    """Return a recording with the notes of the nearest `recording.toml`.
 
-    `channels` are the vessel's command channels with their lowest and highest value; those not among the columns are
-    simply absent. `columns` says what the vessel's recordings call our names; the notes' own word wins. Raises
-    BadInput, one line with file, row and column, for anything that can not be used.
+    Args:
+        path: File of the recording.
+        channels: Allowed range (low, high) of the vessel's inputs; inputs without a column are absent.
+        columns: Signal -> column of the vessel's recordings; those of the notes replace them.
+
+    Raises:
+        BadInput: One line with file, row and column of what can not be used.
     """
     path, channels = Path(path), channels or {}
     found = notes_for(path)
@@ -164,53 +189,61 @@ def read(
     ]
     _check_columns(raw, needed)
     _check_cells(raw, needed)
-    wrong = [*_wrong(lambda: _check_time(raw)), *_wrong(lambda: _check_units(raw))]
-    if wrong := [*wrong, *_wrong(lambda: _check_limits(raw, channels))]:
-        raise BadInput("; ".join([wrong[0], *(w.removeprefix(f"{path}: ") for w in wrong[1:])]))
+    mistakes: list[str] = []
+    for check in (_check_time, _check_units, partial(_check_limits, channels=channels)):
+        try:
+            check(raw)
+        except BadInput as error:
+            mistakes.append(str(error))
+    if mistakes:
+        raise BadInput(joined_mistakes(mistakes, path))
     signals, ignored = _signals(raw, needed)
-    remarks = (
-        *found.remarks,
-        *absent,
-        *((f"{path}: columns not used: {', '.join(ignored)}",) if ignored else ()),
-    )
-    recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, remarks)
+    remarks = [*found.remarks, *absent]
+    if ignored:
+        remarks.append(f"{path}: columns not used: {', '.join(ignored)}")
+    recording = Recording(path.stem, raw.columns["t_s"], signals, found.notes, path, tuple(remarks))
     if len(part := recording.used()) < FEWEST_ROWS:
-        raise refuse(
+        raise file_error(
             path,
             f"has {len(part)} rows in its part to use {found.notes.use}; at least {FEWEST_ROWS} needed",
         )
     return recording
 
 
-def as_written(
+def read_unchecked(
     path: Path, columns: Mapping[str, str] | None = None
 ) -> tuple[Recording, Mapping[str, Expression]]:
-    """What a file holds under our names, unchecked: times may stand still, angles be in degrees, cells be empty.
+    """Return a recording without checks of its values: times may stand still, angles may be in degrees.
 
-    With it what each column is made of, where the vessel or the notes say so. Raises BadInput where it is no table, or
-    one without time.
+    Args:
+        path: File of the recording.
+        columns: Signal -> column of the vessel's recordings.
+
+    Returns:
+        The recording, and the expression of each column that the vessel or the notes define.
+
+    Raises:
+        BadInput: If the file is no table, or one without time.
     """
     found = notes_for(path)
     raw, made, _ = _renamed(_raw(path), columns or {}, found.columns)
     if "t_s" not in raw.columns or len(raw.rows) < 2:
         _check_columns(raw, list(raw.columns))
-        raise refuse(path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed")
+        raise file_error(path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed")
     signals = {n: v for n, v in raw.columns.items() if n != "t_s"}
     return Recording(path.stem, raw.columns["t_s"], signals, found.notes, path), made
 
 
 def write_csv(recording: Recording, path: Path | str) -> None:
-    """Write all signals, t_s first, to 12 digits: the same recording gives the same bytes. Raises OSError."""
+    """Write all signals with 12 digits, t_s first; equal recordings give equal files. Raises OSError."""
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         file.write(csv_header(recording))
-        for start in range(
-            0, len(recording), 10_000
-        ):  # an hour of rows is not formatted in one piece of memory
+        for start in range(0, len(recording), 10_000):  # limits the memory of the text
             file.write(csv_rows(recording, start, start + 10_000))
 
 
 def joined(pieces: Sequence[Recording]) -> Recording:
-    """Pieces of one log, whose rows follow each other, as one."""
+    """Return one recording of consecutive pieces of a log."""
     first = pieces[0]
     if len(pieces) == 1:
         return first
@@ -219,12 +252,12 @@ def joined(pieces: Sequence[Recording]) -> Recording:
 
 
 def csv_header(recording: Recording) -> str:
-    """First line of its CSV."""
+    """Return the first line of the CSV of a recording."""
     return ",".join(["t_s", *recording.signals]) + "\n"
 
 
 def csv_rows(recording: Recording, start: int = 0, end: int | None = None) -> str:
-    """Lines of its CSV from row `start` to row `end`; nan is an empty cell."""
+    """Return the lines of the CSV of the rows `start` to `end`; nan is an empty cell."""
     columns = [recording.t, *recording.signals.values()]
     line = ",".join(["%.12g"] * len(columns)) + "\n"
     part = np.column_stack([c[start:end] for c in columns]) + 0.0  # -0 becomes 0
@@ -233,36 +266,35 @@ def csv_rows(recording: Recording, start: int = 0, end: int | None = None) -> st
 
 def _raw(path: Path) -> Raw:
     if path.is_dir():
-        raise refuse(path, "is a folder; a recording is a CSV, Parquet or .rrd file")
+        raise file_error(path, "is a folder; a recording is a CSV, Parquet or .rrd file")
     if not path.is_file():
-        raise refuse(path, "there is no such file")
+        raise file_error(path, "there is no such file")
     try:
         limits.check_file(path)
         suffix = path.suffix.removeprefix(".").lower()
         format = suffix if suffix in names("reader") else "csv"
         found = module_of("reader", format).read(path)
         if not isinstance(found, Raw):
-            raise refuse(
+            raise file_error(
                 path,
-                f"read of the reader {format}.py gives {type(found).__name__}; a Raw is wanted",
+                f"read of the reader {format}.py returns {type(found).__name__}; allowed is Raw",
             )
         limits.check_shape(path, len(found.columns))
         return found
     except OSError as error:
-        raise refuse(path, f"can not be read ({error.strerror})") from error
+        raise file_error(path, f"can not be read ({error.strerror})") from error
 
 
 def _renamed(
-    raw: Raw, of_vessel: Mapping[str, str], stated: Mapping[str, str]
+    raw: Raw, of_vessel: Mapping[str, str], of_notes: Mapping[str, str]
 ) -> tuple[Raw, Mapping[str, Expression], tuple[str, ...]]:
-    """The table under our names, what these are made of, and a remark on what of the notes' own `[columns]` it lacks.
+    """The table with names of signals, their expressions, and a remark on columns of the notes that do not exist.
 
-    A vessel's mapping that does not fit this file's columns is left alone; one that the notes state and that is a
-    letter off a column is refused.
+    A mapping of the vessel whose column does not exist is ignored; one of the notes with a misspelt column is an error.
     """
     made: dict[str, Expression] = {}
     absent: list[str] = []
-    for ours, words in {**of_vessel, **stated}.items():
+    for ours, words in {**of_vessel, **of_notes}.items():
         try:
             found = parse(words, raw.columns)
         except BadInput as error:
@@ -271,9 +303,9 @@ def _renamed(
             ) from None
         if found.signal in raw.columns:
             made[ours] = found
-        elif ours in stated and ours not in raw.columns:
+        elif ours in of_notes and ours not in raw.columns:
             absent.append(f"{ours} = {words!r}")
-            if near := get_close_matches(found.signal, list(raw.columns), n=1, cutoff=NEAR):
+            if near := get_close_matches(found.signal, list(raw.columns), n=1, cutoff=MISSPELT):
                 raise BadInput(
                     f"{raw.path} by its recording.toml: columns.{ours} = {words!r}, but there is no column "
                     f"{found.signal!r}; did you mean {near[0]!r}? (there are: {', '.join(raw.columns)[:200]})"
@@ -285,65 +317,71 @@ def _renamed(
         kept[ours] = e.of(raw.columns[e.signal])
         if e.signal in raw.text:
             text[ours] = raw.text[e.signal]
-    said = (
-        (f"{raw.path}: recording.toml names columns that it has not: {', '.join(absent)}",)
-        if absent
-        else ()
-    )
-    return replace(raw, columns=kept, text=text), made, said
+    remarks: tuple[str, ...] = ()
+    if absent:
+        remarks = (
+            f"{raw.path}: recording.toml names columns that do not exist: {', '.join(absent)}",
+        )
+    return replace(raw, columns=kept, text=text), made, remarks
 
 
 def is_command(name: str) -> bool:
-    """Whether command channels of boats are called so."""
+    """Return whether a name is usual for a command channel."""
     return COMMAND.match(name) is not None
 
 
 def _check_columns(raw: Raw, needed: list[str]) -> None:
     if "t_s" not in raw.columns:
-        raise refuse(raw.path, f"is missing (there are: {', '.join(raw.columns)[:200]})", 1, "t_s")
+        raise file_error(
+            raw.path, f"is missing (there are: {', '.join(raw.columns)[:200]})", 1, "t_s"
+        )
     if not any(name in (*POSE, *RATES) for name in needed):
-        raise refuse(
+        raise file_error(
             raw.path, f"no pose or rate; at least one is needed of {', '.join((*POSE, *RATES))}", 1
         )
     if not len(raw.rows):
-        raise refuse(raw.path, f"has a header and no rows; at least {FEWEST_ROWS} are needed")
+        raise file_error(raw.path, f"has a header and no rows; at least {FEWEST_ROWS} are needed")
 
 
 def _check_cells(raw: Raw, needed: list[str]) -> None:
     for name in needed:
         if name in raw.text:
             row, cell = raw.text[name]
-            raise refuse(raw.path, f"{cell!r} is not a number", row, name)
-    _check_overlap(raw, {name: np.isnan(raw.columns[name]) for name in needed})
-    fair = fair_gaps({n: raw.columns[n] for n in needed})
-    unusable = {n: ~(np.abs(raw.columns[n]) < HUGE) & ~fair.get(n, False) for n in needed}
-    first = [(int(np.argmax(where)), name) for name, where in unusable.items() if where.any()]
+            raise file_error(raw.path, f"{cell!r} is not a number", row, name)
+    columns = {name: raw.columns[name] for name in needed}
+    _check_overlap(raw, {name: np.isnan(values) for name, values in columns.items()})
+    allowed = allowed_gaps(columns)
+    first: list[tuple[int, str]] = []
+    for name, values in columns.items():
+        unusable = ~(np.abs(values) < HUGE) & ~allowed.get(name, False)
+        if unusable.any():
+            first.append((int(np.argmax(unusable)), name))
     if first:
         index, name = min(first, key=lambda found: found[0])
-        found = raw.columns[name][index]
-        what = (
-            "the cell is empty or not a number (NaN)"
-            if np.isnan(found)
-            else f"{found:g} can not be right"
-        )
-        raise refuse(raw.path, f"{what}; every row needs a number here", raw.rows[index], name)
+        found = columns[name][index]
+        what = f"{found:g} is too large"
+        if np.isnan(found):
+            what = "the cell is empty or not a number (NaN)"
+        raise file_error(raw.path, f"{what}; every row needs a number here", raw.rows[index], name)
     if len(raw.rows) < FEWEST_ROWS:
-        raise refuse(
+        raise file_error(
             raw.path, f"has {len(raw.rows)} rows; at least {FEWEST_ROWS} are needed", raw.rows[-1]
         )
 
 
-def fair_gaps(
+def allowed_gaps(
     columns: Mapping[str, Array],
 ) -> dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
-    """Of each pose and rate the rows (N,) in which it may be empty: it is just not measured then.
+    """Return the rows (N,) in which each pose and rate may be empty, because it is not measured there.
 
-    One that is empty in many rows is measured less often than they are written. Another may be empty in rows that are
-    there for such a one. Elsewhere an empty cell is a fault of the file.
+    A signal that is empty in many rows is measured less often than rows are written. Other signals may be empty in the
+    rows that exist for such a signal. Any other empty cell is a mistake in the file.
     """
     empty = {n: np.isnan(v) for n, v in columns.items() if n in (*POSE, *RATES)}
     slow = {
-        n: e for n, e in empty.items() if e.mean() >= SLOW and len(e) - int(e.sum()) >= FEWEST_ROWS
+        n: e
+        for n, e in empty.items()
+        if e.mean() >= SPARSE_SHARE and len(e) - int(e.sum()) >= FEWEST_ROWS
     }
     if not slow:
         return {}
@@ -354,7 +392,7 @@ def fair_gaps(
 def _check_overlap(
     raw: Raw, empty: Mapping[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]
 ) -> None:
-    """Two logs merged by time leave poses in some rows and commands in others."""
+    """Refuse logs merged by time that have poses in some rows and commands in others only."""
     motion = [where for name, where in empty.items() if name in (*POSE, *RATES)]
     commands = [where for name, where in empty.items() if name not in ("t_s", *POSE, *RATES)]
     if not motion or not commands:
@@ -364,16 +402,7 @@ def _check_overlap(
         t = raw.columns["t_s"]
         spans = [f"{t[rows][0]:g} to {t[rows][-1]:g} s" for rows in (posed, commanded)]
         message = f"poses ({spans[0]}) and commands ({spans[1]}) have no row in common; every row needs both"
-        raise refuse(raw.path, message, raw.rows[int(np.argmax(commanded))], "t_s")
-
-
-def _wrong(check: Callable[[], None]) -> list[str]:
-    """What a check refuses, so that all is said at once."""
-    try:
-        check()
-    except BadInput as error:
-        return [str(error)]
-    return []
+        raise file_error(raw.path, message, raw.rows[int(np.argmax(commanded))], "t_s")
 
 
 def _check_time(raw: Raw) -> None:
@@ -382,17 +411,17 @@ def _check_time(raw: Raw) -> None:
     if stuck.any():
         index = int(np.argmax(stuck)) + 1
         message = f"time {t[index]:g} s after {t[index - 1]:g} s; it must increase from row to row"
-        raise refuse(raw.path, message, raw.rows[index], "t_s")
-    if (apart := np.diff(t) > GAP).any():
+        raise file_error(raw.path, message, raw.rows[index], "t_s")
+    if (apart := np.diff(t) > MAX_GAP).any():
         index = int(np.argmax(apart)) + 1
-        message = f"{t[index] - t[index - 1]:g} s after the row before, at most {GAP:g} s are allowed; is it in seconds?"
-        raise refuse(raw.path, message, raw.rows[index], "t_s")
+        message = f"{t[index] - t[index - 1]:g} s after the row before, at most {MAX_GAP:g} s are allowed; is it in seconds?"
+        raise file_error(raw.path, message, raw.rows[index], "t_s")
 
 
 def _check_units(raw: Raw) -> None:
-    for name, index in units.in_degrees(raw.columns).items():
+    for name, index in units.columns_in_degrees(raw.columns).items():
         message = f"{raw.columns[name][index]:g} looks like degrees; allowed are radians ({unit_of(name)})"
-        raise refuse(raw.path, message, raw.rows[index], name)
+        raise file_error(raw.path, message, raw.rows[index], name)
 
 
 def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None:
@@ -404,26 +433,23 @@ def _check_limits(raw: Raw, channels: Mapping[str, tuple[float, float]]) -> None
                 index = int(np.argmax(beyond))
                 found = f"{raw.columns[name][index]:g} {unit_of(name)}".strip()
                 message = f"command {found} is outside the vessel's limits {low:g} to {high:g}"
-                raise refuse(raw.path, message, raw.rows[index], name)
+                raise file_error(raw.path, message, raw.rows[index], name)
 
 
 def _signals(raw: Raw, needed: list[str]) -> tuple[dict[str, Array], list[str]]:
-    """The signals, headings unwrapped, and the names of columns a diagnosis has no use for."""
-    ignored = [n for n in raw.columns if n not in needed and not OWN.match(n)]
-    names = [
-        n
-        for n in raw.columns
-        if n != "t_s" and n not in raw.text and (n not in ignored or unit_of(n))
-    ]
-    signals = {name: raw.columns[name] for name in names}
-    for name in names:
-        if name == "psi_rad" or name.endswith("_psi_rad"):
-            signals[name] = _unwrapped(signals[name])
+    """The signals with headings unwrapped, and the names of columns that a diagnosis does not use."""
+    ignored = [n for n in raw.columns if n not in needed and not RUN_COLUMN.match(n)]
+    signals: dict[str, Array] = {}
+    for name, values in raw.columns.items():
+        if name == "t_s" or name in raw.text or (name in ignored and not unit_of(name)):
+            continue
+        is_heading = name == "psi_rad" or name.endswith("_psi_rad")
+        signals[name] = _unwrapped(values) if is_heading else values
     return signals, ignored
 
 
 def _unwrapped(angle: Array) -> Array:
-    """Without jumps of 2 pi; rows that are nan stay so."""
+    """The angle without jumps of 2 pi; nan stays nan."""
     known = np.isfinite(angle)
     full = angle.copy()
     full[known] = np.unwrap(angle[known])

@@ -1,4 +1,4 @@
-"""Angles recorded in degrees, found by how they move: headings pass any number of radians, so range says nothing."""
+"""Detection of angles recorded in degrees, by their motion; the range of a heading does not show its unit."""
 
 import math
 from collections.abc import Mapping
@@ -9,51 +9,57 @@ from numpy.typing import NDArray
 from boatsim.physics.base import Array
 
 DEGREES = 180.0 / math.pi
-# factor by which a ratio may miss what it is taken for: sensors lag, drift and are scaled
-NEAR = 1.5
-# [rad/s] sustained turning no vessel here reaches; 4 deg/s is a gentle turn of a small boat
-FASTEST = 4.0
+# Factor by which a ratio may differ from its expected value, for sensors have delay, drift and scale errors
+RATIO_TOLERANCE = 1.5
+# [rad/s] sustained turning that no vessel reaches; 4 deg/s is a gentle turn of a small boat
+MAX_TURNING = 4.0
 # [rad] 8.6 degrees: compasses and cameras are ten times better; 0.15 degrees is a good one
-NOISIEST = 0.15
-# [rad] hulls here stay below 57 degrees of roll; any roll worth recording passes 1 degree
-STEEPEST = 1.0
-FEWEST = 4  # rows that time runs through
-ALIKE = 0.8  # correlation from which two series are taken to show the same motion
+MAX_NOISE = 0.15
+# [rad] hulls stay below 57 degrees of roll; any roll worth recording exceeds 1 degree
+MAX_ROLL = 1.0
+MIN_ROWS = 4  # with increasing time
+MIN_CORRELATION = 0.8  # between two series of the same motion
 
 
-def in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
-    """Of a table's columns (N,), `t_s` among them, those in degrees: the row of each that shows it.
+def columns_in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
+    """Return the columns that are in degrees instead of radians.
 
-    Rows at which time stands still or runs back say nothing.
+    Rows at which time does not increase are ignored.
+
+    Args:
+        columns: Columns (N,) of a table with `t_s`.
+
+    Returns:
+        Column -> a row that shows it.
     """
     forward = np.flatnonzero(
         np.append(True, columns["t_s"][1:] > np.maximum.accumulate(columns["t_s"])[:-1])
     )
-    if len(forward) < FEWEST:
+    if len(forward) < MIN_ROWS:
         return {}
     found = _in_degrees({name: values[forward] for name, values in columns.items()})
     return {name: int(forward[index]) for name, index in found.items()}
 
 
 def _in_degrees(columns: Mapping[str, Array]) -> dict[str, int]:
-    suspects: dict[str, int | None] = {}
+    found: dict[str, int | None] = {}
     if "psi_rad" in columns:
         rows, t, psi, others = _measured(columns, "psi_rad")
-        suspects["psi_rad"] = _row(rows, heading_in_degrees(t, psi, others))
+        found["psi_rad"] = _row(rows, heading_in_degrees(t, psi, others))
     if "phi_rad" in columns:
         rows, t, phi, others = _measured(columns, "phi_rad")
-        suspects["phi_rad"] = _row(rows, roll_in_degrees(t, phi, others.get("p_radps")))
+        found["phi_rad"] = _row(rows, roll_in_degrees(t, phi, others.get("p_radps")))
     for name, angle in (("r_radps", "psi_rad"), ("p_radps", "phi_rad")):
         if name in columns:
             rows, t, rate, others = _measured(columns, name)
-            suspects[name] = _row(rows, rate_in_degrees(t, rate, others.get(angle)))
-    return {name: index for name, index in suspects.items() if index is not None}
+            found[name] = _row(rows, rate_in_degrees(t, rate, others.get(angle)))
+    return {name: index for name, index in found.items() if index is not None}
 
 
 def _measured(
     columns: Mapping[str, Array], name: str
 ) -> tuple[NDArray[np.int64], Array, Array, dict[str, Array]]:
-    """The rows in which a column is measured: their numbers, times, its values, and those of what is full there."""
+    """Rows in which a column has values: their numbers, times, values, and the columns without gaps there."""
     rows = np.flatnonzero(np.isfinite(columns[name]))
     there = {n: v[rows] for n, v in columns.items()}
     return rows, there["t_s"], there[name], {n: v for n, v in there.items() if np.isfinite(v).all()}
@@ -64,10 +70,15 @@ def _row(rows: NDArray[np.int64], index: int | None) -> int | None:
 
 
 def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> int | None:
-    """Index of the row that shows that `psi` (N,) as written, not unwrapped, is in degrees; None if it does not.
+    """Return the row that shows that a heading is in degrees, None if it is in radians.
 
-    Recorded rates and the course made good decide by their ratio to the heading's changes; where there are none, steps,
-    scatter and rates that no vessel and no compass has in radians do.
+    Recorded rates and the course made good decide by their ratio to the changes of the heading. Without them, steps,
+    scatter and turning that no vessel and no compass has in radians decide.
+
+    Args:
+        t: Times (N,) [s].
+        psi: Heading (N,) as written, not unwrapped.
+        signals: Other signals (N,).
     """
     steps = np.diff(psi)
     largest = int(np.argmax(np.abs(steps))) + 1
@@ -75,9 +86,8 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
         return largest
     if "r_radps" in signals:
         turned = _turned(t, signals["r_radps"])
-        if _near(
-            _ratio(turned, psi), DEGREES
-        ):  # as written: fast turning in degrees can not be told from wraps
+        # The heading is not unwrapped, for fast turning in degrees looks like wraps
+        if _near(_ratio(turned, psi), DEGREES):
             return largest
         if _near(_ratio(turned, np.unwrap(psi)), 1.0):
             return None
@@ -87,33 +97,35 @@ def heading_in_degrees(t: Array, psi: Array, signals: Mapping[str, Array]) -> in
         and _follows_course(t, psi, signals["x_m"], signals["y_m"])
     ):
         return largest
-    return largest if _scatter(steps) > NOISIEST or _fastest(t, psi) > FASTEST else None
+    return (
+        largest if _scatter(steps) > MAX_NOISE or _sustained_turning(t, psi) > MAX_TURNING else None
+    )
 
 
 def rate_in_degrees(t: Array, rate: Array, angle: Array | None) -> int | None:
-    """Index of the row that shows that a rate (N,) is in degrees per second while its angle is in radians."""
+    """Return the row that shows that a rate (N,) is in degrees per second while its angle is in radians, else None."""
     largest = int(np.argmax(np.abs(rate)))
     if angle is not None:
         ratio = _ratio(np.unwrap(angle), _turned(t, rate))
         if _near(ratio, DEGREES) or _near(ratio, 1.0):
             return largest if _near(ratio, DEGREES) else None
-    return largest if np.percentile(np.abs(rate), 75) > FASTEST else None
+    return largest if np.percentile(np.abs(rate), 75) > MAX_TURNING else None
 
 
 def roll_in_degrees(t: Array, phi: Array, rate: Array | None) -> int | None:
-    """Index of the steepest row if the roll (N,) passes what a hull survives in radians, or what its rate says."""
+    """Return the row of the largest roll (N,) if it or its ratio to the rate shows that it is in degrees, else None."""
     largest = int(np.argmax(np.abs(phi)))
     against_rate = math.nan if rate is None else _ratio(_turned(t, rate), phi)
-    return largest if abs(phi[largest]) > STEEPEST or _near(against_rate, DEGREES) else None
+    return largest if abs(phi[largest]) > MAX_ROLL or _near(against_rate, DEGREES) else None
 
 
 def _turned(t: Array, rate: Array) -> Array:
-    """(N,) angle turned since the first row, trapezoid rule."""
+    """Angle (N,) turned since the first row, by the trapezoidal rule."""
     return np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(t))))
 
 
 def _near(ratio: float, value: float) -> bool:
-    return value / NEAR < ratio < value * NEAR
+    return value / RATIO_TOLERANCE < ratio < value * RATIO_TOLERANCE
 
 
 def _rows_in(t: Array, seconds: float) -> int:
@@ -121,18 +133,18 @@ def _rows_in(t: Array, seconds: float) -> int:
 
 
 def _ratio(known: Array, asked: Array) -> float:
-    """Size of the changes of `asked` over those of `known` over windows of some length; nan where not alike."""
-    for parts in (64, 16, 4):  # short windows tell most, long ones average the noise
+    """Ratio of the changes of `asked` to those of `known` over windows; nan where they are not correlated."""
+    for parts in (64, 16, 4):  # short windows have most information, long ones average the noise
         rows = max(1, len(known) // parts)
         a, b = known[rows:] - known[:-rows], asked[rows:] - asked[:-rows]
         size = math.sqrt(float(a @ a) * float(b @ b))
-        if size > 0.0 and float(a @ b) > ALIKE * size:
+        if size > 0.0 and float(a @ b) > MIN_CORRELATION * size:
             return math.sqrt(float(b @ b) / float(a @ a))
     return math.nan
 
 
 def _follows_course(t: Array, psi: Array, x: Array, y: Array) -> bool:
-    """Whether the bow points where the boat goes if the heading is read as degrees, and does not if it is radians."""
+    """Whether the heading agrees with the course made good if it is in degrees, and does not if it is in radians."""
     rows = _rows_in(t, 1.0)
     dx, dy = x[rows:] - x[:-rows], y[rows:] - y[:-rows]
     course, bow = np.arctan2(dy, dx), psi[rows // 2 : rows // 2 + len(dx)]
@@ -147,13 +159,13 @@ def _wrapped(angle: Array) -> Array:
 
 
 def _scatter(steps: Array) -> float:
-    """[rad] standard deviation of one heading reading, from second differences, blind to a few outliers and wraps."""
+    """Standard deviation of a heading [rad] from second differences, robust to a few outliers and wraps."""
     second = np.abs(np.diff(_wrapped(steps)))
     return 1.48 * float(np.median(second)) / math.sqrt(6.0)
 
 
-def _fastest(t: Array, psi: Array) -> float:
-    """[rad/s] turning that a quarter of the recording exceeds, over half a second so that noise averages out."""
+def _sustained_turning(t: Array, psi: Array) -> float:
+    """Rate of turning [rad/s] that a quarter of the recording exceeds, over half a second to average the noise."""
     rows = _rows_in(t, 0.5)
     smooth = np.unwrap(psi)
     return float(np.percentile(np.abs(smooth[rows:] - smooth[:-rows]) / (t[rows:] - t[:-rows]), 75))

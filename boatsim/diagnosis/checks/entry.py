@@ -12,7 +12,7 @@ from boatsim.diagnosis.checks.finding import (
 from boatsim.diagnosis.report.schema import LogEntry
 from boatsim.physics.vessel import Vessel
 from boatsim.recordings.expression import Expression
-from boatsim.recordings.table import as_written
+from boatsim.recordings.table import read_unchecked
 
 
 def column_sources(path: str, vessel: Vessel) -> Mapping[str, Expression]:
@@ -27,7 +27,7 @@ def column_sources(path: str, vessel: Vessel) -> Mapping[str, Expression]:
     """
     if not Path(path).is_file():
         return {}
-    return as_written(Path(path), vessel.columns)[1]
+    return read_unchecked(Path(path), vessel.columns)[1]
 
 
 def log_entry(finding: Finding, sources: Mapping[str, Expression]) -> LogEntry:

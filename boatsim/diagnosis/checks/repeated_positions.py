@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.recordings.repeated_values import repeats
+from boatsim.recordings.repeated_values import repeated_rows
 from boatsim.recordings.table import Recording
 
 COLUMNS_OF_ONE_FIX = (("x_m", "y_m"), ("psi_rad",))
@@ -27,7 +27,7 @@ def drop_repeated_positions(recording: Recording) -> Recording:
     for names in COLUMNS_OF_ONE_FIX:
         if any(n not in signals for n in names):
             continue
-        repeated = repeats(np.column_stack([signals[n] for n in names]))
+        repeated = repeated_rows(np.column_stack([signals[n] for n in names]))
         if repeated.any():
             remarks.append(
                 f"{recording.path or recording.name}: {', '.join(names)} repeat each fix until the "

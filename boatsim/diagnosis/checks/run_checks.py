@@ -18,7 +18,7 @@ from boatsim.diagnosis.checks.saturation import check_saturation
 from boatsim.diagnosis.checks.time_unit import check_time_unit
 from boatsim.diagnosis.config import ChecksConfig
 from boatsim.physics.vessel import Vessel
-from boatsim.recordings.table import Recording, as_written
+from boatsim.recordings.table import Recording, read_unchecked
 
 TABLE_CHECKS = (
     check_column_names,
@@ -43,7 +43,7 @@ def check_table(path: Path, vessel: Vessel, config: ChecksConfig) -> list[Findin
     Raises:
         BadInput: The file is not a table.
     """
-    recording, _ = as_written(path, vessel.columns)
+    recording, _ = read_unchecked(path, vessel.columns)
     use = recording.notes.use
     if use and ((recording.t >= use[0]) & (recording.t <= use[1])).any():
         recording = recording.used()

@@ -26,9 +26,9 @@ from boatsim.recordings.importing.resample import (
     placed,
     samples,
 )
-from boatsim.recordings.raw_table import refuse
-from boatsim.recordings.repeated_values import repeats
-from boatsim.recordings.table import FEWEST_ROWS, GAP, Recording, fair_gaps, is_command
+from boatsim.recordings.raw_table import file_error
+from boatsim.recordings.repeated_values import repeated_rows
+from boatsim.recordings.table import FEWEST_ROWS, MAX_GAP, Recording, allowed_gaps, is_command
 
 TOGETHER = (("x_m", "y_m"), ("psi_rad",))  # columns that come with one fix
 HELD = (
@@ -191,7 +191,7 @@ def _drop_repeats(work: _Work) -> None:
         there = [work.columns[n] for n in names if n in work.columns]
         if len(there) < len(names) or any(len(c.given.t) != len(there[0].given.t) for c in there):
             continue
-        repeated = repeats(np.column_stack([c.given.values for c in there]))
+        repeated = repeated_rows(np.column_stack([c.given.values for c in there]))
         if repeated.any():
             work.say(
                 f"{', '.join(names)}: {int(repeated.sum())} of {len(repeated)} samples repeat the one before and are "
@@ -233,7 +233,7 @@ def _clock(work: _Work) -> tuple[Array, float]:
     rows = rows[_in_use(work, rows)]
     if len(rows) < FEWEST_ROWS:
         span = f"{end - begin:.3g} s" if end > begin else "no time at all"
-        raise refuse(
+        raise file_error(
             work.log.path,
             f"poses and commands have {span} in common, in which the fastest has {len(rows)} samples; at least "
             f"{FEWEST_ROWS} are needed",
@@ -290,7 +290,7 @@ def _whole(work: _Work, rows: Array, signals: dict[str, Array]) -> tuple[Array, 
         if work.columns[name].held and not name.startswith(HELD):
             kept &= np.isfinite(values)
     for _ in range(ROUNDS):  # rows that are left out may make a slow column of one that was not
-        fair = fair_gaps({n: v[kept] for n, v in signals.items()})
+        fair = allowed_gaps({n: v[kept] for n, v in signals.items()})
         unfair = [
             np.isnan(v[kept]) & ~fair.get(n, False)
             for n, v in signals.items()
@@ -304,13 +304,13 @@ def _whole(work: _Work, rows: Array, signals: dict[str, Array]) -> tuple[Array, 
         )
         kept[lost] = False
     if kept.sum() < FEWEST_ROWS:
-        raise refuse(
+        raise file_error(
             work.log.path,
             f"{int(kept.sum())} rows have all that is needed; at least {FEWEST_ROWS} must",
         )
     for name in [n for n in signals if n in (*POSE, *RATES)]:
         if np.isfinite(signals[name][kept]).sum() < FEWEST_ROWS:
-            raise refuse(
+            raise file_error(
                 work.log.path,
                 f"{name} has fewer than {FEWEST_ROWS} samples in the rows",
                 column=name,
@@ -330,7 +330,7 @@ def _say_times(work: _Work, rows: Array) -> None:
         where = float(rows[int(np.argmax(steps))] - rows[0])
         more = (
             "; no diagnosis reads over that: cut the log with use = [from_s, to_s]"
-            if longest > GAP
+            if longest > MAX_GAP
             else ""
         )
         work.say(f"there is a gap of {longest:.3g} s at t = {where:.3f} s{more}")

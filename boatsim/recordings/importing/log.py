@@ -12,7 +12,7 @@ import numpy as np
 from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 from boatsim.physics.content import module_of, names
-from boatsim.recordings.raw_table import refuse
+from boatsim.recordings.raw_table import file_error
 
 MOST_BYTES = 2_000_000_000  # of a file
 # [bytes] of a text that is read line by line, which takes 20 times as much memory
@@ -56,18 +56,18 @@ class Room:
         """Note so many more values; raises BadInput where there are too many."""
         self.values += values
         if self.values > MOST_VALUES:
-            raise refuse(
+            raise file_error(
                 self.path, f"holds more than {MOST_VALUES:,} values; cut the log into shorter ones"
             )
         if signals > MOST_SIGNALS:
-            raise refuse(
+            raise file_error(
                 self.path, f"has more than {MOST_SIGNALS:,} signals; no log of a boat has as many"
             )
 
 
 def needs(path: Path, library: str, extra: str) -> BadInput:
     """The error of a reader whose library is not installed."""
-    return refuse(
+    return file_error(
         path, f"reading it needs {library}; install it with: pip install 'boatsim[{extra}]'"
     )
 
@@ -75,7 +75,7 @@ def needs(path: Path, library: str, extra: str) -> BadInput:
 def damaged(path: Path, what: str, error: BaseException) -> BadInput:
     """The error of a log that its format's library can not read."""
     said = " ".join(str(error).split())[:150] or type(error).__name__
-    return refuse(path, f"can not be read as {what} ({said})")
+    return file_error(path, f"can not be read as {what} ({said})")
 
 
 @contextmanager
@@ -101,7 +101,7 @@ def open_log(path: Path) -> Log:
     """A log read by the reader that its suffix asks for; numbers that measure nothing are nan. Raises BadInput."""
     found = reader_for(path)(path)
     if not found.signals:
-        raise refuse(path, "has no signals: nothing in it has numbers and times")
+        raise file_error(path, "has no signals: nothing in it has numbers and times")
     times = {
         id(s.t): _plausible(s.t) for s in found.signals.values()
     }  # which signals of one stream share
@@ -120,22 +120,22 @@ def _plausible(values: Array) -> Array:
 def reader_for(path: Path) -> Callable[[Path], Log]:
     """The `read` of the format that a log has by its suffix. Raises BadInput."""
     if not path.exists():
-        raise refuse(path, "there is no such file")
+        raise file_error(path, "there is no such file")
     suffixes = known_suffixes()
     if path.is_dir() and not (path / BAG).is_file():
-        raise refuse(
+        raise file_error(
             path, f"is a folder; a log is a file, or the folder of a ROS 2 bag with its {BAG}"
         )
     if not path.is_dir() and not path.is_file():
-        raise refuse(path, "is a device or a pipe; a log is a file")
+        raise file_error(path, "is a device or a pipe; a log is a file")
     suffix = "/" if path.is_dir() else path.suffix.lower()
     if suffix not in suffixes:
         allowed = ", ".join(sorted(s for s in suffixes if s != "/"))
-        raise refuse(
+        raise file_error(
             path, f"its suffix {suffix or '(none)'!r} is of no known format; there are: {allowed}"
         )
     if path.is_file() and path.stat().st_size > MOST_BYTES:
-        raise refuse(
+        raise file_error(
             path, f"has {path.stat().st_size:,} bytes; at most {MOST_BYTES:,} are read: cut the log"
         )
     read: Callable[[Path], Log] = module_of("log", suffixes[suffix]).read

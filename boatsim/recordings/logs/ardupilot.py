@@ -19,7 +19,7 @@ from boatsim.recordings.importing.log import (
     quiet,
     signals_of,
 )
-from boatsim.recordings.raw_table import refuse
+from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".bin",)
 # letter of a FMT message -> numpy type and factor (libraries/AP_Logger/LogStructure.h); arrays and
@@ -78,7 +78,7 @@ def read(path: Path) -> Log:
     except ImportError as error:
         raise needs(path, "pymavlink", "ardupilot") from error
     if path.stat().st_size == 0:
-        raise refuse(path, "is empty")
+        raise file_error(path, "is empty")
     # no clock is looked for: times are those since the autopilot started
     ours = {"init_clock": lambda self: None, "formats": _Formats.kept}
     quick = type("Quick", (DFReader.DFReader_binary,), ours)

@@ -10,7 +10,7 @@ import numpy as np
 
 from boatsim.physics.base import Array
 from boatsim.recordings.importing.log import MOST_TEXT, Log, Room, Signal, needs
-from boatsim.recordings.raw_table import refuse
+from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".nmea", ".0183", ".txt", ".log")
 FIELDS: dict[
@@ -53,14 +53,14 @@ def read(path: Path) -> Log:
     except ImportError as error:
         raise needs(path, "pynmea2", "nmea") from error
     if path.stat().st_size > MOST_TEXT:
-        raise refuse(
+        raise file_error(
             path,
             f"has {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of text are read: cut the log",
         )
     lines = path.read_bytes().decode("ascii", "replace").splitlines()
     kept, bad = _sentences(path, lines, pynmea2.parse)
     if not kept:
-        raise refuse(
+        raise file_error(
             path, "has no NMEA 0183 sentence that can be read; if it is a table, call it .csv"
         )
     t, counted = _times(kept)
@@ -70,7 +70,7 @@ def read(path: Path) -> Log:
         else []
     )
     if counted is None:
-        raise refuse(
+        raise file_error(
             path,
             "no sentence has a time (GGA, RMC, GLL, or a logger's stamp in front); without one none can be placed",
         )

@@ -9,7 +9,7 @@ from typing import Any
 from boatsim.errors import BadInput
 from boatsim.recordings.importing.log import BAG, MOST_BYTES, Log, Room, damaged, needs
 from boatsim.recordings.importing.ros import MOST_SIZE, Decoder, Topic, log_of
-from boatsim.recordings.raw_table import refuse
+from boatsim.recordings.raw_table import file_error
 
 SUFFIXES = (".bag", ".db3", "/")
 MOST_CHUNK = 256_000_000  # [bytes] of a chunk when it is unpacked
@@ -49,20 +49,20 @@ def _check_folder(path: Path, folder: Path) -> None:
 
     about = folder / BAG
     if not about.is_file():
-        raise refuse(path, f"a ROS 2 bag needs its {BAG} beside it")
+        raise file_error(path, f"a ROS 2 bag needs its {BAG} beside it")
     if about.stat().st_size > MOST_ABOUT:
-        raise refuse(about, "is too large for what a bag says of itself")
+        raise file_error(about, "is too large for what a bag says of itself")
     said = YAML(typ="safe").load(about.read_text(encoding="utf-8", errors="replace"))[
         "rosbag2_bagfile_information"
     ]
     if str(said.get("compression_mode") or "none").lower() != "none":
-        raise refuse(
+        raise file_error(
             path, "is compressed; unpack it first: ros2 bag convert, with compression_mode none"
         )
     if str(said.get("storage_identifier")) == "mcap":
-        raise refuse(path, "is a folder of MCAP files; give the .mcap in it")
+        raise file_error(path, "is a folder of MCAP files; give the .mcap in it")
     if sum(file.stat().st_size for file in folder.iterdir() if file.is_file()) > MOST_BYTES:
-        raise refuse(path, f"has more than {MOST_BYTES:,} bytes; cut the log")
+        raise file_error(path, f"has more than {MOST_BYTES:,} bytes; cut the log")
 
 
 def _bound(bag: Any) -> None:

@@ -13,7 +13,7 @@ from boatsim.physics.base import Array
 from boatsim.recordings.importing.clocks import clock_of, dates, seconds
 from boatsim.recordings.importing.log import MOST_SIGNALS, MOST_TEXT, Log, Room, Signal, damaged
 from boatsim.recordings.notes import unit_of
-from boatsim.recordings.raw_table import no_twins, refuse
+from boatsim.recordings.raw_table import check_unique_names, file_error
 
 if TYPE_CHECKING:
     from pyarrow import ChunkedArray
@@ -77,7 +77,7 @@ def _parquet(path: Path) -> dict[str, Array]:
         )
     except (pa.ArrowException, OSError, ValueError) as error:
         raise damaged(path, "Parquet", error) from error
-    no_twins(path, table.column_names)
+    check_unique_names(path, table.column_names)
     columns: dict[str, Array] = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
         if pa.types.is_timestamp(column.type):
@@ -124,15 +124,15 @@ def _head(path: Path) -> _Head:
     while lines and lines[0][1].lstrip().startswith(COMMENT) and not _may_be_header(lines):
         lines.pop(0)
     if len(lines) < 2:
-        raise refuse(path, "has a header and no rows" if lines else "is empty")
+        raise file_error(path, "has a header and no rows" if lines else "is empty")
     first = lines[0][1].lstrip("#%/ ")
     separator = max(SEPARATORS, key=first.count)
     header = [name.strip() for name in next(csv.reader([first], delimiter=separator))]
     if len(header) > MOST_SIGNALS:
-        raise refuse(path, f"has {len(header)} columns; no log of a boat has as many")
-    no_twins(path, header)
+        raise file_error(path, f"has {len(header)} columns; no log of a boat has as many")
+    check_unique_names(path, header)
     if all(_number(cell, separator) is not None for cell in header):
-        raise refuse(
+        raise file_error(
             path,
             "has no header: its first row is numbers; names of columns are needed",
             lines[0][0] + 1,
@@ -141,7 +141,7 @@ def _head(path: Path) -> _Head:
     below = next(csv.reader([lines[1][1]], delimiter=separator), [])
     if len(below) == len(header) and _is_units(below, header, separator):
         if len(lines) < 3:
-            raise refuse(path, "has a header and no rows")
+            raise file_error(path, "has a header and no rows")
         units |= {n: u.strip("[]() ") for n, u in zip(header, below, strict=True)}
         lines.pop(0)
     return _Head(header, separator, units, lines[1][0])
@@ -190,7 +190,7 @@ def _of_texts(column: "ChunkedArray", separator: str) -> Array:
 def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str, ...]]:
     """The columns of any other table: with dates and words, or with rows that are no rows, which are told by line."""
     if path.stat().st_size > MOST_TEXT:
-        raise refuse(
+        raise file_error(
             path,
             f"has rows that are not as its header, and {path.stat().st_size:,} bytes; at most {MOST_TEXT:,} of such a "
             "table are read",
@@ -200,7 +200,7 @@ def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str,
     Room(path).take(len(head.columns) * len(kept), len(head.columns))
     rows, remarks = _rows(path, kept, head.separator, len(head.columns))
     if not rows:
-        raise refuse(path, "has a header and no rows")
+        raise file_error(path, "has a header and no rows")
     return {
         n: _column([row[i] for row in rows], head.separator) for i, n in enumerate(head.columns)
     }, remarks
@@ -208,7 +208,7 @@ def _line_by_line(path: Path, head: _Head) -> tuple[dict[str, Array], tuple[str,
 
 def _text(path: Path, found: bytes) -> str:
     if b"\0" in found[:4096]:
-        raise refuse(path, "is not a text file")
+        raise file_error(path, "is not a text file")
     try:
         return found.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -234,13 +234,15 @@ def _rows(
         try:
             cells = next(csv.reader([line], delimiter=separator), [])
         except csv.Error as error:
-            raise refuse(path, f"is not CSV ({error})", number) from error
+            raise file_error(path, f"is not CSV ({error})", number) from error
         if len(cells) == width + 1 and not cells[-1].strip():
             cells.pop()  # a separator at the end
         if len(cells) != width:
             if k == len(lines) - 1:
                 return rows, (f"{path}: its last row is cut and left out",)
-            raise refuse(path, f"has {len(cells)} cells; the header has {width} columns", number)
+            raise file_error(
+                path, f"has {len(cells)} cells; the header has {width} columns", number
+            )
         rows.append(cells)
     return rows, ()
 

@@ -1,1 +1,1 @@
-"""One format a file: `read(path) -> Raw`, found by the suffix of the recording."""
+"""File formats of recordings, one module per format with `read(path) -> Raw`, named by the suffix of the file."""

@@ -1,4 +1,4 @@
-"""CSV: comma separated, a point in decimal numbers, one header row."""
+"""Reader of CSV: commas between cells, a point in decimal numbers, one header row."""
 
 import csv
 from io import StringIO
@@ -8,61 +8,60 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from boatsim.physics.base import Array
-from boatsim.recordings.limits import LONGEST_HEADER, MOST_CELLS, check_shape
-from boatsim.recordings.raw_table import Raw, no_twins, numbers, refuse
+from boatsim.recordings.limits import MAX_CELLS, MAX_HEADER_BYTES, check_shape
+from boatsim.recordings.raw_table import Raw, check_unique_names, file_error, parse_numbers
 
 if TYPE_CHECKING:
     from pyarrow import ChunkedArray, Table
 
 
-BLOCK = 1 << 20  # bytes
+BLOCK_BYTES = 1 << 20
 
 
 def read(path: Path) -> Raw:
-    """Comma separated, one header row; blank lines are skipped."""
+    """Return the table of a CSV file; blank lines are skipped. Raises BadInput."""
     with path.open("rb") as file:
-        first = file.readline(LONGEST_HEADER + 1)
-    if len(first) > LONGEST_HEADER:
-        raise refuse(path, f"the first line has more than {LONGEST_HEADER} bytes", 1)
+        first = file.readline(MAX_HEADER_BYTES + 1)
+    if len(first) > MAX_HEADER_BYTES:
+        raise file_error(path, f"the first line has more than {MAX_HEADER_BYTES} bytes", 1)
     _check_cells(path, first.count(b",") + 1)
     content = path.read_bytes()
-    return _quick(path, first, content) or _line_by_line(path, content)
+    return _read_fast(path, first, content) or _read_line_by_line(path, content)
 
 
 def _check_cells(path: Path, columns: int) -> None:
-    """Refuse more cells than a recording may have as soon as so many are counted, before memory is taken for any."""
+    """Count the cells before memory is allocated for any. Raises BadInput for too many."""
     cells = 0
     with path.open("rb") as file:
         check_shape(path, columns)
-        while block := file.read(BLOCK):
+        while block := file.read(BLOCK_BYTES):
             cells += block.count(b",") + block.count(b"\n")
-            if cells > MOST_CELLS:
-                raise refuse(
-                    path, f"has more than {MOST_CELLS:.3g} cells; a recording has at most so many"
+            if cells > MAX_CELLS:
+                raise file_error(
+                    path, f"has more than {MAX_CELLS:.3g} cells, the limit of a recording"
                 )
         check_shape(path, columns, cells)
 
 
-def _quick(path: Path, first: bytes, content: bytes) -> Raw | None:
-    """The table read by native code, where a row is a line and nothing is wrong with any; None of another."""
+def _read_fast(path: Path, first: bytes, content: bytes) -> Raw | None:
+    """The table read by native code; None if a row is not a line or a row has a mistake."""
     header = _header(first)
     if header is None or b"\0" in content or content.count(b"\r") > content.count(b"\r\n"):
         return None
     if (table := _table(header, content)) is None:
         return None
-    if (
-        content.count(b"\n") + (not content.endswith(b"\n")) != 1 + table.num_rows
-    ):  # a blank line, or none of ours
+    lines = content.count(b"\n") + (not content.endswith(b"\n"))
+    if lines != 1 + table.num_rows:  # there is a blank line, or a cell of several lines
         return None
     raw = Raw(path, {}, range(2, 2 + table.num_rows))
     for name, column in zip(header, table.columns, strict=True):
         raw.columns[name] = _numbers(raw, name, column)
-    empty = np.all([np.isnan(values) for values in raw.columns.values()], axis=0)
+    empty = np.isnan(list(raw.columns.values())).all(axis=0)
     return None if empty.any() else raw
 
 
 def _header(first: bytes) -> list[str] | None:
-    """Names of columns in a first line that has nothing odd about it."""
+    """Names of the columns; None for a first line that is not printable or has duplicate names."""
     try:
         line = first.decode("utf-8-sig").removesuffix("\n").removesuffix("\r")
     except UnicodeDecodeError:
@@ -74,7 +73,7 @@ def _header(first: bytes) -> list[str] | None:
 
 
 def _table(header: list[str], content: bytes) -> "Table | None":
-    """All cells as texts; None where rows differ in length, or where it is no text."""
+    """All cells as texts; None if rows differ in length or the file is not a text."""
     import pyarrow as pa  # 60 ms, comes with rerun-sdk
     from pyarrow import csv as arrow
 
@@ -93,7 +92,7 @@ def _table(header: list[str], content: bytes) -> "Table | None":
 
 
 def _numbers(raw: Raw, name: str, column: "ChunkedArray") -> Array:
-    """(N,) floats of a column of texts; one with something else than numbers in it is looked at cell by cell."""
+    """Numbers (N,) of a column of texts, cell by cell if some are not numbers."""
     import pyarrow as pa
     from pyarrow import compute
 
@@ -101,23 +100,25 @@ def _numbers(raw: Raw, name: str, column: "ChunkedArray") -> Array:
         filled = compute.if_else(compute.equal(column, ""), pa.scalar(None, pa.string()), column)
         found = np.array(filled.cast(pa.float64()).to_numpy(), dtype=float)
     except pa.ArrowException:
-        return numbers(raw, name, column.to_pylist())
-    plain = (
-        np.isnan(found).sum() == filled.null_count
-    )  # what else is called nan there need not be so here
-    return found if plain else numbers(raw, name, column.to_pylist())
+        return parse_numbers(raw, name, column.to_pylist())
+    if np.isnan(found).sum() == filled.null_count:
+        return found
+    # pyarrow reads further words as nan
+    return parse_numbers(raw, name, column.to_pylist())
 
 
-def _line_by_line(path: Path, content: bytes) -> Raw:
-    """The table, or what is wrong with it and in which line."""
+def _read_line_by_line(path: Path, content: bytes) -> Raw:
+    """The table. Raises BadInput with the line of the first mistake."""
     header, rows, lines = _cells(path, content)
     for row, cells in zip(lines, rows, strict=True):
         if len(cells) != len(header):
-            raise refuse(path, f"has {len(cells)} cells; the header has {len(header)} columns", row)
+            raise file_error(
+                path, f"has {len(cells)} cells; the header has {len(header)} columns", row
+            )
     raw = Raw(path, {}, lines)
     by_column = list(zip(*rows, strict=True)) or [()] * len(header)
     for name, column in zip(header, by_column, strict=True):
-        raw.columns[name] = numbers(raw, name, column)
+        raw.columns[name] = parse_numbers(raw, name, column)
     return raw
 
 
@@ -126,11 +127,13 @@ def _cells(path: Path, content: bytes) -> tuple[list[str], list[list[str]], list
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise refuse(
+        raise file_error(
             path, "is not a text file; a recording is CSV, Parquet or the .rrd of a run"
         ) from error
     if "\0" in text:
-        raise refuse(path, "is not a text file; a recording is CSV, Parquet or the .rrd of a run")
+        raise file_error(
+            path, "is not a text file; a recording is CSV, Parquet or the .rrd of a run"
+        )
     reader = csv.reader(StringIO(text, newline=None))
     rows, lines = [], []
     try:
@@ -139,16 +142,16 @@ def _cells(path: Path, content: bytes) -> tuple[list[str], list[list[str]], list
                 rows.append(cells)
                 lines.append(reader.line_num)
     except csv.Error as error:
-        raise refuse(path, f"is not CSV ({error})", reader.line_num) from error
+        raise file_error(path, f"is not CSV ({error})", reader.line_num) from error
     if not rows:
-        raise refuse(path, "is empty")
+        raise file_error(path, "is empty")
     header = [name.strip() for name in rows[0]]
     for character, called in ((";", "semicolons"), ("\t", "tabs")):
         if len(header) == 1 and character in header[0]:
-            raise refuse(
+            raise file_error(
                 path,
                 f"is separated by {called}; allowed are commas, with a point in decimal numbers",
                 1,
             )
-    no_twins(path, header)
+    check_unique_names(path, header)
     return header, rows[1:], lines[1:]

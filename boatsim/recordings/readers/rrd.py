@@ -1,8 +1,9 @@
-"""The `.rrd` of our own runs: every column lies as scalars under `signals/` on one time line.
+"""Reader of the `.rrd` of runs of boatsim: every column is a series of scalars under `signals/` on one time line.
 
-A process of its own reads it: on a damaged file rerun's native code ends the process that it runs in.
+The file is read in a child process, for rerun's native code ends its process on a damaged file.
 """
 
+import itertools
 import json
 import math
 import os
@@ -29,14 +30,18 @@ sys.path[:] = json.loads(sys.argv[1])
 from boatsim.recordings.readers import rrd
 rrd.child()
 """
-REFUSED = 3  # exit code of that process where it says why, in one line
+REFUSED = 3  # exit code of the child process when it prints the reason
 
 
 def read(path: Path) -> Raw:
-    """The columns of a run's `.rrd`, t_s first; rows in which a signal was not logged are nan. Raises BadInput."""
+    """Return the table of a run's `.rrd`, t_s first; a signal is nan in rows in which it was not logged.
+
+    Raises:
+        BadInput: If the file is damaged, too large or not of a run.
+    """
     with tempfile.TemporaryDirectory(prefix="boatsim-") as folder:
         table = Path(folder) / "table.npz"
-        words = [
+        command = [
             sys.executable,
             "-P",
             "-c",
@@ -45,30 +50,38 @@ def read(path: Path) -> Raw:
             os.fspath(path),
             os.fspath(table),
         ]
-        done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+        done = subprocess.run(
+            command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False
+        )
         if done.returncode == REFUSED:
             raise BadInput(done.stdout.decode("utf-8", "replace"))
         if done.returncode != 0:
-            raise BadInput(f"{path}: can not be read as .rrd (rerun's reader breaks on it)")
+            raise BadInput(f"{path}: can not be read as .rrd (rerun's reader fails on it)")
         with np.load(table, allow_pickle=False) as found:
             columns = {str(name): found[f"c{i}"] for i, name in enumerate(found["names"])}
     return Raw(path, columns, range(1, 1 + len(columns["t_s"])))
 
 
 def child() -> None:
-    """What that process does: `sys.argv` has the path of the `.rrd` and of the table to write."""
+    """Read the file in the child process. `sys.argv` has the path of the `.rrd` and of the table to write."""
     path, table = map(Path, sys.argv[2:])
     try:
         columns = columns_of(path)
     except BadInput as error:
         sys.stdout.buffer.write(str(error).encode("utf-8", "replace"))
         sys.exit(REFUSED)
-    arrays: dict[str, Any] = {f"c{i}": values for i, values in enumerate(columns.values())}
+    arrays: dict[str, Any] = {}
+    for i, values in enumerate(columns.values()):
+        arrays[f"c{i}"] = values
     np.savez(table, names=np.array(list(columns)), **arrays)
 
 
 def columns_of(path: Path) -> dict[str, Array]:
-    """Columns by name, each (N,). Raises BadInput, and whatever a damaged file makes rerun do."""
+    """Return the columns by name, each (N,).
+
+    Raises:
+        BadInput: If the file can not be read; a damaged file may end the process.
+    """
     series: dict[str, tuple[list[Array], list[Array]]] = {}
     cells = 0
     try:
@@ -84,7 +97,8 @@ def columns_of(path: Path) -> dict[str, Array]:
         ) from error
     if not series:
         raise BadInput(f"{path}: is not the log of a boatsim run; it has nothing under /{SIGNALS}")
-    rows = np.unique(np.concatenate([part for times, _ in series.values() for part in times]))
+    times_of_all = itertools.chain.from_iterable(times for times, _ in series.values())
+    rows = np.unique(np.concatenate(list(times_of_all)))
     check_shape(path, len(series), len(series) * len(rows))
     columns = {"t_s": rows * 1e-9}
     for name, (times, pieces) in series.items():
@@ -94,7 +108,7 @@ def columns_of(path: Path) -> dict[str, Array]:
 
 
 def last_time(path: Path | str) -> float:
-    """Time [s] at which a log of ours ends."""
+    """Return the last time of a run's log [s]."""
     last = 0
     for chunk in RrdReader(path).stream():
         batch = chunk.to_record_batch()
