@@ -13,7 +13,7 @@ from test_described import diagnosed, halved, nothing, replays
 
 from boatsim.diagnosis.candidates import composed
 from boatsim.diagnosis.config import DEFAULT
-from boatsim.diagnosis.locate.nominal_forces import actuators
+from boatsim.diagnosis.locate.nominal_forces import actuator_states
 from boatsim.diagnosis.report.described_terms import factors, over_words, unit_of
 from boatsim.diagnosis.symbolic.grammar import neighbours
 from boatsim.diagnosis.symbolic.slots import write
@@ -208,7 +208,7 @@ def test_the_quick_weighing_recalls_what_the_filter_does() -> None:
     term = DescribedForce(axis="sway", of=("recent_abs_thrust_port_N",), memory=1.7)
     write(problem, "described_1", term, problem.recordings)
     number = next(i for i, e in enumerate(program.effects) if e.name == "described_1")
-    acting = actuators(problem.recordings[0], ("described_1",), problem.recordings[0].values)
+    acting = actuator_states(problem.recordings[0], ("described_1",), problem.recordings[0].values)
     np.testing.assert_allclose(
         way.size(term), acting[:, program.composition.own(number)], atol=1e-9
     )

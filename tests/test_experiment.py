@@ -13,8 +13,8 @@ from scipy.linalg import expm
 from boatsim.cli import diagnosis as commands
 from boatsim.diagnosis.candidates import absent, library_for
 from boatsim.diagnosis.experiment_design import manoeuvres, next_experiment
-from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, menu
-from boatsim.diagnosis.experiment_design.simulated_manoeuvre import laid
+from boatsim.diagnosis.experiment_design.manoeuvres import Manoeuvre, available_manoeuvres
+from boatsim.diagnosis.experiment_design.simulated_manoeuvre import simulate_manoeuvre
 from boatsim.diagnosis.filter import NoiseLevels, map_recording, prior_levels
 from boatsim.diagnosis.fit import converge, fit, gauss_newton
 from boatsim.diagnosis.problem import Fit, Problem
@@ -102,16 +102,18 @@ def tie(case: str) -> tuple[Problem, Fit, Fit]:
 
 def suggested(case: str) -> next_experiment.Plan:
     problem, winner, rival = tie(case)
-    plan = next_experiment.next_experiment(problem, winner, {CONFUSABLE[case][2]: rival})
+    plan = next_experiment.best_plan(problem, winner, {CONFUSABLE[case][2]: rival})
     assert plan is not None
     return plan
 
 
 def course(problem: Problem, winner: Fit, plan: next_experiment.Plan) -> Array:
     """What a camera would see of a plan (N, 3)."""
-    found = laid(problem, winner, Manoeuvre("", plan.times, plan.levels, plan.duration))
+    found = simulate_manoeuvre(
+        problem, winner, Manoeuvre("", plan.times, plan.levels, plan.duration)
+    )
     assert found is not None
-    return np.asarray(found.track.measured)
+    return np.asarray(found.recording.measured)
 
 
 @pytest.mark.parametrize("case", few(CONFUSABLE, 1))
@@ -120,8 +122,12 @@ def test_suggestion_tells_more_than_the_first_manoeuvre_once_more(case):
     name, _, other, script = CONFUSABLE[case]
     times = np.cumsum([0.0, *(step[0] for step in script)])
     levels = tuple(dict(zip(program().vessel.commands, step[1:], strict=True)) for step in script)
-    found = laid(problem, winner, Manoeuvre("again", tuple(times[:-1]), levels, times[-1]))
-    again = next_experiment.expected(problem, found.track, winner, {other: rival})[other]
+    found = simulate_manoeuvre(
+        problem, winner, Manoeuvre("again", tuple(times[:-1]), levels, times[-1])
+    )
+    again = next_experiment.expected_log_bayes_factors(
+        problem, found.recording, winner, {other: rival}
+    )[other]
     plan = suggested(case)
     assert plan.separates == (name, other)
     assert plan.expected_gain > max(3.0, 2.0 * again)  # 3 nats: no longer look-alikes
@@ -145,10 +151,14 @@ def test_the_worst_rival_counts():
     case = "wind at constant heading"
     problem, winner, rival = tie(case)
     both = {"current": rival, "twin": winner}  # no manoeuvre tells a hypothesis from itself
-    for plan in next_experiment.plans(problem, winner, both):
-        assert plan.expected_gain == min(plan.gains.values()) == pytest.approx(0.0, abs=1e-6)
-    assert next_experiment.next_experiment(problem, winner, both) is None
-    assert next_experiment.next_experiment(problem, winner, {}) is None
+    for plan in next_experiment.all_plans(problem, winner, both):
+        assert (
+            plan.expected_gain
+            == min(plan.log_bayes_factors.values())
+            == pytest.approx(0.0, abs=1e-6)
+        )
+    assert next_experiment.best_plan(problem, winner, both) is None
+    assert next_experiment.best_plan(problem, winner, {}) is None
 
 
 def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_model():
@@ -166,9 +176,9 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
         Fit((), free, np.array(theta), np.diag(np.square(sd)), levels, 0.0)
         for theta, sd in (([1.6, 1.0], [0.2, 0.002]), ([1.0, 1.004], [0.15, 0.002]))
     )
-    found = laid(problem, winner, Manoeuvre("", duration=24.0, heel=0.15))
+    found = simulate_manoeuvre(problem, winner, Manoeuvre("", duration=24.0, release_angle=0.15))
     assert found is not None
-    n, h, P0 = len(found.track.times), 0.2, found.track.spread + np.diag([1e-6, 0.0, 4.0])
+    n, h, P0 = len(found.recording.times), 0.2, found.recording.spread + np.diag([1e-6, 0.0, 4.0])
 
     def dense(theta: Array) -> tuple[Array, Array]:
         """Mean and covariance of all samples after the first at given parameters."""
@@ -207,7 +217,9 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
     wanted = (
         0.5 * stretches * np.log1p(2.0 * divergence / stretches)
     )  # ambient force of the rival refitted
-    got = next_experiment.expected(problem, found.track, winner, {"rival": rival})["rival"]
+    got = next_experiment.expected_log_bayes_factors(
+        problem, found.recording, winner, {"rival": rival}
+    )["rival"]
     assert wanted > 1.0
     assert got == pytest.approx(wanted, rel=0.05)
 
@@ -216,7 +228,7 @@ def test_expected_gain_is_the_divergence_of_the_dense_predictions_of_a_linear_mo
 def test_no_manoeuvre_is_expected_to_speak_against_the_truth(case):
     """A Kullback-Leibler divergence is never negative."""
     problem, winner, rival = tie(case)
-    for plan in next_experiment.plans(problem, winner, {"rival": rival}):
+    for plan in next_experiment.all_plans(problem, winner, {"rival": rival}):
         assert plan.expected_gain > -0.05, (
             plan.manoeuvre
         )  # noise and force levels of the two are taken for the same
@@ -280,19 +292,23 @@ def test_manoeuvres_keep_commands_inside_limits_and_times_to_froude_scale():
     for name in ("trial_boat", "joystick_boat"):
         boat = vessel.load(name)
         large = replace(boat, length=4.0 * boat.length)
-        for small, big in zip(menu(boat, {}, 0.0, True), menu(large, {}, 0.0, True), strict=True):
+        for small, big in zip(
+            available_manoeuvres(boat, {}, 0.0, True),
+            available_manoeuvres(large, {}, 0.0, True),
+            strict=True,
+        ):
             assert (
                 big.duration == pytest.approx(2.0 * small.duration) and big.levels == small.levels
             )
             for level in small.levels:
                 for command, value in level.items():
                     assert boat.commands[command].low <= value <= boat.commands[command].high
-    assert menu(boat, {}, 0.0, True) == menu(boat, {}, 0.0, True)
+    assert available_manoeuvres(boat, {}, 0.0, True) == available_manoeuvres(boat, {}, 0.0, True)
 
 
 def test_pwm_takes_the_place_of_the_thrust_it_feeds():
     boat = vessel.load("joystick_boat")
-    assert set(manoeuvres.commanded(boat)) == {
+    assert set(manoeuvres.driven_commands(boat)) == {
         "pwm_port",
         "pwm_starboard",
         "steer_port_rad",
@@ -316,7 +332,7 @@ def test_hull_without_commands_is_released_at_another_angle(tmp_path):
     winner, rival = (
         fit(problem, f) for f in screen(problem, nominal, [e.name for e in suspects]).values()
     )
-    plan = next_experiment.next_experiment(problem, winner, {"cubic_damping": rival})
+    plan = next_experiment.best_plan(problem, winner, {"cubic_damping": rival})
     assert plan is not None and plan.start == {
         "phi": pytest.approx(0.15)
     }  # the larger angle tells more
@@ -349,10 +365,12 @@ def test_zig_zag_of_a_ship_changes_over_where_its_heading_is_expected_to_be(tmp_
         NoiseLevels(np.full(3, 0.1), 1.0, NOISE),
         {},
     )
-    zigzag = next(m for m in menu(boat, steady, 0.0, False) if m.words == "20/20 zig-zag")
-    found = laid(problem, problem.nominal(), zigzag)
+    zigzag = next(
+        m for m in available_manoeuvres(boat, steady, 0.0, False) if m.name == "20/20 zig-zag"
+    )
+    found = simulate_manoeuvre(problem, problem.nominal(), zigzag)
     assert found is not None
-    seen, plan = found.track, found.manoeuvre
+    seen, plan = found.recording, found.manoeuvre
     assert found.start[3] > 0.3 and len(plan.times) > 2
     for time, before in zip(plan.times[1:], plan.levels, strict=False):
         side = np.sign(before["steer_port_rad"])

@@ -12,14 +12,20 @@ from scipy.linalg import expm
 from scipy.stats import kstest
 
 from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import map_recording, prior_levels
-from boatsim.diagnosis.locate.missing_force import BAND, force_left, intervals, missing_force
-from boatsim.diagnosis.locate.periodicity import rhythm
-from boatsim.diagnosis.locate.region_candidates import walls_of
-from boatsim.diagnosis.locate.region_tests import Evidence, joint
+from boatsim.diagnosis.locate.missing_force import intervals, missing_force, residual_force
+from boatsim.diagnosis.locate.periodicity import most_significant_peak
+from boatsim.diagnosis.locate.region_candidates import tank_walls
+from boatsim.diagnosis.locate.region_tests import ScoreStatistics, combined
 from boatsim.diagnosis.locate.regions import Region, regions
-from boatsim.diagnosis.locate.residual_structure import features, structure
-from boatsim.diagnosis.locate.smoothing import information, running_average, variance_of_average
+from boatsim.diagnosis.locate.residual_structure import features, find_structure
+from boatsim.diagnosis.locate.smoothing import (
+    LatentForce,
+    joint_information,
+    running_average,
+    variance_of_average,
+)
 from boatsim.diagnosis.noise_levels import fit_time_constant
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.search.evidence import UNKNOWN, left_over
@@ -112,33 +118,28 @@ def shapes() -> Array:
     )[:, None, :]
 
 
+def latent(y: Array) -> LatentForce:
+    """The smoothed force of measured positions (N,)."""
+    means = np.zeros((N, 3))
+    means[:, LATENT] = (CHAIN.finds @ y)[:, None]
+    rms, first = np.array([RMS]), np.array([FIRST])
+    return LatentForce(CHAIN.times, means, CHAIN.covariances, CHAIN.gains, LATENT, rms, first, TAU)
+
+
 def test_information_on_a_known_force_is_that_of_the_measurements() -> None:
     y = np.random.default_rng(1).multivariate_normal(np.zeros(N), CHAIN.spread)
     S = shapes()
-    found = (CHAIN.finds @ y)[:, None]
-    prior = np.array([RMS]), np.array([FIRST]), TAU
-    learnt, score = information(
-        S, found, CHAIN.times, CHAIN.covariances, CHAIN.gains, LATENT, *prior
-    )
+    learnt, score = joint_information(S, latent(y))
     seen = CHAIN.responds @ S[:, 0]  # what each shape does to the positions
     weight = np.linalg.inv(CHAIN.spread)
     assert learnt == pytest.approx(seen.T @ weight @ seen, rel=1e-6, abs=1e-9)
     assert score == pytest.approx(seen.T @ weight @ y, rel=1e-6, abs=1e-9)
 
 
-def evidence(y: Array) -> Evidence:
+def evidence(y: Array) -> ScoreStatistics:
     S = shapes()
     named = {n: (S[..., k],) for k, n in enumerate(("sine", "square", "decay"))}
-    arguments = (
-        CHAIN.times,
-        CHAIN.covariances,
-        CHAIN.gains,
-        LATENT,
-        np.array([RMS]),
-        np.array([FIRST]),
-        TAU,
-    )
-    return Evidence.of(named, (CHAIN.finds @ y)[:, None], *arguments)
+    return ScoreStatistics.of(named, latent(y))
 
 
 def test_p_values_are_uniform_where_nothing_acts_and_small_where_it_does() -> None:
@@ -146,7 +147,7 @@ def test_p_values_are_uniform_where_nothing_acts_and_small_where_it_does() -> No
     y = rng.multivariate_normal(np.zeros(N), CHAIN.spread, size=400)
     p = [evidence(row).test("square", ["sine", "decay"]).p_value for row in y]
     assert kstest(p, "uniform").pvalue > 0.01
-    acts = joint(
+    acts = combined(
         [evidence(row + 3.0 * CHAIN.responds @ shapes()[:, 0, 1]) for row in y[:20]],
         ["square", "sine"],
     )
@@ -171,17 +172,18 @@ def test_rhythm_has_the_period_that_was_put_in_and_white_or_rough_errors_have_no
         return [(t, add(rng.standard_normal((240, 3)))) for _ in range(2)]
 
     swell = 0.6 * np.sin(2 * np.pi * t / 1.9)[:, None]
-    found = rhythm(runs(lambda white: white + swell))
+    found = most_significant_peak(runs(lambda white: white + swell))
     assert (
         found is not None and found.p_value < 1e-6 and found.period == pytest.approx(1.9, rel=0.05)
     )
-    p = np.array([rhythm(runs(lambda white: white)).p_value for _ in range(300)])  # type: ignore[union-attr]
+    p = np.array([most_significant_peak(runs(lambda white: white)).p_value for _ in range(300)])  # type: ignore[union-attr]
     assert np.mean(p < 0.05) < 0.09 and np.mean(p < 0.01) < 0.03
     coloured = [
-        rhythm(runs(lambda white: white + 0.3 * np.roll(white, 1, axis=0))) for _ in range(100)
+        most_significant_peak(runs(lambda white: white + 0.3 * np.roll(white, 1, axis=0)))
+        for _ in range(100)
     ]
     assert np.mean([r.p_value < 0.01 for r in coloured if r]) < 0.06
-    assert rhythm([(t[:6], np.zeros((6, 1)))]) is None
+    assert most_significant_peak([(t[:6], np.zeros((6, 1)))]) is None
 
 
 # ---- the trial boat
@@ -208,12 +210,12 @@ def test_the_band_holds_a_force_that_was_put_there_and_flags_it_where_it_is() ->
     forces = missing_force(problem, found, problem.recordings)
     true = np.concatenate([running_average(f, 6) for _, f in runs])
     mean, sd = np.concatenate([f.mean for f in forces]), np.concatenate([f.sd for f in forces])
-    inside = np.abs(mean - true) < BAND * sd
+    inside = np.abs(mean - true) < DEFAULT.locate.band_sds * sd
     assert (inside.mean(axis=0) > 0.9).all()
-    flagged, ambient = np.abs(mean) > BAND * sd, problem.ambient.force
+    flagged, ambient = np.abs(mean) > DEFAULT.locate.band_sds * sd, problem.ambient.force
     assert np.mean(flagged[np.abs(true) > 2 * ambient]) > 0.6
     assert np.mean(np.abs(true)[flagged] < np.broadcast_to(ambient, true.shape)[flagged]) < 0.05
-    assert (sd >= ambient / BAND).all()
+    assert (sd >= ambient / DEFAULT.locate.band_sds).all()
     sway = [
         i for i in intervals(problem, forces) if i.axis == "sway" and i.to_s > 22.0
     ]  # the step is at 20 s
@@ -222,7 +224,7 @@ def test_the_band_holds_a_force_that_was_put_there_and_flags_it_where_it_is() ->
     )
     # what the recalibrated vessel itself leaves over has no part of the thrust that is 6 % more
     thrust = np.concatenate([push_of(r) for r, _ in runs])
-    left = np.concatenate([f.mean for f in force_left(problem, found, problem.recordings)])
+    left = np.concatenate([f.mean for f in residual_force(problem, found, problem.recordings)])
     of_true, of_mean, of_left = (
         np.sum(f[:, 0] * thrust) / np.sum(thrust**2) for f in (true, mean, left)
     )
@@ -315,7 +317,7 @@ def test_walls_pull_and_drag_where_the_recording_says_they_are() -> None:
 
     found = found_in(walls, facts)
     assert "distance to the walls" in found and found["distance to the walls"].p_value < 1e-6
-    assert "more and is pushed towards it" in found["distance to the walls"].statement
+    assert "more, and the boat is pushed towards it" in found["distance to the walls"].statement
     assert "distance to the walls" not in found_in(nothing, facts)
 
 
@@ -330,8 +332,8 @@ def test_walls_stated_in_a_recording_are_those_of_the_library_entry_too() -> Non
         map_recording(stated, program),
     )
     at = [program.index("wall_effect", n) for n in ("x_low", "x_high", "y_low", "y_high")]
-    assert other.values[at] == pytest.approx([-1.0, 2.0, -3.0, 5.0]) == walls_of(other)
-    assert own.values[at] == pytest.approx([-4.0, 4.0, -3.0, 3.0]) == walls_of(own)
+    assert other.values[at] == pytest.approx([-1.0, 2.0, -3.0, 5.0]) == tank_walls(other)
+    assert own.values[at] == pytest.approx([-4.0, 4.0, -3.0, 3.0]) == tank_walls(own)
 
 
 # ---- roll alone
@@ -375,10 +377,10 @@ def test_roll_that_stiffens_or_drags_is_told_from_a_linear_one(name: str, more: 
 
 def test_what_is_left_of_a_boat_that_lacks_nothing_goes_with_nothing() -> None:
     p = [
-        structure(*laid(*(sail(f"run_{k}", seed + k, nothing)[0] for k in range(2))))
+        find_structure(*laid(*(sail(f"run_{k}", seed + k, nothing)[0] for k in range(2))))
         for seed in range(60, 72, 2)
     ]
-    assert all(not s.likely and s.tried > 100 for s in p)
+    assert all(not s.significant and s.tested > 100 for s in p)
 
 
 @pytest.mark.parametrize(
@@ -398,7 +400,7 @@ def test_a_force_below_the_tolerated_one_is_seen_by_what_it_goes_with(
         for k in range(2)
     ]
     problem, found = laid(*runs)
-    seen = structure(problem, found)
+    seen = find_structure(problem, found)
     assert seen.axis == axis and goes_with in seen.goes_with and seen.p_value < 1e-3
     assert left_over(problem, found) < UNKNOWN  # whose rms alone would pass
 
@@ -408,7 +410,7 @@ def test_stretches_are_told_by_the_clock_of_the_recording() -> None:
     recording, _ = sail("run_0", 80, nothing)
     problem, _ = laid(replace(recording, t=recording.t + 100.0))
     (followed,) = problem.recordings
-    told = dict(features(followed, np.ones((ROWS, 6)), 1.0))
+    told = dict(features(followed, np.ones((ROWS, 6)), 1.0, DEFAULT.locate))
     assert (
         "time: it acts in 100 to 105 s of run_0" in told
         and "time: it acts in 135 to 140 s of run_0" in told

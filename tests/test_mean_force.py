@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pushed_boat import laid, sail
 
-from boatsim.diagnosis.locate.mean_force import mean_left
+from boatsim.diagnosis.locate.mean_force import mean_residual_force
 from boatsim.diagnosis.locate.smoothing import variance_of_average, variance_of_mean
 from boatsim.physics.base import Array
 
@@ -17,7 +17,7 @@ def left(force: Callable[[float], tuple[float, float, float]]) -> dict[str, floa
     problem, best = laid(
         *(sail(f"run_{seed}", seed, lambda t, y, c: np.array(force(t)))[0] for seed in (1, 2))
     )
-    return mean_left(problem, best, problem.recordings)
+    return mean_residual_force(problem, best, problem.recordings)
 
 
 @pytest.mark.parametrize("sway", [0.2, -0.2])

@@ -12,7 +12,7 @@ from answers import diagnosed
 from scipy.integrate import solve_ivp
 
 from boatsim.diagnosis.candidates import library_for
-from boatsim.diagnosis.experiment_design.manoeuvres import commanded, menu
+from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres, driven_commands
 from boatsim.diagnosis.filter import map_recording
 from boatsim.diagnosis.pipeline import open_recording
 from boatsim.errors import BadInput
@@ -122,9 +122,9 @@ def test_nothing_that_acts_on_commands_acts_on_what_is_measured(boat: Vessel) ->
     }
     everything = (*boat.effects, *library_for(boat).compiled)
     assert not measured & {n for e in everything for n in boat.targets(e)}
-    assert not measured & {*commanded(boat), *handled(boat).steer, *handled(boat).ahead}
+    assert not measured & {*driven_commands(boat), *handled(boat).steer, *handled(boat).ahead}
     assert not measured & {
-        n for m in menu(boat, {}, 0.0, False) for level in m.levels for n in level
+        n for m in available_manoeuvres(boat, {}, 0.0, False) for level in m.levels for n in level
     }
 
 

@@ -24,9 +24,9 @@ from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import library_for
 from boatsim.diagnosis.experiment_design.next_experiment import (
     Plan,
-    next_experiment,
-    plans,
-    question,
+    all_plans,
+    best_plan,
+    open_question,
 )
 from boatsim.diagnosis.filter import axes_of, map_recording, prior_levels
 from boatsim.diagnosis.problem import Problem, froude_scale
@@ -191,11 +191,12 @@ def case(truth: str, seed: int) -> Outcome:
     first = recorded("first", boat, *gentle(rng, SHORT), rng)
     again = recorded("same kind", boat, *gentle(rng, LONG), rng)
     problem, before = diagnosed([first])
-    plan = next_experiment(problem, *question(before))
+    question = open_question(before, problem.config)
+    plan = best_plan(problem, *question)
     _, same = diagnosed([first, again])
     after = other = same
     if plan is not None:
-        menu = [p for p in plans(problem, *question(before)) if p.manoeuvre != plan.manoeuvre]
+        menu = [p for p in all_plans(problem, *question) if p.manoeuvre != plan.manoeuvre]
         any_one = menu[rng.integers(len(menu))]
         after, other = (
             diagnosed([first, recorded(p.manoeuvre, boat, *played(p), rng)])[1]

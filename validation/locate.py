@@ -32,9 +32,10 @@ from rich.table import Table
 
 from boatsim.diagnosis import priors
 from boatsim.diagnosis.candidates import library_for
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import axes_of, map_recording, prior_levels, shared_noise
-from boatsim.diagnosis.locate.missing_force import BAND, missing_force
-from boatsim.diagnosis.locate.regions import LIKELY, Region, regions
+from boatsim.diagnosis.locate.missing_force import missing_force
+from boatsim.diagnosis.locate.regions import Region, regions
 from boatsim.diagnosis.pipeline import open_recording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import baseline
@@ -60,7 +61,7 @@ class Located:
     @property
     def flagged(self) -> Any:
         """(samples, axes) zero lies outside the band."""
-        return np.abs(self.found) > BAND * self.sd
+        return np.abs(self.found) > DEFAULT.locate.band_sds * self.sd
 
 
 def problem_of(trial: Path) -> Problem:
@@ -116,7 +117,10 @@ def figures(trials: Sequence[Located], axis: int | slice = slice(None)) -> list[
         return sum(int(which(t)[:, axis].sum()) for t in trials)
 
     inside = np.mean(
-        [np.mean(np.abs(t.found - t.true)[:, axis] <= BAND * t.sd[:, axis]) for t in trials]
+        [
+            np.mean(np.abs(t.found - t.true)[:, axis] <= DEFAULT.locate.band_sds * t.sd[:, axis])
+            for t in trials
+        ]
     )
     flagged, false = count(lambda t: t.flagged), count(lambda t: t.flagged & (np.abs(t.true) < 1.0))
     there, hit = (
@@ -164,7 +168,7 @@ def main() -> None:
     none = {n: t for n, t in trials.items() if t.causes == (NOTHING,)}
     accidents = sum(bool(t.regions) for t in none.values())
     console.print(
-        f"regions found in nothing-missing trials: {accidents} of {len(none)}, at p < {LIKELY} a trial"
+        f"regions found in nothing-missing trials: {accidents} of {len(none)}, at p < {DEFAULT.locate.region_max_p} a trial"
     )
     for name, t in trials.items():
         for region in t.regions:

@@ -577,6 +577,63 @@ class ChecksConfig:
 class LocateConfig:
     """Where, when and along which axes a force is missing."""
 
+    band_sds: float = setting(
+        2.0, "sd", "Half width of the band of the missing force; zero outside it is missing force."
+    )
+    interval_min_duration: float = setting(
+        0.5, "correlation times", "Shorter intervals of missing force are not reported."
+    )
+    interval_max_gap: float = setting(
+        1.0, "correlation times", "Intervals of missing force with a shorter gap are merged."
+    )
+    mean_force_min_sds: float = setting(
+        3.0, "sd", "A mean residual force is reported if it differs from zero by more than this."
+    )
+    disturbance_factor: float = setting(
+        1.5,
+        "1",
+        "Multiple of the assumed disturbance level to which the latent force is limited when the "
+        "residual force is judged.",
+        low=1e-3,
+    )
+    region_max_p: float = setting(
+        0.01, "1", "Largest corrected p-value of a region that is reported.", high=1.0
+    )
+    play_width: float = setting(
+        0.1,
+        "rad",
+        "Play in the steering for which the missing force is computed; the force is proportional "
+        "to it.",
+        low=1e-6,
+    )
+    wall_range: float = setting(
+        2.0,
+        "reaches",
+        "Distance beyond which a wall has no effect, in reaches of the exponential decrease.",
+        low=0.1,
+    )
+    periodicity_band: float = setting(
+        1.26, "1", "Ratio of the limits of a frequency band, a third of an octave.", low=1.01
+    )
+    periodicity_neighbours: int = setting(
+        2, "count", "Bands on either side with which a peak of the spectrum is compared.", low=1
+    )
+    periodicity_min_rows: float = setting(
+        5.0,
+        "rows",
+        "Rows in a period, at least; faster errors change from row to row for other reasons.",
+        low=2.0,
+    )
+    periodicity_min_ordinates: int = setting(
+        3, "count", "Periodogram ordinates in a band, at least.", low=1
+    )
+    structure_max_p: float = setting(
+        0.01, "1", "Largest corrected p-value of a structure of the residual force.", high=1.0
+    )
+    structure_parts: int = setting(
+        8, "count", "Parts of a run in each of which a residual force may act alone.", low=1
+    )
+
 
 @dataclass(frozen=True)
 class FitConfig:
@@ -989,6 +1046,88 @@ class DescribeConfig:
 @dataclass(frozen=True)
 class PlanConfig:
     """Design of the next experiment."""
+
+    min_gain: float = setting(
+        1.0,
+        "nats",
+        "Expected log Bayes factor against the closest rival that a manoeuvre must exceed to be "
+        "proposed.",
+    )
+    min_candidate_gain: float = setting(
+        1.0,
+        "nats",
+        "Evidence gain of a candidate about which a manoeuvre is proposed if no effect was "
+        "identified.",
+    )
+    max_candidates: int = setting(
+        3, "count", "Candidates that are compared if no effect was identified.", low=1
+    )
+    refit_steps: int = setting(
+        3, "count", "Gauss-Newton steps in which a rival is refitted to an expected motion.", low=0
+    )
+    refit_halvings: int = setting(
+        3, "count", "Halvings of such a step that does not increase the posterior.", low=1
+    )
+    refit_min_gain: float = setting(
+        0.1, "nats", "Such a refit ends when a step gains less than this."
+    )
+    boat_duration: float = setting(
+        40.0, "s", "Duration of a manoeuvre of a boat of 1.2 m.", low=1.0
+    )
+    ship_duration: float = setting(
+        80.0,
+        "s",
+        "Duration of a manoeuvre of a ship model of 1.2 m, which responds slowly.",
+        low=1.0,
+    )
+    command_tick: float = setting(
+        0.5, "s", "Commands of a hull of 1.2 m change at multiples of this time.", low=0.01
+    )
+    random_levels: tuple[float, ...] = setting(
+        (0.15, 0.35, 0.6, 0.9),
+        "1",
+        "Shares of a command's limit in random steps: gentle to strong, below saturation.",
+        high=1.0,
+    )
+    quick_holds: tuple[float, ...] = setting(
+        (1.0, 3.0), "s", "Shortest and longest hold of quick random steps.", low=0.01
+    )
+    slow_holds: tuple[float, ...] = setting(
+        (4.0, 8.0), "s", "Shortest and longest hold of slow random steps.", low=0.01
+    )
+    ship_holds: tuple[float, ...] = setting(
+        (4.0, 12.0), "s", "Shortest and longest hold of random rudder steps of a ship.", low=0.01
+    )
+    steering_difference: float = setting(
+        0.5,
+        "1",
+        "Difference of thrust per side for a full steering angle, in shares of the limit, on a "
+        "vessel without steering angles.",
+    )
+    zigzag_angles: tuple[float, ...] = setting(
+        (10.0, 20.0),
+        "deg",
+        "Rudder and heading of zig-zags, as in the standards for ship manoeuvrability of the IMO "
+        "(MSC.137(76)).",
+        low=1.0,
+        high=90.0,
+    )
+    max_switches: int = setting(
+        40, "count", "Reversals of the rudder in a zig-zag, at most.", low=1
+    )
+    release_shares: tuple[float, ...] = setting(
+        (0.5, 1.5), "1", "Roll angles of proposed releases, in shares of the largest recorded one."
+    )
+    max_release_angle: float = setting(0.5, "rad", "Largest roll angle of a proposed release.")
+    wall_clearance: float = setting(
+        0.6, "length", "Distance of the hull's centre from a wall for which a course is planned."
+    )
+    wall_contact: float = setting(
+        0.5, "length", "Distance of the hull's centre from a wall at which an end would touch it."
+    )
+    min_share_in_tank: float = setting(
+        0.5, "1", "Share of a manoeuvre that must take place before a wall is reached.", high=1.0
+    )
 
 
 @dataclass(frozen=True)

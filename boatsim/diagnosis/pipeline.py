@@ -37,7 +37,7 @@ from boatsim.diagnosis.filter import (
 from boatsim.diagnosis.free_runs import errors, free_runs
 from boatsim.diagnosis.locate import missing_force as locate
 from boatsim.diagnosis.locate import nominal_forces
-from boatsim.diagnosis.locate.mean_force import mean_left
+from boatsim.diagnosis.locate.mean_force import mean_residual_force
 from boatsim.diagnosis.problem import Problem, check_uncertainty
 from boatsim.diagnosis.report import assumptions, before_after
 from boatsim.diagnosis.report.answer import compose, meanings
@@ -338,8 +338,9 @@ def diagnose_recordings(
                 _described(problem, ranking, held_out_tracks, part(report, *DESCRIBING)),
             )
             report("planning what to record next", DESCRIBING[1])
-            plan = next_experiment.next_experiment(
-                problem, *next_experiment.question(replace(before, named=ranking.named))
+            plan = next_experiment.best_plan(
+                problem,
+                *next_experiment.open_question(replace(before, named=ranking.named), config),
             )
             report("free runs", SHOWING)
             findings = _findings(problem, ranking, held_out_tracks, boat, note, plan)
@@ -403,7 +404,7 @@ def _compile(problem: Problem) -> None:
         float(np.ptp(track.times)),
     )
     rest = np.zeros((1, 2 * problem.program.module.NQ))
-    nominal_forces.along(track, rest, nominal_forces.actuators(track)[:1], track.values)
+    nominal_forces.body_forces(track, rest, nominal_forces.actuator_states(track)[:1], track.values)
 
 
 def _described(
@@ -440,7 +441,7 @@ def _findings(
     fits = before_after.fits_of(problem, ranking)
     everything = before_after.in_time([*problem.recordings, *held_out])
     forces = locate.missing_force(problem, ranking.recalibrated, everything)
-    left = locate.force_left(problem, ranking.best, everything)
+    left = locate.residual_force(problem, ranking.best, everything)
     stretches = free_runs(problem, fits, held_out, horizon)
     parts = before_after.by_part(problem, fits, everything, horizon) if ranking.adds else []
     table = before_after.table_of(parts, problem.recordings, horizon)
@@ -455,7 +456,7 @@ def _findings(
             f.t,
             columns(f.mean),
             columns(f.sd),
-            {a: locate.UNITS[a] for a in axes},
+            {a: locate.FORCE_UNITS[a] for a in axes},
             columns(g.mean),
         )
         for f, g in zip(forces, left, strict=True)
@@ -475,9 +476,9 @@ def _findings(
         stretches,
         held_out_names,
         horizon,
-        next_experiment.entry(plan, NEXT),
+        next_experiment.plan_entry(plan, NEXT),
     )
-    answer["mean_left"] = mean_left(problem, ranking.best, everything)
+    answer["mean_left"] = mean_residual_force(problem, ranking.best, everything)
     return Findings(
         answer,
         vessel.name,
@@ -491,6 +492,6 @@ def _findings(
         (table,) if table[2] else (),
         meanings(problem.program.candidates, problem.program.vessel),
         ranking.description.terms if ranking.description else (),
-        next_experiment.steps(plan),
+        next_experiment.command_steps(plan),
         (vessel.length, vessel.beam),
     )

@@ -23,7 +23,7 @@ from scipy.signal import resample_poly
 
 from boatsim.diagnosis import pipeline
 from boatsim.diagnosis.filter import MappedRecording, map_recording
-from boatsim.diagnosis.locate.residual_structure import structure
+from boatsim.diagnosis.locate.residual_structure import find_structure
 from boatsim.diagnosis.pipeline import Diagnosis
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import baseline
@@ -299,7 +299,7 @@ def band_rows(off: Mapping[str, Array]) -> list[list[str]]:
 def said(found: Diagnosis) -> str:
     """What the tool itself says of what is left after all that it found."""
     best = found.ranking.best
-    goes = structure(found.problem, best)
+    goes = find_structure(found.problem, best)
     rough = float(best.levels.force[0] / found.problem.ambient.force[0])
     return (
         f"left over after all this: a moment of {rough:.1f} times the tolerated one; it goes best with "

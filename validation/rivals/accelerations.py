@@ -13,7 +13,7 @@ import numpy as np
 from scipy.signal import savgol_coeffs
 
 from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, body_of
-from boatsim.diagnosis.locate.nominal_forces import actuators
+from boatsim.diagnosis.locate.nominal_forces import actuator_states
 from boatsim.physics.base import Array
 
 ORDER, NARROWEST = 3, 5  # of the polynomials, and rows of the narrowest window
@@ -183,7 +183,7 @@ def shown_by(track: MappedRecording, recorded: Array, values: Array, on: Array) 
 
 def held_by(track: MappedRecording, effects: tuple[str, ...], values: Array) -> Array:
     """(N, HELD) mean actuators around each row."""
-    after = actuators(track, effects, values)
+    after = actuator_states(track, effects, values)
     before = np.vstack([after[:1], after[:-1]])
     return np.asarray(0.5 * (before + after))
 

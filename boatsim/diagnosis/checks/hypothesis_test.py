@@ -21,7 +21,7 @@ from boatsim.diagnosis.checks.reinterpretations import (
     rotated_heading,
 )
 from boatsim.diagnosis.checks.steering_sense import reversed_commands
-from boatsim.diagnosis.config import ChecksConfig
+from boatsim.diagnosis.config import ChecksConfig, DiagnosisConfig
 from boatsim.diagnosis.filter import MappedRecording, axes_of
 from boatsim.diagnosis.locate import nominal_forces
 from boatsim.diagnosis.noise_levels import fit_noise
@@ -92,7 +92,7 @@ def compare_reinterpretations(
     config = problem.config.checks
     vessel = problem.program.vessel
     comparison = Comparison(problem, map_recording, config)
-    short = _shortened(recordings, vessel, config)
+    short = _shortened(recordings, vessel, problem.config)
     with threadpool_limits(1, "blas"):
         explained = comparison.is_explained(comparison.mapped(short))
         if explained and not heading_disagrees_with_course(recordings, vessel, config):
@@ -130,26 +130,26 @@ def unexplained_force_share(problem: Problem, fit: Fit) -> float:
 def _drive_force(recording: MappedRecording) -> Array:
     """(axes,) rms force of the drives on the vessel at rest, over about 100 rows."""
     step = max(1, len(recording.times) // 100)
-    held = nominal_forces.actuators(recording)[::step]
+    held = nominal_forces.actuator_states(recording)[::step]
     rest = np.zeros((len(held), 2 * recording.program.module.NQ))
-    forces = nominal_forces.along(recording, rest, held, recording.values)
+    forces = nominal_forces.body_forces(recording, rest, held, recording.values)
     return np.asarray(np.sqrt(np.mean(forces**2, axis=0)))
 
 
 def _shortened(
-    recordings: Sequence[Recording], vessel: Vessel, config: ChecksConfig
+    recordings: Sequence[Recording], vessel: Vessel, config: DiagnosisConfig
 ) -> list[Recording]:
     """The first rows of the first recordings, which suffice because a fault concerns all rows.
 
     Recordings in which each instrument has rows of its own are reduced to the usual rate first.
     """
-    runs = list(recordings)[: config.compare_max_recordings]
-    usual = rate(vessel)
-    rows = config.compare_max_rows // len(runs)
+    runs = list(recordings)[: config.checks.compare_max_recordings]
+    usual = rate(vessel, config=config.load)
+    rows = config.checks.compare_max_rows // len(runs)
     short = []
     for run in runs:
         excess = len(run) / float(run.t[-1] - run.t[0]) / usual
-        if excess > config.compare_max_rate:
+        if excess > config.checks.compare_max_rate:
             run = run.thinned(usual / excess)
         short.append(run.between(float(run.t[0]), float(run.t[min(len(run), rows) - 1])))
     return short

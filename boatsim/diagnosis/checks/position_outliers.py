@@ -35,7 +35,7 @@ def drop_position_outliers(
     Returns:
         The recording from its first row on the course; outliers are nan, and remarks count them.
     """
-    first = outlier_rows_at_start(recording, vessel, config.checks)
+    first = outlier_rows_at_start(recording, vessel, config)
     if first:
         kept = recording.between(float(recording.t[first]), float(recording.t[-1]))
         remark = (
@@ -63,7 +63,7 @@ def drop_position_outliers(
 
 
 def outlier_rows_at_start(
-    recording: Recording, vessel: Vessel, config: ChecksConfig = DEFAULT.checks
+    recording: Recording, vessel: Vessel, config: DiagnosisConfig = DEFAULT
 ) -> int:
     """Return the number of rows to drop because a recording begins with an outlier.
 
@@ -73,20 +73,20 @@ def outlier_rows_at_start(
     Args:
         recording: A prepared recording.
         vessel: The vessel, for the noise of its sensors.
-        config: Thresholds of the checks.
+        config: Settings; the groups `checks` and `load` are used.
     """
-    fitted = config.start_course_fixes
+    fitted = config.checks.start_course_fixes
     dropped = 0
     for name, family in NOISE_FAMILIES.items():
         column = recording.signals.get(name, NO_VALUES)
-        known = np.flatnonzero(np.isfinite(column))[: config.start_max_outliers + fitted]
+        known = np.flatnonzero(np.isfinite(column))[: config.checks.start_max_outliers + fitted]
         if len(known) <= fitted:
             continue
-        noise = sensed_noise(vessel, [recording], family)
+        noise = sensed_noise(vessel, [recording], family, config.load)
         for first in range(len(known) - fitted):
             rows = known[first : first + fitted + 1]
             t = recording.t[rows] - recording.t[rows[0]]
-            if _is_off_course(t, column[rows], noise, config):
+            if _is_off_course(t, column[rows], noise, config.checks):
                 dropped = max(dropped, int(rows[0]) + 1)
     return dropped
 

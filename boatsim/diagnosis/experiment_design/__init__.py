@@ -1,1 +1,1 @@
-"""What to record next."""
+"""Design of the next experiment: which manoeuvre to record next."""

@@ -1,38 +1,44 @@
-"""Manoeuvres that show a boat: for any vessel, as shares of its command limits, with times by Froude's law."""
+"""Manoeuvres for any vessel: shares of its command limits, with times scaled by Froude's law."""
 
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import radians
 
 import numpy as np
 
+from boatsim.diagnosis.config import DEFAULT, PlanConfig
 from boatsim.diagnosis.problem import froude_scale
 from boatsim.physics.vessel import Vessel
 
-LONG, LONG_SHIP = (
-    40.0,
-    80.0,
-)  # [s] a manoeuvre of a 1.2 m boat, or ship model, lasts; other lengths by Froude's law
-TICK = 0.5  # [s] of the same boat, on which commands change
-LEVELS = (0.15, 0.35, 0.6, 0.9)  # shares of a command's limit that random steps take
-# seconds held; shares of the limits of drive port and starboard, and of angle port and starboard
+# duration [s]; shares of the limits of port and starboard drive, and of port and starboard angle
 Step = tuple[float, float, float, float, float]
 
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """Commands in time: from each time on, until the next, the levels of its row."""
+    """Commands over time.
 
-    words: str  # what a report calls it
-    times: tuple[float, ...] = (0.0,)  # [s]
-    levels: tuple[dict[str, float], ...] = ({},)  # command -> value
-    duration: float = LONG  # [s]
-    # [rad] off the first course at which a zig-zag changes over; 0: levels change by the clock
-    heading: float = 0.0
-    under_way: bool = False  # begins at the speed of the recordings, not at rest
-    to_wall: bool = False  # is laid so that it reaches a wall
-    heel: float = 0.0  # [rad] roll angle it is released at
+    Attributes:
+        name: Name in a report.
+        times: Times [s] from which the rows of `levels` hold.
+        levels: Values of the commands.
+        duration: Duration [s].
+        switch_heading: Change of heading [rad] at which a zig-zag reverses its rudder; 0 if the
+            commands change at `times`.
+        under_way: Whether it begins at the speed of the recordings instead of at rest.
+        to_wall: Whether it is placed so that it reaches a wall.
+        release_angle: Roll angle [rad] at which the hull is released.
+    """
+
+    name: str
+    times: tuple[float, ...] = (0.0,)
+    levels: tuple[dict[str, float], ...] = ({},)
+    duration: float = 0.0
+    switch_heading: float = 0.0
+    under_way: bool = False
+    to_wall: bool = False
+    release_angle: float = 0.0
 
 
 SCRIPTS: dict[str, tuple[Step, ...]] = {
@@ -44,166 +50,236 @@ SCRIPTS: dict[str, tuple[Step, ...]] = {
         (10, 0.4, -0.4, 0, 0), (10, -0.4, 0.4, 0, 0), (10, 0.9, -0.9, 0, 0), (10, -0.9, 0.9, 0, 0),
     ),
     "runs at two speeds on opposite headings": (
-        (6, 0.3, 0.3, 0, 0), (5, 0.9, 0.9, 0, 0), (12, 0.7, -0.7, 0, 0), (6, 0.3, 0.3, 0, 0), (6, 0.9, 0.9, 0, 0),
-        (5, 0, 0, 0, 0),
+        (6, 0.3, 0.3, 0, 0), (5, 0.9, 0.9, 0, 0), (12, 0.7, -0.7, 0, 0), (6, 0.3, 0.3, 0, 0),
+        (6, 0.9, 0.9, 0, 0), (5, 0, 0, 0, 0),
     ),
     "crash stops from two speeds": (
-        (8, 0.9, 0.9, 0, 0), (7, -0.9, -0.9, 0, 0), (3, 0, 0, 0, 0), (8, 0.5, 0.5, 0, 0), (7, -0.5, -0.5, 0, 0),
-        (7, 0, 0, 0, 0),
+        (8, 0.9, 0.9, 0, 0), (7, -0.9, -0.9, 0, 0), (3, 0, 0, 0, 0), (8, 0.5, 0.5, 0, 0),
+        (7, -0.5, -0.5, 0, 0), (7, 0, 0, 0, 0),
     ),
     "drifts after short bursts ahead, turning and astern": (
-        (4, 0.9, 0.9, 0, 0), (10, 0, 0, 0, 0), (3, 0.8, -0.8, 0, 0), (10, 0, 0, 0, 0), (4, -0.9, -0.9, 0, 0),
-        (9, 0, 0, 0, 0),
+        (4, 0.9, 0.9, 0, 0), (10, 0, 0, 0, 0), (3, 0.8, -0.8, 0, 0), (10, 0, 0, 0, 0),
+        (4, -0.9, -0.9, 0, 0), (9, 0, 0, 0, 0),
     ),
     "zig-zag ahead, then astern": (
-        *((4, 0.6, 0.6, s * 0.6, s * 0.6) for s in (1, -1, 1, -1, 1)),
-        *((4, -0.6, -0.6, s * 0.6, s * 0.6) for s in (-1, 1, -1, 1, -1)),
+        (4, 0.6, 0.6, 0.6, 0.6), (4, 0.6, 0.6, -0.6, -0.6), (4, 0.6, 0.6, 0.6, 0.6),
+        (4, 0.6, 0.6, -0.6, -0.6), (4, 0.6, 0.6, 0.6, 0.6),
+        (4, -0.6, -0.6, -0.6, -0.6), (4, -0.6, -0.6, 0.6, 0.6), (4, -0.6, -0.6, -0.6, -0.6),
+        (4, -0.6, -0.6, 0.6, 0.6), (4, -0.6, -0.6, -0.6, -0.6),
     ),
     "circles with two steering angles, both ways round": (
-        (12, 0.6, 0.6, 0.3, 0.3), (8, 0.6, 0.6, -0.8, -0.8), (12, 0.6, 0.6, -0.3, -0.3), (8, 0.6, 0.6, 0.8, 0.8),
+        (12, 0.6, 0.6, 0.3, 0.3), (8, 0.6, 0.6, -0.8, -0.8), (12, 0.6, 0.6, -0.3, -0.3),
+        (8, 0.6, 0.6, 0.8, 0.8),
     ),
-    "one thruster at a time, straight and turned, ahead and astern": tuple(
-        (5, p * level, (1 - p) * level, angle, angle)
-        for level, angle in ((0.7, 0), (-0.7, 0), (0.7, 0.5), (-0.7, 0.5)) for p in (1, 0)
+    "one thruster at a time, straight and turned, ahead and astern": (
+        (5, 0.7, 0, 0, 0), (5, 0, 0.7, 0, 0), (5, -0.7, 0, 0, 0), (5, 0, -0.7, 0, 0),
+        (5, 0.7, 0, 0.5, 0.5), (5, 0, 0.7, 0.5, 0.5), (5, -0.7, 0, 0.5, 0.5),
+        (5, 0, -0.7, 0.5, 0.5),
     ),
-    "thrust in steps from small to full, ahead and astern": tuple(
-        (4, sign * level, sign * level, 0, 0) for level in (0.1, 0.2, 0.35, 0.6, 0.9) for sign in (1, -1)
+    "thrust in steps from small to full, ahead and astern": (
+        (4, 0.1, 0.1, 0, 0), (4, -0.1, -0.1, 0, 0), (4, 0.2, 0.2, 0, 0), (4, -0.2, -0.2, 0, 0),
+        (4, 0.35, 0.35, 0, 0), (4, -0.35, -0.35, 0, 0), (4, 0.6, 0.6, 0, 0),
+        (4, -0.6, -0.6, 0, 0), (4, 0.9, 0.9, 0, 0), (4, -0.9, -0.9, 0, 0),
     ),
 }  # fmt: skip
 TO_WALL: tuple[Step, ...] = (
-    (8, 0.4, 0.4, 0, 0), (6, 0, 0, 0, 0), (6, -0.5, -0.5, 0, 0), (8, 0.4, 0.4, 0, 0), (6, 0, 0, 0, 0),
-    (6, -0.5, -0.5, 0, 0),
+    (8, 0.4, 0.4, 0, 0), (6, 0, 0, 0, 0), (6, -0.5, -0.5, 0, 0), (8, 0.4, 0.4, 0, 0),
+    (6, 0, 0, 0, 0), (6, -0.5, -0.5, 0, 0),
 )  # fmt: skip
-# share of the drive's limit on each side for a full steering angle, where no thruster turns
-DIFFERENCE = 0.5
-RANDOM = {"quick": (1.0, 3.0), "slow": (4.0, 8.0)}  # [s] shortest and longest hold
-SHIP: dict[
-    str, tuple[Step, ...]
-] = {  # about approach speed: shares of the drive in use, and of the rudder's limit
+# for ships, around the approach speed: shares of the usual drive and of the rudder's limit
+SHIP_SCRIPTS: dict[str, tuple[Step, ...]] = {
     "turning circles with two rudder angles": ((40, 1, 1, 0.4, 0.4), (40, 1, 1, -0.9, -0.9)),
     "straight runs at three speeds": (
-        (10, 1, 1, 0, 0),
-        (25, 0.6, 0.6, 0, 0),
-        (25, 0.8, 0.8, 0, 0),
-        (20, 1, 1, 0, 0),
+        (10, 1, 1, 0, 0), (25, 0.6, 0.6, 0, 0), (25, 0.8, 0.8, 0, 0), (20, 1, 1, 0, 0),
     ),
-    "rudder in random steps on several levels": (),
-}
-ZIGZAGS = (
-    10.0,
-    20.0,
-)  # [deg] rudder and heading, as the IMO's standards for manoeuvrability (MSC.137(76)) have them
-HEELS = (0.5, 1.5)  # of the largest roll angle recorded
-STEEPEST = 0.5  # [rad] roll angle a release is proposed for
+}  # fmt: skip
+RANDOM_RUDDER = "rudder in random steps on several levels"
 
 
-def menu(
-    vessel: Vessel, in_use: dict[str, float], heel: float, walls: bool
+def available_manoeuvres(
+    vessel: Vessel,
+    usual_commands: Mapping[str, float],
+    roll_angle: float,
+    walls: bool,
+    config: PlanConfig = DEFAULT.plan,
 ) -> tuple[Manoeuvre, ...]:
-    """What this vessel can do: `in_use` are its commands' usual values, `heel` the largest roll angle recorded [rad].
+    """Return the manoeuvres that a vessel can perform.
 
-    A boat that can go astern is steered about rest; others about the speed they came with; a hull without any command
-    is released at another roll angle.
+    A boat that can go astern performs manoeuvres around rest, other vessels around the speed of
+    their recordings. A hull without commands is released at another roll angle.
+
+    Args:
+        vessel: The vessel.
+        usual_commands: Usual value of each command in the recordings.
+        roll_angle: Largest roll angle in the recordings [rad].
+        walls: Whether the walls of a tank are known.
+        config: Settings of the manoeuvres.
     """
     if not vessel.commands:
-        found = [min(share * heel, STEEPEST) for share in HEELS]
-        length = float(f"{LONG * froude_scale('s', vessel):.2g}")
-        return tuple(
-            Manoeuvre(f"a release at {np.degrees(a):.1f} deg of roll", duration=length, heel=a)
-            for a in found
-        )
-    drives = [c for n, c in vessel.commands.items() if n in commanded(vessel) and not _turns(n)]
-    if any(c.low < 0 for c in drives):
-        return _boat(vessel, walls)
-    return _ship(vessel, in_use)
+        return _roll_releases(vessel, roll_angle, config)
+    for name in driven_commands(vessel):
+        if not _is_angle(name) and vessel.commands[name].low < 0:
+            return _boat_manoeuvres(vessel, walls, config)
+    return _ship_manoeuvres(vessel, usual_commands, config)
 
 
-def commanded(vessel: Vessel) -> tuple[str, ...]:
-    """Commands a manoeuvre uses: a command that feeds an actuator (PWM) takes its place."""
-    fed = {a for e in vessel.effects for a in vessel.targets(e) if vessel.feeding_command(e, a)}
-    return tuple(n for n in vessel.commands if n not in fed)
+def driven_commands(vessel: Vessel) -> tuple[str, ...]:
+    """Return the commands of a manoeuvre; a command that feeds an actuator (PWM) replaces it."""
+    fed = set()
+    for effect in vessel.effects:
+        fed |= {target for target in vessel.targets(effect) if vessel.feeding_command(effect, target)}
+    return tuple(name for name in vessel.commands if name not in fed)
 
 
-def _turns(command: str) -> bool:
-    """A rudder or thruster angle; every other command drives."""
+def _is_angle(command: str) -> bool:
+    """Whether a command is a rudder or thruster angle; every other command drives."""
     return command.endswith("_rad")
 
 
-def _boat(vessel: Vessel, walls: bool) -> tuple[Manoeuvre, ...]:
-    scripts = {
-        f"random steps of all commands on several levels, {k}": _random(k, *v)
-        for k, v in RANDOM.items()
-    }
-    found = [
-        _from_script(vessel, words, script) for words, script in {**scripts, **SCRIPTS}.items()
-    ]
+def _duration(seconds: float, vessel: Vessel) -> float:
+    """A duration of a hull of 1.2 m [s] for another vessel, to two digits."""
+    return float(f"{seconds * froude_scale('s', vessel):.2g}")
+
+
+def _roll_releases(vessel: Vessel, roll_angle: float, config: PlanConfig) -> tuple[Manoeuvre, ...]:
+    duration = _duration(config.boat_duration, vessel)
+    found = []
+    for share in config.release_shares:
+        angle = min(share * roll_angle, config.max_release_angle)
+        name = f"a release at {np.degrees(angle):.1f} deg of roll"
+        found.append(Manoeuvre(name, duration=duration, release_angle=angle))
+    return tuple(found)
+
+
+def _boat_manoeuvres(vessel: Vessel, walls: bool, config: PlanConfig) -> tuple[Manoeuvre, ...]:
+    scripts: dict[str, Sequence[Step]] = {}
+    for seed, holds in (("quick", config.quick_holds), ("slow", config.slow_holds)):
+        name = f"random steps of all commands on several levels, {seed}"
+        scripts[name] = _random_script(seed, holds, config.boat_duration, config)
+    scripts |= SCRIPTS
+    found = [_from_script(vessel, name, script, config) for name, script in scripts.items()]
     if walls:
-        found.append(
-            _from_script(vessel, "slowly up to a wall and back, twice", TO_WALL, to_wall=True)
-        )
+        name = "slowly up to a wall and back, twice"
+        found.append(_from_script(vessel, name, TO_WALL, config, to_wall=True))
     return tuple(m for m in found if any(any(level.values()) for level in m.levels))
 
 
-def _ship(vessel: Vessel, in_use: dict[str, float]) -> tuple[Manoeuvre, ...]:
+def _ship_manoeuvres(
+    vessel: Vessel, usual_commands: Mapping[str, float], config: PlanConfig
+) -> tuple[Manoeuvre, ...]:
+    scripts: dict[str, Sequence[Step]] = dict(SHIP_SCRIPTS)
+    random = _random_script(RANDOM_RUDDER, config.ship_holds, config.ship_duration, config)
+    scripts[RANDOM_RUDDER] = [(step[0], 1, 1, step[3], step[3]) for step in random]
     found = []
-    for words, script in SHIP.items():
-        script = script or tuple(
-            (t, 1, 1, a, a) for t, _, _, a, _ in _random(words, 4.0, 12.0, LONG_SHIP)
-        )
-        found.append(_from_script(vessel, words, script, in_use))
-    for degrees in ZIGZAGS if "yaw" in vessel.dof else ():
-        angle = radians(degrees)
-        both = tuple(
-            {
-                n: float(np.clip(s * angle, c.low, c.high)) if _turns(n) else in_use.get(n, 0.0)
-                for n, c in vessel.commands.items()
-                if n in commanded(vessel)
-            }
-            for s in (1, -1)
-        )
-        length = float(f"{LONG_SHIP * froude_scale('s', vessel):.2g}")
-        words = f"{degrees:g}/{degrees:g} zig-zag"
-        found.append(Manoeuvre(words, (0.0, length / 2), both, length, angle, True))
-    return tuple(m for m in found if len({tuple(level.items()) for level in m.levels}) > 1)
+    for name, script in scripts.items():
+        found.append(_from_script(vessel, name, script, config, usual_commands))
+    if "yaw" in vessel.dof:
+        for degrees in config.zigzag_angles:
+            found.append(_zigzag(vessel, degrees, usual_commands, config))
+    return tuple(m for m in found if any(level != m.levels[0] for level in m.levels))
+
+
+def _zigzag(
+    vessel: Vessel, degrees: float, usual_commands: Mapping[str, float], config: PlanConfig
+) -> Manoeuvre:
+    """Zig-zag with equal rudder angle and change of heading [deg]."""
+    angle = radians(degrees)
+    sides: list[dict[str, float]] = []
+    for sign in (1, -1):
+        level = {}
+        for name in driven_commands(vessel):
+            command = vessel.commands[name]
+            if _is_angle(name):
+                level[name] = float(np.clip(sign * angle, command.low, command.high))
+            else:
+                level[name] = usual_commands.get(name, 0.0)
+        sides.append(level)
+    duration = _duration(config.ship_duration, vessel)
+    name = f"{degrees:g}/{degrees:g} zig-zag"
+    return Manoeuvre(name, (0.0, duration / 2), tuple(sides), duration, angle, True)
 
 
 def _from_script(
     vessel: Vessel,
-    words: str,
+    name: str,
     script: Sequence[Step],
-    in_use: dict[str, float] | None = None,
+    config: PlanConfig,
+    usual_commands: Mapping[str, float] | None = None,
     to_wall: bool = False,
 ) -> Manoeuvre:
-    """A script for this vessel; with `in_use` the drive is a share of that and the boat is under way."""
+    """Manoeuvre from a script.
+
+    With usual commands, the drives are shares of them and the vessel is under way.
+    """
     scale = froude_scale("s", vessel)
-    tick = float(f"{TICK * scale:.1g}")
+    tick = float(f"{config.command_tick * scale:.1g}")
     ends = np.cumsum([0.0, *(step[0] for step in script)]) * scale
     times = [round(float(tick * np.round(t / tick)), 6) for t in ends]
-    levels = tuple(
-        {n: _level(vessel, n, step, in_use) for n in commanded(vessel)} for step in script
+    levels = []
+    for step in script:
+        level = {}
+        for command in driven_commands(vessel):
+            level[command] = _command(vessel, command, step, config, usual_commands)
+        levels.append(level)
+    return Manoeuvre(
+        name,
+        tuple(times[:-1]),
+        tuple(levels),
+        times[-1],
+        under_way=usual_commands is not None,
+        to_wall=to_wall,
     )
-    return Manoeuvre(words, tuple(times[:-1]), levels, times[-1], 0.0, in_use is not None, to_wall)
 
 
-def _level(vessel: Vessel, name: str, step: Step, in_use: dict[str, float] | None) -> float:
-    """Value of one command in a step of a script, to three digits and inside its limits."""
-    channel = vessel.commands[name]
-    port, starboard = step[3:] if _turns(name) else step[1:3]
-    straight = port == starboard != 0.0 and not any(_turns(n) for n in vessel.commands)
-    if straight and not _turns(name):  # steered by pushing harder on one side
-        port, starboard = port + DIFFERENCE * step[3], starboard - DIFFERENCE * step[4]
-    share = {-1: port, 0: 0.5 * (port + starboard), 1: starboard}[vessel.side(name)]
-    limit = channel.high if share > 0 else -channel.low
-    value = share * (in_use.get(name, 0.0) if in_use is not None and not _turns(name) else limit)
-    return float(np.clip(float(f"{value:.3g}"), channel.low, channel.high)) + 0.0
+def _command(
+    vessel: Vessel,
+    name: str,
+    step: Step,
+    config: PlanConfig,
+    usual_commands: Mapping[str, float] | None,
+) -> float:
+    """Value of a command in a step of a script, to three digits and within its limits."""
+    command = vessel.commands[name]
+    share = _share(vessel, name, step, config)
+    if usual_commands is not None and not _is_angle(name):
+        full = usual_commands.get(name, 0.0)
+    elif share > 0:
+        full = command.high
+    else:
+        full = -command.low
+    value = float(f"{share * full:.3g}")
+    return float(np.clip(value, command.low, command.high)) + 0.0  # no negative zero
 
 
-def _random(seed: str, shortest: float, longest: float, total: float = LONG) -> tuple[Step, ...]:
-    """Every command jumps to a level of its own; seeded by the name alone."""
+def _share(vessel: Vessel, name: str, step: Step, config: PlanConfig) -> float:
+    """Share of its limit that a command has in a step.
+
+    A vessel without steering angles is steered by unequal thrust.
+    """
+    _, port, starboard, port_angle, starboard_angle = step
+    if _is_angle(name):
+        port = port_angle
+        starboard = starboard_angle
+    elif port == starboard != 0.0 and not any(map(_is_angle, vessel.commands)):
+        port = port + config.steering_difference * port_angle
+        starboard = starboard - config.steering_difference * starboard_angle
+    shares = {-1: port, 0: 0.5 * (port + starboard), 1: starboard}
+    return shares[vessel.side(name)]
+
+
+def _random_script(
+    seed: str, holds: Sequence[float], total: float, config: PlanConfig
+) -> tuple[Step, ...]:
+    """Steps of all commands to random levels, with a random hold; seeded by a name."""
     rng = np.random.default_rng(zlib.crc32(seed.encode()))
+    tick = config.command_tick
+    shortest, longest = holds
     steps: list[Step] = []
-    while (left := total - sum(step[0] for step in steps)) > 0:
-        held = min(round(rng.uniform(shortest, longest) / TICK) * TICK, left)
-        shares = rng.choice((-1.0, 1.0), 4) * rng.choice(LEVELS, 4)
-        steps.append((held, *(float(share) for share in shares)))  # type: ignore[arg-type]
+    remaining = total
+    while remaining > 0:
+        hold = min(round(rng.uniform(shortest, longest) / tick) * tick, remaining)
+        signs = rng.choice((-1.0, 1.0), 4)
+        a, b, c, d = (signs * rng.choice(config.random_levels, 4)).tolist()
+        steps.append((hold, a, b, c, d))
+        remaining = total - sum(step[0] for step in steps)
     return tuple(steps)

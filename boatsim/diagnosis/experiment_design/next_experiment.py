@@ -1,11 +1,12 @@
-"""The next manoeuvre: which one would best tell the winner of a diagnosis from its look-alikes.
+"""The next experiment: the manoeuvre that best distinguishes the best hypothesis from its rivals.
 
-What a manoeuvre is worth is the expected log Bayes factor between winner and rival: the Kullback-Leibler divergence of
-what the two predict for it, each with the parameters and the covariance that the data so far have left it (Box and
-Hill 1967, Discrimination among mechanistic models, Technometrics 9, 57-71). Both predictions go through the filter, so
-that the latent force takes up what it may; both use the winner's noise and force levels. The course that the winner
-expects is laid on the program like a recording, without noise, and the rival is refitted to it; what it still misses
-it may take for a stronger ambient force, which leaves much less of a large gain.
+The criterion is the expected log Bayes factor between the best hypothesis and a rival: the
+Kullback-Leibler divergence of their predictions, each with the posterior of its parameters (Box and
+Hill 1967, Discrimination among mechanistic models, Technometrics 9, 57-71). Both predictions pass
+through the filter, so that the latent force can absorb differences, and use the noise levels of the
+best hypothesis. The expected motion of the best hypothesis is treated as a recording without noise,
+and the rival is refitted to it. The rival may attribute the remaining misfit to a larger disturbance,
+which reduces a large expected log Bayes factor.
 """
 
 from collections.abc import Mapping
@@ -14,99 +15,165 @@ from dataclasses import dataclass
 import numpy as np
 
 from boatsim.diagnosis.candidates import called
-from boatsim.diagnosis.experiment_design.manoeuvres import menu
-from boatsim.diagnosis.experiment_design.simulated_manoeuvre import Course, laid, walls
+from boatsim.diagnosis.config import DiagnosisConfig
+from boatsim.diagnosis.experiment_design.manoeuvres import available_manoeuvres
+from boatsim.diagnosis.experiment_design.simulated_manoeuvre import (
+    SimulatedManoeuvre,
+    simulate_manoeuvre,
+    wall_distances,
+)
 from boatsim.diagnosis.filter import FilterPass, MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem, froude_scale
 from boatsim.diagnosis.report.schema import NextEntry
-from boatsim.diagnosis.search.pruning import ALIKE, Named
+from boatsim.diagnosis.search.pruning import Named
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.physics.base import Array
 from boatsim.physics.content import vessel_address
 from boatsim.physics.vessel import Vessel
 
-ROUNDS, HALVINGS = 3, 3  # Gauss-Newton steps of a rival's refit, and how often one is halved
-NUDGE = 0.05  # [sd] of the posterior by which parameters are moved for a derivative
-WORTH = 1.0  # [nats] that a manoeuvre must be expected to tell to be suggested
-HINT = 1.0  # [nats] that an entry which is not named must gain for a manoeuvre to ask about it
-STEP = 0.02  # [s] of the scenario of a 1.2 m boat; others by Froude's law
+DERIVATIVE_STEP = 0.05  # posterior standard deviations
+SCENARIO_STEP = 0.02  # [s] integration step of the scenario for a hull of 1.2 m
+NOTHING = "nothing"  # name of the rival in which no candidate acts
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A manoeuvre to record next, and what it is expected to tell."""
+    """A manoeuvre to record next, with its expected evidence.
+
+    Attributes:
+        manoeuvre: Name of the manoeuvre.
+        start: Initial x, y [m], psi, phi [rad] and u [m/s].
+        times: Times [s] from which the rows of `levels` hold.
+        levels: Values of the commands.
+        duration: Duration [s].
+        separates: Effects in question: those of the best hypothesis alone, then the rivals.
+        log_bayes_factors: Expected log Bayes factor against each rival [nats].
+    """
 
     manoeuvre: str
-    start: Mapping[str, float]  # x, y [m], psi, phi [rad], u [m/s] at its begin
-    times: tuple[float, ...]  # [s] from which each row of levels holds
-    levels: tuple[Mapping[str, float], ...]  # command -> value
-    duration: float  # [s]
-    separates: tuple[str, ...]  # what is in question: the winner's own entries, then its rivals
-    gains: Mapping[str, float]  # rival -> expected log Bayes factor against it [nats]
+    start: Mapping[str, float]
+    times: tuple[float, ...]
+    levels: tuple[Mapping[str, float], ...]
+    duration: float
+    separates: tuple[str, ...]
+    log_bayes_factors: Mapping[str, float]
 
     @property
     def expected_gain(self) -> float:
-        """Expected log Bayes factor against the rival that is hardest to tell from the winner [nats]."""
-        return min(self.gains.values())
+        """Expected log Bayes factor against the rival that is hardest to distinguish [nats]."""
+        return min(self.log_bayes_factors.values())
 
 
-def next_experiment(problem: Problem, winner: Fit, rivals: Mapping[str, Fit]) -> Plan | None:
-    """The manoeuvre with the largest worst-case expected log Bayes factor; None without rivals, or if none tells them.
+def best_plan(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> Plan | None:
+    """Return the manoeuvre with the largest worst-case expected log Bayes factor.
 
-    The manoeuvres are those of `manoeuvres.menu`. Deterministic; a few tens of filter passes per manoeuvre and rival.
+    The result is deterministic. Each manoeuvre and rival takes a few tens of filter passes.
+
+    Args:
+        problem: The problem.
+        best: The best hypothesis.
+        rivals: Rivals by name.
+
+    Returns:
+        The plan; None without rivals, or if no manoeuvre is expected to distinguish them.
     """
-    best = max(plans(problem, winner, rivals), key=lambda p: p.expected_gain, default=None)
-    return best if best is not None and best.expected_gain > WORTH else None
+    limit = problem.config.plan.min_gain
+    plan = max(all_plans(problem, best, rivals), key=lambda p: p.expected_gain, default=None)
+    if plan is None or plan.expected_gain <= limit:
+        return None
+    return plan
 
 
-def plans(problem: Problem, winner: Fit, rivals: Mapping[str, Fit]) -> list[Plan]:
-    """Every manoeuvre this vessel can do, with what it would tell; none without rivals."""
+def all_plans(problem: Problem, best: Fit, rivals: Mapping[str, Fit]) -> list[Plan]:
+    """Return a plan for every manoeuvre that the vessel can perform; none without rivals.
+
+    Args:
+        problem: The problem.
+        best: The best hypothesis.
+        rivals: Rivals by name.
+    """
     if not rivals:
         return []
-    own = (n for n in winner.effects if any(n not in r.effects for r in rivals.values()))
-    separates = (*own, *rivals)
-    able = menu(
-        problem.program.vessel, _in_use(problem), _heel(problem), walls(problem) is not None
+    own = []
+    for name in best.effects:
+        if any(name not in rival.effects for rival in rivals.values()):
+            own.append(name)
+    manoeuvres = available_manoeuvres(
+        problem.program.vessel,
+        _usual_commands(problem),
+        _largest_roll_angle(problem),
+        wall_distances(problem) is not None,
+        problem.config.plan,
     )
-    courses = (laid(problem, winner, manoeuvre) for manoeuvre in able)
-    return [
-        _plan(c, separates, expected(problem, c.track, winner, rivals))
-        for c in courses
-        if c is not None
-    ]
+    plans = []
+    for manoeuvre in manoeuvres:
+        simulated = simulate_manoeuvre(problem, best, manoeuvre)
+        if simulated is not None:
+            gains = expected_log_bayes_factors(problem, simulated.recording, best, rivals)
+            plans.append(_plan(simulated, (*own, *rivals), gains))
+    return plans
 
 
-def _plan(course: Course, separates: tuple[str, ...], gains: Mapping[str, float]) -> Plan:
-    m, names = course.manoeuvre, ("x", "y", "psi", "u") if len(course.start) == 6 else ("phi",)
-    start = {name: float(value) for name, value in zip(names, course.start, strict=False)}
-    return Plan(m.words, start, m.times, m.levels, m.duration, separates, gains)
+def _plan(
+    simulated: SimulatedManoeuvre, separates: tuple[str, ...], gains: Mapping[str, float]
+) -> Plan:
+    manoeuvre = simulated.manoeuvre
+    names = ("x", "y", "psi", "u") if len(simulated.start) == 6 else ("phi",)
+    start = dict(zip(names, simulated.start.tolist(), strict=False))
+    return Plan(
+        manoeuvre.name,
+        start,
+        manoeuvre.times,
+        manoeuvre.levels,
+        manoeuvre.duration,
+        separates,
+        gains,
+    )
 
 
-def question(ranking: Ranking) -> tuple[Fit, dict[str, Fit]]:
-    """What a ranking leaves to be decided: the winner, and its rivals by name.
+def open_question(ranking: Ranking, config: DiagnosisConfig) -> tuple[Fit, dict[str, Fit]]:
+    """Return what a ranking leaves undecided.
 
-    Rivals are the look-alikes of what was named; without any, the nearest one of the least certain. Where nothing was
-    named, the best entry stands against nothing at all and its own look-alikes, if it gains anything to speak of.
+    The rivals are the alternatives of the identified effects. Without any, it is the nearest rival
+    of the least certain effect. If no effect was identified, the best candidate is compared with
+    nothing and with its own alternatives, provided that its evidence gain is large enough.
+
+    Args:
+        ranking: The ranking.
+        config: Settings; the groups `plan` and `select` are used.
+
+    Returns:
+        The best hypothesis, and its rivals by name.
     """
-    tied = [n for n in ranking.named if n.tied_with] or sorted(
-        ranking.named, key=lambda n: n.probability
-    )[:1]
-    if tied:
-        rivals = {r: n.rivals[r] for n in tied for r in n.tied_with or others(n)[:1]}
+    undecided = [named for named in ranking.named if named.tied_with]
+    if not undecided:
+        undecided = sorted(ranking.named, key=lambda named: named.probability)[:1]
+    if undecided:
+        rivals = {}
+        for named in undecided:
+            for name in named.tied_with or other_effects(named)[:1]:
+                rivals[name] = named.rivals[name]
         return ranking.best, rivals
-    order = sorted(ranking.last, key=lambda n: -ranking.last[n].evidence)
-    hints = [n for n in order if ranking.last[n].evidence > ranking.best.evidence + HINT]
+    least = ranking.best.evidence + config.plan.min_candidate_gain
+    order = sorted(ranking.last, key=lambda name: -ranking.last[name].evidence)
+    hints = [name for name in order if ranking.last[name].evidence > least]
     if not hints:
         return ranking.best, {}
-    winner = ranking.last[hints[0]]
-    alike = {
-        n: ranking.last[n] for n in hints[1:3] if ranking.last[n].evidence > winner.evidence - ALIKE
-    }
-    return winner, {**alike, "nothing": ranking.best}
+    best = ranking.last[hints[0]]
+    rivals = {}
+    for name in hints[1 : config.plan.max_candidates]:
+        if ranking.last[name].evidence > best.evidence - config.select.alike:
+            rivals[name] = ranking.last[name]
+    return best, {**rivals, NOTHING: ranking.best}
 
 
-def entry(plan: Plan | None, scenario: str) -> NextEntry:
-    """What diagnosis.json says of a plan; empty without one."""
+def plan_entry(plan: Plan | None, scenario: str) -> NextEntry:
+    """Return the entry of diagnosis.json for a plan, empty without one.
+
+    Args:
+        plan: The plan.
+        scenario: File name of its scenario.
+    """
     if plan is None:
         return {}
     return {
@@ -117,35 +184,37 @@ def entry(plan: Plan | None, scenario: str) -> NextEntry:
     }
 
 
-def steps(plan: Plan | None) -> tuple[tuple[float, Mapping[str, float]], ...]:
-    """From which time [s] on each command has which value; last, without commands, the end. Empty without a plan."""
+def command_steps(plan: Plan | None) -> tuple[tuple[float, Mapping[str, float]], ...]:
+    """Return the times [s] and values of the commands of a plan, and its end without commands."""
     if plan is None:
         return ()
-    told = [(t, level) for t, level in zip(plan.times, plan.levels, strict=True) if level]
-    return (*told, (plan.duration, {})) if told else ()
+    steps = [step for step in zip(plan.times, plan.levels, strict=True) if step[1]]
+    if not steps:
+        return ()
+    return (*steps, (plan.duration, {}))
 
 
 def scenario_text(plan: Plan, vessel: Vessel) -> str:
-    """A scenario file that plays the plan on the vessel that was diagnosed."""
-    step = min(float(f"{STEP * froude_scale('s', vessel):.1g}"), 1.0)
+    """Return the text of a scenario file that runs a plan on the vessel of the diagnosis."""
+    step = min(float(f"{SCENARIO_STEP * froude_scale('s', vessel):.1g}"), 1.0)
+    load = ", ".join(map(_quoted, vessel.load))
+    separates = ", ".join(plan.separates)
     lines = [
         "#!/usr/bin/env -S boatsim run",
-        f'about = "What to record next: {plan.manoeuvre}; to tell apart: {", ".join(plan.separates)}."',
-        f"vessel = {_quoted(vessel_address(vessel.file))}  # patched.toml plays it with what was found",
-        f"load = [{', '.join(_quoted(one) for one in vessel.load)}]",
+        f'about = "Next recording: {plan.manoeuvre}. It distinguishes: {separates}."',
+        f"vessel = {_quoted(vessel_address(vessel.file))}  # or patched.toml, with all effects",
+        f"load = [{load}]",
         f"duration = {plan.duration:g}  # [s]",
         f"step = {step:g}  # [s]",
         "",
         "[start]  # m, rad, m/s",
-        *(f"{name} = {value:.4g}" for name, value in plan.start.items() if value),
-        "",
-        "[controller]",
-        'use = "open_loop"',
-        f"period = {step:g}  # [s]",
     ]
+    lines += [f"{name} = {value:.4g}" for name, value in plan.start.items() if value]
+    lines += ["", "[controller]", 'use = "open_loop"', f"period = {step:g}  # [s]"]
     for time, level in zip(plan.times, plan.levels, strict=True):
-        values = [f"{name} = {value:g}" for name, value in level.items()]
-        lines += ["", "[[goal]]", f"from = {time:g}  # [s]", *values] if values else []
+        if level:
+            lines += ["", "[[goal]]", f"from = {time:g}  # [s]"]
+            lines += [f"{name} = {value:g}" for name, value in level.items()]
     return "\n".join(lines) + "\n"
 
 
@@ -153,106 +222,120 @@ def _quoted(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-# ---- what a manoeuvre would tell
+def other_effects(named: Named) -> list[str]:
+    """Return the rivals that are another effect, not the same one on another actuator."""
+    return [rival for rival in named.rivals if called(rival) != called(named.name)]
 
 
-def others(named: Named) -> list[str]:
-    """Rivals that are another idea, not the same on the other side of an actuator."""
-    return [r for r in named.rivals if called(r) != called(named.name)]
-
-
-def expected(
-    problem: Problem, track: MappedRecording, winner: Fit, rivals: Mapping[str, Fit]
+def expected_log_bayes_factors(
+    problem: Problem, recording: MappedRecording, best: Fit, rivals: Mapping[str, Fit]
 ) -> dict[str, float]:
-    """Expected log Bayes factor [nats] of a course that the winner expects, against each rival."""
-    score, U = _refitted(problem, track, winner, winner, 0)
+    """Return the expected log Bayes factor of the best hypothesis against each rival [nats].
+
+    Args:
+        problem: The problem.
+        recording: Expected motion of the best hypothesis in a manoeuvre.
+        best: The best hypothesis.
+        rivals: Rivals by name.
+    """
+    config = problem.config.plan
+    log_posterior, U = _refit(problem, recording, best, best, 0)
     own = U.T @ U
     gains = {}
     for name, rival in rivals.items():
-        best, V = _refitted(problem, track, winner, rival, ROUNDS)
-        A, B = V.T @ V, V.T @ U
+        rival_posterior, V = _refit(problem, recording, best, rival, config.refit_steps)
+        A = V.T @ V
+        B = V.T @ U
         M = np.eye(len(A)) + A
-        # the winner's parameters are not known exactly either: what the rival can not follow of
-        # their spread
+        # effect of the posterior of the best hypothesis that the rival can not reproduce
         spread = np.trace(own) - np.trace(np.linalg.solve(M, A + B @ B.T))
         volume = np.linalg.slogdet(M)[1] - np.linalg.slogdet(np.eye(len(own)) + own)[1]
-        gains[name] = _tempered(float(score - best + 0.5 * (volume + spread)), track, winner)
+        gain = float(log_posterior - rival_posterior + 0.5 * (volume + spread))
+        gains[name] = _with_refitted_disturbance(gain, recording, best)
     return gains
 
 
-def _tempered(gain: float, track: MappedRecording, winner: Fit) -> float:
-    """What is left of a gain [nats] if the rival's ambient force is refitted too.
+def _with_refitted_disturbance(gain: float, recording: MappedRecording, best: Fit) -> float:
+    """Expected log Bayes factor [nats] if the disturbance level of the rival is refitted too.
 
-    A misfit of g nats is spread over n independent stretches of the latent force, n = 1 + T / 2 tau for an
-    Ornstein-Uhlenbeck process that has to explain a constant; with its variance refitted n/2 log(1 + 2 g / n) is left.
+    A misfit of g nats is distributed over n independent intervals of the latent force, where
+    n = 1 + T / 2 tau for an Ornstein-Uhlenbeck process that must explain a constant. If its variance
+    is refitted, n/2 log(1 + 2 g / n) remains.
     """
-    n = 1.0 + 0.5 * float(np.ptp(track.times)) / winner.levels.time_constant
-    return 0.5 * n * float(np.log1p(2.0 * gain / n)) if gain > 0.0 else gain
+    if not gain > 0.0:
+        return gain
+    n = 1.0 + 0.5 * float(np.ptp(recording.times)) / best.levels.time_constant
+    return 0.5 * n * float(np.log1p(2.0 * gain / n))
 
 
-def _refitted(
-    problem: Problem, track: MappedRecording, winner: Fit, model: Fit, rounds: int
+def _refit(
+    problem: Problem, recording: MappedRecording, best: Fit, model: Fit, max_steps: int
 ) -> tuple[float, Array]:
-    """Log posterior of a model at its best for this course, and the derivative of its whitened errors there.
+    """Maximum of the log posterior of a model, and the derivative of its whitened errors there.
 
-    Parameters are counted in standard deviations along the axes of what the data so far have left: xi = 0 is the fit.
+    Parameters are counted in posterior standard deviations from the fit, along the Cholesky factor.
     """
+    config = problem.config.plan
     on = problem.program.switches(model.effects)
     root = np.linalg.cholesky(model.covariance)
-    low, high = np.array([f.low for f in model.free]), np.array([f.high for f in model.free])
+    low = np.array([parameter.low for parameter in model.free])
+    high = np.array([parameter.high for parameter in model.free])
 
     def values(xi: Array) -> Array:
-        return problem.values(track, model.free, np.clip(model.theta + root @ xi, low, high))
+        return problem.values(recording, model.free, np.clip(model.theta + root @ xi, low, high))
 
-    def score(xi: Array) -> tuple[float, FilterPass]:
-        passed = track.filter(values(xi), on, winner.levels)
+    def log_posterior(xi: Array) -> tuple[float, FilterPass]:
+        passed = recording.filter(values(xi), on, best.levels)
         return passed.log_likelihood - 0.5 * float(xi @ xi), passed
 
-    def derivative(xi: Array, about: FilterPass) -> tuple[Array, Array]:
-        """Whitened errors (M,) and their derivative (M, F), with the gains of a pass."""
-        white = about.whitened
-        U = np.empty((len(white), len(xi)))
+    def derivative(xi: Array, about: FilterPass) -> Array:
+        """Derivative (M, F) of the whitened errors with the gains of a pass."""
+        U = np.empty((len(about.whitened), len(xi)))
         for j in range(len(xi)):
             moved = xi.copy()
-            moved[j] += NUDGE
-            U[:, j] = (track.whitened(values(moved), on, winner.levels, about) - white) / NUDGE
-        return white, U
+            moved[j] += DERIVATIVE_STEP
+            changed = recording.whitened(values(moved), on, best.levels, about)
+            U[:, j] = (changed - about.whitened) / DERIVATIVE_STEP
+        return U
 
     xi = np.zeros(len(model.theta))
-    best, about = score(xi)
-    white, U = derivative(xi, about)
-    for _ in range(rounds):
-        step = np.linalg.solve(np.eye(len(xi)) + U.T @ U, -(U.T @ white) - xi)
-        for _ in range(HALVINGS):
-            value, about = score(xi + step)
-            if value > best:
+    maximum, about = log_posterior(xi)
+    U = derivative(xi, about)
+    for _ in range(max_steps):
+        gradient = -(U.T @ about.whitened) - xi
+        step = np.linalg.solve(np.eye(len(xi)) + U.T @ U, gradient)
+        for _ in range(config.refit_halvings):
+            value, passed = log_posterior(xi + step)
+            if value > maximum:
                 break
             step *= 0.5
         else:
             break
-        gained, best, xi = value - best, value, xi + step
-        white, U = derivative(xi, about)
-        if gained < 0.1:
+        gain = value - maximum
+        maximum = value
+        about = passed
+        xi = xi + step
+        U = derivative(xi, about)
+        if gain < config.refit_min_gain:
             break
-    return best, U
+    return maximum, U
 
 
-# ---- what the recordings were like
-
-
-def _in_use(problem: Problem) -> dict[str, float]:
+def _usual_commands(problem: Problem) -> dict[str, float]:
     """Median of each command over the recordings."""
-    commands = np.concatenate([t.commands for t in problem.recordings])
-    return {
-        n: float(np.median(commands[:, i])) for i, n in enumerate(problem.program.vessel.commands)
-    }
+    commands = np.concatenate([mapped.commands for mapped in problem.recordings])
+    medians = {}
+    for i, name in enumerate(problem.program.vessel.commands):
+        medians[name] = float(np.median(commands[:, i]))
+    return medians
 
 
-def _heel(problem: Problem) -> float:
-    """Largest roll angle recorded [rad]."""
-    found = [
-        t.measured[:, t.signals.index("phi_rad")]
-        for t in problem.recordings
-        if "phi_rad" in t.signals
-    ]
-    return float(np.nanmax(np.abs(np.concatenate(found)))) if found else 0.0
+def _largest_roll_angle(problem: Problem) -> float:
+    """Largest recorded roll angle [rad]."""
+    angles = []
+    for mapped in problem.recordings:
+        if "phi_rad" in mapped.signals:
+            angles.append(mapped.measured[:, mapped.signals.index("phi_rad")])
+    if not angles:
+        return 0.0
+    return float(np.nanmax(np.abs(np.concatenate(angles))))

@@ -1,4 +1,4 @@
-"""A manoeuvre on a vessel: the course that a fitted boat is expected to take in it, laid out like a recording."""
+"""Simulation of a manoeuvre with a fitted vessel, as a recording without noise."""
 
 from dataclasses import dataclass, replace
 
@@ -16,96 +16,107 @@ from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 from boatsim.physics.kernel.records import Inputs, Model
 
-CLEAR, TOUCH = (
-    0.6,
-    0.5,
-)  # of its length a boat's middle is kept off a wall, and where its end would touch
-SHORTEST = 0.5  # share of a manoeuvre that must fit between the walls
-SWITCHES = 40  # most changes of course in a zig-zag
-
 
 @dataclass(frozen=True)
-class Course:
-    """What a boat is expected to do, without noise and ambient force."""
+class SimulatedManoeuvre:
+    """The expected motion in a manoeuvre, without noise and without latent force."""
 
-    manoeuvre: (
-        Manoeuvre  # with the times at which a zig-zag changes over, and no longer than walls allow
-    )
-    start: Array  # (2 NQ,) state of the kernels at its begin
-    track: MappedRecording  # what sensors like those of the recordings would show
+    # with the expected switching times of a zig-zag, shortened if the walls require it
+    manoeuvre: Manoeuvre
+    start: Array  # (2 NQ,) state at its begin
+    recording: MappedRecording  # by sensors like those of the first recording
 
 
-def laid(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Course | None:
-    """The course of a fitted boat in a manoeuvre; None if walls leave no room for it, or if the boat runs away."""
-    length, wall = problem.program.vessel.length, walls(problem)
-    start = _start(problem, found, manoeuvre)
-    manoeuvre = _switched(problem, found, manoeuvre, start)
+def simulate_manoeuvre(
+    problem: Problem, fit: Fit, manoeuvre: Manoeuvre
+) -> SimulatedManoeuvre | None:
+    """Simulate a manoeuvre with a fitted vessel.
+
+    Args:
+        problem: The problem; its first recording provides the sensors and the row rate.
+        fit: The fit.
+        manoeuvre: The manoeuvre.
+
+    Returns:
+        The simulated manoeuvre; None if the walls leave no room or the simulation diverges.
+    """
+    config = problem.config.plan
+    length = problem.program.vessel.length
+    walls = wall_distances(problem)
+    start = _start(problem, fit, manoeuvre)
+    manoeuvre = _with_switching_times(problem, fit, manoeuvre, start)
     times, commands = _rows(problem, manoeuvre)
-    states = _states(problem, found, times, commands, start)
-    if wall is not None:
-        start = _between(wall - CLEAR * length, states, manoeuvre.to_wall)
-        states = _states(problem, found, times, commands, start)
-        inside = np.logical_and.accumulate(
-            (np.abs(states[:, :2]) <= wall - TOUCH * length).all(axis=1)
-        )
-        if inside.mean() < SHORTEST:
+    states = _free_run(problem, fit, times, commands, start)
+    if walls is not None:
+        start = _centred(walls - config.wall_clearance * length, states, manoeuvre.to_wall)
+        states = _free_run(problem, fit, times, commands, start)
+        free = (np.abs(states[:, :2]) <= walls - config.wall_contact * length).all(axis=1)
+        inside = np.logical_and.accumulate(free)
+        if inside.mean() < config.min_share_in_tank:
             return None
-        times, commands, states = times[inside], commands[inside], states[inside]
-        manoeuvre = manoeuvre if inside.all() else _cut(manoeuvre, round(float(times[-1]), 1))
+        times = times[inside]
+        commands = commands[inside]
+        states = states[inside]
+        if not inside.all():
+            manoeuvre = _shortened(manoeuvre, round(float(times[-1]), 1))
     if not np.isfinite(states).all():
         return None
-    return Course(
-        manoeuvre, start, _track(problem, manoeuvre.words, times, commands, states, start)
-    )
+    recording = _as_recording(problem, manoeuvre.name, times, commands, states, start)
+    return SimulatedManoeuvre(manoeuvre, start, recording)
 
 
-def walls(problem: Problem) -> Array | None:
-    """Where walls stand, plus and minus (x, y) [m], if the library that is tried knows of any."""
-    program = problem.program
-    if "surge" not in program.vessel.dof or "walls_m" not in problem.recordings[0].facts:
+def wall_distances(problem: Problem) -> Array | None:
+    """Return the distances (x, y) [m] of the walls from the origin; None if there are none."""
+    facts = problem.recordings[0].facts
+    if "surge" not in problem.program.vessel.dof or "walls_m" not in facts:
         return None
-    x_low, x_high, y_low, y_high = problem.recordings[0].facts["walls_m"]
+    x_low, x_high, y_low, y_high = facts["walls_m"]
     return np.array([min(-x_low, x_high), min(-y_low, y_high)])
 
 
-def _cut(manoeuvre: Manoeuvre, end: float) -> Manoeuvre:
+def _shortened(manoeuvre: Manoeuvre, end: float) -> Manoeuvre:
     """The manoeuvre until a time [s]."""
-    n = sum(t < end for t in manoeuvre.times)
-    return replace(manoeuvre, times=manoeuvre.times[:n], levels=manoeuvre.levels[:n], duration=end)
+    count = sum(t < end for t in manoeuvre.times)
+    return replace(
+        manoeuvre,
+        times=manoeuvre.times[:count],
+        levels=manoeuvre.levels[:count],
+        duration=end,
+    )
 
 
-def _track(
-    problem: Problem, name: str, times: Array, commands: Array, shown: Array, start: Array
+def _as_recording(
+    problem: Problem, name: str, times: Array, commands: Array, states: Array, start: Array
 ) -> MappedRecording:
-    """What the sensors of the first recording would show (N, 2 NQ) of a course begun at a state, as a recording."""
-    first, nq = problem.recordings[0], problem.program.module.NQ
-    measured = np.ascontiguousarray(shown[:, first.codes])
+    """Recording of states (N, 2 NQ) by the sensors of the first recording."""
+    first = problem.recordings[0]
+    nq = problem.program.module.NQ
     change_times, change_values = command_changes(times, commands)
-    track = replace(
+    recording = replace(
         first,
         name=name,
         times=times,
-        measured=measured,
+        measured=np.ascontiguousarray(states[:, first.codes]),
         commands=commands,
         command_times=change_times,
         command_values=change_values,
         specified_initial=None,
     )
-    mean = track.initial.mean.copy()
-    mean[:nq] = shown[0, :nq]
+    mean = recording.initial.mean.copy()
+    mean[:nq] = states[0, :nq]
     mean[nq : 2 * nq] = start[nq:]
-    initial = InitialState(mean, track.initial.covariance, start[nq:])
-    return replace(track, specified_initial=initial)
+    initial = InitialState(mean, recording.initial.covariance, start[nq:])
+    return replace(recording, specified_initial=initial)
 
 
-def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: Array) -> Array:
-    """Channels (N, 2 NQ) of a free run as a recording would show them, ambient force left out."""
-    values = problem.values(problem.recordings[0], found.free, found.theta)
+def _free_run(problem: Problem, fit: Fit, times: Array, commands: Array, start: Array) -> Array:
+    """Channels (N, 2 NQ) of a free run as a recording has them, without the latent force."""
+    values = problem.values(problem.recordings[0], fit.free, fit.theta)
     out = np.full((1, len(times), len(start)), np.nan)
     problem.program.module.free_runs(
         Inputs(times, times, commands),
         problem.config.filter.filter_step,
-        Model(body_of(values), values, problem.program.switches(found.effects)),
+        Model(body_of(values), values, problem.program.switches(fit.effects)),
         np.array([0]),
         np.array([len(times) - 1]),
         start[None],
@@ -115,65 +126,67 @@ def _states(problem: Problem, found: Fit, times: Array, commands: Array, start: 
 
 
 def _rows(problem: Problem, manoeuvre: Manoeuvre) -> tuple[Array, Array]:
-    """Times (N,) of a recording at the rate of the first one, and the commands (N, C) in force."""
-    rate = float(np.median(np.diff(problem.recordings[0].times)))
-    times = np.asarray(rate * np.arange(int(manoeuvre.duration / rate) + 1), dtype=np.float64)
-    now = np.searchsorted(np.array(manoeuvre.times) - 1e-6, times, side="right") - 1
-    rows = [problem.program.command_array(level) for level in manoeuvre.levels]
-    commands = np.array(rows).reshape(len(rows), -1)
-    return times, np.ascontiguousarray(commands[now]) if commands.size else np.zeros(
-        (len(times), 1)
-    )
+    """Times (N,) at the row rate of the first recording, and the commands (N, K) that hold."""
+    step = float(np.median(np.diff(problem.recordings[0].times)))
+    times = np.asarray(step * np.arange(int(manoeuvre.duration / step) + 1), dtype=np.float64)
+    row = np.searchsorted(np.array(manoeuvre.times) - 1e-6, times, side="right") - 1
+    levels = np.array(list(map(problem.program.command_array, manoeuvre.levels)))
+    levels = levels.reshape(len(manoeuvre.levels), -1)
+    if not levels.size:
+        return times, np.zeros((len(times), 1))
+    return times, np.ascontiguousarray(levels[row])
 
 
-def _switched(problem: Problem, found: Fit, manoeuvre: Manoeuvre, start: Array) -> Manoeuvre:
+def _with_switching_times(
+    problem: Problem, fit: Fit, manoeuvre: Manoeuvre, start: Array
+) -> Manoeuvre:
     """A zig-zag with the times at which its heading is expected to be reached."""
-    if not manoeuvre.heading:
+    if not manoeuvre.switch_heading:
         return manoeuvre
-    sides, switches, side = manoeuvre.levels, [0.0], 0.0
-    for _ in range(SWITCHES):
+    yaw = axes_of(problem.program.vessel).index("yaw")
+    sides = manoeuvre.levels
+    switches = [0.0]
+    sign = 0.0
+    for _ in range(problem.config.plan.max_switches):
         levels = tuple(sides[i % 2] for i in range(len(switches)))
         manoeuvre = replace(manoeuvre, times=tuple(switches), levels=levels)
         times, commands = _rows(problem, manoeuvre)
-        psi = _states(problem, found, times, commands, start)[
-            :, axes_of(problem.program.vessel).index("yaw")
-        ]
-        turned = (
-            side * psi if side else np.abs(psi)
-        )  # which way the first angle turns the hull is seen first
-        reached = (turned >= manoeuvre.heading) & (times > switches[-1])
+        psi = _free_run(problem, fit, times, commands, start)[:, yaw]
+        # the first turn shows to which side the first rudder angle turns the hull
+        turned = sign * psi if sign else np.abs(psi)
+        reached = (turned >= manoeuvre.switch_heading) & (times > switches[-1])
         if not reached.any():
             break
         row = int(np.argmax(reached))
-        side = -float(np.sign(psi[row]))
+        sign = -float(np.sign(psi[row]))
         switches.append(round(float(times[row]), 3))
     return manoeuvre
 
 
-def _start(problem: Problem, found: Fit, manoeuvre: Manoeuvre) -> Array:
-    """State (2 NQ,) in which it begins: where the recordings were, at rest, or at their usual speed."""
-    first, axes = problem.recordings[0], axes_of(problem.program.vessel)
+def _start(problem: Problem, fit: Fit, manoeuvre: Manoeuvre) -> Array:
+    """State (2 NQ,) at the begin: the mean position of the recordings, at rest or under way."""
+    first = problem.recordings[0]
+    axes = axes_of(problem.program.vessel)
     nq = len(axes)
     state = np.zeros(2 * nq)
     if "surge" not in axes:
-        state[axes.index("roll")] = manoeuvre.heel
+        state[axes.index("roll")] = manoeuvre.release_angle
         return state
-    for c, code in enumerate(first.codes):
+    for channel, code in enumerate(first.codes):
         if code < nq and axes[code] in ("surge", "sway"):
-            state[code] = round(float(np.nanmean(first.measured[:, c])), 2)
+            state[code] = round(float(np.nanmean(first.measured[:, channel])), 2)
     if manoeuvre.under_way:
-        values, on = (
-            problem.values(first, found.free, found.theta),
-            problem.program.switches(found.effects),
-        )
-        states = first.smooth(values, on, found.levels).means
+        values = problem.values(first, fit.free, fit.theta)
+        on = problem.program.switches(fit.effects)
+        states = first.smooth(values, on, fit.levels).means
         state[nq] = float(f"{np.median(np.hypot(states[:, nq], states[:, nq + 1])):.3g}")
     return state
 
 
-def _between(room: Array, states: Array, to_wall: bool) -> Array:
-    """Start of a course such that it lies in the middle between the walls, or reaches the one ahead."""
-    low, high = states[:, :2].min(axis=0), states[:, :2].max(axis=0)
+def _centred(room: Array, states: Array, to_wall: bool) -> Array:
+    """Start by which the course lies in the middle of the tank, or reaches the wall ahead."""
+    low = states[:, :2].min(axis=0)
+    high = states[:, :2].max(axis=0)
     start = states[0].copy()
     start[:2] -= 0.5 * (low + high)
     if to_wall:

@@ -1,1 +1,1 @@
-"""Where the missing force is: axis, time, region of the state."""
+"""Location of the missing force: axis, time and region of the state."""

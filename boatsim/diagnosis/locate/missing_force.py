@@ -1,9 +1,9 @@
-"""Where the mismatch is: the missing force of each axis over time with its band, and when zero lies outside it.
+"""The missing force of each axis over time with its band, and the intervals in which it is not zero.
 
-The missing force is what the vessel as written would need besides its own forces to move as it was recorded. The
-smoother follows the recording with a recalibrated vessel (or any other fit of the vessel's own coefficients), because
-what a coefficient error leaves out jumps with the commands and a slowly varying force can not; what the recalibration
-changed is then added back, with its uncertainty. Forces are averages over the correlation time of the ambient force.
+The missing force is what the vessel as specified lacks to move as recorded. The smoother follows the
+recording with a recalibrated vessel, because the error of a coefficient changes abruptly with the
+commands and a slowly varying force can not follow it. The change by the recalibration is then added
+with its uncertainty. Forces are averages over the correlation time of the assumed disturbance.
 """
 
 from collections.abc import Sequence
@@ -14,22 +14,24 @@ from numpy.typing import NDArray
 
 from boatsim.diagnosis.filter import MappedRecording, NoiseLevels, axes_of
 from boatsim.diagnosis.locate.nominal_forces import coefficient_forces
-from boatsim.diagnosis.locate.smoothing import averaged_rows, running_average, variance_of_average
+from boatsim.diagnosis.locate.smoothing import (
+    averaged_rows,
+    latent_force,
+    running_average,
+    variance_of_average,
+)
 from boatsim.diagnosis.noise_levels import fit_time_constant
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.report.schema import StrengthEntry
 from boatsim.physics.signals import COMPONENTS, Array
 
-BAND = 2.0  # [sd] zero outside this band counts as missing
-SHORTEST = 0.5  # [averages] a shorter excursion is not worth an interval
-BRIDGE = 1.0  # [averages] a shorter gap does not end one
-STEP = 0.1  # [sd] of a coefficient, for derivatives by it
-UNITS = {axis: "N m" if component.endswith("Nm") else "N" for axis, component in COMPONENTS.items()}
+DERIVATIVE_STEP = 0.1  # [sd] of a coefficient
+FORCE_UNITS = {axis: "N m" if name.endswith("Nm") else "N" for axis, name in COMPONENTS.items()}
 
 
 @dataclass(frozen=True)
-class Force:
-    """Missing force of one run: running averages over the time constant of the ambient force."""
+class MissingForce:
+    """Missing force of one run: running averages over the time constant of the disturbance."""
 
     run: str
     t: Array  # (N,) s
@@ -39,7 +41,7 @@ class Force:
 
 @dataclass(frozen=True)
 class Interval:
-    """A stretch of time in which a force is missing."""
+    """An interval of a run in which a force is missing."""
 
     run: str
     from_s: float
@@ -47,103 +49,148 @@ class Interval:
     axis: str
 
 
-def missing_force(problem: Problem, found: Fit, tracks: Sequence[MappedRecording]) -> list[Force]:
-    """Force missing on the vessel as written. `found` fits its coefficients and names no suspects."""
-    levels = fit_time_constant(problem, found)
-    return [_on_the_nominal(problem, found, track, levels) for track in tracks]
+def missing_force(
+    problem: Problem, fit: Fit, recordings: Sequence[MappedRecording]
+) -> list[MissingForce]:
+    """Return the force missing in the vessel as specified.
+
+    Args:
+        problem: The problem.
+        fit: The recalibrated vessel: its coefficients are fitted, and no candidate acts.
+        recordings: Recordings on the program of the problem.
+
+    Returns:
+        One missing force per recording.
+    """
+    levels = fit_time_constant(problem, fit)
+    return [_missing_in_nominal(problem, fit, mapped, levels) for mapped in recordings]
 
 
-def force_left(problem: Problem, found: Fit, tracks: Sequence[MappedRecording]) -> list[Force]:
-    """Force that a fitted hypothesis, whatever its suspects, itself leaves over at its own force levels."""
-    out = []
-    for track in tracks:
-        mean, variance, _ = _latent(problem, found, found.theta, track, found.levels)
-        out.append(_with_ambient(problem, track, mean, variance))
-    return out
+def residual_force(
+    problem: Problem, fit: Fit, recordings: Sequence[MappedRecording]
+) -> list[MissingForce]:
+    """Return the force that a fit itself leaves unexplained, at its own force levels.
+
+    Args:
+        problem: The problem.
+        fit: Any fit.
+        recordings: Recordings on the program of the problem.
+
+    Returns:
+        One force per recording.
+    """
+    forces = []
+    for mapped in recordings:
+        averages = _averages(problem, fit, mapped, fit.levels)
+        forces.append(_with_disturbance(problem, mapped, averages.mean, averages.variance))
+    return forces
 
 
-def _latent(
-    problem: Problem, found: Fit, theta: Array, track: MappedRecording, levels: NoiseLevels
-) -> tuple[Array, Array, Array]:
-    """Averages of the smoothed latent force (N, axes), their variance, and the smoothed states (N, 2 NQ)."""
-    on, nq = problem.program.switches(found.effects), problem.program.module.NQ
-    states, covariances, gains = track.smooth(problem.values(track, found.free, theta), on, levels)
-    latent = slice(2 * nq, 3 * nq)
-    rows = averaged_rows(track.times, problem.ambient.time_constant)
-    variance = variance_of_average(covariances, gains, latent, rows)
-    return running_average(states[:, latent], rows), variance, states[:, : 2 * nq]
+@dataclass(frozen=True)
+class _Averages:
+    """Running averages of the smoothed latent force."""
+
+    mean: Array  # (N, axes)
+    variance: Array  # (N, axes)
+    states: Array  # (N, 2 NQ) smoothed states, not averaged
 
 
-def _average(
-    problem: Problem, found: Fit, theta: Array, track: MappedRecording, levels: NoiseLevels
+def _averages(
+    problem: Problem, fit: Fit, mapped: MappedRecording, levels: NoiseLevels
+) -> _Averages:
+    force = latent_force(problem, fit, mapped, levels)
+    rows = averaged_rows(mapped.times, problem.ambient.time_constant)
+    variance = variance_of_average(force.covariances, force.gains, force.part, rows)
+    return _Averages(running_average(force.mean, rows), variance, force.states)
+
+
+def _mean_average(
+    problem: Problem, fit: Fit, theta: Array, mapped: MappedRecording, levels: NoiseLevels
 ) -> Array:
-    """Averages of the smoothed latent force (N, axes) alone: their variance costs far more."""
-    on, nq = problem.program.switches(found.effects), problem.program.module.NQ
-    states = track.smooth(problem.values(track, found.free, theta), on, levels).means
-    return running_average(
-        states[:, 2 * nq : 3 * nq], averaged_rows(track.times, problem.ambient.time_constant)
-    )
+    """Averages (N, axes) of the smoothed latent force without their variance, which costs more."""
+    nq = problem.program.module.NQ
+    on = problem.program.switches(fit.effects)
+    means = mapped.smooth(problem.values(mapped, fit.free, theta), on, levels).means
+    rows = averaged_rows(mapped.times, problem.ambient.time_constant)
+    return running_average(means[:, 2 * nq : 3 * nq], rows)
 
 
-def _on_the_nominal(
-    problem: Problem, found: Fit, track: MappedRecording, levels: NoiseLevels
-) -> Force:
-    """What a recalibrated vessel leaves over and what the recalibration changed."""
-    left, variance, states = _latent(problem, found, found.theta, track, levels)
-    rows = averaged_rows(track.times, problem.ambient.time_constant)
-    parts = [running_average(p, rows) for p in coefficient_forces(problem, found, track, states)]
-    mean, slopes = left.copy(), np.zeros((len(parts), *left.shape))
-    for j, (free, part) in enumerate(zip(found.free, parts, strict=True)):
-        mean += (found.theta[j] - 1.0) * part
-        moved = found.theta.copy()
-        moved[j] += STEP * free.sd
-        slopes[j] = part + (_average(problem, found, moved, track, levels) - left) / (
-            STEP * free.sd
-        )
-    variance = variance + np.einsum("ita,ij,jta->ta", slopes, found.covariance, slopes)
-    return _with_ambient(problem, track, mean, variance)
+def _missing_in_nominal(
+    problem: Problem, fit: Fit, mapped: MappedRecording, levels: NoiseLevels
+) -> MissingForce:
+    """Add the force that the recalibration changed to the force that it leaves unexplained."""
+    residual = _averages(problem, fit, mapped, levels)
+    rows = averaged_rows(mapped.times, problem.ambient.time_constant)
+    parts = coefficient_forces(problem, fit, mapped, residual.states)
+    mean = residual.mean.copy()
+    slopes = np.zeros((len(parts), *mean.shape))
+    for j, parameter in enumerate(fit.free):
+        part = running_average(parts[j], rows)
+        mean += (fit.theta[j] - 1.0) * part
+        step = DERIVATIVE_STEP * parameter.sd
+        theta = fit.theta.copy()
+        theta[j] += step
+        changed = _mean_average(problem, fit, theta, mapped, levels)
+        slopes[j] = part + (changed - residual.mean) / step
+    variance = residual.variance + np.einsum("ita,ij,jta->ta", slopes, fit.covariance, slopes)
+    return _with_disturbance(problem, mapped, mean, variance)
 
 
-def _with_ambient(problem: Problem, track: MappedRecording, mean: Array, variance: Array) -> Force:
-    """What is tolerated is not missing: where zero lies outside the band, the force exceeds the ambient one."""
-    return Force(
-        track.name, track.times, mean, np.sqrt(variance + (problem.ambient.force / BAND) ** 2)
-    )
+def _with_disturbance(
+    problem: Problem, mapped: MappedRecording, mean: Array, variance: Array
+) -> MissingForce:
+    """Widen the band by the disturbance level: a force outside it exceeds the disturbance."""
+    level = problem.ambient.force / problem.config.locate.band_sds
+    return MissingForce(mapped.name, mapped.times, mean, np.sqrt(variance + level**2))
 
 
-def intervals(problem: Problem, forces: Sequence[Force]) -> list[Interval]:
-    """Stretches in which zero lies outside the band, per run and axis."""
-    found, span = [], problem.ambient.time_constant
+def intervals(problem: Problem, forces: Sequence[MissingForce]) -> list[Interval]:
+    """Return the intervals in which zero lies outside the band, by run and axis.
+
+    Args:
+        problem: The problem; its settings and the correlation time of its disturbance are used.
+        forces: Missing forces.
+    """
+    config = problem.config.locate
+    span = problem.ambient.time_constant
+    found = []
     for force in forces:
         for i, axis in enumerate(axes_of(problem.program.vessel)):
-            outside = np.abs(force.mean[:, i]) > BAND * force.sd[:, i]
-            for begin, end in _stretches(force.t, outside, BRIDGE * span):
-                if end - begin >= SHORTEST * span:
+            outside = np.abs(force.mean[:, i]) > config.band_sds * force.sd[:, i]
+            for begin, end in _merged_intervals(force.t, outside, config.interval_max_gap * span):
+                if end - begin >= config.interval_min_duration * span:
                     found.append(Interval(force.run, begin, end, axis))
     return found
 
 
-def _stretches(t: Array, outside: NDArray[np.bool_], bridge: float) -> list[tuple[float, float]]:
-    """Begin and end [s] of what is flagged, gaps shorter than `bridge` [s] closed."""
+def _merged_intervals(
+    t: Array, outside: NDArray[np.bool_], max_gap: float
+) -> list[tuple[float, float]]:
+    """Begin and end [s] of the flagged rows; intervals with gaps below `max_gap` [s] are merged."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], outside.astype(np.int8), [0]])))
-    out: list[tuple[float, float]] = []
+    merged: list[tuple[float, float]] = []
     for begin, end in zip(t[edges[::2]].tolist(), t[edges[1::2] - 1].tolist(), strict=True):
-        if out and begin - out[-1][1] < bridge:
-            out[-1] = (out[-1][0], end)
+        if merged and begin - merged[-1][1] < max_gap:
+            merged[-1] = (merged[-1][0], end)
         else:
-            out.append((begin, end))
-    return out
+            merged.append((begin, end))
+    return merged
 
 
-def strength(problem: Problem, forces: Sequence[Force]) -> dict[str, StrengthEntry]:
-    """Rms of the missing force per axis over all runs, with the rms of its standard deviation."""
+def strength(problem: Problem, forces: Sequence[MissingForce]) -> dict[str, StrengthEntry]:
+    """Return the rms of the missing force per axis over all runs, and of its standard deviation.
+
+    Args:
+        problem: The problem, for the axes of its vessel.
+        forces: Missing forces.
+    """
     mean = np.concatenate([f.mean for f in forces])
     sd = np.concatenate([f.sd for f in forces])
-    return {
-        axis: {
+    entries: dict[str, StrengthEntry] = {}
+    for i, axis in enumerate(axes_of(problem.program.vessel)):
+        entries[axis] = {
             "rms": float(np.sqrt(np.mean(mean[:, i] ** 2))),
             "sd": float(np.sqrt(np.mean(sd[:, i] ** 2))),
-            "unit": UNITS[axis],
+            "unit": FORCE_UNITS[axis],
         }
-        for i, axis in enumerate(axes_of(problem.program.vessel))
-    }
+    return entries

@@ -1,82 +1,115 @@
-"""Forces that the vessel as written has along a recording: of its actuators, and of each of its own coefficients."""
+"""Forces of the vessel along a recording: of its actuators and of each of its coefficients."""
 
 from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from boatsim.diagnosis.experiment_design.manoeuvres import commanded
+from boatsim.diagnosis.experiment_design.manoeuvres import driven_commands
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
 
-def actuators(
-    track: MappedRecording, effects: Sequence[str] = (), values: Array | None = None
+def actuator_states(
+    mapped: MappedRecording, effects: Sequence[str] = (), values: Array | None = None
 ) -> Array:
-    """(N, HELD) mean actuators from row to row, under each row's mean commands.
+    """Return the mean actuator states from row to row, under the mean commands of each row.
 
-    Those of the vessel as written, or with suspects acting and other `values`.
+    Args:
+        mapped: The recording.
+        effects: Candidates that act.
+        values: Parameter values; None for those of the vessel as specified.
+
+    Returns:
+        Actuator states (N, HELD).
     """
-    program, values = track.program, track.values if values is None else values
-    on, act, memory = (
-        program.switches(effects),
-        np.zeros(program.held_size),
-        np.zeros(program.memory_size),
-    )
-    program.module.settle(track.command_values[0], memory, values, on, act)
-    out = np.empty((len(track.times), len(act) // 3))
-    steps = np.append(np.diff(track.times), track.times[-1] - track.times[-2])
+    program = mapped.program
+    if values is None:
+        values = mapped.values
+    on = program.switches(effects)
+    act = np.zeros(program.held_size)
+    memory = np.zeros(program.memory_size)
+    program.module.settle(mapped.command_values[0], memory, values, on, act)
+    states = np.empty((len(mapped.times), len(act) // 3))
+    steps = np.append(np.diff(mapped.times), mapped.times[-1] - mapped.times[-2])
     for row, step in enumerate(steps.tolist()):
-        program.module.actuate_in_place(track.commands[row], memory, step, values, on, act)
+        program.module.actuate_in_place(mapped.commands[row], memory, step, values, on, act)
         begin, middle, end = act.reshape(3, -1)
-        out[row] = (begin + 4.0 * middle + end) / 6.0
-    return out
+        states[row] = (begin + 4.0 * middle + end) / 6.0
+    return states
 
 
-def along(
-    track: MappedRecording,
+def body_forces(
+    mapped: MappedRecording,
     states: Iterable[Array],
     held: Iterable[Array],
     values: Array,
     effects: Sequence[str] = (),
 ) -> Array:
-    """(N, axes) body-axes wrench of the vessel's laws, and of suspects, at states (N, 2 NQ), actuators (N, HELD)."""
-    forces, on = track.program.module.forces, track.program.switches(effects)
+    """Return the force of all effects that act, in body axes.
+
+    Args:
+        mapped: A recording on the program.
+        states: States (N, 2 NQ) of the vessel.
+        held: Actuator states (N, HELD).
+        values: Parameter values.
+        effects: Candidates that act, besides the effects of the vessel.
+
+    Returns:
+        Forces and moments (N, axes) [N, N m].
+    """
+    forces = mapped.program.module.forces
+    on = mapped.program.switches(effects)
     first = np.int64(0)
-    return np.array(
-        [forces(0.0, y, act, first, values, on) for y, act in zip(states, held, strict=True)]
-    )
+    rows = []
+    for y, act in zip(states, held, strict=True):
+        rows.append(forces(0.0, y, act, first, values, on))
+    return np.array(rows)
 
 
-def full_thrust(track: MappedRecording) -> float:
-    """Surge force [N] of the vessel as written at rest, every drive at its limit and straight ahead, over neutral."""
-    program, vessel = track.program, track.program.vessel
-    drives = [n for n in commanded(vessel) if n not in vessel.angles]
+def full_thrust(mapped: MappedRecording) -> float:
+    """Return the surge force [N] at rest with all drives at their upper limits, over neutral."""
+    program = mapped.program
+    vessel = program.vessel
+    drives = [n for n in driven_commands(vessel) if n not in vessel.angles]
     if "surge" not in vessel.dof or not drives:
         return 0.0
     neutral = {n: c.neutral for n, c in vessel.commands.items()}
-    found = []
-    for sent in (neutral | {n: vessel.commands[n].high for n in drives}, neutral):
-        act, memory = np.zeros(program.held_size), np.zeros(program.memory_size)
-        program.module.settle(
-            program.command_array(sent), memory, track.values, program.switches(), act
-        )
-        found.append(along(track, np.zeros((1, 2 * program.module.NQ)), [act], track.values)[0])
-    return float(found[0][0] - found[1][0])
+    full = neutral | {n: vessel.commands[n].high for n in drives}
+    return _surge_force_at_rest(mapped, full) - _surge_force_at_rest(mapped, neutral)
 
 
-def coefficient_forces(
-    problem: Problem, found: Fit, track: MappedRecording, states: Array
-) -> Array:
-    """(F, N, axes) force that goes with each fitted coefficient of the vessel's own, at its value as written.
+def _surge_force_at_rest(mapped: MappedRecording, commands: dict[str, float]) -> float:
+    program = mapped.program
+    act = np.zeros(program.held_size)
+    memory = np.zeros(program.memory_size)
+    values = mapped.values
+    on = program.switches()
+    program.module.settle(program.command_array(commands), memory, values, on, act)
+    rest = np.zeros((1, 2 * program.module.NQ))
+    return float(body_forces(mapped, rest, [act], values)[0][0])
 
-    Laws are linear in the coefficients that a recalibration may change.
+
+def coefficient_forces(problem: Problem, fit: Fit, mapped: MappedRecording, states: Array) -> Array:
+    """Return the force of each fitted coefficient of the vessel at its specified value.
+
+    Effects are linear in the coefficients that a recalibration changes.
+
+    Args:
+        problem: The problem.
+        fit: The recalibrated vessel.
+        mapped: The recording.
+        states: Smoothed states (N, 2 NQ).
+
+    Returns:
+        Forces (F, N, axes) of the F coefficients.
     """
-    held, ones = actuators(track), np.ones(len(found.free))
+    held = actuator_states(mapped)
+    ones = np.ones(len(fit.free))
     states = np.ascontiguousarray(states)
-    base = along(track, states, held, problem.values(track, found.free, ones))
-    parts = []
-    for j in range(len(found.free)):
-        twice = problem.values(track, found.free, ones + np.eye(len(ones))[j])
-        parts.append(along(track, states, held, twice) - base)
-    return np.array(parts).reshape(len(parts), *base.shape)
+    base = body_forces(mapped, states, held, problem.values(mapped, fit.free, ones))
+    parts = np.empty((len(ones), *base.shape))
+    for j, unit in enumerate(np.eye(len(ones))):
+        doubled = problem.values(mapped, fit.free, ones + unit)
+        parts[j] = body_forces(mapped, states, held, doubled) - base
+    return parts

@@ -1,9 +1,9 @@
-"""Whether the missing force comes and goes with a rhythm: a peak in the spectrum of what the filter did not expect.
+"""Test for a periodic missing force: a peak in the spectrum of the prediction errors.
 
-Prediction errors are white where the model is complete, and each ordinate of their periodogram is then exponentially
-distributed. The mean power in a narrow band over that in its neighbours then follows an F distribution; neighbours
-rather than the whole spectrum, and the geometric mean of those on either side, so that errors that are merely smooth
-or rough are no rhythm.
+Prediction errors are white if the model is complete, and each ordinate of their periodogram is then
+exponentially distributed. The ratio of the mean power in a narrow band and in the neighbouring bands
+has an F distribution. The reference is the geometric mean of the neighbours on either side, so that
+a spectrum that only rises or falls has no peak.
 """
 
 from collections.abc import Sequence
@@ -12,62 +12,78 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import fdtrc
 
+from boatsim.diagnosis.config import DEFAULT, LocateConfig
 from boatsim.physics.base import Array
 
-BAND = 1.26  # upper over lower end of a band: a third of an octave
-NEIGHBOURS = 2  # bands on either side that a peak is compared with
-ROWS_A_PERIOD = 5.0  # that a rhythm must have to be told from errors that differ from row to row
-FEWEST = 3  # periodogram ordinates that a band must hold
+TINY = 1e-300  # avoids division by zero
 
 
 @dataclass(frozen=True)
-class Rhythm:
-    """The likeliest peak and its p-value, corrected for all bands and signals looked at."""
+class Peak:
+    """The most significant peak; its p-value is corrected for the number of bands tested."""
 
     period: float  # [s]
     p_value: float
 
 
-def rhythm(runs: Sequence[tuple[Array, Array]]) -> Rhythm | None:
-    """The likeliest rhythm in runs of (times (N,), whitened prediction errors (N, C)); None if they are too short."""
-    frequency, power = (
-        np.concatenate(found) for found in zip(*(_periodogram(*run) for run in runs), strict=True)
-    )
-    if len(frequency) < FEWEST:
+def most_significant_peak(
+    runs: Sequence[tuple[Array, Array]], config: LocateConfig = DEFAULT.locate
+) -> Peak | None:
+    """Return the most significant peak in the spectra of several runs.
+
+    Args:
+        runs: Times (N,) [s] and whitened prediction errors (N, C) of each run.
+        config: Thresholds of the test.
+
+    Returns:
+        The peak; None if the runs are too short for a test.
+    """
+    frequencies = []
+    powers = []
+    for times, errors in runs:
+        frequency, power = _periodogram(times, errors, config)
+        frequencies.append(frequency)
+        powers.append(power)
+    frequency = np.concatenate(frequencies)
+    power = np.concatenate(powers)
+    if len(frequency) < config.periodicity_min_ordinates:
         return None
-    edges = np.exp(np.arange(np.log(frequency.min()), np.log(frequency.max()), np.log(BAND)))
+    width = np.log(config.periodicity_band)
+    edges = np.exp(np.arange(np.log(frequency.min()), np.log(frequency.max()), width))
     band = np.searchsorted(edges, frequency, side="right") - 1
-    tried = []
-    for b in range(NEIGHBOURS, len(edges) - 1 - NEIGHBOURS):
-        here = band == b
-        below, above = (band >= b - NEIGHBOURS) & (band < b), (band > b) & (band <= b + NEIGHBOURS)
-        if here.sum() >= FEWEST and below.any():
-            middle = float(np.average(frequency[here], weights=power[here].sum(axis=1) + 1e-300))
-            tried.append((_stands_out(power[here], power[below], power[above]), middle))
-    if not tried:
+    side = config.periodicity_neighbours
+    tests = []
+    for b in range(side, len(edges) - 1 - side):
+        inside = band == b
+        below = (band >= b - side) & (band < b)
+        above = (band > b) & (band <= b + side)
+        if inside.sum() >= config.periodicity_min_ordinates and below.any():
+            weights = power[inside].sum(axis=1) + TINY
+            centre = float(np.average(frequency[inside], weights=weights))
+            tests.append((_p_value(power[inside], power[below], power[above]), centre))
+    if not tests:
         return None
-    p, peak = min(tried)
-    return Rhythm(1.0 / peak, min(1.0, p * len(tried)))
+    p_value, centre = min(tests)
+    return Peak(1.0 / centre, min(1.0, p_value * len(tests)))
 
 
-def _stands_out(here: Array, below: Array, above: Array) -> float:
-    """p-value of a band with no more power than a smooth spectrum through its neighbours has there."""
-    smooth = max(np.sqrt(below.mean() * above.mean()), 1e-300)
-    return float(fdtrc(2 * here.size, 2 * (below.size + above.size), here.mean() / smooth))
+def _p_value(inside: Array, below: Array, above: Array) -> float:
+    """p-value of the hypothesis that the power in a band follows from its neighbours."""
+    reference = max(np.sqrt(below.mean() * above.mean()), TINY)
+    ratio = inside.mean() / reference
+    return float(fdtrc(2 * inside.size, 2 * (below.size + above.size), ratio))
 
 
-def _periodogram(t: Array, errors: Array) -> tuple[Array, Array]:
-    """Frequencies (F,) [Hz] and ordinates (F, C), without zero, the highest and the first row (no prediction)."""
-    errors = errors[1:] / np.maximum(np.sqrt(np.mean(errors[1:] ** 2, axis=0)), 1e-300)
+def _periodogram(t: Array, errors: Array, config: LocateConfig) -> tuple[Array, Array]:
+    """Frequencies (F,) [Hz] and ordinates (F, C).
+
+    The first row is no prediction. Frequency zero and periods of few rows are left out.
+    """
+    errors = errors[1:] / np.maximum(np.sqrt(np.mean(errors[1:] ** 2, axis=0)), TINY)
     step = float(np.median(np.diff(t)))
     frequency = np.asarray(np.fft.rfftfreq(len(errors), step), dtype=np.float64)
-    seen = slice(
-        1,
-        max(
-            1,
-            min(len(frequency) - 1, int(np.searchsorted(frequency, 1.0 / (ROWS_A_PERIOD * step)))),
-        ),
-    )
-    return frequency[seen], np.asarray(
-        np.abs(np.fft.rfft(errors, axis=0)[seen]) ** 2, dtype=np.float64
-    )
+    highest = 1.0 / (config.periodicity_min_rows * step)
+    end = min(len(frequency) - 1, int(np.searchsorted(frequency, highest)))
+    kept = slice(1, max(1, end))
+    power = np.abs(np.fft.rfft(errors, axis=0)[kept]) ** 2
+    return frequency[kept], np.asarray(power, dtype=np.float64)

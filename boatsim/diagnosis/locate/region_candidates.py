@@ -1,4 +1,7 @@
-"""What a missing force may depend on: each idea is what the force would be there up to factors, and how to say it."""
+"""Regions of the state in which a force may be missing, each with the shapes of that force.
+
+A shape is a force over time, known up to a factor.
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -6,194 +9,234 @@ from math import exp
 
 import numpy as np
 
+from boatsim.diagnosis.config import LocateConfig
 from boatsim.diagnosis.filter import MappedRecording, axes_of
-from boatsim.diagnosis.locate.nominal_forces import actuators, along
+from boatsim.diagnosis.locate.nominal_forces import actuator_states, body_forces
 from boatsim.physics.base import Array
 from boatsim.physics.effects.wall_effect import REACH
 
 THRUST = "thrust"  # role of actuators whose value is a force
-# [rad] between a steering command and the angle it stands for; the force hardly depends on it
-# beyond scale
-PLAY = 0.1
-NEAR = 2.0  # [reaches] beyond which a wall is taken to do nothing
-TURNING = ("roll", "pitch", "yaw")
-SPEED = "forward_speed_mps"  # fact of a recording in which the hull only rolls
+PLANAR_DOF = {"surge", "sway", "yaw"}
+ROTATIONS = ("roll", "pitch", "yaw")
+FORWARD_SPEED = "forward_speed_mps"  # fact of a recording in which the hull only rolls
 
 
 @dataclass(frozen=True)
-class Idea:
-    """One explanation tried."""
+class RegionCandidate:
+    """A region that may explain the missing force."""
 
     variable: str
     shapes: tuple[Array, ...]  # each (N, axes) [N, N m per factor]
-    sentence: Callable[[Array], str]  # of the fitted factors
+    sentence: Callable[[Array], str]  # statement about the fitted factors
 
 
-def ideas(track: MappedRecording, states: Array, damping: Array) -> list[Idea]:
-    """Everything tried on a run; `states` (N, 2 NQ) are smoothed, `damping` (N, axes) is the vessel's own."""
-    axes = axes_of(track.program.vessel)
-    found = [
-        *_world(axes, states),
-        *_speeds(track, axes, states),
-        *_astern(track),
-        *_reversals(track),
+def region_candidates(
+    mapped: MappedRecording, states: Array, damping: Array, config: LocateConfig
+) -> list[RegionCandidate]:
+    """Return all regions that can be tested on a recording.
+
+    Args:
+        mapped: The recording.
+        states: Smoothed states (N, 2 NQ).
+        damping: Damping force (N, axes) of the vessel as specified.
+        config: Settings of the regions.
+    """
+    axes = axes_of(mapped.program.vessel)
+    return [
+        *_earth_directions(axes, states),
+        *_squared_speeds(mapped, axes, states),
+        *_thrust_astern(mapped),
+        *_steering_play(mapped, config),
+        *_roll(mapped, axes, states),
+        *_walls(mapped, axes, states, damping, config),
     ]
-    if "roll" in axes:
-        found += _rolling(track, axes, states)
-    return [*found, *_walls(track, axes, states, damping)]
 
 
-def _world(axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
-    """A direction of the world."""
-    if {"surge", "sway", "yaw"} <= set(axes):
-        shape = np.eye(len(axes))
-        psi = states[:, axes.index("yaw")]
-        ahead, aside, c, s = (
-            shape[axes.index("surge")],
-            shape[axes.index("sway")],
-            np.cos(psi),
-            np.sin(psi),
-        )
-        shapes = np.outer(c, ahead) - np.outer(s, aside), np.outer(s, ahead) + np.outer(c, aside)
-        yield Idea("heading in the world", shapes, _direction)
+def _earth_directions(axes: tuple[str, ...], states: Array) -> Iterator[RegionCandidate]:
+    """A force of constant direction in the earth frame."""
+    if set(axes) >= PLANAR_DOF:
+        unit = np.eye(len(axes))
+        surge = unit[axes.index("surge")]
+        sway = unit[axes.index("sway")]
+        c = np.cos(states[:, axes.index("yaw")])
+        s = np.sin(states[:, axes.index("yaw")])
+        north = np.outer(c, surge) - np.outer(s, sway)
+        east = np.outer(s, surge) + np.outer(c, sway)
+        yield RegionCandidate("heading in the world", (north, east), _direction_sentence)
 
 
-def _speeds(track: MappedRecording, axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
+def _squared_speeds(
+    mapped: MappedRecording, axes: tuple[str, ...], states: Array
+) -> Iterator[RegionCandidate]:
     """The square of each speed."""
-    rates = track.program.body_rates(states)[:, len(axes) :]
+    rates = mapped.program.body_rates(states)[:, len(axes) :]
     for i, name in enumerate(axes):
-        variable = f"{name} {'rate' if name in TURNING and len(axes) == 1 else 'speed'}"
+        noun = "rate" if name in ROTATIONS and len(axes) == 1 else "speed"
+        variable = f"{name} {noun}"
         w = rates[:, i]
-        yield Idea(variable, (np.outer(w * np.abs(w), np.eye(len(axes))[i]),), _square(variable))
+        shape = np.outer(w * np.abs(w), np.eye(len(axes))[i])
+        yield RegionCandidate(variable, (shape,), _square_sentence(variable))
 
 
-def _rolling(track: MappedRecording, axes: tuple[str, ...], states: Array) -> Iterator[Idea]:
-    """Amplitude of roll, and the forward speed at which a hull that only rolls does so."""
-    shape, i = np.eye(len(axes))[axes.index("roll")], axes.index("roll")
-    angle, rate = states[:, i], states[:, len(axes) + i]
-    yield Idea("roll angle", (np.outer(angle**3, shape),), _cube)
-    if SPEED in track.facts and "surge" not in axes:
-        yield Idea("forward speed", (np.outer(rate * float(track.facts[SPEED]), shape),), _forward)
+def _roll(
+    mapped: MappedRecording, axes: tuple[str, ...], states: Array
+) -> Iterator[RegionCandidate]:
+    """Large roll angles, and the forward speed of a hull that only rolls."""
+    if "roll" not in axes:
+        return
+    i = axes.index("roll")
+    unit = np.eye(len(axes))[i]
+    angle = states[:, i]
+    rate = states[:, len(axes) + i]
+    yield RegionCandidate("roll angle", (np.outer(angle**3, unit),), _cube_sentence)
+    if FORWARD_SPEED in mapped.facts and "surge" not in axes:
+        shape = np.outer(rate * float(mapped.facts[FORWARD_SPEED]), unit)
+        yield RegionCandidate("forward speed", (shape,), _forward_speed_sentence)
 
 
-def _astern(track: MappedRecording) -> Iterator[Idea]:
-    """Force of the thrusters that push astern."""
-    vessel = track.program.vessel
+def _thrust_astern(mapped: MappedRecording) -> Iterator[RegionCandidate]:
+    """The force of thrusters that push astern."""
+    vessel = mapped.program.vessel
     thrusters = [i for i, a in enumerate(vessel.actuators) if vessel.roles[a] == THRUST]
     if not thrusters:
         return
-    idle = actuators(track)
-    back = idle.copy()
-    back[:, thrusters] = np.minimum(back[:, thrusters], 0.0)
+    idle = actuator_states(mapped)
+    astern = idle.copy()
+    astern[:, thrusters] = np.minimum(astern[:, thrusters], 0.0)
     idle[:, thrusters] = 0.0
-    yield Idea("thrust astern", (_at_rest(track, back) - _at_rest(track, idle),), _thrust)
+    shape = _force_at_rest(mapped, astern) - _force_at_rest(mapped, idle)
+    yield RegionCandidate("thrust astern", (shape,), _thrust_sentence)
 
 
-def _reversals(track: MappedRecording) -> Iterator[Idea]:
-    """Force that is missing while the angles stay behind a steering that has reversed (play operator)."""
-    vessel = track.program.vessel
+def _steering_play(mapped: MappedRecording, config: LocateConfig) -> Iterator[RegionCandidate]:
+    """The force missing while steering angles lag after a reversal (play operator)."""
+    vessel = mapped.program.vessel
     angles = [vessel.actuators.index(a) for a in vessel.angles]
     if not angles:
         return
-    held = actuators(track)
-    late = held.copy()
+    play = config.play_width
+    held = actuator_states(mapped)
+    lagging = held.copy()
     for row in range(1, len(held)):
-        late[row, angles] = np.clip(
-            late[row - 1, angles], held[row, angles] - PLAY / 2, held[row, angles] + PLAY / 2
-        )
+        low = held[row, angles] - play / 2
+        high = held[row, angles] + play / 2
+        lagging[row, angles] = np.clip(lagging[row - 1, angles], low, high)
     for angle, column in zip(vessel.angles, angles, strict=True):
-        for part, of in (("cos", np.cos), ("sin", np.sin)):
-            late[:, vessel.held.index(f"{part}_{angle}")] = of(late[:, column])
-    yield Idea(
-        "steering reversals", ((_at_rest(track, late) - _at_rest(track, held)) / PLAY,), _play
-    )
+        lagging[:, vessel.held.index(f"cos_{angle}")] = np.cos(lagging[:, column])
+        lagging[:, vessel.held.index(f"sin_{angle}")] = np.sin(lagging[:, column])
+    shape = (_force_at_rest(mapped, lagging) - _force_at_rest(mapped, held)) / play
+    yield RegionCandidate("steering reversals", (shape,), _play_sentence)
 
 
-def _at_rest(track: MappedRecording, held: Array) -> Array:
-    """(N, axes) force of the vessel at rest with given actuators."""
-    still = np.zeros((len(held), 2 * track.program.module.NQ))
-    return along(track, still, held, track.values)
+def _force_at_rest(mapped: MappedRecording, held: Array) -> Array:
+    """(N, axes) force of the vessel at rest with actuator states (N, HELD)."""
+    rest = np.zeros((len(held), 2 * mapped.program.module.NQ))
+    return body_forces(mapped, rest, held, mapped.values)
 
 
 def _walls(
-    track: MappedRecording, axes: tuple[str, ...], states: Array, damping: Array
-) -> Iterator[Idea]:
-    """Pull towards the walls and damping that rises near them."""
-    walls = walls_of(track)
-    if walls is None or not {"surge", "sway", "yaw"} <= set(axes):
+    mapped: MappedRecording,
+    axes: tuple[str, ...],
+    states: Array,
+    damping: Array,
+    config: LocateConfig,
+) -> Iterator[RegionCandidate]:
+    """Attraction to the walls, and damping that increases near them."""
+    walls = tank_walls(mapped)
+    if walls is None or not set(axes) >= PLANAR_DOF:
         return
-    reach = REACH * track.program.vessel.length
-    high, low = (
-        np.maximum(
-            np.exp(-np.maximum(side * (np.array(walls)[ends] - states[:, :2]), 0.0) / reach)
-            - exp(-NEAR),
-            0.0,
-        )
-        for side, ends in ((1.0, [1, 3]), (-1.0, [0, 2]))
-    )
-    c, s = np.cos(states[:, axes.index("yaw")]), np.sin(states[:, axes.index("yaw")])
+    reach = REACH * mapped.program.vessel.length
+    x_low, x_high, y_low, y_high = walls
+    position = states[:, :2]
+    high = _proximity(np.array([x_high, y_high]) - position, reach, config)
+    low = _proximity(position - np.array([x_low, y_low]), reach, config)
+    c = np.cos(states[:, axes.index("yaw")])
+    s = np.sin(states[:, axes.index("yaw")])
     north, east = (high - low).T
-    pull = np.zeros((len(states), len(axes)))
-    pull[:, 0], pull[:, 1] = c * north + s * east, c * east - s * north
+    attraction = np.zeros((len(states), len(axes)))
+    attraction[:, 0] = c * north + s * east
+    attraction[:, 1] = c * east - s * north
     near = (high + low).sum(axis=1, keepdims=True)
-    yield Idea("distance to the walls", (pull, near * damping), _near(reach))
+    sentence = _wall_sentence(reach, 1.0 - exp(-config.wall_range))
+    yield RegionCandidate("distance to the walls", (attraction, near * damping), sentence)
 
 
-def walls_of(track: MappedRecording) -> tuple[float, ...] | None:
-    """x_low, x_high, y_low, y_high [m] of the tank, as the recording or its vessel states them."""
-    return tuple(track.facts["walls_m"]) if "walls_m" in track.facts else None
+def _proximity(distance: Array, reach: float, config: LocateConfig) -> Array:
+    """Exponential decrease with the distance [m] to a wall, zero beyond the range of walls."""
+    decay = np.exp(-np.maximum(distance, 0.0) / reach)
+    return np.asarray(np.maximum(decay - exp(-config.wall_range), 0.0))
 
 
-def _direction(factors: Array) -> str:
-    size, toward = (
-        float(np.hypot(*factors)),
-        float(np.degrees(np.arctan2(factors[1], factors[0]))) % 360.0,
-    )
+def tank_walls(mapped: MappedRecording) -> tuple[float, ...] | None:
+    """Return x_low, x_high, y_low, y_high [m] of the tank; None if they are not specified."""
+    if "walls_m" not in mapped.facts:
+        return None
+    return tuple(mapped.facts["walls_m"])
+
+
+def _direction_sentence(factors: Array) -> str:
+    size = float(np.hypot(*factors))
+    toward = float(np.degrees(np.arctan2(factors[1], factors[0]))) % 360.0
     return (
-        f"the missing force keeps its direction in the world: {size:.2g} N toward {toward:.0f} deg"
+        "the missing force has a constant direction in the earth frame: "
+        f"{size:.2g} N toward {toward:.0f} deg"
     )
 
 
-def _square(variable: str) -> Callable[[Array], str]:
-    what = "moment" if variable.startswith(("yaw", "roll")) else "force"
-    return lambda factors: (
-        f"the missing {what} {_way(factors[0])} with the square of the {variable}"
+def _square_sentence(variable: str) -> Callable[[Array], str]:
+    noun = "moment" if variable.startswith(("yaw", "roll")) else "force"
+
+    def sentence(factors: Array) -> str:
+        return f"the missing {noun} {_verb(factors[0])} with the square of the {variable}"
+
+    return sentence
+
+
+def _cube_sentence(factors: Array) -> str:
+    adjective = "softer" if factors[0] > 0.0 else "stiffer"
+    return (
+        f"the hull is {adjective} at large roll angles: the missing moment grows with the cube of "
+        "the roll angle"
     )
 
 
-def _cube(factors: Array) -> str:
-    way = "softer" if factors[0] > 0.0 else "stiffer"
-    return f"the hull gets {way} the further it rolls: the missing moment grows with the cube of the roll angle"
+def _forward_speed_sentence(factors: Array) -> str:
+    return (
+        f"the missing moment {_verb(factors[0])} with the roll rate, in proportion to the forward "
+        "speed"
+    )
 
 
-def _forward(factors: Array) -> str:
-    return f"the missing moment {_way(factors[0])} with the roll rate, the more the faster the ship goes ahead"
-
-
-def _way(factor: float) -> str:
+def _verb(factor: float) -> str:
     return "resists" if factor < 0.0 else "pushes"
 
 
-def _thrust(factors: Array) -> str:
-    what = "is missing" if factors[0] < 0 else "comes on top"
-    return f"while thrust is astern, about {abs(100.0 * factors[0]):.0f} % of the commanded thrust {what}"
+def _thrust_sentence(factors: Array) -> str:
+    verb = "is missing" if factors[0] < 0 else "is added"
+    share = abs(100.0 * factors[0])
+    return f"while thrust is astern, about {share:.0f} % of the commanded thrust {verb}"
 
 
-def _play(factors: Array) -> str:
-    if factors[0] < 0:
-        return f"after the steering reverses, its angle is ahead by {-factors[0]:.2g} rad, which no play explains"
-    return (
-        f"after the steering reverses, its angle stays behind as with {factors[0]:.2g} rad of play"
-    )
-
-
-def _near(reach: float) -> Callable[[Array], str]:
-    def sentence(factors: Array) -> str:
-        pull, rise = factors * (1.0 - exp(-NEAR))  # at the wall
-        more, way = "more" if rise > 0.0 else "less", "towards" if pull > 0.0 else "away from"
+def _play_sentence(factors: Array) -> str:
+    play = factors[0]
+    if play < 0:
         return (
-            f"within about {reach:.2g} m of a wall the boat drags up to {abs(100.0 * rise):.0f} % {more} and is pushed "
-            f"{way} it by up to {abs(pull):.2g} N"
+            f"after a reversal, the steering angle is ahead by {-play:.2g} rad, which no play "
+            "explains"
+        )
+    return f"after a reversal, the steering angle lags as with {play:.2g} rad of play"
+
+
+def _wall_sentence(reach: float, at_wall: float) -> Callable[[Array], str]:
+    """Statement about walls; `at_wall` is the proximity of a boat at a wall."""
+
+    def sentence(factors: Array) -> str:
+        attraction, increase = factors * at_wall
+        comparative = "more" if increase > 0.0 else "less"
+        direction = "towards" if attraction > 0.0 else "away from"
+        return (
+            f"within about {reach:.2g} m of a wall, damping is up to {abs(100.0 * increase):.0f} % "
+            f"{comparative}, and the boat is pushed {direction} it by up to {abs(attraction):.2g} N"
         )
 
     return sentence

@@ -1,4 +1,4 @@
-"""Tests of what a missing force depends on: the score test of known shapes in it, under the filter's own statistics."""
+"""Score tests of force shapes in the smoothed latent force, with the statistics of the filter."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,101 +6,120 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtrc
 
-from boatsim.diagnosis.locate.smoothing import information
+from boatsim.diagnosis.locate.smoothing import LatentForce, joint_information
 from boatsim.physics.base import Array
 
-SMALL = 1e-9  # share of its information that a shape must keep beside others to be told from them
+# share of its information that a shape must retain next to others, a guard against rounding
+MIN_INFORMATION = 1e-9
 
 
 @dataclass(frozen=True)
-class Result:
-    """Factors of the shapes of one idea, the p-value of all of them together, and how much force they make."""
+class ScoreTest:
+    """Result of the test of one candidate."""
 
-    factors: Array  # (S,)
-    p_value: float
-    rms: Array  # (axes,) of the force that the factors stand for
+    factors: Array  # (S,) of its shapes
+    p_value: float  # of all factors together
+    rms: Array  # (axes,) of the force with these factors
 
 
 @dataclass(frozen=True)
-class Evidence:
-    """What recordings say about the factors of ideas' shapes."""
+class ScoreStatistics:
+    """Information of recordings about the factors of shapes."""
 
-    at: Mapping[str, slice]  # columns of each idea
+    columns: Mapping[str, tuple[int, ...]]  # indices of the shapes of each candidate
     information: Array  # (S, S)
     score: Array  # (S,)
-    squares: Array  # (axes, S, S) sum over rows of shape times shape
+    squares: Array  # (axes, S, S) sums over rows of products of shapes
     rows: int
 
     @classmethod
-    def of(
-        cls,
-        shapes: Mapping[str, Sequence[Array]],
-        found: Array,
-        times: Array,
-        covariances: Array,
-        gains: Array,
-        part: slice,
-        rms: Array,
-        first: Array,
-        time_constant: float,
-    ) -> "Evidence":
-        """Evidence of one recording: shapes (N, axes) of every idea, the rest as in `smoothing.information`."""
-        ends = np.cumsum([0, *(len(s) for s in shapes.values())]).tolist()
-        S = np.stack([s for each in shapes.values() for s in each], axis=-1)
-        learnt, score = information(
-            S, found, times, covariances, gains, part, rms, first, time_constant
-        )
-        at = {n: slice(a, b) for n, a, b in zip(shapes, ends, ends[1:], strict=False)}
-        return cls(at, learnt, score, np.einsum("nka,nkb->kab", S, S), len(times))
+    def of(cls, shapes: Mapping[str, Sequence[Array]], force: LatentForce) -> "ScoreStatistics":
+        """Return the statistics of one recording.
 
-    def speaks_of(self, name: str) -> bool:
-        """Whether the recordings came where an idea makes a difference."""
-        return bool(np.diag(self.information)[self.at[name]].any())
+        Args:
+            shapes: Shapes (N, axes) of every candidate.
+            force: Smoothed latent force of the recording.
+        """
+        columns = _consecutive({name: len(each) for name, each in shapes.items()})
+        arrays: list[Array] = []
+        for each in shapes.values():
+            arrays += each
+        S = np.stack(arrays, axis=-1)
+        information, score = joint_information(S, force)
+        return cls(columns, information, score, np.einsum("nka,nkb->kab", S, S), len(force.times))
 
-    def only(self, names: Sequence[str]) -> "Evidence":
-        """The same of these ideas alone, in this order."""
-        columns = self.columns(names)
-        ends = np.cumsum([0, *(len(self.columns([n])) for n in names)]).tolist()
-        at = {n: slice(a, b) for n, a, b in zip(names, ends, ends[1:], strict=False)}
-        both = np.ix_(columns, columns)
-        return Evidence(
-            at,
-            self.information[both],
-            self.score[columns],
-            self.squares[:, columns][:, :, columns],
+    def is_informative(self, name: str) -> bool:
+        """Return whether the shapes of a candidate are not zero in the recordings."""
+        return bool(np.diag(self.information)[list(self.columns[name])].any())
+
+    def subset(self, names: Sequence[str]) -> "ScoreStatistics":
+        """Return the statistics of some candidates alone, in the given order."""
+        kept = self.indices(names)
+        columns = _consecutive({name: len(self.columns[name]) for name in names})
+        return ScoreStatistics(
+            columns,
+            self.information[np.ix_(kept, kept)],
+            self.score[kept],
+            self.squares[:, kept][:, :, kept],
             self.rows,
         )
 
-    def columns(self, names: Sequence[str]) -> list[int]:
-        """Columns of several ideas."""
-        return [i for n in names for i in range(self.at[n].start, self.at[n].stop)]
+    def indices(self, names: Sequence[str]) -> list[int]:
+        """Return the indices of the shapes of some candidates."""
+        found: list[int] = []
+        for name in names:
+            found += self.columns[name]
+        return found
 
-    def test(self, name: str, beside: Sequence[str]) -> Result:
-        """An idea on top of others, whose factors are free."""
-        a, b = self.columns([name]), self.columns(beside)
-        inner, cross = self.information[np.ix_(b, b)], self.information[np.ix_(a, b)]
-        take = np.linalg.lstsq(inner, np.column_stack([cross.T, self.score[b]]), rcond=SMALL)[0]
+    def test(self, name: str, others: Sequence[str]) -> ScoreTest:
+        """Test a candidate in addition to others, whose factors are free.
+
+        Args:
+            name: The candidate.
+            others: Candidates whose factors are estimated with it.
+        """
+        a = self.indices([name])
+        b = self.indices(others)
+        inner = self.information[np.ix_(b, b)]
+        cross = self.information[np.ix_(a, b)]
+        targets = np.column_stack([cross.T, self.score[b]])
+        solution = np.linalg.lstsq(inner, targets, rcond=MIN_INFORMATION)[0]
         own = self.information[np.ix_(a, a)]
-        left, score = own - cross @ take[:, :-1], self.score[a] - cross @ take[:, -1]
-        clear = np.diag(left) > SMALL * np.diag(
-            own
-        )  # neither nothing nor what the others already say
-        if not clear.any():
-            return Result(np.zeros(len(a)), 1.0, np.zeros(len(self.squares)))
+        remaining = own - cross @ solution[:, :-1]
+        score = self.score[a] - cross @ solution[:, -1]
+        # shapes that are neither zero nor combinations of the others
+        free = np.diag(remaining) > MIN_INFORMATION * np.diag(own)
         factors = np.zeros(len(a))
-        factors[clear] = np.linalg.solve(left[np.ix_(clear, clear)], score[clear])
-        squares = np.array([factors @ s[np.ix_(a, a)] @ factors for s in self.squares])
-        p_value = float(chdtrc(int(clear.sum()), max(0.0, float(score @ factors))))
-        return Result(factors, p_value, np.sqrt(squares / self.rows))
+        if not free.any():
+            return ScoreTest(factors, 1.0, np.zeros(len(self.squares)))
+        factors[free] = np.linalg.solve(remaining[np.ix_(free, free)], score[free])
+        squares = [factors @ s[np.ix_(a, a)] @ factors for s in self.squares]
+        p_value = float(chdtrc(int(free.sum()), max(0.0, float(score @ factors))))
+        return ScoreTest(factors, p_value, np.sqrt(np.array(squares) / self.rows))
 
 
-def joint(several: Sequence[Evidence], names: Sequence[str]) -> Evidence:
-    """Evidence of independent recordings about ideas that all of them have."""
-    same = [e.only(names) for e in several]
-    return Evidence(
-        same[0].at,
-        np.sum([e.information for e in same], axis=0),
-        np.sum([e.score for e in same], axis=0),
-        np.sum([e.squares for e in same], axis=0),
-        sum(e.rows for e in same),
+def combined(statistics: Sequence[ScoreStatistics], names: Sequence[str]) -> ScoreStatistics:
+    """Return the statistics of several independent recordings together.
+
+    Args:
+        statistics: Statistics of each recording.
+        names: Candidates that all recordings have.
+    """
+    same = [each.subset(names) for each in statistics]
+    return ScoreStatistics(
+        same[0].columns,
+        np.sum([each.information for each in same], axis=0),
+        np.sum([each.score for each in same], axis=0),
+        np.sum([each.squares for each in same], axis=0),
+        sum(each.rows for each in same),
     )
+
+
+def _consecutive(counts: Mapping[str, int]) -> dict[str, tuple[int, ...]]:
+    """Consecutive indices for candidates with given numbers of shapes."""
+    columns = {}
+    begin = 0
+    for name, count in counts.items():
+        columns[name] = tuple(range(begin, begin + count))
+        begin += count
+    return columns

@@ -1,119 +1,140 @@
-"""In which state region a force is missing: only while thrust is astern, near a wall, with speed, with a rhythm.
+"""Regions of the state in which a force is missing: thrust astern, near a wall, with speed, periodic.
 
-Each idea of what the missing force would be there (`region_ideas`) is tested beside what a recalibration would change
-and beside the other regions found. p-values are corrected for the number of regions tried (Bonferroni).
+Each candidate is tested in addition to the coefficients that a recalibration changes and to the
+other regions found. p-values are corrected for the number of candidates tested (Bonferroni).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.locate.nominal_forces import coefficient_forces
-from boatsim.diagnosis.locate.periodicity import BAND, rhythm
-from boatsim.diagnosis.locate.region_candidates import ideas
-from boatsim.diagnosis.locate.region_tests import Evidence, Result, joint
+from boatsim.diagnosis.locate.periodicity import most_significant_peak
+from boatsim.diagnosis.locate.region_candidates import region_candidates
+from boatsim.diagnosis.locate.region_tests import ScoreStatistics, ScoreTest, combined
+from boatsim.diagnosis.locate.smoothing import latent_force
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
-LIKELY = 0.01  # corrected p-value below which a region is worth a sentence
-KNOWN = "coefficients"  # what a recalibration explains
+COEFFICIENTS = "coefficients"  # name of the shapes that a recalibration explains
+Sentence = Callable[[Array], str]
 
 
 @dataclass(frozen=True)
 class Region:
-    """A state region in which a force is missing."""
+    """A region of the state in which a force is missing."""
 
     variable: str
     statement: str
-    p_value: float  # corrected
+    p_value: float  # corrected for the number of tests
 
 
-def regions(problem: Problem, found: Fit) -> list[Region]:
-    """Regions that explain the missing force of the fitted runs, the likeliest first; none where nothing is missing.
+def regions(problem: Problem, fit: Fit) -> list[Region]:
+    """Return the regions that explain the missing force of the fitted runs.
 
-    `found` fits the coefficients of the vessel as written and names no suspects.
+    Args:
+        problem: The problem.
+        fit: The recalibrated vessel: its coefficients are fitted, and no candidate acts.
+
+    Returns:
+        Significant regions, the most significant first.
     """
-    evidence, sentences = _evidence(problem, found)
-    tests = sum(evidence.speaks_of(n) for n in sentences) + 1  # and the rhythm
-    results = _selected(evidence, list(sentences), tests, problem.ambient.force)
-    out = [_region(n, sentences[n](r.factors), r.p_value * tests) for n, r in results.items()]
-    return sorted([*out, *_rhythm(problem, found, tests)], key=lambda r: r.p_value)
+    statistics, sentences = _score_statistics(problem, fit)
+    tests = 1  # the test for a period
+    for name in sentences:
+        tests += statistics.is_informative(name)
+    results = _select(problem, statistics, list(sentences), tests)
+    found = []
+    for name, result in results.items():
+        statement = sentences[name](result.factors)
+        found.append(_region(name, statement, result.p_value * tests))
+    found += _periodic_region(problem, fit, tests)
+    return sorted(found, key=lambda region: region.p_value)
 
 
-def _evidence(problem: Problem, found: Fit) -> tuple[Evidence, dict[str, Callable[[Array], str]]]:
-    """What all runs together say of every idea that can be tried on all of them, and how to say the ideas."""
-    nq, levels = problem.program.module.NQ, found.levels
-    on, latent = problem.program.switches(found.effects), slice(2 * nq, 3 * nq)
-    evidence, sentences = [], []
-    for track in problem.recordings:
-        values = problem.values(track, found.free, found.theta)
-        z, covariances, gains = track.smooth(values, on, levels)
-        states = np.ascontiguousarray(z[:, : 2 * nq])
-        parts = coefficient_forces(problem, found, track, states)
-        tried = ideas(track, states, _damping(problem, found, parts))
-        shapes = {KNOWN: tuple(parts)} | {i.variable: i.shapes for i in tried}
-        prior = *track.latent_force_rms(values, on, levels), levels.time_constant
-        evidence.append(
-            Evidence.of(shapes, z[:, latent], track.times, covariances, gains, latent, *prior)
-        )
-        sentences.append({i.variable: i.sentence for i in tried})
-    names = [n for n in sentences[0] if all(n in s for s in sentences)]
-    return joint(evidence, [KNOWN, *names]), {n: sentences[0][n] for n in names}
+def _score_statistics(problem: Problem, fit: Fit) -> tuple[ScoreStatistics, Mapping[str, Sentence]]:
+    """Statistics of all runs together, and the sentences of the candidates that all runs have."""
+    statistics = []
+    sentences: dict[str, Sentence] = {}
+    for k, mapped in enumerate(problem.recordings):
+        force = latent_force(problem, fit, mapped, fit.levels)
+        parts = coefficient_forces(problem, fit, mapped, force.states)
+        damping = _damping_force(problem, fit, parts)
+        candidates = region_candidates(mapped, force.states, damping, problem.config.locate)
+        shapes = {COEFFICIENTS: tuple(parts)}
+        shapes |= {candidate.variable: candidate.shapes for candidate in candidates}
+        statistics.append(ScoreStatistics.of(shapes, force))
+        if k == 0:
+            sentences = {candidate.variable: candidate.sentence for candidate in candidates}
+        else:
+            sentences = {name: each for name, each in sentences.items() if name in shapes}
+    return combined(statistics, [COEFFICIENTS, *sentences]), sentences
 
 
-def _damping(problem: Problem, found: Fit, parts: Array) -> Array:
-    """(N, axes) damping of the vessel as written."""
-    kinds = {n: type(e).params() for e in problem.program.effects for n in (e.name, type(e).idea())}
-    own = np.array(
-        [kinds[f.effect][f.name].calibrates == "damping" for f in found.free], dtype=float
-    )
-    return np.asarray(np.tensordot(own, parts, axes=1))
+def _damping_force(problem: Problem, fit: Fit, parts: Array) -> Array:
+    """(N, axes) damping of the vessel as specified; parts (F, N, axes) are its coefficients'."""
+    params = {}
+    for effect in problem.program.effects:
+        params[effect.name] = type(effect).params()
+        params[type(effect).idea()] = type(effect).params()
+    is_damping = np.zeros(len(fit.free))
+    for j, parameter in enumerate(fit.free):
+        is_damping[j] = params[parameter.effect][parameter.name].calibrates == "damping"
+    return np.asarray(np.tensordot(is_damping, parts, axes=1))
 
 
-def _selected(
-    evidence: Evidence, names: Sequence[str], tests: int, ambient: Array
-) -> dict[str, Result]:
-    """Regions one after the other, each likely on top of those before and more than the ambient force."""
+def _select(
+    problem: Problem, statistics: ScoreStatistics, names: Sequence[str], tests: int
+) -> dict[str, ScoreTest]:
+    """Select regions one by one, each significant and larger than the disturbance level."""
+    max_p = problem.config.locate.region_max_p
     chosen: list[str] = []
     while True:
-        rest = {n: evidence.test(n, [KNOWN, *chosen]) for n in names if n not in chosen}
-        told = {
-            n: r for n, r in rest.items() if r.p_value * tests < LIKELY and (r.rms > ambient).any()
-        }
-        if not told:
+        p_values = {}
+        for name in names:
+            if name in chosen:
+                continue
+            result = statistics.test(name, [COEFFICIENTS, *chosen])
+            if result.p_value * tests < max_p and (result.rms > problem.ambient.force).any():
+                p_values[name] = result.p_value
+        if not p_values:
             break
-        chosen.append(min(told, key=lambda n: told[n].p_value))
-    return {n: evidence.test(n, [KNOWN, *(m for m in chosen if m != n)]) for n in chosen}
+        chosen.append(min(p_values, key=lambda name: p_values[name]))
+    results = {}
+    for name in chosen:
+        others = [other for other in chosen if other != name]
+        results[name] = statistics.test(name, [COEFFICIENTS, *others])
+    return results
 
 
-def _rhythm(problem: Problem, found: Fit, tests: int) -> list[Region]:
-    """Whether what the filter did not expect has a period that neither the hull nor its commands have."""
+def _periodic_region(problem: Problem, fit: Fit, tests: int) -> list[Region]:
+    """A period of the prediction errors that neither the hull nor its commands have."""
+    config = problem.config.locate
     if "roll" in problem.program.vessel.dof:
-        # a hull that rolls has a period of its own, and so has whatever depends on its roll
+        return []  # a hull that rolls has a natural period
+    errors = [(mapped.times, _whitened(problem, fit, mapped)) for mapped in problem.recordings]
+    peak = most_significant_peak(errors, config)
+    if peak is None or peak.p_value * tests >= config.region_max_p:
         return []
-    found_in = rhythm([(t.times, _unexpected(problem, found, t)) for t in problem.recordings])
-    if found_in is None or found_in.p_value * tests >= LIKELY:
-        return []
-    commanded = rhythm([(t.times, t.commands) for t in problem.recordings])
-    if (
-        commanded
-        and commanded.p_value < LIKELY
-        and abs(np.log(commanded.period / found_in.period)) < np.log(BAND)
-    ):
-        return []
-    sentence = f"the missing force comes and goes about every {found_in.period:.2g} s"
-    return [_region("period", sentence, found_in.p_value * tests)]
+    commands = [(mapped.times, mapped.commands) for mapped in problem.recordings]
+    commanded = most_significant_peak(commands, config)
+    if commanded and commanded.p_value < config.region_max_p:
+        if abs(np.log(commanded.period / peak.period)) < np.log(config.periodicity_band):
+            return []
+    sentence = f"the missing force is periodic, with a period of about {peak.period:.2g} s"
+    return [_region("period", sentence, peak.p_value * tests)]
 
 
-def _unexpected(problem: Problem, found: Fit, track: MappedRecording) -> Array:
+def _whitened(problem: Problem, fit: Fit, mapped: MappedRecording) -> Array:
     """(N, C) whitened prediction errors."""
-    on = problem.program.switches(found.effects)
-    values = problem.values(track, found.free, found.theta)
-    return track.filter(values, on, found.levels).whitened.reshape(len(track.times), -1)
+    values = problem.values(mapped, fit.free, fit.theta)
+    passed = mapped.filter(values, problem.program.switches(fit.effects), fit.levels)
+    return passed.whitened.reshape(len(mapped.times), -1)
 
 
-def _region(variable: str, sentence: str, p: float) -> Region:
-    sure = "p < 1e-6" if p < 1e-6 else f"p = {min(p, 1.0):.1g}"
-    return Region(variable, f"{sentence}; {sure}", float(f"{min(p, 1.0):.2g}"))
+def _region(variable: str, sentence: str, p_value: float) -> Region:
+    p_value = min(p_value, 1.0)
+    text = "p < 1e-6" if p_value < 1e-6 else f"p = {p_value:.1g}"
+    return Region(variable, f"{sentence}; {text}", float(f"{p_value:.2g}"))

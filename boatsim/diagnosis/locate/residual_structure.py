@@ -1,9 +1,11 @@
-"""Whether what a fit leaves over has structure: a force that goes with a speed, a command, a place, a stretch of time.
+"""Test for structure in the residual force: a dependence on motion, commands, place or time.
 
-A cause that the library has not may be weak beside the tolerated force and yet always the same. Each feature of the
-motion is tried as a force along each axis; the p-value is corrected for how many were tried (Bonferroni).
+A cause without a candidate effect may be weak compared with the assumed disturbance, but it is
+always the same. Each feature of the motion is tested as a force along each axis. The p-value is
+corrected for the number of tests (Bonferroni).
 """
 
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations
@@ -11,25 +13,22 @@ from itertools import combinations
 import numpy as np
 from scipy.special import chdtrc
 
+from boatsim.diagnosis.config import LocateConfig
 from boatsim.diagnosis.filter import MappedRecording, axes_of
-from boatsim.diagnosis.locate.smoothing import information_alone
+from boatsim.diagnosis.locate.smoothing import latent_force, separate_information
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
-LIKELY = 0.01  # corrected p-value from which a force is said to go with something
-FACTOR = 1.5  # of the tolerated force: what is left over is judged against this much
-STRETCHES = 8  # parts of a run in which a force may act
-SMALL = 1e-9  # of the largest information on an axis, below which a feature says nothing
-CONSTANT, SINCE, WITHIN = (
-    "nothing, it is constant",
-    "the time since the beginning",
-    "time: it acts in",
-)
-TURNING = ("roll", "pitch", "yaw")
+# share of the largest information on an axis below which a feature is ignored as rounding
+MIN_INFORMATION = 1e-9
+CONSTANT = "nothing, it is constant"
+SINCE_START = "the time since the beginning"
+WITHIN = "time: it acts in"
+ROTATIONS = ("roll", "pitch", "yaw")
 PLACES = {
-    "surge": "how far north or south she is",
-    "sway": "how far east or west she is",
-    "heave": "how deep she floats",
+    "surge": "the position north or south",
+    "sway": "the position east or west",
+    "heave": "the depth of the hull",
     "roll": "the roll angle",
     "pitch": "the trim",
 }
@@ -37,120 +36,177 @@ PLACES = {
 
 @dataclass(frozen=True)
 class Structure:
-    """The feature that goes best with the force left over."""
+    """The feature that explains the residual force best.
+
+    Attributes:
+        axis: Axis of the force.
+        goes_with: The feature, in words.
+        gain: Largest gain in log likelihood by a force that is proportional to it [nats].
+        p_value: Corrected for the number of tests.
+        tested: Number of tests.
+        significant: Whether the p-value is below its limit.
+    """
 
     axis: str
-    goes_with: str  # in words
-    gain: float  # [nats] that a force along with it gains at most
-    p_value: float  # corrected for all that were tried
-    tried: int
+    goes_with: str
+    gain: float
+    p_value: float
+    tested: int
+    significant: bool
 
     @property
-    def a_law(self) -> bool:
-        """Whether it goes with motion, commands or heading: not with a place or a time, nor with nothing at all."""
-        return not self.goes_with.startswith((CONSTANT, SINCE, WITHIN, *PLACES.values()))
-
-    @property
-    def likely(self) -> bool:
-        """Whether it is hardly there by chance."""
-        return self.p_value < LIKELY
+    def is_effect(self) -> bool:
+        """Whether it depends on motion, commands or heading, not only on place or time."""
+        return not self.goes_with.startswith((CONSTANT, SINCE_START, WITHIN, *PLACES.values()))
 
 
-def structure(problem: Problem, found: Fit) -> Structure:
-    """What the force that a fit leaves over goes with best, at no more than the tolerated force."""
-    nq = problem.program.module.NQ
-    levels = replace(
-        found.levels, force=np.minimum(found.levels.force, FACTOR * problem.ambient.force)
-    )
-    on, latent = problem.program.switches(found.effects), slice(2 * nq, 3 * nq)
-    known, score = dict[tuple[str, str], float](), dict[tuple[str, str], float]()
+def find_structure(problem: Problem, fit: Fit) -> Structure:
+    """Return the feature that explains the residual force of a fit best.
+
+    The level of the residual force is limited to a multiple of the assumed disturbance.
+
+    Args:
+        problem: The problem.
+        fit: The fit.
+    """
+    config = problem.config.locate
+    limit = config.disturbance_factor * problem.ambient.force
+    levels = replace(fit.levels, force=np.minimum(fit.levels.force, limit))
     axes = axes_of(problem.program.vessel)
-    for track in problem.recordings:
-        values = problem.values(track, found.free, found.theta)
-        z, covariances, gains = track.smooth(values, on, levels)
-        named = dict(features(track, np.ascontiguousarray(z[:, : 2 * nq]), levels.time_constant))
-        shapes = np.einsum("na,kb->nkba", np.column_stack(list(named.values())), np.eye(nq))
-        learnt, slope = information_alone(
-            shapes.reshape(len(z), nq, -1),
-            z[:, latent],
-            track.times,
-            covariances,
-            gains,
-            latent,
-            *track.latent_force_rms(values, on, levels),
-            levels.time_constant,
-        )
-        for key, i, s in zip(
-            ((a, n) for a in axes for n in named), learnt.tolist(), slope.tolist(), strict=True
-        ):
-            known[key] = known.get(key, 0.0) + i
-            score[key] = score.get(key, 0.0) + s
-    largest = {a: max(i for (axis, _), i in known.items() if axis == a) for a in axes}
-    gain = {k: 0.5 * score[k] ** 2 / i for k, i in known.items() if i > SMALL * largest[k[0]]}
-    if not gain:
-        return Structure(axes[0], CONSTANT, 0.0, 1.0, 0)
-    axis, name = max(gain, key=lambda k: gain[k])
-    best = gain[axis, name]
-    return Structure(
-        axis, name, best, min(1.0, len(gain) * float(chdtrc(1, 2.0 * best))), len(gain)
-    )
+    information = defaultdict[tuple[str, str], float](float)
+    scores = defaultdict[tuple[str, str], float](float)
+    for mapped in problem.recordings:
+        force = latent_force(problem, fit, mapped, levels)
+        states = np.ascontiguousarray(force.states)
+        named = dict(features(mapped, states, levels.time_constant, config))
+        values = np.column_stack(list(named.values()))
+        shapes = np.einsum("na,kb->nkba", values, np.eye(len(axes)))
+        known, score = separate_information(shapes.reshape(*force.mean.shape, -1), force)
+        keys = [(axis, name) for axis in axes for name in named]
+        for key, i, s in zip(keys, known.tolist(), score.tolist(), strict=True):
+            information[key] += i
+            scores[key] += s
+    gains = {}
+    for axis in axes:
+        own = {key: i for key, i in information.items() if key[0] == axis}
+        largest = max(own.values())
+        for key, i in own.items():
+            if i > MIN_INFORMATION * largest:
+                gains[key] = 0.5 * scores[key] ** 2 / i
+    if not gains:
+        return Structure(axes[0], CONSTANT, 0.0, 1.0, 0, False)
+    axis, name = max(gains, key=lambda key: gains[key])
+    gain = gains[axis, name]
+    p_value = min(1.0, len(gains) * float(chdtrc(1, 2.0 * gain)))
+    return Structure(axis, name, gain, p_value, len(gains), p_value < config.structure_max_p)
 
 
-def features(track: MappedRecording, states: Array, lasting: float) -> Iterator[tuple[str, Array]]:
-    """What a force may go with: (words, (N,) values of size one); `states` (N, 2 NQ), `lasting` [s] of the water."""
-    for name, values in _features(track, states, lasting):
-        size = float(np.sqrt(np.mean(values**2)))
-        if size > 0.0:
-            yield name, values / size
+def features(
+    mapped: MappedRecording, states: Array, time_constant: float, config: LocateConfig
+) -> Iterator[tuple[str, Array]]:
+    """Yield the features on which a force may depend.
+
+    Args:
+        mapped: The recording.
+        states: Smoothed states (N, 2 NQ).
+        time_constant: Time constant of the latent force [s].
+        config: Settings of the features.
+
+    Yields:
+        The feature in words and its values (N,), scaled to rms 1.
+    """
+    for source in (
+        _speed_features(mapped, states),
+        _command_features(mapped, states, time_constant),
+        _heading_features(mapped, states),
+        _place_features(mapped, states),
+        _time_features(mapped, config),
+    ):
+        for name, values in source:
+            rms = float(np.sqrt(np.mean(values**2)))
+            if rms > 0.0:
+                yield name, values / rms
 
 
-def _features(track: MappedRecording, states: Array, lasting: float) -> Iterator[tuple[str, Array]]:
-    axes, t = axes_of(track.program.vessel), track.times
-    speeds = {
-        f"{a} {'rate' if a in TURNING else 'speed'}": w
-        for a, w in zip(axes, track.program.body_rates(states)[:, len(axes) :].T, strict=True)
-    }
-    yield CONSTANT, np.ones(len(t))
+def _speeds(mapped: MappedRecording, states: Array) -> dict[str, Array]:
+    """Body-axes rates (N,) by name."""
+    axes = axes_of(mapped.program.vessel)
+    rates = mapped.program.body_rates(states)[:, len(axes) :]
+    speeds = {}
+    for i, axis in enumerate(axes):
+        noun = "rate" if axis in ROTATIONS else "speed"
+        speeds[f"{axis} {noun}"] = rates[:, i]
+    return speeds
+
+
+def _speed_features(mapped: MappedRecording, states: Array) -> Iterator[tuple[str, Array]]:
+    speeds = _speeds(mapped, states)
+    yield CONSTANT, np.ones(len(mapped.times))
     for name, w in speeds.items():
         yield name, w
         yield f"the size of {name}", np.abs(w)
         yield f"the square of {name}", w * np.abs(w)
         yield f"the cube of {name}", w**3
-    for (one, a), (other, b) in combinations(speeds.items(), 2):
-        yield f"{one} times {other}", a * b
-    for name, c in zip(track.program.vessel.commands, track.commands.T, strict=False):
-        if np.ptp(c) > 0.0:
-            yield name, c
-            yield f"the size of {name}", np.abs(c)
-            yield f"{name} as it was a while ago", _late(c, t, lasting)
-            if "surge speed" in speeds:
-                yield f"{name} times surge speed", c * speeds["surge speed"]
+    for (first, a), (second, b) in combinations(speeds.items(), 2):
+        yield f"{first} times {second}", a * b
+
+
+def _command_features(
+    mapped: MappedRecording, states: Array, time_constant: float
+) -> Iterator[tuple[str, Array]]:
+    surge_speed = _speeds(mapped, states).get("surge speed")
+    for name, c in zip(mapped.program.vessel.commands, mapped.commands.T, strict=False):
+        if not np.ptp(c) > 0.0:
+            continue
+        yield name, c
+        yield f"the size of {name}", np.abs(c)
+        yield f"the delayed {name}", _low_pass(c, mapped.times, time_constant)
+        if surge_speed is not None:
+            yield f"{name} times surge speed", c * surge_speed
+
+
+def _heading_features(mapped: MappedRecording, states: Array) -> Iterator[tuple[str, Array]]:
+    axes = axes_of(mapped.program.vessel)
     if "yaw" in axes:
         psi = states[:, axes.index("yaw")]
-        for what, angle in (("heading", psi), ("twice the heading", 2.0 * psi)):
-            yield f"the cosine of {what}", np.cos(angle)
-            yield f"the sine of {what}", np.sin(angle)
-    for axis, place in PLACES.items():
-        if axis in axes:
-            off = states[:, axes.index(axis)] - states[:, axes.index(axis)].mean()
-            yield place, off
-            if axis in TURNING:  # a lopsided hull's arm is even in heel: no other feature here is
-                yield f"{place} squared", off**2
-                yield f"{place} cubed", off**3
+        for name, angle in (("heading", psi), ("twice the heading", 2.0 * psi)):
+            yield f"the cosine of {name}", np.cos(angle)
+            yield f"the sine of {name}", np.sin(angle)
+
+
+def _place_features(mapped: MappedRecording, states: Array) -> Iterator[tuple[str, Array]]:
+    axes = axes_of(mapped.program.vessel)
+    for axis, name in PLACES.items():
+        if axis not in axes:
+            continue
+        position = states[:, axes.index(axis)]
+        offset = position - position.mean()
+        yield name, offset
+        if axis in ROTATIONS:  # the righting arm of an asymmetric hull has even terms in heel
+            yield f"{name} squared", offset**2
+            yield f"{name} cubed", offset**3
+
+
+def _time_features(mapped: MappedRecording, config: LocateConfig) -> Iterator[tuple[str, Array]]:
+    """Time since the start and parts of the run, for this run alone and for all runs alike."""
+    t = mapped.times
     since = (t - t[0]) / (t[-1] - t[0])
-    for run in (track.name, ""):
-        of = f" of {run}" if run else ""
-        yield f"{SINCE}{of}", since - 0.5
-        for k in range(STRETCHES):
-            within = (since >= k / STRETCHES) & (since < (k + 1) / STRETCHES)
-            begin, end = t[0] + (t[-1] - t[0]) * np.array([k, k + 1]) / STRETCHES
-            span = f"{begin:.3g} to {end:.3g} s" if run else f"part {k + 1} of {STRETCHES}"
-            yield f"{WITHIN} {span}{of or ' of every run'}", within.astype(float)
+    count = config.structure_parts
+    parts = []
+    for k in range(count):
+        parts.append(((since >= k / count) & (since < (k + 1) / count)).astype(float))
+    yield f"{SINCE_START} of {mapped.name}", since - 0.5
+    for k, part in enumerate(parts):
+        begin, end = t[0] + (t[-1] - t[0]) * np.array([k, k + 1]) / count
+        yield f"{WITHIN} {begin:.3g} to {end:.3g} s of {mapped.name}", part
+    yield SINCE_START, since - 0.5
+    for k, part in enumerate(parts):
+        yield f"{WITHIN} part {k + 1} of {count} of every run", part
 
 
-def _late(c: Array, t: Array, lasting: float) -> Array:
-    """(N,) a command as a lag of that time constant [s] would have it."""
-    out = c.copy()
-    for i, share in enumerate(1.0 - np.exp(-np.diff(t) / lasting), 1):
-        out[i] = out[i - 1] + share * (c[i] - out[i - 1])
-    return out
+def _low_pass(values: Array, t: Array, time_constant: float) -> Array:
+    """(N,) values behind a first-order low-pass filter."""
+    filtered = values.copy()
+    for i, share in enumerate(1.0 - np.exp(-np.diff(t) / time_constant), 1):
+        filtered[i] = filtered[i - 1] + share * (values[i] - filtered[i - 1])
+    return filtered

@@ -1,130 +1,197 @@
-"""What a smoothed force says: its average over time with the uncertainty, and how well it fits a force of known shape.
+"""Smoothed latent force: averages with their variance, and its information about force shapes.
 
-Errors of smoothed states hang together in time: those of rows i < j covary by G_i ... G_j-1 P_j (P the covariances, G
-the gains of the Rauch-Tung-Striebel smoother).
+The errors of smoothed states are correlated in time: rows i < j have the covariance
+G_i ... G_j-1 P_j, where P are the covariances and G the gains of the Rauch-Tung-Striebel smoother.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from boatsim.diagnosis.filter import MappedRecording, NoiseLevels
+from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.physics.base import Array
 
 
+@dataclass(frozen=True)
+class LatentForce:
+    """Smoothed latent force of a recording, as a part of the smoothed state, and its prior.
+
+    The prior is an Ornstein-Uhlenbeck process for each of the k axes.
+    """
+
+    times: Array  # (N,) s
+    means: Array  # (N, n) smoothed states
+    covariances: Array  # (N, n, n)
+    gains: Array  # (N, n, n) of the smoother
+    part: slice  # of the state that is the force; positions and rates precede it
+    rms: Array  # (k,) prior rms [N, N m]
+    first_rms: Array  # (k,) prior rms of the first row
+    time_constant: float  # [s]
+
+    @property
+    def mean(self) -> Array:
+        """(N, k) smoothed force."""
+        return self.means[:, self.part]
+
+    @property
+    def states(self) -> Array:
+        """(N, 2 k) smoothed positions and rates."""
+        return self.means[:, : self.part.start]
+
+
+def latent_force(
+    problem: Problem, fit: Fit, mapped: MappedRecording, levels: NoiseLevels
+) -> LatentForce:
+    """Return the smoothed latent force of a fit in a recording.
+
+    Args:
+        problem: The problem.
+        fit: The fit.
+        mapped: The recording.
+        levels: Levels of noise and force of the filter.
+    """
+    nq = problem.program.module.NQ
+    on = problem.program.switches(fit.effects)
+    values = problem.values(mapped, fit.free, fit.theta)
+    means, covariances, gains = mapped.smooth(values, on, levels)
+    rms, first_rms = mapped.latent_force_rms(values, on, levels)
+    part = slice(2 * nq, 3 * nq)
+    return LatentForce(
+        mapped.times, means, covariances, gains, part, rms, first_rms, levels.time_constant
+    )
+
+
 def averaged_rows(times: Array, span: float) -> int:
-    """How many rows an average over `span` s takes, at least one."""
+    """Return the number of rows, at least 1, of an average over `span` s of times (N,) [s]."""
     return max(1, min(len(times), round(span / float(np.median(np.diff(times))))))
 
 
 def running_average(values: Array, rows: int) -> Array:
-    """(N, ...) average over `rows` rows about each row; the first and last rows share the first and last average."""
+    """Return the average over `rows` rows around each row.
+
+    Args:
+        values: Values (N, ...).
+        rows: Number of rows.
+
+    Returns:
+        Averages (N, ...); the first and last rows share the first and the last average.
+    """
     sums = np.cumsum(np.concatenate([np.zeros_like(values[:1]), values]), axis=0)
-    return np.asarray(((sums[rows:] - sums[:-rows]) / rows)[_first(len(values), rows)])
+    return np.asarray(((sums[rows:] - sums[:-rows]) / rows)[_first_rows(len(values), rows)])
 
 
 def variance_of_average(covariances: Array, gains: Array, part: slice, rows: int) -> Array:
-    """(N, k) variance of the `running_average` of a part of the smoothed state.
+    """Return the variance of the `running_average` of a part of the smoothed state.
 
-    With D_w(i) = cov(z_i, z_i + ... + z_i+w-1): D_w(i) = P_i + G_i D_w-1(i + 1).
+    With D_w(i) = cov(z_i, z_i + ... + z_i+w-1), D_w(i) = P_i + G_i D_w-1(i + 1).
+
+    Args:
+        covariances: Covariances (N, n, n) of the smoothed states.
+        gains: Gains (N, n, n) of the smoother.
+        part: Part of the state with k components.
+        rows: Number of rows of the average.
+
+    Returns:
+        Variances (N, k).
     """
     own = covariances[:, :, part]
     single = np.diagonal(covariances, axis1=1, axis2=2)[:, part]
-    with_sum, variance = own, single
+    with_sum = own
+    variance = single
     for _ in range(rows - 1):
         n = len(variance) - 1
         with_sum = own[:n] + gains[:n] @ with_sum[1:]
-        variance = (
-            variance[1:] + 2.0 * np.diagonal(with_sum[:, part], axis1=1, axis2=2) - single[:n]
-        )
-    return np.asarray(np.maximum(variance, 0.0)[_first(len(single), rows)]) / rows**2
+        covariance = np.diagonal(with_sum[:, part], axis1=1, axis2=2)
+        variance = variance[1:] + 2.0 * covariance - single[:n]
+    return np.asarray(np.maximum(variance, 0.0)[_first_rows(len(single), rows)]) / rows**2
 
 
 def variance_of_mean(covariances: Array, gains: Array, part: slice) -> Array:
-    """(k,) variance of the mean over all rows of a part of the smoothed state: that of their sum, row by row."""
+    """Return the variance (k,) of the mean over all rows of a part of the smoothed state.
+
+    Args:
+        covariances: Covariances (N, n, n) of the smoothed states.
+        gains: Gains (N, n, n) of the smoother.
+        part: Part of the state with k components.
+    """
     own = covariances[:, :, part]
-    with_later, total = own[-1], np.diagonal(covariances[-1])[part].copy()
+    with_later = own[-1]
+    total = np.diagonal(covariances[-1])[part].copy()
     for i in range(len(own) - 2, -1, -1):
         with_later = own[i] + gains[i] @ with_later
         total += 2.0 * np.diagonal(with_later[part]) - np.diagonal(own[i][part])
     return np.asarray(np.maximum(total, 0.0) / len(own) ** 2)
 
 
-def _first(n: int, rows: int) -> NDArray[np.int64]:
-    """(n,) first row of the average about each row."""
+def _first_rows(n: int, rows: int) -> NDArray[np.int64]:
+    """(n,) first row of the average around each row."""
     return np.clip(np.arange(n) - (rows - 1) // 2, 0, n - rows)
 
 
-def information(
-    shapes: Array,
-    found: Array,
-    times: Array,
-    covariances: Array,
-    gains: Array,
-    part: slice,
-    rms: Array,
-    first: Array,
-    time_constant: float,
-) -> tuple[Array, Array]:
-    """Fisher information (S, S) and score (S,) of the factors of forces `shapes` (N, k, S) in the recording.
+def joint_information(shapes: Array, force: LatentForce) -> tuple[Array, Array]:
+    """Return Fisher information and score of the factors of force shapes.
 
-    The latent force `found` (N, k) was smoothed without them. Its prior covariance C is Ornstein-Uhlenbeck's with `rms`
-    (k,), that of the first row `first` (k,), so C^-1 is tridiagonal; P are the smoothed covariances. Of a force s that
-    was there, the smoother finds K s, K = 1 - P C^-1, and what it finds by chance has covariance K C. So the likelihood
-    of a force S b is that of a linear model with score S' C^-1 found and information S' C^-1 K S: generalised least
-    squares without inverting.
+    The latent force was smoothed without these shapes. Its prior covariance C is that of an
+    Ornstein-Uhlenbeck process, so C^-1 is tridiagonal. If a force s acts, the smoothed force is K s
+    with K = 1 - P C^-1, where P is the covariance of the smoothed states; without it, the smoothed
+    force has the covariance K C. The likelihood of a force S b is therefore that of a linear model
+    with score S' C^-1 f, f the smoothed force, and information S' C^-1 K S. These are generalised
+    least squares without the inverse of a matrix.
+
+    Args:
+        shapes: Shapes (N, k, S).
+        force: Smoothed latent force.
+
+    Returns:
+        Information (S, S) and score (S,).
     """
-    weights, seen = _weighed(shapes, times, covariances, gains, part, rms, first, time_constant)
-    return np.einsum("nka,nkb->ab", weights, seen), np.einsum("nka,nk->a", weights, found)
+    weights, seen = _weighted(shapes, force)
+    score = np.einsum("nka,nk->a", weights, force.mean)
+    return np.einsum("nka,nkb->ab", weights, seen), score
 
 
-def information_alone(
-    shapes: Array,
-    found: Array,
-    times: Array,
-    covariances: Array,
-    gains: Array,
-    part: slice,
-    rms: Array,
-    first: Array,
-    time_constant: float,
-) -> tuple[Array, Array]:
-    """Information (S,) on and score (S,) of each factor of `information` as if it were the only one."""
-    weights, seen = _weighed(shapes, times, covariances, gains, part, rms, first, time_constant)
-    return np.einsum("nka,nka->a", weights, seen), np.einsum("nka,nk->a", weights, found)
+def separate_information(shapes: Array, force: LatentForce) -> tuple[Array, Array]:
+    """Return information and score of each factor as if it were the only one.
+
+    Args:
+        shapes: Shapes (N, k, S).
+        force: Smoothed latent force.
+
+    Returns:
+        Information (S,) and score (S,); see `joint_information`.
+    """
+    weights, seen = _weighted(shapes, force)
+    score = np.einsum("nka,nk->a", weights, force.mean)
+    return np.einsum("nka,nka->a", weights, seen), score
 
 
-def _weighed(
-    shapes: Array,
-    times: Array,
-    covariances: Array,
-    gains: Array,
-    part: slice,
-    rms: Array,
-    first: Array,
-    time_constant: float,
-) -> tuple[Array, Array]:
-    """C^-1 S and K S (N, k, S) of `information`."""
-    weights = np.zeros((len(times), covariances.shape[1], shapes.shape[2]))
-    weights[:, part] = (
-        _precision(shapes, times, time_constant, (rms / first) ** 2) / (rms**2)[:, None]
-    )
-    ahead = weights.copy()  # P_i w_i + G_i (the same of all later rows)
-    before = np.zeros_like(weights)  # G_i-1' ... of all earlier rows
+def _weighted(shapes: Array, force: LatentForce) -> tuple[Array, Array]:
+    """C^-1 S and K S (N, k, S) of `joint_information`."""
+    covariances = force.covariances
+    gains = force.gains
+    n = len(force.times)
+    weights = np.zeros((n, covariances.shape[1], shapes.shape[2]))
+    weights[:, force.part] = _times_precision(shapes, force) / (force.rms**2)[:, None]
+    # P_i w_i + G_i (the same sum of all later rows)
+    ahead = weights.copy()
     ahead[-1] = covariances[-1] @ weights[-1]
-    for i in range(len(times) - 2, -1, -1):
+    for i in range(n - 2, -1, -1):
         ahead[i] = covariances[i] @ weights[i] + gains[i] @ ahead[i + 1]
-    for i in range(1, len(times)):
+    # G'_i-1 (w_i-1 + the same sum of all earlier rows)
+    before = np.zeros_like(weights)
+    for i in range(1, n):
         before[i] = gains[i - 1].T @ (before[i - 1] + weights[i - 1])
-    seen = shapes - (ahead + covariances @ before)[:, part]
-    return weights[:, part], seen
+    seen = shapes - (ahead + covariances @ before)[:, force.part]
+    return weights[:, force.part], seen
 
 
-def _precision(values: Array, times: Array, time_constant: float, first: Array) -> Array:
-    """Inverse correlation matrix of an Ornstein-Uhlenbeck process times values (N, k, ...).
-
-    `first` (k,) is the usual variance over that of the first row.
-    """
-    decay = np.exp(-np.diff(times) / time_constant).reshape(-1, *([1] * (values.ndim - 1)))
-    fresh = (values[1:] - decay * values[:-1]) / (1.0 - decay**2)
-    out = np.concatenate([values[:1] * first.reshape(-1, *([1] * (values.ndim - 2))), fresh])
-    out[:-1] -= decay * fresh
-    return out
+def _times_precision(values: Array, force: LatentForce) -> Array:
+    """Inverse correlation matrix of the prior times values (N, k, S)."""
+    decay = np.exp(-np.diff(force.times) / force.time_constant)[:, None, None]
+    increments = (values[1:] - decay * values[:-1]) / (1.0 - decay**2)
+    first = (force.rms / force.first_rms) ** 2
+    product = np.concatenate([values[:1] * first[:, None], increments])
+    product[:-1] -= decay * increments
+    return product

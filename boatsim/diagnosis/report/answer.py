@@ -41,8 +41,8 @@ TOLD = 0.5  # a fitted sd above this share of the prior one means that the data 
 def compose(
     problem: Problem,
     ranking: Ranking,
-    forces: Sequence[locate.Force],
-    left: Sequence[locate.Force],
+    forces: Sequence[locate.MissingForce],
+    left: Sequence[locate.MissingForce],
     stretches: Sequence[FreeRun],
     held_out: Sequence[str],
     horizon: float,
@@ -93,7 +93,7 @@ def compose(
     }
     if ranking.unknown:
         answer["unknown"]["rest"] = locate.strength(problem, left)
-    if ranking.structure.likely:
+    if ranking.structure.significant:
         answer["unknown"]["structure"] = _structure(ranking.structure)
     answer["sentence"] = sentence(
         answer, meanings(problem.program.candidates, problem.program.vessel)
@@ -107,7 +107,7 @@ def _structure(found: Structure) -> StructureEntry:
         "goes_with": found.goes_with,
         "gain_nats": round(found.gain, 3),
         "p_value": float(f"{found.p_value:.2g}"),
-        "tried": found.tried,
+        "tried": found.tested,
     }
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from boatsim.diagnosis.candidates import Library, called
 from boatsim.diagnosis.filter import axes_of
-from boatsim.diagnosis.locate.missing_force import UNITS
+from boatsim.diagnosis.locate.missing_force import FORCE_UNITS
 from boatsim.diagnosis.locate.nominal_forces import full_thrust
 from boatsim.diagnosis.problem import Problem
 from boatsim.diagnosis.report.schema import AmbientEntry, Answer, LeftOutEntry, RulesEntry
@@ -28,8 +28,8 @@ def _rules(problem: Problem, number_tried: int) -> RulesEntry:
     thrust = full_thrust(problem.recordings[0])
     ambient: dict[str, AmbientEntry] = {}
     for axis, rms in zip(axes_of(vessel), levels.force.tolist(), strict=True):
-        ambient[axis] = {"rms": float(f"{rms:.3g}"), "unit": UNITS[axis]}
-        if thrust > 0.0 and UNITS[axis] == "N":
+        ambient[axis] = {"rms": float(f"{rms:.3g}"), "unit": FORCE_UNITS[axis]}
+        if thrust > 0.0 and FORCE_UNITS[axis] == "N":
             ambient[axis]["share_of_full_thrust"] = float(f"{rms / thrust:.3g}")
     return {
         "ambient": ambient,

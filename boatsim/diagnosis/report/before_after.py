@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from boatsim.diagnosis.config import DEFAULT
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import gauss_newton
 from boatsim.diagnosis.free_runs import errors, free_runs
-from boatsim.diagnosis.locate.residual_structure import FACTOR
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.ranking import Ranking
 from boatsim.recordings.table import Recording
@@ -136,7 +136,7 @@ def remarks(
     if beside > ranking.told_from and ranking.description:
         out.append(
             "A force larger than the tolerated one stays unexplained beside the law that was written down "
-            f"({beside:.0f} nats beyond {FACTOR:g} times the ambient force)."
+            f"({beside:.0f} nats beyond {DEFAULT.locate.disturbance_factor:g} times the ambient force)."
         )
     elif beside > ranking.told_from:
         why = (
@@ -146,7 +146,7 @@ def remarks(
         )
         out.append(
             "A force larger than the tolerated one stays unexplained after all this "
-            f"({beside:.0f} nats beyond {FACTOR:g} times the ambient force): "
+            f"({beside:.0f} nats beyond {DEFAULT.locate.disturbance_factor:g} times the ambient force): "
             f"{why}."
         )
     for track in fitted:

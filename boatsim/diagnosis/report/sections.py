@@ -7,9 +7,8 @@ from itertools import groupby
 
 import numpy as np
 
-from boatsim.diagnosis.experiment_design.next_experiment import WORTH
+from boatsim.diagnosis.config import DEFAULT, Plain, as_plain
 from boatsim.diagnosis.free_runs import FreeRun
-from boatsim.diagnosis.locate.residual_structure import FACTOR
 from boatsim.diagnosis.report import figures, svg_plots
 from boatsim.diagnosis.report.blocks import (
     Block,
@@ -185,6 +184,11 @@ def _about_deviations(f: Findings, effect: EffectEntry) -> str:
     )
 
 
+def _setting(f: Findings, name: str) -> Plain:
+    """Value of a setting with which the diagnosis was made."""
+    return f.answer.get("config", as_plain(DEFAULT))[name]
+
+
 def _unexplained(f: Findings) -> Iterator[Block]:
     """Yield the formulas for what no candidate explains, and the evidence for an unknown cause."""
     unknown = f.answer["unknown"]
@@ -195,7 +199,7 @@ def _unexplained(f: Findings) -> Iterator[Block]:
     if unknown["gain_nats"] > unknown["told_from_nats"]:
         yield Text(
             "Even with all identified effects, the recordings require an additional random force of "
-            f"more than {FACTOR:g} times the assumed disturbance level "
+            f"more than {_setting(f, 'locate.disturbance_factor'):g} times the assumed disturbance level "
             f"({evidence(unknown['gain_nats'])}). Such a force is reported from "
             f"{nats(unknown['told_from_nats'])} nats on. This threshold increases with the evidence "
             "that the identified effects explain, because their laws are never exact. The section on "
@@ -562,7 +566,7 @@ def _next(f: Findings) -> Iterator[Block]:
     if not wanted:
         if f.answer["effects"]:
             yield Text(
-                f"None of the manoeuvres considered is expected to add more than {WORTH:g} nat of "
+                f"None of the manoeuvres considered is expected to add more than {_setting(f, 'plan.min_gain'):g} nat of "
                 "evidence on the identified effects and their rivals."
             )
         return

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from boatsim.diagnosis.locate.residual_structure import FACTOR
 from boatsim.diagnosis.problem import Fit, Problem
 
 # log of the odds, seven to one, at which an effect is named, where each of those tried is as likely
@@ -58,6 +57,11 @@ def front(tried: Mapping[str, Fit], base: Fit) -> list[str]:
 def left_over(problem: Problem, best: Fit) -> float:
     """Nats that the latent force gains beyond the tolerated level: what nothing in the library explains."""
     on = problem.program.switches(best.effects)
-    held = replace(best.levels, force=np.minimum(best.levels.force, FACTOR * problem.ambient.force))
+    held = replace(
+        best.levels,
+        force=np.minimum(
+            best.levels.force, problem.config.locate.disturbance_factor * problem.ambient.force
+        ),
+    )
     free = problem.log_likelihood(best.free, best.theta, on, best.levels)
     return free - problem.log_likelihood(best.free, best.theta, on, held)

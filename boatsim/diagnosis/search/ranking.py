@@ -7,7 +7,7 @@ from boatsim.diagnosis.covariance_inflation import inflate_covariance
 from boatsim.diagnosis.description import Description
 from boatsim.diagnosis.filter import MappedRecording
 from boatsim.diagnosis.fit import converge, gauss_newton
-from boatsim.diagnosis.locate.residual_structure import Structure, structure
+from boatsim.diagnosis.locate.residual_structure import Structure, find_structure
 from boatsim.diagnosis.noise_levels import fit_noise
 from boatsim.diagnosis.problem import Fit, Problem
 from boatsim.diagnosis.search.candidate_sets import Sets
@@ -91,13 +91,13 @@ def rank(
         best, named = settled(sets, stood)
     report("judging what is left over", JUDGING)
     best, named = _judged(sets, best, named, held_out)
-    left, goes = left_over(problem, best), structure(problem, best)
+    left, goes = left_over(problem, best), find_structure(problem, best)
     while (waves := waves_of(sets, best)) and _stands_for_a_law(sets, best, waves, goes):
         sets.banned.add(waves)
         best, named = _judged(
             sets, *settled(sets, selected(sets, sets.without(best, waves))), held_out
         )
-        left, goes = left_over(problem, best), structure(problem, best)
+        left, goes = left_over(problem, best), find_structure(problem, best)
     named = told(sets, best, named, held_out)
     first = {n: f.evidence - sets.base.evidence for n, f in sets.looked(sets.base).items()}
     last = sets.looked(best)
@@ -143,12 +143,12 @@ def _stands_for_a_law(sets: Sets, best: Fit, waves: str, goes: Structure) -> boo
     """Whether a random force leaves over a good part of what it gains, which goes with a motion, command or heading."""
     gain = float(best.evidence - sets.without(best, waves).evidence)
     explained = float(best.evidence - sets.base.evidence)
-    return goes.a_law and told_apart(goes, explained) and goes.gain > LEFT_OF_IT * gain
+    return goes.is_effect and told_apart(goes, explained) and goes.gain > LEFT_OF_IT * gain
 
 
 def told_apart(goes: Structure, explained: float) -> bool:
     """Whether what is left over by a set that explained so many nats, however weak, goes with something."""
-    return goes.likely and goes.gain > told_from(explained, ALONG)
+    return goes.significant and goes.gain > told_from(explained, ALONG)
 
 
 def selection(problem: Problem, candidates: tuple[str, ...]) -> tuple[Fit, Fit]:

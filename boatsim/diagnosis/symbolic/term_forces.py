@@ -87,7 +87,7 @@ class Way:
     @cached_property
     def held(self) -> Array:
         """(HELD, N) actuators."""
-        return nominal_forces.actuators(self.track, self.found.effects, self.values).T
+        return nominal_forces.actuator_states(self.track, self.found.effects, self.values).T
 
     @cached_property
     def _thrusts(self) -> dict[tuple[str, str], Array]:
@@ -169,7 +169,7 @@ class Way:
             whole[program.index(slot.name, "coefficient")] = 1.0
             states, held = np.ascontiguousarray(self.states), np.ascontiguousarray(self.held.T)
             nothing, everything = (
-                nominal_forces.along(self.track, states, held, whole, effects)
+                nominal_forces.body_forces(self.track, states, held, whole, effects)
                 for effects in ((), (slot.name,))
             )
             self._thrusts[side, sense] = everything - nothing

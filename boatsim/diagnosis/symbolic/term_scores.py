@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from boatsim.diagnosis.filter import axes_of
-from boatsim.diagnosis.locate.smoothing import information_alone
+from boatsim.diagnosis.locate.smoothing import LatentForce, separate_information
 from boatsim.diagnosis.problem import froude_scale
 from boatsim.diagnosis.symbolic.term_forces import Way
 from boatsim.physics.base import AXES, Array
@@ -61,15 +61,15 @@ def _batch(ways: Sequence[Way], terms: Sequence[Described]) -> list[Weighed]:
         rows += (sizes != 0.0).sum(axis=1)
         nq, levels, on = way.problem.program.module.NQ, way.found.levels, way.on
         latent = slice(2 * nq, 3 * nq)
-        learnt, slope = information_alone(
-            shapes,
-            way.left,
+        force = LatentForce(
             way.track.times,
+            np.hstack([way.states, way.left]),
             *way.smoother,
             latent,
             *way.track.latent_force_rms(way.values, on, levels),
             levels.time_constant,
         )
+        learnt, slope = separate_information(shapes, force)
         known, score = known + learnt, score + slope
     out, vessel = [], ways[0].problem.program.vessel
     numbers = np.column_stack([known, score, squares, rows]).tolist()
