@@ -127,7 +127,9 @@ def driven_commands(vessel: Vessel) -> tuple[str, ...]:
     """Return the commands of a manoeuvre; a command that feeds an actuator (PWM) replaces it."""
     fed = set()
     for effect in vessel.effects:
-        fed |= {target for target in vessel.targets(effect) if vessel.feeding_command(effect, target)}
+        fed |= {
+            target for target in vessel.targets(effect) if vessel.feeding_command(effect, target)
+        }
     return tuple(name for name in vessel.commands if name not in fed)
 
 
