@@ -1,1 +1,1 @@
-"""Rules for the numbers of a boat of which only the particulars are known: one idea a file, each with its source."""
+"""Rules that estimate the coefficients of a boat from its main particulars."""

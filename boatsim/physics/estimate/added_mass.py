@@ -1,4 +1,4 @@
-"""Added mass: a regression over ships for slender hulls, strips for others."""
+"""Added mass from a regression over ships for slender hulls, from strip theory for others."""
 
 from math import pi
 
@@ -9,7 +9,11 @@ STRIPS = "strips of 0.5 pi rho T^2, J. N. Newman, Marine Hydrodynamics, 1977, se
 
 
 def surge(hull: Hull) -> Estimate:
-    """[kg] of all hulls."""
+    """Return the surge added mass [kg] of all hulls.
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     value = (
         hull.hulls
         * 2.7
@@ -21,7 +25,11 @@ def surge(hull: Hull) -> Estimate:
 
 
 def sway(hull: Hull) -> Estimate:
-    """[kg] of all hulls."""
+    """Return the sway added mass [kg] of all hulls.
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     strips = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2 * hull.length
     if not hull.slender:
         return Estimate(strips, STRIPS)
@@ -30,7 +38,13 @@ def sway(hull: Hull) -> Estimate:
 
 
 def yaw(hull: Hull) -> Estimate:
-    """[kg m^2] about the middle of all hulls; two hulls turn with their surge masses on an arm."""
+    """Return the yaw added mass [kg m^2] of all hulls about midship.
+
+    Of two hulls each adds its surge mass times the square of its distance from the centreline.
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     strips = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2 * hull.length**3
     apart = surge(hull).value * (0.5 * hull.spacing) ** 2
     if not hull.slender:

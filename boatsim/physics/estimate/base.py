@@ -1,4 +1,4 @@
-"""What all rules take and give: a hull as its owner knows it, and a number with the rule it came from."""
+"""Types that all rules share: a hull by its main particulars, and an estimate with its rule."""
 
 from typing import NamedTuple
 
@@ -8,14 +8,14 @@ SLENDER = 5.0  # length per beam of one hull from which regressions over ships h
 
 
 class Estimate(NamedTuple):
-    """A number and the rule behind it, as a file says it."""
+    """Estimated number and the rule behind it, as written to a vessel file."""
 
     value: float
     rule: str
 
 
 class Hull(NamedTuple):
-    """One boat of one hull, or of two alike side by side."""
+    """Boat with one hull, or with two equal hulls side by side."""
 
     length: float  # [m] of the waterline
     beam: float  # [m] overall
@@ -31,10 +31,10 @@ class Hull(NamedTuple):
 
     @property
     def slender(self) -> bool:
-        """Whether it is long enough for what was measured on ships."""
+        """Whether the hull is slender enough for regressions over ships."""
         return self.length >= SLENDER * self.breadth
 
     @property
     def spacing(self) -> float:
-        """From centre line to centre line of two hulls [m]."""
+        """Distance between the centrelines of two hulls [m]; 0 for one hull."""
         return self.beam - self.breadth if self.hulls == 2 else 0.0

@@ -1,4 +1,4 @@
-"""How wide and how deep a boat of known length, beam and mass lies."""
+"""Breadth and draught of a hull of known length, beam and mass."""
 
 from boatsim.errors import BadInput
 from boatsim.physics.estimate.base import DENSITY, Estimate, Hull
@@ -10,7 +10,12 @@ FULLEST = 1.0  # a box
 
 
 def breadth(beam: float, hulls: int) -> Estimate:
-    """Beam of one hull [m]."""
+    """Return the breadth of one hull [m].
+
+    Args:
+        beam: Beam overall [m].
+        hulls: Number of hulls, 1 or 2.
+    """
     if hulls == 1:
         return Estimate(beam, "the boat's own")
     return Estimate(
@@ -19,7 +24,14 @@ def breadth(beam: float, hulls: int) -> Estimate:
 
 
 def draught(length: float, beam: float, mass: float, hulls: int) -> Estimate:
-    """Draught [m] that carries the mass at the usual fullness of small hulls."""
+    """Return the draught [m] that carries the mass at the usual block coefficient of small hulls.
+
+    Args:
+        length: Length of the waterline [m].
+        beam: Beam overall [m].
+        mass: Mass [kg].
+        hulls: Number of hulls, 1 or 2.
+    """
     value = mass / (DENSITY * BLOCK * hulls * length * breadth(beam, hulls).value)
     return Estimate(
         value, f"mass / (rho C_b L B), C_b = {BLOCK:g} as a pontoon of the Otter (MSS otter.m)"
@@ -27,7 +39,18 @@ def draught(length: float, beam: float, mass: float, hulls: int) -> Estimate:
 
 
 def hull(length: float, beam: float, mass: float, hulls: int, stated: float | None) -> Hull:
-    """The hull by its particulars. Raises BadInput where mass and size can not be of one boat."""
+    """Return the hull with its main particulars.
+
+    Args:
+        length: Length of the waterline [m].
+        beam: Beam overall [m].
+        mass: Mass [kg].
+        hulls: Number of hulls, 1 or 2.
+        stated: Specified draught [m]; None: estimated.
+
+    Raises:
+        BadInput: Mass and size do not fit together.
+    """
     found = Hull(
         length,
         beam,

@@ -1,4 +1,4 @@
-"""Inertia of the rigid boat by radii of gyration."""
+"""Moments of inertia of the rigid boat from radii of gyration."""
 
 from boatsim.physics.estimate.base import Estimate, Hull
 
@@ -7,13 +7,21 @@ ROLL = 0.4  # of the beam; same sources have 0.35 to 0.40
 
 
 def yaw(hull: Hull) -> Estimate:
-    """[kg m^2] about the mass centre."""
+    """Return the yaw inertia about the mass centre [kg m^2].
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     value = hull.mass * (YAW * hull.length) ** 2
     return Estimate(value, f"mass x ({YAW:g} L)^2, ITTC 7.5-02-07-02.1")
 
 
 def roll(hull: Hull) -> Estimate:
-    """[kg m^2] about the mass centre."""
+    """Return the roll inertia about the mass centre [kg m^2].
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     return Estimate(
         hull.mass * (ROLL * hull.beam) ** 2, f"mass x ({ROLL:g} B)^2, ITTC 7.5-02-07-02.1"
     )

@@ -1,4 +1,4 @@
-"""What holds a hull back going ahead: the speed it reached where the owner knows one, else friction and waves."""
+"""Resistance ahead, from the speed at full thrust if known, else from friction and wave making."""
 
 from math import log10, sqrt
 
@@ -6,8 +6,8 @@ from boatsim.physics.estimate.base import DENSITY, VISCOSITY, Estimate, Hull
 from boatsim.physics.estimate.thrust import LEFT
 from boatsim.physics.particulars import GRAVITY
 
-SERVICE = 0.3  # Froude number of an easy speed: waves begin to cost
-FORM = 0.2  # friction of a hull's shape beside that of a plate, 1 + k of the ITTC 1978 method
+SERVICE = 0.3  # Froude number of the service speed, at which wave making begins
+FORM = 0.2  # form factor k on the friction of a flat plate, ITTC 1978 method
 # residuary resistance coefficient at that speed: M. Insel, A. F. Molland 1992, slender hulls
 WAVES = 4e-3
 # part of it that goes with the first power; friction of a long hull with the 1.85th
@@ -16,17 +16,29 @@ LINEAR_SLENDER = 0.1
 
 
 def service_speed(hull: Hull) -> float:
-    """[m/s] at which coefficients that depend on the speed are taken."""
+    """Return the speed [m/s] at which coefficients that depend on the speed are evaluated.
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     return SERVICE * sqrt(GRAVITY * hull.length)
 
 
 def wetted(hull: Hull) -> float:
-    """Wetted surface of all hulls [m^2], Denny and Mumford: 1.7 L T + V / T."""
+    """Return the wetted surface of all hulls [m^2] by Denny and Mumford, 1.7 L T + V / T.
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     return hull.hulls * 1.7 * hull.length * hull.draught + hull.mass / DENSITY / hull.draught
 
 
 def at_service(hull: Hull) -> Estimate:
-    """Resistance at the service speed [N]."""
+    """Return the resistance at the service speed [N].
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     speed = service_speed(hull)
     friction = 0.075 / (log10(speed * hull.length / VISCOSITY) - 2.0) ** 2
     total = (1.0 + FORM) * friction + WAVES
@@ -37,9 +49,15 @@ def at_service(hull: Hull) -> Estimate:
 def coefficients(
     hull: Hull, thrust: float | None, top_speed: float | None
 ) -> tuple[Estimate, Estimate]:
-    """Linear [N s/m] and quadratic [N s^2/m^2] surge damping, each a part of the resistance at one speed.
+    """Return linear [N s/m] and quadratic [N s^2/m^2] surge damping, each a part of the resistance.
 
-    That is the speed reached at full `thrust` [N, at rest] where both are known, else the service speed.
+    The resistance is that at the speed reached with full thrust if both are known, else that at the
+    service speed.
+
+    Args:
+        hull: Hull with its main particulars.
+        thrust: Full thrust at rest [N], or None.
+        top_speed: Speed reached with it [m/s], or None.
     """
     if thrust is not None and top_speed is not None:
         force = LEFT * thrust

@@ -1,4 +1,4 @@
-"""A rudder of which only the place is known."""
+"""Area and force of a rudder of which only the place is known."""
 
 from math import pi
 
@@ -12,13 +12,22 @@ REACHES = 0.5
 
 
 def area(hull: Hull) -> Estimate:
-    """Of the blade [m^2]."""
+    """Return the rudder area [m^2].
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     value = hull.length * hull.draught / 100.0 * (1.0 + 25.0 * (hull.breadth / hull.length) ** 2)
     return Estimate(value, "L T / 100 x (1 + 25 (B / L)^2), Det Norske Veritas 1975")
 
 
 def slope(blade: float, speed: float) -> Estimate:
-    """Force to starboard per angle [N/rad] of a blade [m^2] in water that passes at a speed [m/s]."""
+    """Return the force to starboard per angle [N/rad].
+
+    Args:
+        blade: Rudder area [m^2].
+        speed: Speed of the water at the rudder [m/s].
+    """
     value = particulars.rudder_slope(blade, ASPECT, speed, DENSITY)
     return Estimate(
         value, f"A. Fujii, T. Tsuda 1961, {blade:.3g} m^2 of aspect {ASPECT:g} at {speed:.3g} m/s"
@@ -26,10 +35,11 @@ def slope(blade: float, speed: float) -> Estimate:
 
 
 def race() -> Estimate:
-    """Normal force on a blade per thrust of the propeller ahead of it and sine of its angle, from rest.
+    """Return the normal force of a rudder over thrust and sine of its angle, at rest.
 
-    A blade as high as the propeller's diameter D has an area of D^2 / aspect; the race of a propeller at rest has
-    V^2 = 8 T / (pi rho D^2) far behind, and `REACHES` of that speed at the blade.
+    A rudder as high as the propeller diameter D has the area D^2 / aspect. The slipstream of a
+    propeller at rest has V^2 = 8 T / (pi rho D^2) far behind, and `REACHES` of that velocity at the
+    rudder.
     """
     value = particulars.lift_slope(ASPECT) * REACHES**2 * 4.0 / (pi * ASPECT)
     return Estimate(

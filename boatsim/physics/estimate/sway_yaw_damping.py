@@ -1,4 +1,4 @@
-"""What resists a hull in sway and yaw: lift that goes with the speed ahead, what is left at rest, drag."""
+"""Sway and yaw damping: lift proportional to the forward speed, linear damping at rest, drag."""
 
 from math import pi, sqrt
 from typing import NamedTuple
@@ -15,7 +15,7 @@ SECTION = 0.8  # drag coefficient of a section across the flow: Otter 0.85, S. F
 
 
 class Derivatives(NamedTuple):
-    """Clarke's derivatives in sway and yaw per speed ahead, positive where they resist; they hold the Munk moment."""
+    """Clarke's derivatives per forward speed, positive for damping, Munk moment included."""
 
     sway: float  # [N s^2/m^2] -Y_uv
     yaw: float  # [N s^2] -N_ur
@@ -24,7 +24,7 @@ class Derivatives(NamedTuple):
 
 
 class Lift(NamedTuple):
-    """A side force that goes with the speed ahead and the drift where it acts, and what else resists turning."""
+    """Side force proportional to forward speed and local drift, and the remaining yaw damping."""
 
     sway: Estimate  # [N s^2/m^2]
     at: Estimate  # [m] ahead of the middle
@@ -32,7 +32,11 @@ class Lift(NamedTuple):
 
 
 def clarke(hull: Hull) -> Derivatives:
-    """Of all hulls, without the Coriolis force of the rigid body."""
+    """Return the derivatives of all hulls, without the Coriolis force of the rigid body.
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     L, T = hull.length, hull.draught
     wide, deep = hull.breadth / L, hull.breadth / T
     scale = hull.hulls * pi * (T / L) ** 2 * 0.5 * DENSITY * L**2
@@ -45,7 +49,13 @@ def clarke(hull: Hull) -> Derivatives:
 
 
 def lift(hull: Hull) -> Lift:
-    """Clarke's derivatives of a slender hull less the Munk moment of its added mass, else a wing of low aspect."""
+    """Return the lift derivatives of the hull.
+
+    For a slender hull they are Clarke's less the Munk moment, else those of a low-aspect wing.
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     if not hull.slender:
         force = hull.hulls * 0.5 * pi * DENSITY * hull.draught**2
         return Lift(
@@ -67,9 +77,13 @@ def lift(hull: Hull) -> Lift:
 
 
 def at_rest(hull: Hull) -> tuple[Estimate, Estimate]:
-    """Linear damping in sway [N s/m] and yaw [N m s] of a hull that makes no way.
+    """Return the linear damping in sway [N s/m] and yaw [N m s] of a hull without forward speed.
 
-    Sway and yaw die out in 1 s on a boat of 2 m, by Froude's law on others, but on slender ones far later.
+    Sway and yaw decay with a time constant of 1 s for a boat of 2 m, scaled by Froude's law; much
+    more slowly for slender hulls.
+
+    Args:
+        hull: Hull with its main particulars.
     """
     if hull.slender:
         speed, own = resistance.service_speed(hull), lift(hull)
@@ -77,7 +91,10 @@ def at_rest(hull: Hull) -> tuple[Estimate, Estimate]:
         rule = f"{SLOW:g} of the lift at an easy {speed:.3g} m/s"
         return Estimate(SLOW * speed * own.sway.value, rule), Estimate(SLOW * speed * turning, rule)
     time = sqrt(hull.length / SECOND)
-    rule = f"mass with that of the water / {time:.3g} s, which is 1 s on a boat of {SECOND:g} m (MSS otter.m)"
+    rule = (
+        f"mass with that of the water / {time:.3g} s, "
+        f"which is 1 s on a boat of {SECOND:g} m (MSS otter.m)"
+    )
     return (
         Estimate((hull.mass + added_mass.sway(hull).value) / time, rule),
         Estimate((inertia.yaw(hull).value + added_mass.yaw(hull).value) / time, rule),
@@ -85,5 +102,5 @@ def at_rest(hull: Hull) -> tuple[Estimate, Estimate]:
 
 
 def section_drag() -> Estimate:
-    """Drag coefficient of the sections in cross flow."""
+    """Return the drag coefficient of the sections in cross flow."""
     return Estimate(SECTION, "Otter 0.85 (MSS otter.m); S. F. Hoerner, Fluid-Dynamic Drag, 1965")

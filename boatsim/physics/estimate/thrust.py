@@ -1,4 +1,4 @@
-"""Full thrust of a boat whose owner states none, and what is left of it under way."""
+"""Full thrust of a boat without a specified value, and its decrease with speed."""
 
 from math import sqrt
 
@@ -8,12 +8,16 @@ from boatsim.physics.particulars import GRAVITY
 # of the thrust at rest, at top speed: K_T of a Wageningen B-screw of P/D 0.7 at J 0.4 by that at J
 # 0
 LEFT = 0.5
-FAST = 0.4  # Froude number of a top speed that nobody states: a hull begins to climb its own wave
+FAST = 0.4  # Froude number of the top speed if none is given: the hump of the wave resistance
 OF_WEIGHT = 0.4  # Otter: 24.4 kgf of 55 kg, MSS otter.m
 
 
 def full(hull: Hull) -> Estimate:
-    """Of all thrusters together [N]."""
+    """Return the thrust of all thrusters together [N].
+
+    Args:
+        hull: Hull with its main particulars.
+    """
     return Estimate(
         OF_WEIGHT * hull.mass * GRAVITY,
         f"nobody stated it: {OF_WEIGHT:g} of the weight, as the Otter (MSS otter.m)",
@@ -21,11 +25,18 @@ def full(hull: Hull) -> Estimate:
 
 
 def loss(hull: Hull, top_speed: float | None) -> Estimate:
-    """Share of the thrust that is lost per speed ahead [s/m]."""
-    speed, said = (
-        (top_speed, "stated")
-        if top_speed is not None
-        else (FAST * sqrt(GRAVITY * hull.length), "by rule")
-    )
-    rule = f"{1.0 - LEFT:g} of it at a top speed of {speed:.3g} m/s, {said}: M. M. Bernitsas et al. 1981"
+    """Return the share of the thrust lost per forward speed [s/m].
+
+    Args:
+        hull: Hull with its main particulars.
+        top_speed: Top speed [m/s], or None.
+    """
+    if top_speed is None:
+        speed = FAST * sqrt(GRAVITY * hull.length)
+        origin = "by rule"
+    else:
+        speed = top_speed
+        origin = "stated"
+    share = f"{1.0 - LEFT:g} of it at a top speed of {speed:.3g} m/s"
+    rule = f"{share}, {origin}: M. M. Bernitsas et al. 1981"
     return Estimate((1.0 - LEFT) / speed, rule)

@@ -1,1 +1,1 @@
-"""What an effect may be. A kind says what it adds to a vessel's composed program; a new one is a new file here."""
+"""Kinds of effects; each defines what its effects add to the compiled program of a vessel."""

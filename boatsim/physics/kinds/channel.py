@@ -1,4 +1,4 @@
-"""Channel: a signal on its way from command to actuator."""
+"""Channel effects: changes of a signal between command and actuator."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -12,18 +12,21 @@ WHOLE = "*"  # the station behind those of all actuators
 
 
 def actuators(program: Composed) -> Sequence[Station]:
-    """Each signal begins as its command or reading, held over the step, and ends in the rows of `act`."""
+    """Return the stations of the function `actuate`, one for each signal and one behind all.
+
+    Each signal starts as its command or reading, held over the step, and ends in the rows of `act`.
+
+    Args:
+        program: Program that is composed.
+    """
     stations = []
     for name in program.signals:
         place = program.held.index(name)
         rows = (("", "begin"), ("held + ", "middle"), ("2 * held + ", "end"))
         end = [f"act[{row}{place}] = x.{when}" for row, when in rows]
-        turned = [
-            program.held.index(f"{part}_{name}")
-            for part in ("cos", "sin")
-            if f"{part}_{name}" in program.held
-        ]
-        if turned:  # first: it looks at the end of the step before, which the rows still hold
+        parts = (f"cos_{name}", f"sin_{name}")
+        turned = [program.held.index(part) for part in parts if part in program.held]
+        if turned:  # before the others, because it reads the end of the previous step from the rows
             places = ", ".join(f"np.int64({k})" for k in (place, *turned))
             end.insert(0, f"hold_turned(x, act, held, {places})")
         begin = (f"c = commands[{program.commands.index(name)}]", "x = Course(c, c, c)")
@@ -32,7 +35,11 @@ def actuators(program: Composed) -> Sequence[Station]:
 
 
 def sums(program: Composed) -> Iterator[str]:
-    """What several actuators come to together."""
+    """Yield the lines that compute sums over several actuators.
+
+    Args:
+        program: Program that is composed.
+    """
     for name, parts in program.sums.items():
         for row in ("", "held + ", "2 * held + "):
             total = " + ".join(f"act[{row}{program.held.index(part)}]" for part in parts)
@@ -40,20 +47,27 @@ def sums(program: Composed) -> Iterator[str]:
 
 
 def pausing(program: Composed) -> Sequence[Station]:
-    """Each signal's command or reading."""
-    begins = {name: (f"x = commands[{program.commands.index(name)}]",) for name in program.signals}
-    return [*(Station(begin, (), name) for name, begin in begins.items()), Station(channel=WHOLE)]
+    """Return the stations of the function `pause`: each signal starts as its command or reading.
+
+    Args:
+        program: Program that is composed.
+    """
+    stations = []
+    for name in program.signals:
+        begin = (f"x = commands[{program.commands.index(name)}]",)
+        stations.append(Station(begin, (), name))
+    return [*stations, Station(channel=WHOLE)]
 
 
-# Stages: what is wrong with a command comes before the actuator that follows it, what is wrong with
-# its deed after it
-MAPS = -3  # what makes a signal out of a raw command, at once
-# what shifts a command in time: what follows sees it arrive, and it sees commands alone
+# Stages: errors of a command come before the actuator that follows it, errors of its output
+# after it
+MAPS = -3  # static curves from a raw command to a signal
+# delays of a command, which act on commands only; later effects see the delayed command
 DELAYS = -2
-# what the actuator never hears of: a dead band, play in the linkage; the actuator itself is 0
+# errors between command and actuator: dead band, play in the linkage; an actuator has stage 0
 COMMANDS = -1
-DEEDS = 1  # what an actuator that has followed gives: weak astern, uneven, askew
-INSTANT = "1e-9"  # [s] of a signal that is asked for as it is now
+DEEDS = 1  # errors of the output of an actuator: weak astern, imbalance, offset
+INSTANT = "1e-9"  # [s] step with which the present signal is evaluated
 ACTUATE = Part(
     "actuate", "commands, memory, dt, p, on, act, held", ("pass",), "", stations=actuators
 )
@@ -62,14 +76,17 @@ PAUSE = Part("pause", "commands, memory, p, on", ("left = np.inf",), "left", sta
 
 @dataclass(frozen=True)
 class Channel(Kind):
-    """What happens to each signal in `on`: compiled `channel(x, side, source, memory, at, dt, values) -> Course`.
+    """Effect on each signal in `on`: compiled `channel(x, side, source, memory, at, dt, values)`.
 
-    x is the signal so far over the step dt [s] that begins now; side -1 port, +1 starboard, 0 middle of what it
-    drives; source the raw command of `fed_by` for it; memory[at:at + slots] this actuator's own memory.
-    `pause(x, memory, at, values)`, where there is one, says for how many s the three points of a `Course` tell the
-    signal while x, what reaches it now, stands still: until it jumps or bends (a delayed command arrives, a ramp
-    ends), or over one lag (`followed`). No step reaches beyond. `passes(x, memory, at, values)` is what it passes on
-    now; without it the law is asked, and its memory put back.
+    `channel` returns a `Course`. x is the signal so far over the step dt [s] that begins now; side
+    is -1 port, +1 starboard, 0 on the centreline; source is the raw command of `fed_by` for the
+    signal; memory[at:at + slots] is the memory of this actuator.
+
+    `pause(x, memory, at, values)`, if defined, is the time [s] for which the three points of a
+    `Course` describe the signal while the signal x that reaches it now is constant: until it jumps
+    or has a kink (a delayed command arrives, a ramp ends), or over one time constant (`followed`).
+    No step is longer. `passes(x, memory, at, values)` is the present output; without it the law is
+    evaluated and its memory restored.
     """
 
     parts: ClassVar = (ACTUATE, PAUSE)
@@ -77,7 +94,7 @@ class Channel(Kind):
     # roles (a|b) of the signals it acts on where `on` names none; "": all
     acts_on: ClassVar[str] = "thrust"
     slots: ClassVar[int] = 0
-    # of the actuator that follows: some have it in the command, some in the deed
+    # whether the effect may act on the command or on the output of the actuator
     either_side: ClassVar[bool] = False
     pause: ClassVar[Callable[..., float] | None] = None
     passes: ClassVar[Callable[..., float] | None] = None
@@ -85,32 +102,44 @@ class Channel(Kind):
 
     # commands that feed the channels in `on`, one for each
     fed_by: Sequence[str] = field(default=(), kw_only=True)
-    # of the actuator than is usual, for what may be on either
+    # acts on the other side of the actuator than by default
     other_side: bool = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(
-            self, "fed_by", (self.fed_by,) if isinstance(self.fed_by, str) else tuple(self.fed_by)
-        )
-        if self.other_side not in ((False, True) if type(self).either_side else (False,)):
-            allowed = "true or false" if type(self).either_side else "false: it has its place"
+        fed_by = [self.fed_by] if isinstance(self.fed_by, str) else self.fed_by
+        object.__setattr__(self, "fed_by", tuple(fed_by))
+        if type(self).either_side:
+            accepted: tuple[bool, ...] = (False, True)
+            allowed = "true or false"
+        else:
+            accepted = (False,)
+            allowed = "false: its side is fixed"
+        if self.other_side not in accepted:
             raise BadInput(f"{self.name}: other_side = {self.other_side!r}; allowed is {allowed}")
 
     @property
     def standing(self) -> int:
-        """Before or behind the actuator that follows, by its stage or the other way round."""
-        return (
-            (DEEDS if type(self).stage < 0 else COMMANDS) if self.other_side else type(self).stage
-        )
+        """Position in the program relative to the actuator: the stage, or its opposite."""
+        if not self.other_side:
+            return type(self).stage
+        return DEEDS if type(self).stage < 0 else COMMANDS
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Pass the actuator's signal on, if the effect acts on it."""
+        """Yield the lines that pass the signal of an actuator through the effect, if it acts on it.
+
+        Args:
+            part: Function of the program.
+            station: Place in it; one for each actuator.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         effect = program.effects[number]
         if not isinstance(effect, Channel) or station.channel not in program.targets(number):
             return
-        at = f"np.int64({program.memory(number, station.channel)})"  # plain integers count as types
+        # a typed integer, because numba compiles literal integers as types
+        at = f"np.int64({program.memory(number, station.channel)})"
         site = program.sites(number)[0]
         source = program.source(number, station.channel)
         raw = f"commands[{program.commands.index(source)}]" if source else "0.0"
@@ -125,14 +154,16 @@ class Channel(Kind):
             if type(effect).passes is not None:
                 yield f"x = {site.call('passes', 'x', 'memory', at)}"
                 return
-            slots = [f"memory[{at} + {i}]" for i in range(type(effect).slots)]
-            yield from (f"kept{i} = {slot}" for i, slot in enumerate(slots))
-            yield f"x = {site.call('channel', 'Course(x, x, x)', side, raw, 'memory', at, INSTANT)}.begin"
-            yield from (f"{slot} = kept{i}" for i, slot in enumerate(slots))
+            for i in range(type(effect).slots):
+                yield f"kept{i} = memory[{at} + {i}]"
+            now = site.call("channel", "Course(x, x, x)", side, raw, "memory", at, INSTANT)
+            yield f"x = {now}.begin"
+            for i in range(type(effect).slots):
+                yield f"memory[{at} + {i}] = kept{i}"
 
 
 def _asks(program: Composed, number: int, actuator: str) -> bool:
-    """Whether an effect of the program is a channel with a `pause` on an actuator."""
+    """Return whether an effect is a channel with a `pause` on an actuator."""
     effect = program.effects[number]
     if not isinstance(effect, Channel) or type(effect).pause is None:
         return False

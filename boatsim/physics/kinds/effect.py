@@ -1,4 +1,4 @@
-"""An effect: one idea of physics or of measurement, and how a kind of effect adds its lines to the composed program."""
+"""Base class of effects, and how a kind of effect adds its lines to the compiled program."""
 
 from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -15,64 +15,67 @@ from boatsim.physics.param import UNSET, Checked
 
 @cache
 def _named(fields: tuple[str, ...]) -> Callable[..., tuple[float, ...]]:
-    """The NamedTuple type of these fields; entries over one law share it, so that the law is compiled once for all."""
+    """Return the NamedTuple type of these fields; one law has one type, to be compiled once."""
     return namedtuple("Given", fields)
 
 
 @dataclass(frozen=True)
 class Role:
-    """A signal that a law takes, whatever the vessel calls its channel: `thrust`, `angle`, `shaft`."""
+    """Signal that a law takes under a fixed name, bound to a channel of the vessel."""
 
     unit: str
     words: str
-    # what it is where nothing is bound to it; None: a channel must be named
+    # value if no channel is bound; None: a channel is required
     fixed: float | None = None
 
 
 @dataclass(frozen=True)
 class Effect(Checked):
-    """One instance of an idea on a vessel. Subclasses are of one or several of the kinds in this folder."""
+    """One instance of a physical or measurement effect on a vessel.
 
-    # the sentence a report prints: "a steady wind pushes the hull downwind ..."
+    Subclasses derive from one or several of the kinds in this folder.
+    """
+
+    # sentence in a report: "a steady wind pushes the hull downwind ..."
     words: ClassVar[str] = ""
-    words_above: ClassVar[str] = ""  # the same where the factor by which it weakens is above one
-    shown_by: ClassVar[str] = ""  # the manoeuvre that shows it best
+    words_above: ClassVar[str] = ""  # the same if a weakening factor exceeds one
+    shown_by: ClassVar[str] = ""  # manoeuvre in which the effect is most visible
     kind: ClassVar[str] = "physics"  # or "measurement"
     source: ClassVar[str] = ""  # paper, equation or table of the law
-    # parameters that say how strong it is; empty: all that may be fitted
+    # parameters of its strength, zero if absent; empty: all fitted parameters
     strength: ClassVar[tuple[str, ...]] = ()
-    # fact in a recording's notes -> the parameters it states
+    # fact in the notes of a recording -> parameters that it gives
     facts: ClassVar[Mapping[str, tuple[str, ...]]] = {}
-    # where a fit starts; empty: a tenth of each spread
+    # starting points of a fit; empty: a tenth of each spread
     starts: ClassVar[tuple[Mapping[str, float], ...]] = ()
-    # parameter -> starts in largest commands recorded
+    # parameter -> starting points as shares of the largest recorded command
     thresholds: ClassVar[Mapping[str, tuple[float, ...]]] = {}
-    # signals its law takes as its third argument, each with a channel
+    # signals that the law takes as its third argument, each bound to a channel
     roles: ClassVar[Mapping[str, Role]] = {}
-    # those of a lower one come first in the program; else the order is that of the files
+    # effects of a lower stage come first in the program; otherwise the order of the file counts
     stage: ClassVar[int] = 0
-    # freedoms without which it can not act, besides those of its parameters
+    # dof without which it has no effect, in addition to those of its parameters
     needs: ClassVar[tuple[str, ...]] = ()
-    # fact -> what it must say for the effect not to act
+    # fact -> values that exclude the effect
     ruled_out_by: ClassVar[Mapping[str, tuple[object, ...]]] = {}
-    # entries that show the same: it is tried only where somebody asks for it
+    # effects with the same signature: this one is a candidate on request only
     told_by: ClassVar[tuple[str, ...]] = ()
-    # only its spectrum can be fitted: the filter follows its course, a free run can not
+    # a random process: the filter tracks it, a simulation without data cannot
     random: ClassVar[bool] = False
-    alone: ClassVar[bool] = False  # a vessel that has one is not suspected of another
-    # a law that the diagnosis writes itself, of terms: no entry of the library
+    alone: ClassVar[bool] = False  # no candidate for a vessel that has one already
+    # a term written by symbolic regression, not an effect of the library
     described: ClassVar[bool] = False
-    # its law takes all actuators besides: `act`, `at`, the place of what it recalls
+    # its law also takes all actuators: `act`, `at` and the index of the recalled value
     sees_held: ClassVar[bool] = False
-    # idea whose every instance it acts at: its law takes their signals and their values
+    # effect on each of whose instances it acts: its law takes their signals and parameters
     rides: ClassVar[str] = ""
 
-    filled: frozenset[str] = field(  # parameters by `completed`, which nobody stated
+    filled: frozenset[str] = field(  # parameters set by `completed` instead of by a file
         default=frozenset(), kw_only=True, repr=False, compare=False, metadata={"ours": True}
     )
-    # of this instance; that of the idea where there is one only
+    # name of the instance; by default that of the effect
     name: str = field(default="", kw_only=True)
-    # role -> channel or a number that is held; or the channels, or the instances it rides on, that
+    # role -> channel or constant; or the channels or instances on which
     # it acts on
     on: Mapping[str, str | float] | Sequence[str] = field(default=(), kw_only=True, hash=False)
 
@@ -82,108 +85,144 @@ class Effect(Checked):
         object.__setattr__(self, "on", self._acting_on())
 
     def _acting_on(self) -> Mapping[str, str | float] | tuple[str, ...]:
-        """`on` as the class takes it. Raises BadInput."""
+        """Return `on` in the form that the class needs. Raises BadInput."""
         on, wants_table = self.on, bool(type(self).roles)
+        allowed = "a name or a list of names"
+        if wants_table:
+            allowed = f"a table of {', '.join(type(self).roles)}"
+        refusal = BadInput(f"{self.name}: on = {self.on!r}; allowed is {allowed}")
         if isinstance(on, str):
             on = (on,)
         if isinstance(on, Mapping):
             numbers = [c for c in on.values() if not isinstance(c, str)]
-            good = wants_table and all(type(c) in (int, float) and isfinite(c) for c in numbers)
-        else:
-            good = (
-                isinstance(on, list | tuple)
-                and all(isinstance(c, str) for c in on)
-                and not (wants_table and on)
-            )
-        if not good:
-            allowed = (
-                f"a table of {', '.join(type(self).roles)}"
-                if wants_table
-                else "a name or a list of names"
-            )
-            raise BadInput(f"{self.name}: on = {self.on!r}; allowed is {allowed}")
-        return dict(on) if isinstance(on, Mapping) else tuple(on)
+            if wants_table and all(type(c) in (int, float) and isfinite(c) for c in numbers):
+                return dict(on)
+            raise refusal
+        names = isinstance(on, list | tuple) and all(isinstance(c, str) for c in on)
+        if not names or (wants_table and on):
+            raise refusal
+        return tuple(on)
 
     @classmethod
     def idea(cls) -> str:
-        """File name, and the word that files `use`."""
+        """Return the name of the effect, which is its file name and the word for `use` in files."""
         return snake_case(cls.__name__)
 
     @classmethod
     def values_type(cls) -> Callable[..., tuple[float, ...]]:
-        """NamedTuple type of the parameters, as the compiled law receives them."""
+        """Return the NamedTuple type of the parameters, as the compiled law takes them."""
         return _named(tuple(cls.params()))
 
     @classmethod
     def signals_type(cls) -> Callable[..., tuple[float, ...]]:
-        """NamedTuple type of the signals of its roles, with cosine and sine of those that are angles."""
-        angles = [
-            f"{part}_{n}"
-            for n, role in cls.roles.items()
-            if role.unit == "rad"
-            for part in ("cos", "sin")
-        ]
+        """Return the NamedTuple type of the role signals, with cosine and sine of angles."""
+        angles: list[str] = []
+        for name, role in cls.roles.items():
+            if role.unit == "rad":
+                angles += (f"cos_{name}", f"sin_{name}")
         return _named((*cls.roles, *angles))
 
     @classmethod
     def signals(cls, **given: float) -> tuple[float, ...]:
-        """Signals of its roles as the law's third argument; one not given is as if nothing were bound to it, or 0."""
+        """Return the signals of the roles as the third argument of the law.
+
+        Args:
+            given: Signal of each role; a missing one has the fixed value of its role, or 0.
+        """
         held = {name: role.fixed or 0.0 for name, role in cls.roles.items()} | given
-        angles = [name for name, role in cls.roles.items() if role.unit == "rad"]
-        parts = {
-            f"{part}_{n}": of(held[n]) for n in angles for part, of in (("cos", cos), ("sin", sin))
-        }
+        parts: dict[str, float] = {}
+        for name, role in cls.roles.items():
+            if role.unit == "rad":
+                parts[f"cos_{name}"] = cos(held[name])
+                parts[f"sin_{name}"] = sin(held[name])
         return cls.signals_type()(**held, **parts)
 
     def values(self) -> tuple[float, ...]:
-        """The parameters as the law's second argument."""
-        given = ((self.stated(n), getattr(self, n)) for n in type(self).params())
-        return type(self).values_type()(*(float(x) if there else 0.0 for there, x in given))
+        """Return the parameters as the second argument of the law; 0 for those without a value."""
+        values = [0.0] * len(type(self).params())
+        for i, name in enumerate(type(self).params()):
+            if self.stated(name):
+                values[i] = float(getattr(self, name))
+        return type(self).values_type()(*values)
 
     def stated(self, name: str) -> bool:
-        """Whether a parameter has a value, be it zero."""
+        """Return whether a parameter has a value, including zero.
+
+        Args:
+            name: Name of the parameter.
+        """
         return getattr(self, name) is not UNSET
 
     def having(self, values: Mapping[str, Any]) -> Self:
-        """The effect with other values of some parameters."""
+        """Return the effect with other values of some parameters.
+
+        Args:
+            values: Name of the parameter -> value.
+        """
         return replace(self, **values)
 
     def completed(self, vessel: "Boat") -> Self:
-        """The effect with what nobody stated filled in: what `follows` the vessel, then what `rules` give, else 0.
+        """Return the effect with all parameters set; values from a file take precedence.
 
-        What a file states wins. Raises BadInput where the vessel lacks what the effect builds on.
+        A parameter without a value takes that of the vessel it `follows`, else that of `rules`,
+        else 0.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+
+        Raises:
+            BadInput: The vessel lacks an effect or a fact on which this effect builds.
         """
         own = self
         for name, about in type(self).params().items():
             if about.follows and not self.stated(name):
                 own = own.having({name: self.followed(about.follows, vessel)})
-        ruled = (
-            {n: x for n, x in own.rules(vessel).items() if not own.stated(n)} if own._left() else {}
-        )
-        own = own.having(ruled)
+        if own._left():
+            rules = own.rules(vessel)
+            own = own.having({n: x for n, x in rules.items() if not own.stated(n)})
         for fact, names in type(self).facts.items():
             for missing in (n for n in names if not own.stated(n)):
-                where = f"state it in its table, or {fact} among the facts of a recording or of the vessel's diagnosis"
-                raise BadInput(f"{vessel.name}: {self.name} needs {missing}: {where}")
+                raise BadInput(
+                    f"{vessel.name}: {self.name} needs {missing}: state it in its table, or {fact} "
+                    "among the facts of a recording or of the vessel's diagnosis"
+                )
         return replace(
             own.having(dict.fromkeys(own._left(), 0.0)),
             filled=frozenset(self._left()) | self.filled,
         )
 
     def ratios(self, vessel: "Boat") -> dict[str, tuple[float, str]]:
-        """What recordings really tell where a parameter is but one way to put it: name -> value, meaning in words."""
+        """Return the quantities that recordings identify instead of a parameter.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+
+        Returns:
+            Name -> (value, meaning in words).
+        """
         return {}
 
     def shape(self) -> dict[str, object]:
-        """What its table states that no fit finds, besides its name and what it acts on."""
+        """Return the settings that no fit changes, other than the name and `on`."""
         return {n: getattr(self, n) for names in type(self).facts.values() for n in names}
 
     def rules(self, vessel: "Boat") -> dict[str, float]:
-        """Parameters by a rule of the effect's own, for those that nobody states; what follows is filled in before."""
+        """Return parameters that follow from the vessel by a rule, for those without a value.
+
+        Args:
+            vessel: Vessel on which the effect acts; parameters with `follows` are set before.
+
+        Returns:
+            Name of the parameter -> value.
+        """
         return {}
 
     def still_as_on(self, vessel: "Boat") -> bool:
-        """Whether what `rules` gave for words that no file may state is still so, now that the vessel is whole."""
+        """Return whether codes given by `rules` are unchanged for the completed vessel.
+
+        Args:
+            vessel: Completed vessel.
+        """
         ruled = self.rules(vessel)
         return all(
             ruled[f.name] == getattr(self, f.name)
@@ -192,11 +231,19 @@ class Effect(Checked):
         )
 
     def _left(self) -> list[str]:
-        """Parameters without a value."""
+        """Return the parameters without a value."""
         return [n for n in type(self).params() if not self.stated(n)]
 
     def followed(self, source: str, vessel: "Boat") -> float:
-        """The value of the vessel, or of one of its effects, that a parameter follows. Raises BadInput."""
+        """Return the value of the vessel, or of one of its effects, that a parameter follows.
+
+        Args:
+            source: "vessel.key" or "effect.key"; with a trailing "?" a missing effect gives 0.
+            vessel: Vessel on which the effect acts.
+
+        Raises:
+            BadInput: The vessel does not have the effect.
+        """
         owner, _, key = source.removesuffix("?").partition(".")
         if owner == "vessel":
             return float(attrgetter(key)(vessel))
@@ -205,7 +252,15 @@ class Effect(Checked):
         return float(getattr(self.needed(vessel, owner), key))
 
     def needed(self, vessel: "Boat", owner: str) -> "Effect":
-        """The vessel's effect that this one builds on. Raises BadInput where it has none."""
+        """Return the effect of the vessel on which this one builds.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+            owner: Name of the other effect.
+
+        Raises:
+            BadInput: The vessel does not have it.
+        """
         own = vessel.effect(owner)
         if own is None:
             raise BadInput(f"{vessel.name}: {self.name} needs a vessel with {owner}")
@@ -213,16 +268,20 @@ class Effect(Checked):
 
     @property
     def standing(self) -> int:
-        """Where it stands in the program: those with less come first."""
+        """Position in the program: effects with a lower number come first."""
         return type(self).stage
 
     def seeded(self, seed: int) -> Self:
-        """The effect with its random course, if it has one, drawn from a scenario's seed."""
+        """Return the effect with its random realisation set from the seed of a scenario.
+
+        Args:
+            seed: Seed of the scenario.
+        """
         return self
 
 
 class Rigid(Protocol):
-    """What an effect may ask of the rigid body of its vessel."""
+    """Properties of the rigid body of a vessel that an effect may use."""
 
     mass: float  # [kg]
     roll_inertia: float  # [kg m^2]
@@ -230,11 +289,11 @@ class Rigid(Protocol):
 
 
 class Boat(Protocol):
-    """What an effect may ask of the vessel it is on."""
+    """Properties of a vessel that an effect may use."""
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """Name of the vessel."""
 
     @property
     def length(self) -> float:
@@ -254,93 +313,109 @@ class Boat(Protocol):
 
     @property
     def described_signals(self) -> Sequence[str]:
-        """What described laws see of its actuators: themselves, cosine and sine of angles, the sums of several."""
+        """Actuator signals for described laws: values, cosine and sine of angles, sums."""
 
     def effect(self, name: str) -> Effect | None:
-        """Its own effect of that name, or the only one of that idea."""
+        """Return the vessel's effect of that name, or its only one of that class."""
 
     def names_of(self, name: str) -> list[str]:
-        """Names of its own effects that a word means."""
+        """Return the names of the vessel's effects to which a word refers."""
 
 
 class Site(NamedTuple):
-    """One call of an effect's law: its place in the program and the text of what it is called with."""
+    """Call of the law of an effect: its index in the program and the text of the arguments."""
 
     number: int  # of the effect
-    values: str  # V3(p[7], p[8])
-    # further arguments: the bound signals, and the values of what the effect rides on
+    values: str  # text of the parameters: V3(p[7], p[8])
+    # further arguments: the bound signals, and the parameters of the instance it acts on
     signals: tuple[str, ...] = ()
 
     def call(self, law: str, *first: str) -> str:
-        """Text of a call of one of the effect's compiled functions."""
+        """Return the text of a call of one of the compiled functions of the effect.
+
+        Args:
+            law: Name of the function.
+            first: First arguments.
+        """
         return f"{law}{self.number}({', '.join((*first, self.values, *self.signals))})"
 
 
 class Station(NamedTuple):
-    """A place in a composed function where effects may stand, between lines of its own."""
+    """Place in a composed function at which effects add lines."""
 
     begin: tuple[str, ...] = ()
     end: tuple[str, ...] = ()
-    channel: str = ""  # the actuator whose signal this station works on
+    channel: str = ""  # actuator whose signal this station processes
 
 
 class Composed(Protocol):
-    """What a kind may ask of the program it is written into."""
+    """Properties of the composed program that a kind may use."""
 
     effects: tuple[Effect, ...]
-    signals: tuple[str, ...]  # actuators, and readings of what is measured around the boat
-    commands: tuple[str, ...]  # what the vessel takes: commands, then what is measured
-    # what `act` holds: signals, cosine and sine of angles; for described laws sums, recalled
+    signals: tuple[str, ...]  # actuators, and readings of the environment
+    commands: tuple[str, ...]  # inputs of the vessel: commands, then measured quantities
+    # contents of `act`: signals, cosine and sine of angles; for described laws sums and past values
     held: Sequence[str]
-    sums: Mapping[str, Sequence[str]]  # of these, the actuators that each sum is of
+    sums: Mapping[str, Sequence[str]]  # sum in `held` -> the actuators that it adds
 
     def sites(self, number: int) -> Sequence[Site]:
-        """The calls of an effect's laws: one, or one for each instance that it rides on."""
+        """Return the calls of the laws of an effect, one for each instance on which it acts."""
 
     def targets(self, number: int) -> Sequence[str]:
-        """Actuators that a channel effect acts on."""
+        """Return the actuators on which a channel effect acts."""
 
     def source(self, number: int, actuator: str) -> str | None:
-        """The command that feeds an actuator through a channel effect, if it takes one."""
+        """Return the command that feeds an actuator through a channel effect, or None."""
 
     def side(self, actuator: str) -> float:
-        """-1 port, +1 starboard, 0 middle of what an actuator drives."""
+        """Return the side of an actuator: -1 port, +1 starboard, 0 on the centreline."""
 
     def memory(self, number: int, actuator: str) -> int:
-        """Where an effect's memory of an actuator begins."""
+        """Return the index at which the memory of an effect for an actuator begins."""
 
     def own(self, number: int) -> int:
-        """Place in `held` of what an effect recalls; 0 of one that does not look back."""
+        """Return the index in `held` of the past value of an effect; 0 if it has none."""
 
     def behind(self, number: int) -> Sequence[int]:
-        """The effects that come after one in the program."""
+        """Return the effects that come after one in the program."""
 
 
 def once(program: Composed) -> Sequence[Station]:
-    """One station: the body of a plain sum."""
+    """Return one station: the body of a sum over effects.
+
+    Args:
+        program: Program that is composed.
+    """
     return (Station(),)
 
 
 @dataclass(frozen=True)
 class Part:
-    """A function of the composed program to which kinds add lines."""
+    """Function of the composed program to which kinds add lines."""
 
     name: str
     arguments: str
     begin: tuple[str, ...]
     result: str
-    compiled: str = "inlined"  # which decorator of `boatsim.physics.kernel.compiling`
+    compiled: str = "inlined"  # decorator of `boatsim.physics.kernel.compiling`
     stations: Callable[[Composed], Sequence[Station]] = once
 
 
 class Kind(Effect):
-    """Base of the kinds: what effects of one add to the program."""
+    """Base of the kinds: defines what effects of one kind add to the program."""
 
-    parts: ClassVar[tuple[Part, ...]] = ()  # functions that this kind brings along
-    # its compiled functions, those that an effect may leave out being None
+    parts: ClassVar[tuple[Part, ...]] = ()  # functions that this kind adds to the program
+    # its compiled functions; optional ones are None by default
     laws: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Lines that effect `number` of the program adds to a part at a station."""
+        """Yield the lines that an effect adds to a part of the program at a station.
+
+        Args:
+            part: Function of the program.
+            station: Place in it.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         yield from ()

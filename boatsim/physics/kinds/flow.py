@@ -1,4 +1,4 @@
-"""Flow: water that moves over the ground."""
+"""Flow effects: motion of the water over the ground."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ FLOW = Part("flow", "p, on", ("north = east = 0.0",), "north, east")
 
 @dataclass(frozen=True)
 class Flow(Kind):
-    """Water that moves under the hull: compiled `flow(values) -> (north, east)` in m/s."""
+    """Velocity of the water: compiled `flow(values) -> (north, east)` [m/s]."""
 
     parts: ClassVar = (FLOW,)
     laws: ClassVar[tuple[str, ...]] = ("flow",)
@@ -19,7 +19,14 @@ class Flow(Kind):
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Add the velocity of the water."""
+        """Yield the lines that add the velocity of the water.
+
+        Args:
+            part: Function of the program.
+            station: Place in it.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         if part is FLOW:
             for site in program.sites(number):
                 yield f"a, b = {site.call('flow')}"

@@ -1,4 +1,4 @@
-"""Force: what the water, the air or a machine does to the hull, as a function of its motion."""
+"""Force effects: forces of water, air or machines as functions of the motion."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -22,27 +22,41 @@ WRENCH = Part(
 class Force(Kind):
     """Memoryless force: compiled `law(motion, values) -> Wrench`.
 
-    With `roles` the law takes the bound signals as a third argument; an effect that `rides` on an idea is called once
-    for each of its instances, with that one's signals and values. An idea that is another besides (a propeller is a
-    thruster) gives its signals as that one's by a compiled function `as_` and that one's name, of its own two.
+    With `roles` the law takes the bound signals as a third argument. An effect with `rides` is
+    evaluated once for each instance of that other effect, with its signals and parameters. An
+    effect that can stand for another one (a propeller for a thruster) converts its signals by a
+    compiled function `as_<name>`.
     """
 
     parts: ClassVar = (WRENCH,)
     laws: ClassVar[tuple[str, ...]] = ("law", "as_thruster")
-    of_air: ClassVar[bool] = False  # a force of the air, which a run logs apart
-    # what it holds on to beside the water: "the air", "walls"; empty: nothing
+    of_air: ClassVar[bool] = False  # a force of the air, logged separately
+    # frame to which the force is tied other than the water: "the air", "walls"; empty: none
     anchored: ClassVar[str] = ""
     law: ClassVar[Callable[..., Wrench]]
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Add the law's force to the sum."""
+        """Yield the lines that add the force of the law to the sum.
+
+        Args:
+            part: Function of the program.
+            station: Place in it.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         if part is WRENCH:
             for site in program.sites(number):
                 yield f"f = {site.call('law', 'm')}"
                 yield ADD
 
     def wrench(self, m: Motion, *given: tuple[float, ...], **signals: float) -> Wrench:
-        """The force at one motion, its roles at these signals; what it rides on gives it signals and values instead."""
+        """Return the force at one motion.
+
+        Args:
+            m: Motion of the hull.
+            given: Signals and parameters of the instance on which the effect acts, if any.
+            signals: Signals of the roles.
+        """
         own = (type(self).signals(**signals),) if type(self).roles and not given else ()
         return Wrench(*type(self).law(m, self.values(), *given, *own))

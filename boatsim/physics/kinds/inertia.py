@@ -1,4 +1,4 @@
-"""Inertia: mass that is carried along."""
+"""Inertia effects: mass that accelerates with the hull."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -12,9 +12,10 @@ INERTIAS = Part("inertias", "p, on, water, hull", ("pass",), "")
 
 @dataclass(frozen=True)
 class Inertia(Kind):
-    """Compiled `inertia(values) -> Mass`; its Coriolis force is the effect's own law.
+    """Mass matrix: compiled `inertia(values) -> Mass`; its Coriolis force is the law of the effect.
 
-    `moves_with` says whose acceleration it feels: "water" (added mass: relative to the water) or "hull" (ballast).
+    `moves_with` is "water" for added mass, which feels the acceleration relative to the water, or
+    "hull" for ballast.
     """
 
     parts: ClassVar = (INERTIAS,)
@@ -24,7 +25,14 @@ class Inertia(Kind):
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Add its entries to those of the water or of the hull."""
+        """Yield the lines that add the entries to the mass matrix of the water or of the hull.
+
+        Args:
+            part: Function of the program.
+            station: Place in it.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         if part is INERTIAS:
             into = getattr(type(program.effects[number]), "moves_with", "water")
             for site in program.sites(number):
@@ -32,5 +40,5 @@ class Inertia(Kind):
                 yield f"for j in range({len(MASS_ENTRIES)}): {into}[j] += g[j]"
 
     def matrix(self) -> Array:
-        """(6, 6) over `AXES`: kg, kg m, kg m^2."""
+        """Return the mass matrix (6, 6) over `AXES` [kg, kg m, kg m^2]."""
         return Mass(*type(self).inertia(self.values())).matrix()

@@ -1,4 +1,4 @@
-"""Measurement: what a recording shows differs from what the boat did."""
+"""Measurement effects: differences between the recorded and the true motion."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -14,22 +14,32 @@ LATE = Part("late", "p, on", ("seconds = 0.0",), "seconds")
 
 @dataclass(frozen=True)
 class Measurement(Kind):
-    """Compiled `shown(Shown, values) -> Shown`.
+    """Error of a recording: compiled `shown(Shown, values) -> Shown`.
 
-    Acts in the diagnosis filter and in `replay`; the simulated boat itself does not feel it. `late(values)`, where
-    there is one, is the time [s] by which the recorded motion is late behind the recorded commands (negative: early).
+    It acts in the diagnosis filter and in `replay`, not on the simulated boat. `late(values)`, if
+    defined, is the latency [s] of the recorded motion behind the recorded commands (negative:
+    early).
     """
 
     kind: ClassVar[str] = "measurement"
     parts: ClassVar[tuple[Part, ...]] = (SHOWN, DISTORTED, LATE)
     laws: ClassVar[tuple[str, ...]] = ("shown", "late")
-    of_columns: ClassVar[tuple[str, ...]] = ()  # recorded columns in which it shows, any of them
+    of_columns: ClassVar[
+        tuple[str, ...]
+    ] = ()  # recorded columns that it changes; one of them must exist
     shown: ClassVar[Callable[..., Shown] | None] = None
     late: ClassVar[Callable[..., float] | None] = None
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Change what is shown, say that it is changed, add up how late it comes."""
+        """Yield the lines that change the recorded motion, mark it as changed and add its latency.
+
+        Args:
+            part: Function of the program.
+            station: Place in it.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         effect = program.effects[number]
         if not isinstance(effect, Measurement):
             return

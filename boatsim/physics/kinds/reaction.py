@@ -1,4 +1,4 @@
-"""Reaction: a force that depends on the others."""
+"""Reaction effects: forces that depend on the sum of the other forces."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -13,9 +13,10 @@ SO_FAR = f"Wrench({', '.join(COMPONENTS)})"
 
 @dataclass(frozen=True)
 class Reaction(Kind):
-    """Compiled `reaction(motion, wrench, values) -> Wrench`.
+    """Force as a function of other forces: compiled `reaction(motion, wrench, values) -> Wrench`.
 
-    `wrench` is the sum of all laws that stand before it: the vessel's own in the order of its file, then the suspects.
+    `wrench` is the sum of all laws before it: those of the vessel in the order of its file, then
+    the candidates.
     """
 
     laws: ClassVar[tuple[str, ...]] = ("reaction",)
@@ -23,7 +24,14 @@ class Reaction(Kind):
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Add what the sum so far brings about."""
+        """Yield the lines that add the reaction to the sum so far.
+
+        Args:
+            part: Function of the program.
+            station: Place in it.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         if part is WRENCH:
             for site in program.sites(number):
                 yield f"f = {site.call('reaction', 'm', SO_FAR)}"

@@ -1,4 +1,4 @@
-"""Recall: a law that may look back at what an actuator did of late, which the program then follows for it."""
+"""Recall effects: laws that use past values of an actuator, which the program stores for them."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -10,10 +10,13 @@ from boatsim.physics.kinds.effect import Composed, Kind, Part, Station
 
 @dataclass(frozen=True)
 class Recall(Kind):
-    """Compiled `recall(act, held, own, memory, at, dt, values)`, once all actuators have made their step of dt [s].
+    """Past values: compiled `recall(act, held, own, memory, at, dt, values)`.
 
-    It fills act[own], act[held + own], act[2 held + own], what its law sees at begin, middle and end of the step, from
-    the actuators there and from memory[at]. `reach(values)` is for how many s three points tell the course of that.
+    It is called after the step of the actuators.
+
+    It sets act[own], act[held + own] and act[2 held + own] to the values that the law uses at
+    begin, middle and end of the step dt [s], from the actuators there and from memory[at].
+    `reach(values)` is the time [s] for which three points describe these values.
     """
 
     laws: ClassVar[tuple[str, ...]] = ("recall", "reach")
@@ -22,12 +25,19 @@ class Recall(Kind):
 
     @property
     def looks_back(self) -> bool:
-        """Whether this instance does; one that does not remembers nothing, and costs nothing."""
+        """Whether this instance uses past values; otherwise it needs no memory."""
         return True
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Follow the actuator that the law looks back at."""
+        """Yield the lines that track the actuator whose past values the law uses.
+
+        Args:
+            part: Function of the program.
+            station: Place in it.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         if (
             station.channel != WHOLE
             or part not in (ACTUATE, PAUSE)

@@ -1,4 +1,4 @@
-"""Release: the suspicion that stated numbers of a vessel are off."""
+"""Release effects: numbers of a vessel that may differ from their specified values."""
 
 from dataclasses import dataclass
 from typing import NamedTuple, Self
@@ -7,37 +7,53 @@ from boatsim.physics.kinds.effect import Boat, Effect
 
 
 class Change(NamedTuple):
-    """What a parameter of a release does to one number of a vessel."""
+    """Change of one number of a vessel by a parameter of a release."""
 
-    parameter: str  # of the release
-    owner: str  # the vessel's effect, or "body"
+    parameter: str  # parameter of the release
+    owner: str  # effect of the vessel, or "body"
     key: str
     how: str  # "sets", "scales" or "shifts"
-    weight: float  # of a shift
+    weight: float  # factor of a shift
 
     def of(self, stated: float, value: float) -> float:
-        """The number in place of the stated one where the parameter has this value."""
+        """Return the number that replaces the specified one.
+
+        Args:
+            stated: Specified value.
+            value: Value of the parameter.
+        """
         if self.how == "scales":
             return stated * value
-        return stated + self.weight * value if self.how == "shifts" else value
+        if self.how == "shifts":
+            return stated + self.weight * value
+        return value
 
 
 def _there(places: str, vessel: Boat) -> list[str]:
-    """Of places that say the same of different hulls, `a.key|b.key`, the first that the vessel has."""
-    owners = ((place, place.partition(".")[0]) for place in places.split("|"))
-    return [place for place, owner in owners if owner == "body" or vessel.names_of(owner)][:1]
+    """Return the first of the equivalent places `a.key|b.key` that the vessel has."""
+    for place in places.split("|"):
+        owner = place.partition(".")[0]
+        if owner == "body" or vessel.names_of(owner):
+            return [place]
+    return []
 
 
 @dataclass(frozen=True)
 class Release(Effect):
-    """A suspicion that stated numbers of the vessel are off: no law of its own, the vessel's own effects feel it.
+    """Hypothesis that numbers of the vessel differ from their specified values.
 
-    Each parameter names the numbers it `releases`; those the vessel does not have are left out. In a vessel or scenario
-    file it changes them at once, in a diagnosis they are fitted, in a patched file they are written.
+    It has no law; the vessel's own effects use the changed numbers. Each parameter lists in
+    `releases` the numbers that it changes; those that the vessel does not have are omitted. In a
+    vessel or scenario file a release changes them directly, in a diagnosis they are fitted, and a
+    patched file contains the changed values.
     """
 
     def changes(self, vessel: Boat) -> list[Change]:
-        """What it does to the numbers that the vessel has."""
+        """Return the changes of the numbers that the vessel has.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
         found, weights = [], self.weights(vessel)
         for name, about in type(self).params().items():
             for place in (p for places in about.releases for p in _there(places, vessel)):
@@ -49,11 +65,22 @@ class Release(Effect):
         return found
 
     def weights(self, vessel: Boat) -> dict[str, float]:
-        """What a number is shifted by per shift of the parameter; 1 where it is not said."""
+        """Return the change of a number per unit of a shift; 1 for numbers that are not listed.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+        """
         return {}
 
     def completed(self, vessel: Boat) -> Self:
-        """Raises BadInput where the vessel has none of the numbers."""
+        """Return the effect with all parameters set.
+
+        Args:
+            vessel: Vessel on which the effect acts.
+
+        Raises:
+            BadInput: The vessel has none of the numbers.
+        """
         if not self.changes(vessel):
             places = (p for about in type(self).params().values() for p in about.releases)
             self.needed(

@@ -1,4 +1,4 @@
-"""Unsteady force: one with a random course in time."""
+"""Unsteady effects: forces with a random time history."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -13,10 +13,10 @@ SWELL = Part("swell", "p, on", (f"s = Swell({'0.0, ' * 7}1.0)",), "s")
 
 @dataclass(frozen=True)
 class Unsteady(Force):
-    """Compiled `swell(values) -> Swell`, and `law` for one realisation.
+    """Random force: compiled `swell(values) -> Swell`, and `law` for one realisation.
 
-    The simulator feels the realisation that `law` gives; the diagnosis filter follows the oscillators of `swell`
-    instead and silences the law by setting the parameter `realisation` to 0.
+    The simulator uses the realisation of `law`. The diagnosis filter tracks the oscillators of
+    `swell` instead and disables the law by `realisation` = 0.
     """
 
     random: ClassVar[bool] = True
@@ -26,7 +26,14 @@ class Unsteady(Force):
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Say what the oscillators are; the realisation is a force like any other."""
+        """Yield the line that sets the oscillators; the realisation is an ordinary force.
+
+        Args:
+            part: Function of the program.
+            station: Place in it.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         if part is SWELL:
             for site in program.sites(number):
                 yield f"s = {site.call('swell')}"

@@ -1,4 +1,4 @@
-"""Wandering measurement: an instrument whose error comes and goes slowly."""
+"""Wandering effects: measurement errors that vary slowly and at random."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -13,7 +13,10 @@ WANDER = Part("wander", "p, on", ("w = Wander(0.0, 0.0, 1.0)",), "w")
 
 @dataclass(frozen=True)
 class Wandering(Measurement):
-    """Compiled `wander(values) -> Wander`: the diagnosis filter follows the error, a free run knows nothing of it."""
+    """Slowly varying error: compiled `wander(values) -> Wander`.
+
+    The diagnosis filter tracks the error; a simulation without data does not contain it.
+    """
 
     random: ClassVar[bool] = True
     parts: ClassVar = (WANDER,)
@@ -22,7 +25,14 @@ class Wandering(Measurement):
 
     @classmethod
     def lines(cls, part: Part, station: Station, number: int, program: Composed) -> Iterator[str]:
-        """Say how the error wanders."""
+        """Yield the line that sets the noise model of the error.
+
+        Args:
+            part: Function of the program.
+            station: Place in it.
+            number: Index of the effect.
+            program: Program that is composed.
+        """
         if part is WANDER:
             for site in program.sites(number):
                 yield f"w = {site.call('wander')}"
