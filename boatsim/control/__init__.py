@@ -1,1 +1,1 @@
-"""Blocks that controllers are made of: plain numbers, no knowledge of the simulator."""
+"""Building blocks of controllers; they use plain numbers and do not depend on the simulator."""

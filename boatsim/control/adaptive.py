@@ -1,7 +1,7 @@
-"""Textbook blocks of L1 adaptive control: predictors, adaptation laws, projections, L1 norm and loop margins.
+"""Blocks of L1 adaptive control: predictors, adaptation laws, projection, L1 norm and loop margins.
 
-The form is that of Hovakimyan and Cao, L1 Adaptive Control Theory (SIAM 2010). What a controller steps on a boat
-works in plain floats; what is worked out beforehand (norms, margins) uses numpy.
+After N. Hovakimyan and C. Cao, L1 Adaptive Control Theory (SIAM 2010). What a controller evaluates
+at run time uses plain floats; what is computed beforehand (norms, margins) uses numpy.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,16 +16,23 @@ from boatsim.physics.base import Array
 
 Complex = NDArray[np.complex128]
 Loop = Callable[[Complex], Complex]  # L(s) at s = j omega, omega in rad/s; pure delays allowed
-# of z: what the controller answers to position and to rate
+# of z: response of the controller to position and to rate
 Law = Callable[[Complex], tuple[Complex, Complex]]
-HIGHEST = 1e3  # [rad/s] beyond which a continuous loop has no crossover
+HIGHEST = 1e3  # [rad/s] highest crossover of a continuous loop
 
 
 def ball_share(square: float, along: float, radius: float, tolerance: float) -> float:
-    """Share of theta that the projection takes off its rate y; square is theta'theta, along is theta'y.
+    """Return the share of theta that the projection operator subtracts from its rate y.
 
-    The convex function is ((1 + tolerance) theta'theta - radius^2) / (tolerance radius^2): 0 on the inner ball of
-    radius/sqrt(1 + tolerance), 1 on the outer one, where all outward motion is gone.
+    The convex function is f = ((1 + tolerance) theta'theta - radius^2) / (tolerance radius^2): 0 on
+    the inner ball of radius / sqrt(1 + tolerance), 1 on the outer one, where all outward motion is
+    removed.
+
+    Args:
+        square: theta'theta.
+        along: theta'y.
+        radius: Radius of the outer ball.
+        tolerance: Projection tolerance.
     """
     excess = ((1.0 + tolerance) * square - radius * radius) / (tolerance * radius * radius)
     if excess <= 0.0 or along <= 0.0:
@@ -34,17 +41,27 @@ def ball_share(square: float, along: float, radius: float, tolerance: float) -> 
 
 
 def project_interval(value: float, rate: float, low: float, high: float, tolerance: float) -> float:
-    """Projection of one number on [low, high]: the ball about the middle, so that both bounds are kept."""
+    """Return the rate of a scalar after projection on [low, high], the ball about its middle.
+
+    Args:
+        value: Estimate.
+        rate: Its rate [1/s].
+        low: Lower bound.
+        high: Upper bound.
+        tolerance: Projection tolerance.
+    """
     off = value - 0.5 * (low + high)
     return rate - ball_share(off * off, off * rate, 0.5 * (high - low), tolerance) * off
 
 
 @dataclass
 class Gradient:
-    """Estimate of one unknown number by the gradient law, kept inside [low, high].
+    """Gradient adaptation law with projection for one unknown number in [low, high].
 
-    value' = gain Proj(value, -regressor error); the regressor is the state for a theta, the input for omega, 1 for
-    sigma, and the error is (xh - x)' P b with P from `lyapunov`.
+    value' = gain Proj(value, -regressor error)
+
+    The regressor is the state for theta, the input for omega and 1 for sigma; the error is (xh -
+    x)' P b with P from `lyapunov`. The law is discretised by the explicit Euler method.
     """
 
     value: float
@@ -54,20 +71,34 @@ class Gradient:
     tolerance: float = 0.1
 
     def rate(self, regressor: float, error: float) -> float:
-        """Time derivative of the estimate [1/s]."""
+        """Return the time derivative of the estimate [1/s].
+
+        Args:
+            regressor: State, input or 1.
+            error: (xh - x)' P b.
+        """
         return self.gain * project_interval(
             self.value, -regressor * error, self.low, self.high, self.tolerance
         )
 
     def step(self, regressor: float, error: float, dt: float) -> float:
-        """Follow the rate over dt [s]; cut at the bounds, which a step too long for the gain would jump over."""
+        """Advance the estimate by one Euler step and return it, limited to its bounds.
+
+        Args:
+            regressor: State, input or 1.
+            error: (xh - x)' P b.
+            dt: Length of the step [s].
+        """
         self.value = min(max(self.value + dt * self.rate(regressor, error), self.low), self.high)
         return self.value
 
 
 @dataclass
 class Predictor:
-    """What the boat should do: xh' = -a xh + b0 drive, exact for a drive held over each period."""
+    """First-order state predictor xh' = -a xh + b0 drive, exact for a drive held over each period.
+
+    xh(k+1) = e^(-aT) xh(k) + b0 (1 - e^(-aT)) / a drive(k)
+    """
 
     a: float  # [1/s] pole
     b0: float  # assumed input gain: unit of x per second per unit of input
@@ -81,33 +112,48 @@ class Predictor:
         self.gain = self.b0 * (1.0 - self.decay) / self.a
 
     def predict(self, drive: float) -> float:
-        """Carry the prediction over one period; returns the new prediction."""
+        """Advance the prediction by one period and return it.
+
+        Args:
+            drive: Input held over the period.
+        """
         self.xh = self.decay * self.xh + self.gain * drive
         return self.xh
 
 
 @dataclass
 class PiecewiseConstant(Predictor):
-    """Predictor whose unknown input sig is set anew every period from the prediction error, in the input's unit.
+    """State predictor with piecewise-constant adaptation of the unknown input sigma.
 
-    Each period: `predict` with what was really applied (after saturation), then `adapt` to what is measured.
+    sigma = -(xh - x) e^(-aT) / (b0 (1 - e^(-aT)) / a)
+
+    Hovakimyan and Cao 2010, section 3.3. In each period call `predict` with the input that was
+    applied (after saturation), then `adapt` with the measurement.
     """
 
-    sig: float = 0.0  # all that the predictor does not know, as an input
+    sig: float = 0.0  # lumped uncertainty in the unit of the input
 
     def predict(self, drive: float) -> float:
-        """Carry the prediction over one period in which `drive` was applied and sig acted beside it."""
+        """Advance the prediction by one period and return it; sigma acts in addition to the input.
+
+        Args:
+            drive: Input applied over the period.
+        """
         return super().predict(drive + self.sig)
 
     def adapt(self, measured: float) -> float:
-        """Choose sig so that over one period it takes away what is left of the prediction error; returns sig."""
+        """Set sigma so that it cancels the prediction error over one period; return sigma.
+
+        Args:
+            measured: Measured state.
+        """
         self.sig = -(self.xh - measured) * self.decay / self.gain
         return self.sig
 
 
 @dataclass
 class DiscreteFilter:
-    """Ratio of two polynomials in z (coefficients of falling powers), stepped once a period."""
+    """Discrete transfer function: ratio of two polynomials in z, coefficients of falling powers."""
 
     numerator: Sequence[float]
     denominator: Sequence[float]
@@ -121,7 +167,12 @@ class DiscreteFilter:
         self.state = [0.0] * (n - 1)
 
     def step(self, value: float) -> float:
-        """Output of this period, its input already in it where the two polynomials are of the same order."""
+        """Return the output of this period.
+
+        Args:
+            value: Input of this period; it acts without delay if both polynomials have the same
+                order.
+        """
         b, a, x = self.numerator, self.denominator, self.state
         out = x[0] + b[0] * value
         for i in range(len(x)):
@@ -129,12 +180,22 @@ class DiscreteFilter:
         return out
 
     def at(self, z: Complex) -> Complex:
-        """Its value for complex z; z = 1 gives the gain of a constant input."""
+        """Return the value of the transfer function for complex z; z = 1 gives the static gain.
+
+        Args:
+            z: Complex frequencies.
+        """
         return np.asarray(np.polyval(self.numerator, z) / np.polyval(self.denominator, z))
 
 
 def held(numerator: Sequence[float], denominator: Sequence[float], period: float) -> DiscreteFilter:
-    """A strictly proper ratio of polynomials in s (falling powers) as seen through a zero-order hold, exact."""
+    """Return the exact zero-order-hold equivalent of a strictly proper transfer function.
+
+    Args:
+        numerator: Coefficients of falling powers of s.
+        denominator: Coefficients of falling powers of s.
+        period: Sample time [s].
+    """
     lead, n = denominator[0], len(denominator) - 1
     a = np.vstack([-np.asarray(denominator[1:], dtype=float) / lead, np.eye(n - 1, n)])
     c = np.concatenate([np.zeros(n - len(numerator)), np.asarray(numerator, dtype=float) / lead])
@@ -146,7 +207,12 @@ def held(numerator: Sequence[float], denominator: Sequence[float], period: float
 
 
 def lyapunov(am: ArrayLike, q: ArrayLike | None = None) -> Array:
-    """P of Am'P + P Am = -Q, (n, n); Q is the identity if not given."""
+    """Return P (n, n) of Am'P + P Am = -Q.
+
+    Args:
+        am: Stable matrix (n, n) [1/s].
+        q: Q (n, n); default: the identity.
+    """
     a = np.asarray(am, dtype=float)
     eye = np.eye(len(a))
     right = eye if q is None else np.asarray(q, dtype=float)
@@ -155,7 +221,11 @@ def lyapunov(am: ArrayLike, q: ArrayLike | None = None) -> Array:
 
 
 def matrix_exp(a: Array) -> Array:
-    """e^A of a square matrix."""
+    """Return the matrix exponential e^A of a square matrix.
+
+    Args:
+        a: Square matrix.
+    """
     from scipy.linalg import expm
 
     return np.asarray(expm(a))
@@ -163,7 +233,7 @@ def matrix_exp(a: Array) -> Array:
 
 @dataclass(frozen=True)
 class LinearSystem:
-    """x' = A x + B v, y = C x: A (n, n), B (n, inputs), C (outputs, n)."""
+    """Linear system x' = A x + B v, y = C x: A (n, n), B (n, inputs), C (outputs, n)."""
 
     a: Array
     b: Array
@@ -171,9 +241,15 @@ class LinearSystem:
 
 
 def unfiltered(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
-    """(sI - Am)^-1 b (1 - C) with C = bandwidth/(s + bandwidth): what the low-pass leaves of an uncertainty.
+    """Return (sI - Am)^-1 b (1 - C(s)) with the low-pass filter C = bandwidth / (s + bandwidth).
 
-    Am (n, n) [1/s], b (n,), bandwidth [rad/s]; the outputs are the n states.
+    It is the response to the part of an uncertainty that the filter does not cancel; its L1 norm
+    enters the L1-norm condition. The outputs are the n states.
+
+    Args:
+        am: Am (n, n) [1/s].
+        b: b (n,).
+        bandwidth: Bandwidth of the filter [rad/s].
     """
     a = np.atleast_2d(np.asarray(am, dtype=float))
     column = np.asarray(b, dtype=float).reshape(-1, 1)
@@ -183,7 +259,16 @@ def unfiltered(am: ArrayLike, b: ArrayLike, bandwidth: float) -> LinearSystem:
 
 
 def step_response(system: LinearSystem, dt: float, steps: int) -> Array:
-    """Outputs (steps + 1, outputs) every dt [s] from rest while the first input is 1; exact at these times."""
+    """Return the response of the outputs to a unit step of the first input, from rest, exact.
+
+    Args:
+        system: Linear system.
+        dt: Time between two samples [s].
+        steps: Number of steps.
+
+    Returns:
+        Outputs (steps + 1, outputs).
+    """
     n = len(system.a)
     with_input = np.block([[system.a, system.b[:, :1]], [np.zeros((1, n + 1))]])
     states = _free_motion(matrix_exp(with_input * dt), np.eye(n + 1)[n], steps)
@@ -191,25 +276,43 @@ def step_response(system: LinearSystem, dt: float, steps: int) -> Array:
 
 
 def l1_rows(system: LinearSystem) -> Array:
-    """L1 norm of each row of the transfer matrix, (outputs,): the sum over inputs of the integrals of |h(t)|."""
+    """Return the L1 norm of each row of the transfer matrix, (outputs,).
+
+    It is the sum over the inputs of the integrals of |h(t)|.
+
+    Args:
+        system: Stable linear system.
+    """
     each = [[_absolute_integral(system.a, b, c) for b in system.b.T] for c in system.c]
     return np.asarray(np.sum(np.array(each), axis=1))
 
 
 def l1_norm(system: LinearSystem) -> float:
-    """L1 norm of a stable transfer matrix: its largest gain from bounded input to bounded output."""
+    """Return the L1 norm of a stable transfer matrix.
+
+    It is the largest gain from bounded input to bounded output.
+
+    Args:
+        system: Stable linear system.
+    """
     return float(np.max(l1_rows(system)))
 
 
 def l1_condition(norm: float, slope: float) -> float:
-    """L1-norm condition: below 1 where the loop stays bounded for uncertainties of at most this slope."""
+    """Return norm times slope; below 1 the loop is bounded for uncertainties of at most this slope.
+
+    Args:
+        norm: L1 norm [s].
+        slope: Lipschitz constant of the uncertainty [1/s].
+    """
     return norm * slope
 
 
 def _absolute_integral(a: Array, b: Array, c: Array) -> float:
-    """Integral over t > 0 of |c e^{At} b| for a stable A: the step response rises and falls between zeros of h.
+    """Return the integral over t > 0 of |c e^(At) b| for a stable A.
 
-    Between two zeros the integral of h is c A^-1 (x2 - x1), exact; a zero is located by bisection.
+    Between two zeros of h the integral is c A^-1 (x2 - x1), exact; the zeros are located by
+    bisection.
     """
     primitive = np.linalg.solve(a.T, c)
     total, start = 0.0, b
@@ -229,7 +332,7 @@ def _absolute_integral(a: Array, b: Array, c: Array) -> float:
 
 
 def _grid(a: Array) -> list[tuple[float, int]]:
-    """Steps [s] and their numbers: twenty per radian of the fastest mode that has not yet died out (to 1e-13)."""
+    """Return steps [s] and their numbers: twenty per radian of the fastest mode above 1e-13."""
     modes = sorted(
         ((30.0 / -pole.real, abs(pole)) for pole in np.linalg.eigvals(a)), key=lambda mode: mode[0]
     )
@@ -247,7 +350,7 @@ def _grid(a: Array) -> list[tuple[float, int]]:
 
 
 def _free_motion(once: Array, start: Array, steps: int) -> Array:
-    """States (steps + 1, n) from start where each is `once` times the one before, by doubling what is there."""
+    """Return the states (steps + 1, n) of x(k+1) = once x(k), computed by repeated doubling."""
     x, power = start[None, :], once
     while len(x) <= steps:
         x, power = np.vstack([x, x @ power.T]), power @ power
@@ -255,7 +358,7 @@ def _free_motion(once: Array, start: Array, steps: int) -> Array:
 
 
 def _zero(halves: list[Array], x: Array, c: Array) -> Array:
-    """State where c x first changes its sign after x, by bisection: halves[k] moves a state by the step / 2^(k+1)."""
+    """Return the state where c x first changes its sign, by bisection with steps dt / 2^(k+1)."""
     for half in halves:
         later = half @ x
         x = later if (c @ later) * (c @ x) > 0.0 else x
@@ -264,21 +367,29 @@ def _zero(halves: list[Array], x: Array, c: Array) -> Array:
 
 @dataclass(frozen=True)
 class LoopMargins:
-    """How far a loop is from instability; of several crossovers the one that allows the least extra delay."""
+    """Stability margins of a loop.
+
+    Of several crossovers it is the one that allows the least extra delay."""
 
     crossover: float  # [rad/s] where |L| is 1
     phase: float  # [rad] lag that may be added at the crossover
-    delay: float  # [s] pure delay that may be added; 0 where the loop is unstable already
+    delay: float  # [s] pure delay that may be added; 0 for an unstable loop
     stable: bool
 
 
 def loop_margins(
     loop: Loop, low: float = 1e-4, high: float = HIGHEST, points: int = 20000
 ) -> LoopMargins:
-    """Crossover, phase margin and extra-delay margin of a loop L(s) under negative feedback.
+    """Return crossover, phase margin and delay margin of a loop L(s) under negative feedback.
 
-    The loop must have no pole in the right half plane, and its behaviour outside low..high [rad/s] must be plain:
-    integrators below, |L| < 1 above.
+    The loop must have no pole in the right half plane. Outside low..high it must consist of
+    integrators below and have |L| < 1 above.
+
+    Args:
+        loop: L(s) for s = j omega.
+        low: Lowest frequency [rad/s].
+        high: Highest frequency [rad/s].
+        points: Number of frequencies.
     """
     omega = np.geomspace(low, high, points)
     response = loop(np.asarray(1j * omega))
@@ -297,7 +408,7 @@ def loop_margins(
 
 
 def _crossover(loop: Loop, low: float, high: float) -> float:
-    """Frequency between low and high where |L| passes 1, by bisection."""
+    """Return the frequency between low and high at which |L| is 1, by bisection."""
     rising = abs(loop(np.array([1j * high]))[0]) > 1.0
     for _ in range(50):
         middle = 0.5 * (low + high)
@@ -310,7 +421,7 @@ def _crossover(loop: Loop, low: float, high: float) -> float:
 
 
 def _stable(omega: Array, response: Complex) -> bool:
-    """Nyquist's criterion without unstable open-loop poles: 1 + L turns by a quarter for each integrator, no more."""
+    """Apply Nyquist's criterion for a loop without unstable poles: 1 + L turns 90 deg per integrator."""
     integrators = round(
         -float(np.diff(np.log(np.abs(response[:2])))[0] / np.diff(np.log(omega[:2]))[0])
     )
@@ -320,12 +431,13 @@ def _stable(omega: Array, response: Complex) -> bool:
 
 @dataclass(frozen=True)
 class LoopChannel:
-    """One feedback channel of a controller, as the loop analysis sees it.
+    """Feedback channel of a continuous controller for the loop analysis.
 
-    The plant is x' = -damping x + (input gain) tau / I0, the position is the integral of x; tau reaches it through a
-    zero-order hold of mean delay `hold_s` (half a sample period) and a lag `servo_lag_s`. The controller is the L1 law
-    tau = I0 pole x_ref - C sig, x_ref = heading_gain (position error), C = bandwidth/(s + bandwidth), with sig taken
-    as I0 (x' + pole x) - tau, which fast adaptation approaches; or a PID on the position, its gains divided by I0.
+    The plant is x' = -damping x + (input gain) tau / I0; the position is the integral of x. tau
+    passes a zero-order hold of mean delay `hold_s` (half a sample time) and a lag `servo_lag_s`.
+    The controller is the L1 law tau = I0 pole x_ref - C sigma with x_ref = heading_gain (position
+    error) and C = bandwidth / (s + bandwidth), where sigma is I0 (x' + pole x) - tau, the limit of
+    fast adaptation; or a PID on the position with gains divided by I0.
     """
 
     name: str
@@ -337,15 +449,19 @@ class LoopChannel:
     hold_s: float = 0.0
     servo_lag_s: float = 0.0
     pid: tuple[float, float, float] | None = None  # (kp [1/s^2], ki [1/s^3], kd [1/s])
-    damping: float = 0.0  # [1/s] of the boat itself
+    damping: float = 0.0  # [1/s] linear damping of the boat
 
     @property
     def highest(self) -> float:
-        """Frequency up to which the loop is looked at [rad/s]."""
+        """Highest frequency of the analysis [rad/s]."""
         return HIGHEST
 
     def loop(self, gain: float) -> Loop:
-        """L(s), broken at the plant input, for one true-over-assumed input gain."""
+        """Return L(s), broken at the plant input.
+
+        Args:
+            gain: True over assumed input gain.
+        """
 
         def response(s: Complex) -> Complex:
             held = (
@@ -359,7 +475,7 @@ class LoopChannel:
         return response
 
     def _law(self, s: Complex) -> Complex:
-        """-tau/(I0 position): what the controller answers to a position error, its own filter loop closed."""
+        """Return -tau / (I0 position) with the filter loop of the controller closed."""
         if self.pid is not None:
             kp, ki, kd = self.pid
             return np.asarray(kp + ki / s + kd * s)
@@ -369,7 +485,11 @@ class LoopChannel:
         )
 
     def norm(self, gain: float) -> float | None:
-        """L1 norm [s] of (1 - C)/(s + pole), C = gain bandwidth/(s + gain bandwidth); None for a PID."""
+        """Return the L1 norm [s] of (1 - C) / (s + pole); None for a PID.
+
+        Args:
+            gain: True over assumed input gain; C = gain bandwidth / (s + gain bandwidth).
+        """
         if self.pid is not None:
             return None
         return l1_norm(unfiltered([[-self.pole]], [1.0], gain * self.bandwidth))
@@ -377,27 +497,32 @@ class LoopChannel:
 
 @dataclass(frozen=True)
 class SampledChannel:
-    """One feedback channel of a sampled controller, exact: position and rate of a plant whose input is held.
+    """Feedback channel of a sampled controller for the loop analysis, exact.
 
-    The plant is x' = -damping x + (input gain) a, the position is the integral of x; the controller answers
-    a = -(position law(z)[0] + rate law(z)[1]), its own inner loops closed. Both are stable but for the plant's
-    integrator. A delay between them need not be a whole number of periods: the margin is that of the phase.
+    The plant is x' = -damping x + (input gain) a with a held input; the position is the integral of
+    x. The controller is a = -(position law(z)[0] + rate law(z)[1]) with its inner loops closed.
+    Both are stable except for the integrator of the plant. The delay margin follows from the phase
+    and need not be a multiple of the sample time.
     """
 
     name: str
     law: Law
-    damping: float  # [1/s] of the boat itself
+    damping: float  # [1/s] linear damping of the boat
     period: float  # [s]
     input_gain: tuple[float, ...] = (1.0,)  # true over assumed
     pole: float = 0.0  # [1/s] of the predictor
 
     @property
     def highest(self) -> float:
-        """Frequency up to which the loop is looked at [rad/s]: half the sampling rate, where it mirrors itself."""
+        """Highest frequency of the analysis [rad/s]: half the sampling rate."""
         return pi / self.period
 
     def loop(self, gain: float) -> Loop:
-        """L(s), z = e^{sT}, broken at the plant input, for one true-over-assumed input gain."""
+        """Return L(s) with z = e^(sT), broken at the plant input.
+
+        Args:
+            gain: True over assumed input gain.
+        """
         decay = exp(-self.damping * self.period)
         # F and g of the plant over one period, zero-order hold
         rate_gain = (1.0 - decay) / self.damping
@@ -413,5 +538,9 @@ class SampledChannel:
         return response
 
     def norm(self, gain: float) -> float | None:
-        """No L1 norm: its condition is one of continuous loops."""
+        """Return None, because the L1-norm condition applies to continuous loops.
+
+        Args:
+            gain: True over assumed input gain.
+        """
         return None

@@ -1,7 +1,8 @@
-"""An L1 loop with gradient adaptation, stepped far more finely than its controller is called: compiled.
+"""L1 adaptive loop with gradient adaptation and internal sub-steps, compiled.
 
-The form is that of Hovakimyan and Cao, L1 Adaptive Control Theory (SIAM 2010): a state predictor with the input's gain,
-the state's coefficients and a disturbance unknown, projected gradient laws, and an input that a low-pass follows.
+After N. Hovakimyan and C. Cao, L1 Adaptive Control Theory (SIAM 2010): a state predictor with
+unknown input gain omega, state coefficients theta and disturbance sigma, gradient laws with
+projection, and a low-pass filter on the input.
 """
 
 from typing import Any
@@ -13,13 +14,20 @@ from boatsim.control.adaptive import lyapunov
 from boatsim.control.compiled import Records, lean, merged
 from boatsim.physics.base import Array
 
-# of the projection: it begins to brake at 1 / sqrt(1 + tolerance) of the way to a bound
+# of the projection: it acts from 1 / sqrt(1 + tolerance) of the half range on
 TOLERANCE = 0.1
 
 
 @lean
 def projected(value: float, rate: float, low: float, high: float) -> float:
-    """`boatsim.control.adaptive.project_interval`, compiled."""
+    """Return the projected rate of an estimate in [low, high]; `project_interval`, compiled.
+
+    Args:
+        value: Estimate.
+        rate: Its rate [1/s].
+        low: Lower bound.
+        high: Upper bound.
+    """
     off, radius = value - 0.5 * (low + high), 0.5 * (high - low)
     excess = ((1.0 + TOLERANCE) * off * off - radius * radius) / (TOLERANCE * radius * radius)
     if excess <= 0.0 or off * rate <= 0.0:
@@ -46,11 +54,28 @@ def adapt(
     regressors: Array,
     slope: Array,
 ) -> None:
-    """Predictor and estimates over one period in which the measured state went from `before` to `after`, in place.
+    """Advance predictor and estimates in place over one period between two measured states.
 
-    The input acts on the last state. Estimates belong to the regressors (x1 ... xn, 1, input); `by` says whose
-    regressor drives each of them. The predictor steps first, then the estimates (semi-implicit). `regressors` (n + 2,)
-    and `slope` (n,) are there to be worked in.
+    The input acts on the last state. Regressors are (x1 ... xn, 1, input). Each sub-step advances
+    the predictor first and then the estimates (semi-implicit Euler).
+
+    Args:
+        predicted: Predicted state (n,).
+        estimates: theta (n), sigma, omega (n + 2,).
+        low: Lower bounds (n + 2,).
+        high: Upper bounds (n + 2,).
+        gain: Adaptation gain.
+        am: A_m (n, n) [1/s].
+        pb: P b (n,).
+        drift: Known rate of each state (n,).
+        by: Index of the regressor of each estimate (n + 2,).
+        before: Measured state at the begin (n,).
+        after: Measured state at the end (n,).
+        applied: Mean input over the period.
+        period: Length of the period [s].
+        steps: Number of sub-steps.
+        regressors: Work array (n + 2,).
+        slope: Work array (n,).
     """
     n, dt = len(predicted), period / steps
     regressors[n], regressors[n + 1] = 1.0, applied
@@ -87,7 +112,21 @@ def filtered(
     period: float,
     steps: int,
 ) -> tuple[float, float]:
-    """Low-pass input' = -bandwidth (gain input + known), kept in its limits: mean over the period, value at its end."""
+    """Return mean and final value of the low-pass filtered input.
+
+    The filter is input' = -bandwidth (gain input + known) within the limits of value and rate.
+
+    Args:
+        value: Input at the begin.
+        known: theta'x + sigma less the wanted value.
+        gain: Estimated input gain omega.
+        bandwidth: Gain of the filter [1/s].
+        low: Lower limit of the input.
+        high: Upper limit of the input.
+        rate: Largest rate of the input [1/s].
+        period: Length of the period [s].
+        steps: Number of sub-steps.
+    """
     total, dt = 0.0, period / steps
     for _ in range(steps):
         speed = min(max(-bandwidth * (gain * value + known), -rate), rate)
@@ -98,7 +137,11 @@ def filtered(
 
 
 def loop_memory(n: int) -> np.dtype[np.void]:
-    """Record of what a loop over n states remembers."""
+    """Return the record type of the memory of a loop with n states.
+
+    Args:
+        n: Number of states.
+    """
     states, all_ = (n,), (n + 2,)
     return np.dtype(
         [
@@ -115,7 +158,11 @@ def loop_memory(n: int) -> np.dtype[np.void]:
 
 
 def loop_design(n: int) -> np.dtype[np.void]:
-    """Record of how a loop over n states is laid out."""
+    """Return the record type of the design of a loop with n states.
+
+    Args:
+        n: Number of states.
+    """
     states, all_ = (n,), (n + 2,)
     return np.dtype(
         [
@@ -144,10 +191,17 @@ def designed(
     period: float,
     step: float,
 ) -> Records:
-    """A `loop_design` (1,) for a loop of such poles, bounds and first estimates, each driven by its own regressor.
+    """Return a `loop_design` (1,) in which each estimate is driven by its own regressor.
 
-    `am` (n, n) [1/s] is the predictor's, `low`, `high`, `first` (n + 2,) belong to x1 ... xn, the disturbance and the
-    input's gain; `bandwidth` [rad/s] of the low-pass, `period` and inner `step` in s.
+    Args:
+        am: A_m of the predictor (n, n) [1/s].
+        low: Lower bounds of theta (n), sigma, omega (n + 2,).
+        high: Upper bounds (n + 2,).
+        first: Initial estimates (n + 2,).
+        gain: Adaptation gain.
+        bandwidth: Gain of the low-pass filter [1/s].
+        period: Sample time of the controller [s].
+        step: Length of a sub-step [s].
     """
     a = np.asarray(am, dtype=float)
     d = np.zeros(1, loop_design(len(a)))
@@ -159,7 +213,13 @@ def designed(
 
 @merged
 def begin_loop(a: Any, d: Any, value: float) -> None:
-    """Begin at the state in `a.after` with the input settled at a value."""
+    """Initialise the loop at the state in `a.after` with a settled input.
+
+    Args:
+        a: Memory of the loop.
+        d: Design of the loop.
+        value: Input.
+    """
     for i in range(len(d.first)):
         a.estimates[i] = d.first[i]
     for i in range(len(d.pb)):
@@ -169,7 +229,13 @@ def begin_loop(a: Any, d: Any, value: float) -> None:
 
 @merged
 def observe_loop(a: Any, d: Any, applied: float) -> None:
-    """Adapt over the period that ends with the state in `a.after`, through which the input was `applied`."""
+    """Adapt over the period that ends with the state in `a.after`.
+
+    Args:
+        a: Memory of the loop.
+        d: Design of the loop.
+        applied: Input applied over the period.
+    """
     adapt(
         a.predicted,
         a.estimates,
@@ -194,14 +260,29 @@ def observe_loop(a: Any, d: Any, applied: float) -> None:
 
 @merged
 def shift_loop(a: Any, jump: float, known: float) -> None:
-    """The first state jumps as what it is measured against does; the prediction too as far as that is `known`."""
+    """Shift the first state, and the known share of the prediction, by a jump of the reference.
+
+    Args:
+        a: Memory of the loop.
+        jump: Jump of the reference.
+        known: Share of the jump that the prediction follows, 0 to 1.
+    """
     a.predicted[0] += known * jump
     a.before[0] += jump
 
 
 @merged
 def act_loop(a: Any, d: Any, wanted: float, low: float, high: float, rate: float) -> float:
-    """Mean input of the next period; `wanted` is what theta'x + sigma + omega input is to be."""
+    """Return the mean input of the next period.
+
+    Args:
+        a: Memory of the loop.
+        d: Design of the loop.
+        wanted: Value that theta'x + sigma + omega input should have.
+        low: Lower limit of the input.
+        high: Upper limit of the input.
+        rate: Largest rate of the input [1/s].
+    """
     n = len(d.pb)
     known = a.estimates[n] - wanted
     for i in range(n):

@@ -1,12 +1,13 @@
-"""How a joystick's surge, sway and yaw demands become settings of two mirrored outboards, and what those then give.
+"""Control allocation of surge, sway and yaw demands to two mirrored outboards.
 
-Both motors turn inward by one angle d >= 0 and run against each other. With D = T_port - T_starboard, S = T_port +
-T_starboard (thrusts signed, astern negative), half spacing B and arm L from the motors to the origin of the moment:
+Both motors are turned inward by one angle d >= 0 and run against each other. With D = T_port -
+T_starboard, S = T_port + T_starboard (thrusts signed, astern negative), half spacing B and arm L
+from the motors to the origin of the moment:
 
     X = S cos d        Y = D sin d        N = D (B cos d - L sin d) = D R sin(gamma - d)
 
-with R = hypot(B, L) and gamma = atan(B/L) the neutral angle. B, L and the thrust curve are nominal values: what the
-boat really has enters a control loop as a disturbance.
+with R = hypot(B, L) and the neutral angle gamma = atan(B / L). B, L and the thrust curve are
+nominal; differences to the boat act on a control loop as a disturbance.
 """
 
 from collections.abc import Mapping
@@ -30,7 +31,7 @@ SURGE_RESERVE = 0.3
 
 
 class Stick(NamedTuple):
-    """What the operator asks for."""
+    """Demands of the operator."""
 
     surge: float  # [m/s] ahead
     sway: float  # [m/s] to starboard
@@ -38,7 +39,11 @@ class Stick(NamedTuple):
 
     @classmethod
     def read(cls, goal: Mapping[str, float]) -> "Stick":
-        """From the goal's `surge_mps`, `sway_mps`, `yaw_radps`; what is not given is zero."""
+        """Return the demands of a goal; missing ones are zero.
+
+        Args:
+            goal: Mapping with `surge_mps`, `sway_mps` and `yaw_radps`.
+        """
         return cls(*(goal.get(name, 0.0) for name in STICK))
 
 
@@ -53,9 +58,15 @@ HEADING = record("own", "wanted")
 def keep_heading(
     h: Any, rate: float, compass: float, stick: float, dt: float, trust: float
 ) -> None:
-    """One period of dt [s] of a `HEADING`; `trust` [1/s] is the rate at which the compass takes the gyro's drift out.
+    """Integrate the gyro and the yaw demand over one period, with full turns counted.
 
-    Whole turns count.
+    Args:
+        h: `HEADING` record, advanced in place.
+        rate: Yaw rate of the gyro [rad/s].
+        compass: Heading of the compass [rad].
+        stick: Demanded yaw rate [rad/s].
+        dt: Length of the period [s].
+        trust: Rate at which the compass corrects the drift of the gyro [1/s].
     """
     h.own += dt * rate
     h.wanted += dt * stick
@@ -65,7 +76,7 @@ def keep_heading(
 
 
 class Drive(NamedTuple):
-    """Thrust of each motor, astern negative, and the angle by which both turn inward."""
+    """Thrust of each motor, astern negative, and the inward angle of both."""
 
     port: float  # [N]
     starboard: float  # [N]
@@ -81,14 +92,14 @@ class Push(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """A drive as the servos and motor controllers take it: whole PWM steps and whole degrees."""
+    """Drive in the units of servos and motor controllers: integer PWM and integer degrees."""
 
     pwm_port: int
     pwm_starboard: int
     degrees: int
 
     def commands(self) -> dict[str, float]:
-        """By name of command channel; the starboard angle is the mirror image of the port one."""
+        """Return the commands by channel; the starboard angle mirrors the port one."""
         angle = radians(self.degrees)
         return {
             "pwm_port": float(self.pwm_port),
@@ -99,7 +110,7 @@ class Setting(NamedTuple):
 
 
 class Nominal(NamedTuple):
-    """What the laws below take of two outboards; a record with fields of these names serves as well."""
+    """Nominal properties of two outboards; a record with these fields may be used too."""
 
     half_spacing: float  # [m]
     arm: float  # [m]
@@ -115,13 +126,24 @@ class Nominal(NamedTuple):
 
 @merged
 def within(value: float, low: float, high: float) -> float:
-    """Nearest value inside [low, high]."""
+    """Return the value limited to [low, high].
+
+    Args:
+        value: Value.
+        low: Lower limit.
+        high: Upper limit.
+    """
     return low if value < low else high if value > high else value
 
 
 @lean
 def sway_difference(q: Any, sway: float) -> float:
-    """Thrust difference D [N] for a sway command [m/s]."""
+    """Return the thrust difference D [N] for a sway demand.
+
+    Args:
+        q: Nominal outboards.
+        sway: Sway demand [m/s].
+    """
     if abs(sway) < q.sway_dead_zone:
         return 0.0
     return within(q.sway_thrust * sway / q.rated_sway, -q.largest_difference, q.largest_difference)
@@ -129,13 +151,23 @@ def sway_difference(q: Any, sway: float) -> float:
 
 @lean
 def lever(q: Any, angle: float) -> float:
-    """Moment over thrust difference [m] with both motors turned inward by `angle` [rad]."""
+    """Return the moment over thrust difference [m], B cos d - L sin d.
+
+    Args:
+        q: Nominal outboards.
+        angle: Inward angle d of both motors [rad].
+    """
     return q.half_spacing * cos(angle) - q.arm * sin(angle)
 
 
 @lean
 def thrust_at(q: Any, pwm: float) -> float:
-    """Nominal thrust [N] at a signed PWM value."""
+    """Return the nominal thrust [N] at a signed PWM value.
+
+    Args:
+        q: Nominal outboards.
+        pwm: Signed PWM value.
+    """
     share = max(abs(pwm) - q.dead_pwm, 0.0) / (PWM_RATED - q.dead_pwm)
     ahead = q.rated_thrust * share**q.thrust_power
     return ahead if pwm >= 0.0 else -q.reverse_ratio * ahead
@@ -143,7 +175,12 @@ def thrust_at(q: Any, pwm: float) -> float:
 
 @lean
 def pwm(q: Any, thrust: float) -> float:
-    """Signed whole PWM value whose nominal thrust is nearest to `thrust` [N]."""
+    """Return the signed integer PWM value with the nominal thrust nearest to the given one.
+
+    Args:
+        q: Nominal outboards.
+        thrust: Thrust [N].
+    """
     ahead = abs(thrust) if thrust > 0.0 else abs(thrust) / q.reverse_ratio
     if ahead == 0.0:
         return 0.0
@@ -157,11 +194,18 @@ def pwm(q: Any, thrust: float) -> float:
 def allocate(
     q: Any, surge: float, difference: float, moment: float, room: float
 ) -> tuple[float, float, float]:
-    """Thrusts and angle of a `Drive` for a surge force [N], a sway thrust difference [N] and a moment [N m].
+    """Return port thrust [N], starboard thrust [N] and inward angle [rad].
 
-    Yaw comes first, then sway, then surge. `room` [N] widens the bound on the surge thrust beyond its share of D. The
-    motors swap direction only where `difference` changes sign or, where it is zero, where `moment` does; elsewhere the
-    drive is continuous.
+    Yaw has priority over sway and sway over surge. The motors swap direction only where
+    `difference` changes its sign or, if it is zero, where `moment` does; otherwise the result is
+    continuous.
+
+    Args:
+        q: Nominal outboards.
+        surge: Surge force [N].
+        difference: Thrust difference for sway [N].
+        moment: Yaw moment [N m].
+        room: Extension of the limit of the surge thrust beyond its share of D [N].
     """
     if difference == 0.0:
         d, spread, share = 0.0, moment / q.half_spacing, TURN_SHARE
@@ -175,7 +219,13 @@ def allocate(
 
 @lean
 def steered(q: Any, difference: float, moment: float) -> tuple[float, float]:
-    """Angle and D for sway: D as asked or, if no angle then gives the moment, as large as the moment needs."""
+    """Return angle [rad] and D [N] for sway; D is increased if no angle gives the moment otherwise.
+
+    Args:
+        q: Nominal outboards.
+        difference: Thrust difference for sway [N].
+        moment: Yaw moment [N m].
+    """
     helps = moment * difference > 0.0
     needed = moment / lever(q, 0.0 if helps else ANGLE_MAX)
     spread = copysign(max(abs(difference), abs(needed)), difference)
@@ -187,7 +237,16 @@ def steered(q: Any, difference: float, moment: float) -> tuple[float, float]:
 
 @lean
 def powered(q: Any, total: float, spread: float, bound: float) -> tuple[float, float]:
-    """Both thrusts from S and D; where a motor would exceed its bound S yields, all but its reserve, then D."""
+    """Return both thrusts [N] from S and D, within the limits of the motors.
+
+    If a motor would exceed its limit, S is reduced to its reserve first, then D.
+
+    Args:
+        q: Nominal outboards.
+        total: S [N].
+        spread: D [N].
+        bound: Limit of |S| [N].
+    """
     ahead, astern = thrust_at(q, PWM_MAX), -thrust_at(q, -PWM_MAX)
     total = within(total, -bound, bound)
     kept = within(total, -SURGE_RESERVE * abs(spread), SURGE_RESERVE * abs(spread))
@@ -200,7 +259,18 @@ def powered(q: Any, total: float, spread: float, bound: float) -> tuple[float, f
 def set_outboards(
     q: Any, surge: float, difference: float, moment: float, room: float, sent: Any
 ) -> tuple[float, float, float]:
-    """Allocate and send; nominal force and moment of what was sent, which is what a predictor should be told."""
+    """Allocate, send the commands and return the nominal X, Y [N] and N [N m] of the commands sent.
+
+    The returned values are the input for a state predictor.
+
+    Args:
+        q: Nominal outboards.
+        surge: Surge force [N].
+        difference: Thrust difference for sway [N].
+        moment: Yaw moment [N m].
+        room: Extension of the limit of the surge thrust [N].
+        sent: Record of commands to fill in.
+    """
     port, starboard, angle = allocate(q, surge, difference, moment, room)
     send_outboards(q, port, starboard, angle, sent)
     return push(
@@ -210,9 +280,17 @@ def set_outboards(
 
 @lean
 def send_outboards(q: Any, port: float, starboard: float, angle: float, sent: Any) -> None:
-    """A drive as servos and motor controllers take it, whole PWM steps and whole degrees, to a record of commands.
+    """Write a drive, rounded to integer PWM and degrees, to a record of commands.
 
-    Its fields are `pwm_port`, `pwm_starboard`, `steer_port_rad` and, its mirror image, `steer_starboard_rad`.
+    Its fields are `pwm_port`, `pwm_starboard`, `steer_port_rad` and, mirrored,
+    `steer_starboard_rad`.
+
+    Args:
+        q: Nominal outboards.
+        port: Port thrust [N].
+        starboard: Starboard thrust [N].
+        angle: Inward angle [rad].
+        sent: Record of commands to fill in.
     """
     sent.pwm_port, sent.pwm_starboard = pwm(q, port), pwm(q, starboard)
     turned = radians(np.rint(degrees(angle)))
@@ -221,14 +299,21 @@ def send_outboards(q: Any, port: float, starboard: float, angle: float, sent: An
 
 @lean
 def push(q: Any, port: float, starboard: float, angle: float) -> tuple[float, float, float]:
-    """Nominal force X, Y [N] and moment N [N m] of thrusts [N] at an inward angle [rad]."""
+    """Return the nominal force X, Y [N] and moment N [N m].
+
+    Args:
+        q: Nominal outboards.
+        port: Port thrust [N].
+        starboard: Starboard thrust [N].
+        angle: Inward angle [rad].
+    """
     spread, total = port - starboard, port + starboard
     return total * cos(angle), spread * sin(angle), spread * lever(q, angle)
 
 
 @dataclass
 class Outboards(Checked):
-    """What a controller believes of its two outboards, and the allocation built on it."""
+    """Nominal properties of two outboards, and the allocation that uses them."""
 
     half_spacing: float = param(
         0.235, low=0.05, high=0.4, unit="m", words="assumed motor to centreline"
@@ -266,47 +351,82 @@ class Outboards(Checked):
 
     @property
     def nominal(self) -> Nominal:
-        """Its numbers, as the compiled laws take them."""
+        """Nominal properties in the form of the compiled laws."""
         return Nominal(*(getattr(self, name) for name in Nominal._fields))
 
     def sway_difference(self, sway: float) -> float:
-        """Thrust difference D [N] for a sway command [m/s]; sway is open loop, so D is all there is to choose."""
+        """Return the thrust difference D [N] for a sway demand; sway is controlled in open loop.
+
+        Args:
+            sway: Sway demand [m/s].
+        """
         return sway_difference(self.nominal, sway)
 
     def largest_goals(self) -> Mapping[str, float]:
-        """The sway command [m/s] that takes the largest thrust difference."""
+        """Return the sway demand [m/s] that needs the largest thrust difference."""
         return {"sway_mps": self.rated_sway * self.largest_difference / self.sway_thrust}
 
     def lever(self, angle: float) -> float:
-        """Moment over thrust difference [m] with both motors turned inward by `angle` [rad]."""
+        """Return the moment over thrust difference [m].
+
+        Args:
+            angle: Inward angle of both motors [rad].
+        """
         return lever(self.nominal, angle)
 
     def neutral_angle(self) -> float:
-        """Inward angle [rad] at which the motors give sway without a moment."""
+        """Return the inward angle [rad] at which the motors give sway without a moment."""
         return atan2(self.half_spacing, self.arm)
 
     def allocate(self, surge: float, difference: float, moment: float, room: float = 0.0) -> Drive:
-        """Drive for a surge force [N], a sway thrust difference [N] and a moment [N m]; see `allocate`."""
+        """Return the drive for surge force, sway thrust difference and moment; see `allocate`.
+
+        Args:
+            surge: Surge force [N].
+            difference: Thrust difference for sway [N].
+            moment: Yaw moment [N m].
+            room: Extension of the limit of the surge thrust [N].
+        """
         return Drive(*allocate(self.nominal, surge, difference, moment, room))
 
     def pwm(self, thrust: float) -> int:
-        """Signed whole PWM value whose nominal thrust is nearest to `thrust` [N]."""
+        """Return the signed integer PWM value with the nominal thrust nearest to the given one.
+
+        Args:
+            thrust: Thrust [N].
+        """
         return round(pwm(self.nominal, thrust))
 
     def thrust(self, pwm: float) -> float:
-        """Nominal thrust [N] at a signed PWM value."""
+        """Return the nominal thrust [N].
+
+        Args:
+            pwm: Signed PWM value.
+        """
         return thrust_at(self.nominal, pwm)
 
     def setting(self, drive: Drive) -> Setting:
-        """The drive rounded and capped to what motors and servos accept."""
+        """Return the drive rounded and limited to what motors and servos accept.
+
+        Args:
+            drive: Thrusts and angle.
+        """
         return Setting(self.pwm(drive.port), self.pwm(drive.starboard), round(degrees(drive.angle)))
 
     def push(self, drive: Drive) -> Push:
-        """Nominal force and moment of a drive."""
+        """Return the nominal force and moment of a drive.
+
+        Args:
+            drive: Thrusts and angle.
+        """
         return Push(*push(self.nominal, drive.port, drive.starboard, drive.angle))
 
     def applied(self, setting: Setting) -> Push:
-        """Nominal force and moment of a rounded and capped setting: what a predictor should be told."""
+        """Return the nominal force and moment of a setting, the input of a predictor.
+
+        Args:
+            setting: Setting of the motors and servos.
+        """
         angle = radians(setting.degrees)
         return self.push(
             Drive(self.thrust(setting.pwm_port), self.thrust(setting.pwm_starboard), angle)

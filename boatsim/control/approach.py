@@ -1,4 +1,4 @@
-"""The outer loop of a joystick: what stick brings a boat to a place and a heading."""
+"""Outer loop of a joystick: demands that move a boat to a position and heading."""
 
 from dataclasses import dataclass, field
 from math import atan2, cos, hypot, sin
@@ -10,19 +10,25 @@ from boatsim.physics.base import Checked, param
 
 @dataclass
 class Approach(Checked):
-    """Bow first to a point beside the place, then sideways onto it on its heading, with an integral against wind.
+    """Approach to a berth: first to a point abeam of it, then sideways, with integral action.
 
-    Poses are those of the boat in axes of the place: x along its heading, y to starboard of it. Gains suit a boat of
-    1.2 m; the sway stick is a thrust, so its loop damps itself.
+    Poses are relative to the berth: x along its heading, y to starboard. The gains suit a boat of
+    1.2 m. The sway demand sets a thrust, so that the sway loop is damped by the hull.
     """
 
     beside: float = param(
-        0.8, low=-100.0, high=100.0, unit="m", words="point to starboard of the place that is first"
+        0.8, low=-100.0, high=100.0, unit="m", words="first waypoint, to starboard of the berth"
     )
     within: float = param(
-        0.5, low=0.0, high=100.0, unit="m", words="from that point, where the approach begins"
+        0.5,
+        low=0.0,
+        high=100.0,
+        unit="m",
+        words="distance from that waypoint at which the sideways approach begins",
     )
-    cruise: float = param(0.2, low=0.01, high=5.0, unit="m/s", words="speed on the way to it")
+    cruise: float = param(
+        0.2, low=0.01, high=5.0, unit="m/s", words="speed on the way to the waypoint"
+    )
     surge_gain: float = param(
         0.2, low=0.0, high=5.0, unit="1/s", words="surge speed per distance ahead"
     )
@@ -39,17 +45,27 @@ class Approach(Checked):
     sway_most: float = param(0.1, low=0.0, high=5.0, unit="m/s", words="largest sway stick")
     turn_gain: float = param(0.4, low=0.0, high=5.0, unit="1/s", words="yaw rate per heading error")
     turn_most: float = param(
-        0.14, low=0.0, high=5.0, unit="rad/s", words="largest yaw rate asked for"
+        0.14, low=0.0, high=5.0, unit="rad/s", words="largest yaw rate demanded"
     )
     straight: float = param(
-        0.2, low=0.01, high=3.2, unit="rad", words="heading error below which it leaves that point"
+        0.2,
+        low=0.01,
+        high=3.2,
+        unit="rad",
+        words="heading error below which the boat leaves the waypoint",
     )
     _straight: bool = field(default=False, init=False)
     _there: bool = field(default=False, init=False)
     _lasting: float = field(default=0.0, init=False)  # [m/s] of the sway stick
 
     def step(self, pose: tuple[float, float, float], v: float, dt: float) -> Stick:
-        """The stick at a pose (x, y [m], psi [rad]) and sway speed [m/s], for the next dt [s]."""
+        """Return the demands for the next period.
+
+        Args:
+            pose: x, y [m] and psi [rad] relative to the berth.
+            v: Sway velocity [m/s].
+            dt: Length of the period [s].
+        """
         x, y, psi = pose
         north, east = -x, self.beside - y
         self._there = self._there or hypot(north, east) < self.within
@@ -63,7 +79,7 @@ class Approach(Checked):
         return Stick(ahead, 0.0, self._turn(off))
 
     def _onto(self, ahead: float, starboard: float, off: float, v: float, dt: float) -> Stick:
-        """Once beside it."""
+        """Return the demands of the sideways approach."""
         sway = self.sway_gain * starboard + self._lasting - self.sway_damping * v
         if abs(sway) < self.sway_most and abs(starboard) < self.within:
             self._lasting += self.sway_integral * starboard * dt
@@ -75,6 +91,6 @@ class Approach(Checked):
 
 
 def _turned(north: float, east: float, psi: float) -> tuple[float, float]:
-    """A way in body axes."""
+    """Return a displacement in body axes."""
     c, s = cos(psi), sin(psi)
     return c * north + s * east, c * east - s * north

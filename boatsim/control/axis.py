@@ -1,7 +1,7 @@
-"""One axis of an L1 adaptive controller, compiled: predictor, piecewise-constant adaptation, low-pass.
+"""One axis of an L1 adaptive controller with piecewise-constant adaptation, compiled.
 
-The form is that of Hovakimyan and Cao, L1 Adaptive Control Theory (SIAM 2010), section 3.3, for one state:
-x' = -pole x + (applied + sigma) / inertia, with sigma all that the predictor does not know.
+After Hovakimyan and Cao, L1 Adaptive Control Theory (SIAM 2010), section 3.3, for one state: x' =
+-pole x + (applied + sigma) / inertia with the lumped uncertainty sigma.
 """
 
 from math import exp
@@ -25,10 +25,21 @@ def missing(
     bandwidth: float,
     period: float,
 ) -> float:
-    """Force or moment that the axis feels beside the one `applied` over the last period, low-passed.
+    """Return the low-pass filtered force or moment that acts in addition to the applied one.
 
-    At the first step nothing has `acted`. `a.model` is the motion asked for: x' = -pole (x - reference). A lasting
-    disturbance shows in `a.sigma` with the factor e^{-aT} only, so it is divided out.
+    `a.model` is the reference model x' = -pole (x - reference). A constant disturbance appears in
+    `a.sigma` multiplied by e^(-aT), so it is divided by that factor.
+
+    Args:
+        a: `AXIS` record, advanced in place.
+        measured: Measured velocity [m/s or rad/s].
+        applied: Force or moment applied over the last period [N or N m].
+        acted: False in the first step, before anything was applied.
+        reference: Demanded velocity.
+        pole: Pole of the predictor [1/s].
+        inertia: Assumed mass or inertia [kg or kg m^2].
+        bandwidth: Bandwidth of the low-pass filter [rad/s].
+        period: Length of the period [s].
     """
     decay = exp(-pole * period)
     gain = (1.0 - decay) / (pole * inertia)

@@ -1,6 +1,7 @@
-"""What a controller is, and the blocks controllers share.
+"""Base classes of controllers and blocks that they share.
 
-A controller works in plain floats and knows nothing of the simulator, so it could move to a boat.
+A controller uses plain floats and does not depend on the simulator, so that it can be ported to a
+boat.
 """
 
 from collections.abc import Mapping
@@ -13,7 +14,7 @@ from boatsim.physics.base import Checked, param
 
 @dataclass(frozen=True)
 class Sense:
-    """What the sensors say at one control step, SNAME axes; nan where the boat has no such sensor."""
+    """Sensor readings at one control step in SNAME axes; nan for missing sensors."""
 
     t: float  # [s] since the start
     psi: float  # [rad] heading, compass (magnetometer)
@@ -26,12 +27,12 @@ class Sense:
     y: float  # [m]
     phi: float = nan  # [rad] roll
     p: float = nan  # [rad/s] roll rate
-    # what further sensors of the boat read, by name
+    # readings of further sensors by name
     more: Mapping[str, float] = field(default_factory=dict)
 
 
 class Estimate(NamedTuple):
-    """An adaptive estimate and the bounds that hold it, for the log."""
+    """Adaptive estimate with its bounds, for the log."""
 
     value: float
     low: float
@@ -40,53 +41,62 @@ class Estimate(NamedTuple):
 
 @dataclass
 class Controller(Checked):
-    """Base of controllers: `reset` before a run, then `step` once every `period` seconds."""
+    """Base of controllers: call `reset` before a run, then `step` once every `period` seconds."""
 
     words: ClassVar[str] = ""  # one line for `boatsim list`
     commands: ClassVar[tuple[str, ...]] = ()  # command channels it sets; empty: any
     # keys a [[goal]] may have; empty: the vessel's command channels
     goals: ClassVar[tuple[str, ...]] = ()
-    passes_on: ClassVar[bool] = False  # its goals are the commands, whatever is sensed
+    passes_on: ClassVar[bool] = False  # its goals are the commands; sensors are not used
 
     period: float = param(
         0.08, low=0.001, high=10.0, unit="s", words="time between two control steps"
     )
 
     def reset(self) -> None:
-        """Forget everything; called before each run."""
+        """Reset all states; called before each run."""
 
     def initial_commands(self) -> dict[str, float]:
-        """Commands in force before the first step (servos may be parked at an angle); missing ones are neutral."""
+        """Return the commands before the first step; missing ones are neutral."""
         return {}
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Commands for the next period, name of channel -> value."""
+        """Return the commands for the next period by name of channel.
+
+        Args:
+            sense: Sensor readings.
+            goal: Set points by name.
+        """
         raise NotImplementedError
 
     def early(self, sense: Sense) -> float:
-        """Time [s] after which it wants its next step, where it must act at an instant at which no period ends."""
+        """Return the time [s] until an extra step within the period; infinite for none.
+
+        Args:
+            sense: Sensor readings.
+        """
         return inf
 
     def estimates(self) -> dict[str, Estimate]:
-        """Adaptive estimates with their bounds, and the reference model's states where there is one, for the log."""
+        """Return adaptive estimates with their bounds, and reference model states, for the log."""
         return {}
 
     def largest_goals(self) -> Mapping[str, float]:
-        """The largest goals that it is made for, by key: a joystick's full way. Others follow from the vessel."""
+        """Return the largest set points of the design; others follow from the vessel."""
         return {}
 
     @property
     def done(self) -> bool:
-        """Whether all it was to do is done, so that the run may end."""
+        """Whether the manoeuvre is complete, so that the run may end."""
         return False
 
 
 @dataclass
 class Steered(Controller):
-    """Base of controllers that play a standard manoeuvre: the ship goes ahead, then an angle is demanded of its helm.
+    """Base of standard manoeuvres: an approach ahead, then helm angles.
 
-    `ahead` are the commands of the approach, `steer` the command per rad of helm (positive turns to starboard). The
-    angle in force is logged as `reference_helm_rad`.
+    `ahead` are the commands of the approach, `steer` the commands per rad of helm (positive turns
+    to starboard). The helm angle is logged as `reference_helm_rad`.
     """
 
     angle: float = param(
@@ -99,53 +109,81 @@ class Steered(Controller):
     _course: float = field(default=nan, init=False)  # [rad] heading at the start of the run
 
     def reset(self) -> None:
-        """Helm midships."""
+        """Set the helm midships."""
         self._helm, self._course = 0.0, nan
 
     def initial_commands(self) -> dict[str, float]:
-        """Those of the approach."""
+        """Return the commands of the approach."""
         return self.commanded(0.0)
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Approach until it is time, then the manoeuvre."""
+        """Return the commands of the approach until `execute`, then those of the manoeuvre.
+
+        Args:
+            sense: Sensor readings.
+            goal: Not used.
+        """
         self._course = sense.psi if isnan(self._course) else self._course
         self._helm = self.helm(sense) if sense.t >= self.execute - 1e-9 else 0.0
         return self.commanded(self._helm)
 
     def helm(self, sense: Sense) -> float:
-        """Helm angle [rad] of the manoeuvre now."""
+        """Return the present helm angle of the manoeuvre [rad].
+
+        Args:
+            sense: Sensor readings.
+        """
         raise NotImplementedError
 
     def commanded(self, helm: float) -> dict[str, float]:
-        """Commands with which the ship goes ahead at a helm angle."""
+        """Return the commands for going ahead at a helm angle.
+
+        Args:
+            helm: Helm angle [rad].
+        """
         turned = {
             name: self.ahead.get(name, 0.0) + per_rad * helm for name, per_rad in self.steer.items()
         }
         return {**self.ahead, **turned}
 
     def estimates(self) -> dict[str, Estimate]:
-        """The helm angle, for the log."""
+        """Return the helm angle for the log."""
         return {"reference_helm_rad": Estimate(self._helm, nan, nan)}
 
 
 def clip(value: float, low: float, high: float) -> float:
-    """Nearest value inside [low, high]."""
+    """Return the value limited to [low, high].
+
+    Args:
+        value: Value.
+        low: Lower limit.
+        high: Upper limit.
+    """
     return low if value < low else high if value > high else value
 
 
 def wrap(angle: float) -> float:
-    """The same direction inside [-pi, pi)."""
+    """Return the angle wrapped to [-pi, pi).
+
+    Args:
+        angle: Angle [rad].
+    """
     return (angle + pi) % (2.0 * pi) - pi
 
 
 @dataclass
 class LowPass:
-    """First-order low-pass wc/(s + wc), exact for an input held over each step."""
+    """First-order low-pass wc / (s + wc), exact for an input held over each step."""
 
     cutoff: float  # [rad/s]
     state: float = 0.0
 
     def step(self, value: float, dt: float) -> float:
-        """Feed one value held for dt [s]; returns the output at the end of it."""
+        """Return the output at the end of a step.
+
+        Args:
+            value: Input, held over the step.
+            dt: Length of the step [s].
+        """
         self.state += (1.0 - exp(-self.cutoff * dt)) * (value - self.state)
         return self.state

@@ -1,7 +1,7 @@
-"""Controllers whose law is compiled: one text for a single run, a batch of boats and loops faster than Python is.
+"""Controllers with a compiled law, for single runs, batches of boats and fast loops.
 
-The law works on records (NumPy's structured arrays), a row a boat: `q.pole` and `m.yaw.sigma` read as they would on
-objects. `controllers/l1_joystick.py` shows one.
+The law works on records (NumPy structured arrays), one row for each boat: `q.pole` and
+`m.yaw.sigma` read as on objects. See `controllers/l1_joystick.py` for an example.
 """
 
 import warnings
@@ -31,23 +31,33 @@ __all__ = [
     "with_parts",
 ]
 
-# A controller built on another has its settings and more: to numba that is a subtype, with fields
-# where they were.
+# numba treats the settings of a derived controller as a subtype of those of its base, with the
+# common fields in the same places.
 warnings.filterwarnings(
     "ignore", ".*has been considered a subtype of.*", NumbaExperimentalFeatureWarning
 )
 FELT = tuple(f.name for f in fields(Sense) if f.name != "more")
 Records = NDArray[np.void]
-ONE = np.zeros(1, dtype=np.int64)  # the only boat of a single run
+ONE = np.zeros(1, dtype=np.int64)  # row of the boat in a single run
 
 
 def record(*names: str, **parts: np.dtype[np.void]) -> np.dtype[np.void]:
-    """Record of numbers, and of records within it."""
+    """Return a record type of numbers and of nested records.
+
+    Args:
+        names: Names of the numbers.
+        parts: Types of nested records by name.
+    """
     return np.dtype([*((n, np.float64) for n in names), *parts.items()])
 
 
 def with_parts(records: Records, **parts: Records) -> Records:
-    """Records with further records within, one for each or one for all."""
+    """Return records with further nested records, one for each or one for all.
+
+    Args:
+        records: Records (n,).
+        parts: Nested records by name, (n,) or (1,).
+    """
     names = records.dtype.names or ()
     fields = [(n, records.dtype[n]) for n in names] + [(n, part.dtype) for n, part in parts.items()]
     whole = np.zeros(len(records), np.dtype(fields))
@@ -62,46 +72,64 @@ SENSE = record(*FELT)
 
 
 class CompiledController(Controller):
-    """Base of controllers with `law(boats, settings, memory, sense, goal, sent)`, compiled by `unlocked`.
+    """Base of controllers with a law compiled by `unlocked`.
 
-    `boats` are the rows it is to work on. `settings` hold the controller's parameters by name, `memory` is of the type
-    `remembers`, zeros at the start; `sense` has the fields of `Sense`, `goal` those of `goals`, and `sent` those of
-    `commands`, to be filled in.
+    Its signature is `law(boats, settings, memory, sense, goal, sent)`.
+
+    `boats` are the rows to process. `settings` contains the parameters by name, `memory` is of the
+    type `remembers` and zero at the start; `sense` has the fields of `Sense`, `goal` those of
+    `goals`, and `sent` those of `commands`, which the law fills in.
     """
 
     law: ClassVar[Callable[[NDArray[np.int64], Records, Records, Records, Records, Records], None]]
     remembers: ClassVar[np.dtype[np.void]]
-    unsaid: ClassVar[Mapping[str, float]] = {}  # what goals are that may be left out
+    unsaid: ClassVar[Mapping[str, float]] = {}  # default set points
 
     def __post_init__(self) -> None:
         super().__post_init__()
         self.reset()
 
     def reset(self) -> None:
-        """At rest, nothing learnt."""
+        """Reset all states."""
         self._settings, self._memory = self.settings(), np.zeros(1, type(self).remembers)
         self._sense, self._goal, self._sent = (
             np.zeros(1, t) for t in (SENSE, *self.asked_and_sent())
         )
 
     def settings(self, count: int = 1) -> Records:
-        """Parameters of so many controllers like this one, in records."""
+        """Return the parameters as records.
+
+        Args:
+            count: Number of equal controllers.
+        """
         names = [f.name for f in fields(self) if "param" in f.metadata or f.type in (bool, "bool")]
         row = tuple(float(getattr(self, n)) for n in names)
         return np.full(count, np.array([row], record(*names)))
 
     @classmethod
     def asked_and_sent(cls) -> tuple[np.dtype[np.void], np.dtype[np.void]]:
-        """Types of goals and commands."""
+        """Return the record types of goals and commands."""
         return record(*cls.goals), record(*cls.commands)
 
     @classmethod
     def asked(cls, goal: Mapping[str, float]) -> tuple[float, ...]:
-        """What a goal says, in the order of `goals`. Raises KeyError for one that must be said."""
+        """Return the values of a goal in the order of `goals`.
+
+        Args:
+            goal: Set points by name.
+
+        Raises:
+            KeyError: A set point without a default is missing.
+        """
         return tuple([goal[n] if n in goal else cls.unsaid[n] for n in cls.goals])
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """Commands for the next period."""
+        """Return the commands for the next period.
+
+        Args:
+            sense: Sensor readings.
+            goal: Set points by name.
+        """
         self._sense[0] = tuple([getattr(sense, n) for n in FELT])
         self._goal[0] = self.asked(goal)
         type(self).law(ONE, self._settings, self._memory, self._sense, self._goal, self._sent)
@@ -109,22 +137,26 @@ class CompiledController(Controller):
 
     @property
     def memory(self) -> Records:
-        """What it remembers, a record of one: whoever steps the law instead of it goes on from there."""
+        """State of the controller, a record array (1,), which a compiled run advances in place."""
         return self._memory
 
     @property
     def is_its_law(self) -> bool:
-        """Whether it does what its law says; one with a `step` of its own does more."""
+        """Whether the controller only evaluates its law and has no other `step`."""
         return type(self).step is CompiledController.step
 
     @property
     def remembered(self) -> Any:
-        """The record."""
+        """State of the controller as one record."""
         return self._memory[0]
 
 
 def as_table(records: Records) -> Array:
-    """The numbers of records, a row each; a view."""
+    """Return the numbers of records as a view, one row for each record.
+
+    Args:
+        records: Records (n,) of numbers.
+    """
     return (
         records.view(np.float64).reshape(len(records), -1)
         if records.dtype.names
@@ -133,5 +165,10 @@ def as_table(records: Records) -> Array:
 
 
 def columns(names: Sequence[str], among: Sequence[str]) -> NDArray[np.int64]:
-    """Where names stand among others."""
+    """Return the indices of names in a sequence.
+
+    Args:
+        names: Names.
+        among: Sequence that contains them.
+    """
     return np.array([list(among).index(n) for n in names], dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Course keeping by one rudder: what a helm remembers, and the steering machine that bounds what it may ask for."""
+"""Base classes of autopilots with one rudder and a steering machine."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,17 +12,23 @@ from boatsim.physics.base import param
 
 
 def push(history: list[float], value: float) -> None:
-    """Shift a history [now, one period ago, ...] by one sample."""
+    """Shift a history [now, one period ago, ...] by one sample.
+
+    Args:
+        history: Samples, newest first; changed in place.
+        value: New sample.
+    """
     history.insert(0, value)
     history.pop()
 
 
 @dataclass
 class Helm(Controller):
-    """Base of autopilots: a subclass says in `demand` which rudder angle it wants, from the histories kept here.
+    """Base of autopilots; a subclass returns the wanted rudder angle in `demand`.
 
-    The steering machine turns at one rate at most and stops at one angle; the command is what it will have done after
-    a period, as in Martin's simulation. Positive rudder turns the bow to starboard. Goal: `psi_rad`.
+    The steering machine has a rate limit and a range. The command is the angle that it reaches
+    after a period, as in Martin's simulation. Positive rudder turns the bow to starboard. Goal:
+    `psi_rad`.
     """
 
     commands: ClassVar[tuple[str, ...]] = ("rudder_rad",)
@@ -43,22 +49,36 @@ class Helm(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Rudder amidships, nothing seen."""
+        """Set the rudder amidships and clear the histories."""
         self.rudder = 0.0  # [rad] in force
-        self.psi: list[float] = []  # [rad] heading beside the course: now, one period ago, two ago
+        self.psi: list[
+            float
+        ] = []  # [rad] heading relative to the course: now, one period ago, two ago
         self.phi: list[float] = []  # [rad] roll, likewise
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
-        """The angle the rudder takes for the next period."""
+        """Return the rudder angle for the next period.
+
+        Args:
+            sense: Sensor readings.
+            goal: `psi_rad`, the course [rad].
+        """
         self.see(sense.psi - goal.get("psi_rad", 0.0), sense.phi)
         self.rudder = self.reached(self.demand())
         return {"rudder_rad": self.rudder}
 
     def see(self, psi: float, phi: float) -> None:
-        """Heading beside the course and roll [rad] into the histories.
+        """Append heading relative to the course, and roll, to the histories.
 
-        Before her first sight the ship is taken to have lain as she is seen; turns are counted, not cut at pi. Raises
-        BadInput without a roll sensor where one is needed; elsewhere she is then taken to stand upright.
+        Before the first sample the values are assumed constant; full turns are counted. Without a
+        roll sensor the roll is zero.
+
+        Args:
+            psi: Heading relative to the course [rad].
+            phi: Roll [rad]; nan without a sensor.
+
+        Raises:
+            BadInput: There is no roll sensor but the controller needs one.
         """
         if isnan(phi):
             if self.needs_roll():
@@ -72,11 +92,11 @@ class Helm(Controller):
         push(self.phi, phi)
 
     def needs_roll(self) -> bool:
-        """Whether it cannot do without the roll angle."""
+        """Return whether the controller needs the roll angle."""
         return False
 
     def demand(self) -> float:
-        """Rudder angle wanted [rad]."""
+        """Return the wanted rudder angle [rad]."""
         raise NotImplementedError
 
     @property
@@ -85,19 +105,23 @@ class Helm(Controller):
         return self.rudder_rate * self.period
 
     def reached(self, demand: float) -> float:
-        """Angle [rad] at which the steering machine stands after a period."""
+        """Return the angle [rad] of the steering machine after a period.
+
+        Args:
+            demand: Wanted angle [rad].
+        """
         near = clip(demand, self.rudder - self.swing, self.rudder + self.swing)
         return clip(near, -self.rudder_limit, self.rudder_limit)
 
     def choices(self) -> list[float]:
-        """Rudder angles [rad] of a machine that knows port, stop and starboard only; stop comes first."""
+        """Return the rudder angles [rad] of a three-way steering machine: stop, port, starboard."""
         swung = (self.rudder - self.swing, self.rudder + self.swing)
         return [self.rudder, *(u for u in swung if abs(u) <= self.rudder_limit + 1e-9)]
 
 
 @dataclass
 class LearningHelm(Forgetting, Helm):
-    """Base of autopilots that identify their ship while they steer her, from a nominal one that the subclass states."""
+    """Base of autopilots that identify the ship online, from a nominal ship."""
 
     nominal_yaw: ClassVar[tuple[float, float, float]]  # a2y, b1y, b2y of `Ship`
     nominal_roll: ClassVar[tuple[float, float, float, float]]  # a1r, a2r, b1r, b2r
@@ -105,19 +129,24 @@ class LearningHelm(Forgetting, Helm):
     roll_reduction: bool = False
 
     def reset(self) -> None:
-        """Nothing learnt beyond the nominal ship."""
+        """Reset the identification to the nominal ship."""
         super().reset()
         self.ship = Ship(self, self.nominal_yaw, self.nominal_roll)
 
     def needs_roll(self) -> bool:
-        """With roll reduction."""
+        """Return whether roll reduction is on."""
         return bool(self.roll_reduction)
 
     def see(self, psi: float, phi: float) -> None:
-        """Into the histories, and a lesson from the period gone by."""
+        """Append a sample to the histories and update the identification.
+
+        Args:
+            psi: Heading relative to the course [rad].
+            phi: Roll [rad].
+        """
         super().see(psi, phi)
         self.ship.learn(self.psi, self.phi, self.rudder)
 
     def estimates(self) -> dict[str, Estimate]:
-        """The identified ship."""
+        """Return the identified coefficients."""
         return {name: Estimate(value, nan, nan) for name, value in self.ship.named().items()}

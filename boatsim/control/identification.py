@@ -1,7 +1,8 @@
-"""A ship's yaw and roll identified while it sails: approximate maximum likelihood that forgets and resets.
+"""Online identification of yaw and roll by approximate maximum likelihood.
 
-Salgado, Goodwin and Middleton, Int. J. Control 47 (1988) 477; as used by Martin (1993), appendix I. Angles are in
-degrees in here, because the constants of forgetting and resetting go with the size of the signals.
+M. E. Salgado, G. C. Goodwin, R. H. Middleton, Int. J. Control 47 (1988) 477, as used by Martin
+(1993), appendix I. Angles are in degrees here, because the constants of forgetting and resetting
+depend on the scale of the signals.
 """
 
 from collections.abc import Sequence
@@ -15,11 +16,14 @@ from boatsim.physics.base import Array, Checked, param
 
 @dataclass
 class Forgetting(Checked):
-    """Constants of exponential forgetting and resetting; Martin does not print his, these are our choice."""
+    """Constants of exponential forgetting and resetting.
+
+    Martin (1993) does not print his constants; these are chosen.
+    """
 
     alpha: float = param(0.5, low=0.0, high=1.0, unit="", words="share of the gain that is used")
     forgetting: float = param(
-        0.99, low=0.5, high=1.0, unit="", words="lambda: what a sample weighs one period later"
+        0.99, low=0.5, high=1.0, unit="", words="lambda: weight of a sample one period later"
     )
     beta: float = param(
         1e-5, low=0.0, high=10.0, unit="", words="keeps the covariance from vanishing"
@@ -34,7 +38,11 @@ class Forgetting(Checked):
 
 @dataclass
 class Estimator:
-    """Estimates theta of y = x'theta + noise, sample by sample."""
+    """Recursive estimate of theta in y = x'theta + noise.
+
+    P(t+1) = P / lambda - alpha P x x' P / (1 + x'P x) + beta I - delta P^2
+    theta(t+1) = theta + alpha P x (y - x'theta) / (1 + x'P x)
+    """
 
     theta: Array  # (n,)
     law: Forgetting
@@ -44,7 +52,12 @@ class Estimator:
         self.p = self.law.covariance * np.eye(len(self.theta))
 
     def learn(self, x: Array, y: float) -> float:
-        """Take in one sample, x (n,); returns the error that is left with the new estimate."""
+        """Update the estimate by one sample and return the residual of the new estimate.
+
+        Args:
+            x: Regressor (n,).
+            y: Output.
+        """
         law, p = self.law, self.p
         px = p @ x
         scale = 1.0 + x @ px
@@ -61,14 +74,20 @@ class Estimator:
 
 
 class Ship:
-    """Difference equations of yaw and roll, one period at a time, identified apart.
+    """Difference equations of yaw and roll over one period, identified separately.
 
     psi(k+1) = (1 + a2y) psi(k) - a2y psi(k-1) + b1y u(k) + b2y phi(k)
     phi(k+1) = -a1r phi(k) - a2r phi(k-1) + b1r u(k) + b2r (psi(k) - psi(k-1))
     """
 
     def __init__(self, law: Forgetting, yaw: Sequence[float], roll: Sequence[float]) -> None:
-        """Knows a nominal ship only: (a2y, b1y, b2y) and (a1r, a2r, b1r, b2r); of the roll's noise, nothing."""
+        """Start from a nominal ship, with no noise model of the roll.
+
+        Args:
+            law: Constants of the identification.
+            yaw: (a2y, b1y, b2y).
+            roll: (a1r, a2r, b1r, b2r).
+        """
         self._yaw = Estimator(np.array(yaw), law)
         self._roll = Estimator(np.array([*roll, 0.0, 0.0]), law)
         self._left = [0.0, 0.0]  # [deg] errors of roll that were left, one period ago and two
@@ -84,14 +103,20 @@ class Ship:
         return tuple(self._roll.theta[:4].tolist())
 
     def learn(self, psi: Sequence[float], phi: Sequence[float], rudder: float) -> None:
-        """One period: heading and roll [rad] now, one period ago, two ago; rudder [rad] in the period gone by."""
+        """Update the identification by one period.
+
+        Args:
+            psi: Heading [rad] now, one period ago, two ago.
+            phi: Roll [rad], likewise.
+            rudder: Rudder angle [rad] in the last period.
+        """
         (s0, s1, s2), (f0, f1, f2), u = map(degrees, psi), map(degrees, phi), degrees(rudder)
         self._yaw.learn(np.array([s1 - s2, u, f1]), s0 - s1)
         left = self._roll.learn(np.array([-f1, -f2, u, s1 - s2, *self._left]), f0)
         self._left = [left, self._left[0]]
 
     def named(self) -> dict[str, float]:
-        """The estimates by name, for a log."""
+        """Return the estimates by name, for a log."""
         return dict(
             zip(
                 ("a2y", "b1y", "b2y", "a1r", "a2r", "b1r", "b2r"), self.yaw + self.roll, strict=True
@@ -99,12 +124,17 @@ class Ship:
         )
 
     def matrices(self) -> tuple[Array, Array]:
-        """A (4, 4), B (4,) of the state psi, psi one ago, phi, phi one ago under the rudder angle."""
+        """Return A (4, 4) and B (4,) of the state (psi, psi one ago, phi, phi one ago)."""
         return state_space(self.yaw, self.roll)
 
 
 def state_space(yaw: Sequence[float], roll: Sequence[float]) -> tuple[Array, Array]:
-    """A (4, 4), B (4,) of (a2y, b1y, b2y) and (a1r, a2r, b1r, b2r)."""
+    """Return A (4, 4) and B (4,) of the difference equations.
+
+    Args:
+        yaw: (a2y, b1y, b2y).
+        roll: (a1r, a2r, b1r, b2r).
+    """
     (a2y, b1y, b2y), (a1r, a2r, b1r, b2r) = yaw, roll
     a = np.array(
         [
@@ -118,7 +148,14 @@ def state_space(yaw: Sequence[float], roll: Sequence[float]) -> tuple[Array, Arr
 
 
 def with_rudder(a: Array, b: Array) -> tuple[Array, Array]:
-    """The same with the rudder angle as last state, moved by its change: A (n + 1, n + 1), B (n + 1,)."""
+    """Return A (n + 1, n + 1) and B (n + 1,) with the rudder angle as last state.
+
+    The input is the change of the rudder angle.
+
+    Args:
+        a: A (n, n).
+        b: B (n,).
+    """
     n = len(b)
     whole = np.block([[a, b[:, None]], [np.zeros((1, n)), np.ones((1, 1))]])
     return whole, np.array([*b, 1.0])

@@ -1,4 +1,4 @@
-"""What a water jet gives at a throttle, and the throttle for what it is to give."""
+"""Power curve of a water jet over the throttle, and its inverse."""
 
 from math import sqrt
 
@@ -10,9 +10,14 @@ JET_Q2 = 154.9  # [m^2/s^3] printed 164.5, with which the power jumps at throttl
 
 @lean
 def power_of(throttle: float, q2: float) -> float:
-    """Shaft power per mass [m^2/s^3] of a water jet at a throttle, 1 idle to 7 full; thrust is power / speed.
+    """Return the shaft power per mass [m^2/s^3]; the thrust per mass is power / speed.
 
-    Svendsen et al., IFAC MCMC 2012, eq. 10 and Table 2, with the printed s_i taken as the coefficients of throttle^i.
+    Svendsen et al., IFAC MCMC 2012, equation 10 and Table 2, with the printed s_i as coefficients
+    of throttle^i.
+
+    Args:
+        throttle: Throttle, 1 (idle) to 7 (full).
+        q2: Constant of the upper branch [m^2/s^3].
     """
     if throttle < 2.0:
         return 12.10 * throttle - 11.30
@@ -23,7 +28,12 @@ def power_of(throttle: float, q2: float) -> float:
 
 @lean
 def throttle_of(power: float, q2: float) -> float:
-    """Throttle of a power, within idle and full."""
+    """Return the throttle for a power, limited to idle and full.
+
+    Args:
+        power: Shaft power per mass [m^2/s^3].
+        q2: Constant of the upper branch [m^2/s^3].
+    """
     if power < 12.90:  # at 2
         return max((power + 11.30) / 12.10, 1.0)
     if power < 194.9:  # at 4

@@ -1,4 +1,4 @@
-"""L1 adaptive control of two outboards by a joystick: the base of controllers that differ in what the boat measures."""
+"""L1 adaptive joystick control of two outboards: base of controllers with different sensors."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,14 +21,23 @@ from boatsim.control.base import Estimate
 from boatsim.control.compiled import CompiledController, merged, record, unlocked
 from boatsim.physics.base import param
 
-SERVO_LAG = 0.06  # [s] of steering servos; no law uses it, only the margins that are printed
-# X [N], N [N m] applied last
+SERVO_LAG = 0.06  # [s] lag of steering servos, used only for the margins
+# X [N], N [N m]: values applied in the last period
 REMEMBERS = record("acted", "X", "N", yaw=AXIS, surge=AXIS, heading=HEADING)
 
 
 @merged
 def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Yaw moment [N m] for a yaw rate wanted [rad/s]: the stick's, corrected for the heading error and bounded."""
+    """Return the yaw moment [N m] for a demanded yaw rate.
+
+    The rate is corrected for the heading error and limited.
+
+    Args:
+        q: Parameters.
+        m: State of the controller.
+        s: Sensor readings.
+        wanted: Demanded yaw rate [rad/s].
+    """
     if m.acted != 0.0:
         keep_heading(m.heading, s.r, s.psi, wanted, q.period, q.compass_trust)
     bound = q.hold_rate + (q.turn_rate - q.hold_rate) * abs(wanted) / q.rated_yaw
@@ -40,7 +49,14 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @merged
 def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
-    """Surge force [N] for a speed wanted [m/s]; without a speed sensor only a guess of what the stick asks for."""
+    """Return the surge force [N] for a demanded speed; without a speed sensor a feed-forward only.
+
+    Args:
+        q: Parameters.
+        m: State of the controller.
+        s: Sensor readings.
+        wanted: Demanded speed [m/s].
+    """
     if isnan(s.u):
         return q.blind_surge * wanted
     acted = m.acted != 0.0
@@ -50,7 +66,16 @@ def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
 
 @unlocked
 def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any) -> None:
-    """Commands for the next period from the gyro, the surge speed if there is one, and the stick."""
+    """Set the commands for the next period from gyro, surge speed if measured, and stick.
+
+    Args:
+        boats: Rows to process.
+        settings: Parameters of each boat.
+        memory: State of each controller.
+        sense: Sensor readings of each boat.
+        goal: Demands of each boat.
+        sent: Commands of each boat, filled in.
+    """
     for b in boats:
         q, m, s, g = settings[b], memory[b], sense[b], goal[b]
         moment = yaw_moment(q, m, s, g.yaw_radps)
@@ -62,11 +87,12 @@ def law(boats: Any, settings: Any, memory: Any, sense: Any, goal: Any, sent: Any
 
 @dataclass
 class AdaptiveJoystick(Outboards, CompiledController):
-    """L1 adaptive control of yaw rate and, where a sensor gives it, surge speed; sway is thrust in open loop.
+    """L1 adaptive control of yaw rate and, if measured, surge speed; sway is open-loop thrust.
 
-    Each channel asks for x' = -pole (x - x_ref) of an assumed inertia. Whatever else moves the boat (unknown motor
-    spacing, arm, reverse thrust, wind, drag) shows as a prediction error, is expressed as a force or moment `sig`
-    and, low-passed, subtracted. Goals: `surge_mps`, `sway_mps`, `yaw_radps`.
+    Each channel follows x' = -pole (x - x_ref) with an assumed inertia. All other influences (motor
+    spacing, arm, reverse thrust, wind, drag) appear as a prediction error, are converted to a force
+    or moment sigma and subtracted after a low-pass filter. Goals: `surge_mps`, `sway_mps`,
+    `yaw_radps`.
     """
 
     commands: ClassVar[tuple[str, ...]] = (
@@ -80,7 +106,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
     law: ClassVar = law
     remembers: ClassVar = REMEMBERS
 
-    pole: float = param(1.4, low=0.1, high=10.0, unit="1/s", words="pole of the motion asked for")
+    pole: float = param(1.4, low=0.1, high=10.0, unit="1/s", words="pole of the reference motion")
     inertia: float = param(
         2.0, low=0.1, high=50.0, unit="kg m^2", words="assumed yaw inertia, added mass included"
     )
@@ -92,7 +118,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
         2.0, low=0.05, high=20.0, unit="rad/s", words="low-pass of the surge estimate"
     )
     heading_gain: float = param(
-        0.2, low=0.0, high=5.0, unit="1/s", words="yaw rate asked for per heading error"
+        0.2, low=0.0, high=5.0, unit="1/s", words="yaw rate demanded per heading error"
     )
     hold_rate: float = param(
         0.1, low=0.01, high=2.0, unit="rad/s", words="largest yaw rate without a yaw command"
@@ -108,7 +134,7 @@ class AdaptiveJoystick(Outboards, CompiledController):
     )
 
     def estimates(self) -> dict[str, Estimate]:
-        """What each channel takes for missing force and moment, and the motion asked for."""
+        """Return the estimated disturbance of each channel, and the reference motion."""
         yaw, surge = self.remembered["yaw"], self.remembered["surge"]
         return {
             "sigma_yaw_Nm": Estimate(float(yaw["sigma"]), nan, nan),
@@ -118,11 +144,14 @@ class AdaptiveJoystick(Outboards, CompiledController):
         }
 
     def largest_goals(self) -> Mapping[str, float]:
-        """With the rated turn [rad/s]."""
+        """Return the largest demands, including the rated turn [rad/s]."""
         return {**super().largest_goals(), "yaw_radps": self.rated_yaw}
 
     def loop_channels(self) -> tuple[LoopChannel, ...]:
-        """The feedback loops, for margins: at true thrust over inertia from half to 1.8 times what is assumed."""
+        """Return the feedback loops for margins.
+
+        The true thrust over inertia is 0.5 to 1.8 times the assumed one.
+        """
         delayed = partial(
             LoopChannel,
             pole=self.pole,

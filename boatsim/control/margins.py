@@ -1,4 +1,4 @@
-"""Robustness table of a controller: L1 norm, crossover, phase and extra-delay margin of each feedback channel."""
+"""Robustness table of a controller: L1 norm, crossover, phase and delay margin of each loop."""
 
 from dataclasses import dataclass
 from math import degrees
@@ -20,14 +20,16 @@ HEADINGS = (
 
 @dataclass(frozen=True)
 class Row:
-    """One channel at one true-over-assumed input gain."""
+    """Margins of one channel at one ratio of true to assumed input gain."""
 
     channel: str
     input_gain: float
-    # [s] L1 norm of what the low-pass leaves; None for a controller that is not L1
+    # [s] L1 norm of the part the low-pass does not cancel; None if the controller is not L1
     norm: float | None
     slope: float | None  # [1/s] largest slope of the uncertainty that the norm covers
-    needed: float | None  # [1/s] slope there is: the predictor's pole less the boat's own damping
+    needed: (
+        float | None
+    )  # [1/s] slope of the uncertainty: pole of the predictor less damping of the boat
     crossover: float  # [rad/s]
     phase_deg: float  # [deg] phase margin
     delay_s: float  # [s] extra-delay margin
@@ -35,7 +37,14 @@ class Row:
 
 
 def table(controller: object) -> list[Row]:
-    """Rows of a controller (an object with `loop_channels`), three input gains for each channel. Raises BadInput."""
+    """Return the rows of a controller, one for each input gain of each channel.
+
+    Args:
+        controller: Object with `loop_channels`.
+
+    Raises:
+        BadInput: The controller has no `loop_channels`.
+    """
     describe = getattr(controller, "loop_channels", None)
     if describe is None:
         asked = snake_case(type(controller).__name__)
@@ -67,14 +76,18 @@ def _row(channel: LoopChannel | SampledChannel, gain: float) -> Row:
 
 
 def text(rows: list[Row]) -> str:
-    """The table for a terminal, and for each L1 channel whether its L1-norm condition is met."""
+    """Return the table for a terminal, with the L1-norm condition of each L1 channel.
+
+    Args:
+        rows: Rows of `table`.
+    """
     lines = ["  ".join((f"{HEADINGS[0]:10}", *HEADINGS[1:]))]
     lines += ["  ".join(_cells(row)).rstrip() for row in rows]
     return "\n".join(lines + [_condition(name, rows) for name in _l1_channels(rows)])
 
 
 def _cells(row: Row) -> list[str]:
-    """One line of the table, each number under its heading."""
+    """Return one line of the table, each number under its heading."""
     values = [
         f"{row.input_gain:.2f}",
         "-" if row.norm is None else f"{row.norm:.3f}",
@@ -94,7 +107,7 @@ def _l1_channels(rows: list[Row]) -> list[str]:
 
 
 def _condition(name: str, rows: list[Row]) -> str:
-    """The L1-norm condition of one channel at its worst input gain, in words."""
+    """Return the L1-norm condition of one channel at its worst input gain, in words."""
     norm, needed = max(
         (row.norm, row.needed) for row in rows if row.channel == name and row.norm and row.needed
     )

@@ -1,9 +1,10 @@
-"""Pulses from rest by which gyro and accelerometer tell how two outboards differ from what is believed of them.
+"""Motor check: pulses from rest that identify how two outboards differ from their nominal model.
 
-One motor is turned inward, the other is straight. Both push ahead, twice astern, and ahead again, and the boat
-ends where it was, at rest. Whatever her inertia and the levers, the two yaw accelerations are as the two thrusts, so
-that what the motors lack astern is known. Then the other motor is turned inward: where both steerings are off by the
-same angle, one side turns the boat more than the other.
+One motor is turned inward, the other is straight. Both push ahead, twice astern, and ahead again,
+and the boat ends at rest where it started. Whatever the inertia and the levers are, the two yaw
+accelerations have the ratio of the two thrusts, which gives the reverse ratio. Then the other motor
+is turned inward: if both steerings have the same offset, one side turns the boat faster than the
+other.
 """
 
 from collections.abc import Iterator
@@ -18,22 +19,23 @@ from boatsim.errors import BadInput
 from boatsim.physics.base import Array
 
 PORT, STARBOARD, NEITHER = 0, 1, 2  # which motor is turned inward
-POWERS = (0.8, 2.0)  # exponents of thrust over setting that are believed
-FAR = 0.15  # logarithm of two settings' ratio from which on they tell the exponent
-WILDEST = 3.0  # thrust astern over ahead, or its inverse, beyond which a reading is not believed
+POWERS = (0.8, 2.0)  # plausible range of the exponent of thrust over setting
+FAR = 0.15  # smallest logarithm of the ratio of two settings that identifies the exponent
+WILDEST = 3.0  # largest plausible ratio of thrust astern to ahead, or its inverse
 
 
 class Pulse(NamedTuple):
-    """What the motors are to do in a period."""
+    """Setting of the motors for one period."""
 
     sense: int  # both motors 1 ahead, -1 astern, 0 off
     inward: int  # PORT, STARBOARD or NEITHER
 
 
 class Drift(NamedTuple):
-    """What sideways drift does to a boat that is turned by pushes on one side, by the square of her yaw rate.
+    """Effect of sideways drift on a boat that turns, proportional to the square of its yaw rate.
 
-    Both go the same way whether she is pushed ahead or astern, so they would pass for a difference of the motors.
+    It has the same sign for thrust ahead and astern and would otherwise appear as a difference of
+    the motors.
     """
 
     yaw: float  # [1] acceleration towards the side that ahead turns to
@@ -41,7 +43,7 @@ class Drift(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What one train of pulses told."""
+    """Result of one train of pulses."""
 
     turn: float  # [rad/s^2] while both motors push ahead
     reverse: float  # thrust astern over thrust ahead, of the settings that were played
@@ -52,9 +54,10 @@ class Found(NamedTuple):
 
 @dataclass
 class Train:
-    """One train of pulses and what was felt under it.
+    """Train of pulses and the readings during it.
 
-    The motors stand still between pulses and all are as long, so that it is no matter how their thrust comes and goes.
+    The motors rest between the pulses and all pulses have the same length, so that the transients
+    of the thrust cancel.
     """
 
     pulse: int  # [periods]
@@ -68,12 +71,27 @@ class Train:
         self.senses = still + [s for sense in (1, -1, -1, 1) for s in [sense] * self.pulse + still]
 
     def feel(self, rate: float, felt: float) -> None:
-        """Readings at the beginning of a period, and at the end of the last."""
+        """Append the readings at the begin of a period, and at the end of the last one.
+
+        Args:
+            rate: Yaw rate [rad/s].
+            felt: Acceleration ahead [m/s^2].
+        """
         self.rates.append(rate)
         self.felt.append(felt)
 
     def found(self, period: float, lag: float, drift: Drift, aside: int) -> Found:
-        """By least squares; `aside` is the sign of the yaw rate under thrust ahead."""
+        """Return the least-squares result of the train.
+
+        Args:
+            period: Length of a period [s].
+            lag: Lag of the thrust [s].
+            drift: Effect of drift.
+            aside: Sign of the yaw rate under thrust ahead.
+
+        Raises:
+            BadInput: The boat did not move.
+        """
         on = np.column_stack([_lagged(self.senses, sense, period, lag) for sense in (1, -1)])
         gained = np.vstack([np.zeros(2), period * np.cumsum(0.5 * (on[1:] + on[:-1]), axis=0)])
         square = np.cumsum(np.square(self.rates)) * period
@@ -92,13 +110,13 @@ class Train:
 
 
 def _lagged(senses: list[int], sense: int, period: float, lag: float) -> Array:
-    """Share of thrust in one sense (N + 1,) at each reading, behind its command by the lag [s]."""
+    """Return the share of thrust in one sense (N + 1,) at each reading, with the lag [s]."""
     low_pass = LowPass(1.0 / lag)
     return np.array([0.0, *(low_pass.step(float(s == sense), period) for s in senses)])
 
 
 def _fitted(columns: Array, values: Array) -> tuple[Array, Array]:
-    """Factors of the columns beside a constant, and their variances."""
+    """Return the factors of the columns in a fit with a constant, and their variances."""
     a = np.column_stack([columns, np.ones(len(values))])
     inverse = np.linalg.inv(a.T @ a)
     factors = inverse @ (a.T @ values)
@@ -108,10 +126,11 @@ def _fitted(columns: Array, values: Array) -> tuple[Array, Array]:
 
 @dataclass
 class MotorCheck:
-    """Pairs of trains, one for either side, until the reverse is known well enough.
+    """Pairs of trains, one for each side, until the reverse ratio is known well enough.
 
-    A moment that lasts, of wind, adds to one side what it takes from the other. After each pair the astern setting is
-    mended, and the speed that it left is taken out by pulses straight ahead or astern.
+    A constant moment, of wind for instance, adds to one side what it subtracts from the other.
+    After each pair the astern setting is corrected, and the remaining speed is removed by pulses
+    straight ahead or astern.
     """
 
     period: float  # [s]
@@ -142,7 +161,7 @@ class MotorCheck:
 
     @property
     def unevenness(self) -> float:
-        """(a - b)/(a + b) of the yaw accelerations with the port (a) and the starboard (b) motor inward."""
+        """Yaw accelerations (a - b) / (a + b), with port (a) and starboard (b) motor inward."""
         a, b = (
             abs(float(np.mean([f.turn for f in self._found[side::2]])))
             for side in (PORT, STARBOARD)
@@ -150,9 +169,13 @@ class MotorCheck:
         return (a - b) / (a + b)
 
     def step(self, rate: float, felt: float) -> Pulse:
-        """Take in yaw rate [rad/s] and acceleration ahead [m/s^2] each period; returns what the motors do next.
+        """Process the readings of a period and return the next setting.
 
-        Once it is `done` they are off.
+        The motors are off when the check is `done`.
+
+        Args:
+            rate: Yaw rate [rad/s].
+            felt: Acceleration ahead [m/s^2].
         """
         self._reading = rate, felt
         self._program = self._program or self._play()
@@ -161,7 +184,7 @@ class MotorCheck:
         return pulse or Pulse(0, NEITHER)
 
     def _play(self) -> Iterator[Pulse]:
-        """Pair after pair; a reading is that at the beginning of the pulse asked for next."""
+        """Yield the pulses of all pairs; a reading is taken at the begin of the next pulse."""
         length = self.shortest
         for pair in range(self.most):
             for side in (PORT, STARBOARD):
@@ -181,7 +204,7 @@ class MotorCheck:
             length = clip(self.reach / self.push, self.shortest, self.longest)
 
     def _learn(self, senses: list[int]) -> None:
-        """Reckon what the last pair left of speed, and mend the astern setting by it."""
+        """Update the remaining speed by the last pair, and correct the astern setting."""
         pair = self._found[-2:]
         reverse = (pair[PORT].reverse * pair[STARBOARD].reverse) ** 0.5
         self.speed += 2.0 * self.push * self.period * (senses.count(1) - reverse * senses.count(-1))
@@ -190,7 +213,7 @@ class MotorCheck:
         self.astern = exp(self._balanced())
 
     def _balanced(self) -> float:
-        """Logarithm of the setting that gives as much thrust as ahead: the mean of what all pairs but the first say."""
+        """Return the logarithm of the balanced astern setting, averaged over all pairs but the first."""
         power = self.power
         if len(self._read) > 1:
             (s0, r0), (s1, r1) = self._read[:2]
@@ -198,13 +221,13 @@ class MotorCheck:
         return float(np.mean([s - r / power for s, r in self._read[1:] or self._read]))
 
     def _amends(self) -> list[int]:
-        """Senses that take out the speed; astern as mended, as strong as ahead."""
+        """Return the pulses that remove the remaining speed."""
         sense, gain = -1 if self.speed > 0.0 else 1, self.push * self.straight * self.period
         count = round(abs(self.speed) / gain)
         self.speed += sense * count * gain
         return [sense] * count + [0] * round(self.rest / self.period) if count else []
 
     def _spread(self) -> float:
-        """Standard deviation of the mean of all pairs but the first."""
+        """Return the standard deviation of the mean of all pairs but the first."""
         later = self._found[2:]
         return float(np.sqrt(sum(f.variance for f in later))) / len(later)
