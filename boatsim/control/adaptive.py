@@ -283,8 +283,11 @@ def l1_rows(system: LinearSystem) -> Array:
     Args:
         system: Stable linear system.
     """
-    each = [[_absolute_integral(system.a, b, c) for b in system.b.T] for c in system.c]
-    return np.asarray(np.sum(np.array(each), axis=1))
+    integrals = np.empty((len(system.c), system.b.shape[1]))
+    for i, c in enumerate(system.c):
+        for j, b in enumerate(system.b.T):
+            integrals[i, j] = _absolute_integral(system.a, b, c)
+    return np.asarray(np.sum(integrals, axis=1))
 
 
 def l1_norm(system: LinearSystem) -> float:
@@ -361,7 +364,8 @@ def _zero(halves: list[Array], x: Array, c: Array) -> Array:
     """Return the state where c x first changes its sign, by bisection with steps dt / 2^(k+1)."""
     for half in halves:
         later = half @ x
-        x = later if (c @ later) * (c @ x) > 0.0 else x
+        if (c @ later) * (c @ x) > 0.0:
+            x = later
     return x
 
 
@@ -369,7 +373,8 @@ def _zero(halves: list[Array], x: Array, c: Array) -> Array:
 class LoopMargins:
     """Stability margins of a loop.
 
-    Of several crossovers it is the one that allows the least extra delay."""
+    Of several crossovers it is the one that allows the least extra delay.
+    """
 
     crossover: float  # [rad/s] where |L| is 1
     phase: float  # [rad] lag that may be added at the crossover
@@ -402,9 +407,8 @@ def loop_margins(
         return LoopMargins(0.0, inf, inf, stable)
     lag = {w: float(np.angle(-loop(np.array([1j * w]))[0])) for w in found}
     worst = min(found, key=lambda w: (lag[w] % (2.0 * pi)) / w)
-    return LoopMargins(
-        worst, lag[worst], (lag[worst] % (2.0 * pi)) / worst if stable else 0.0, stable
-    )
+    delay = (lag[worst] % (2.0 * pi)) / worst
+    return LoopMargins(worst, lag[worst], delay if stable else 0.0, stable)
 
 
 def _crossover(loop: Loop, low: float, high: float) -> float:
@@ -412,16 +416,15 @@ def _crossover(loop: Loop, low: float, high: float) -> float:
     rising = abs(loop(np.array([1j * high]))[0]) > 1.0
     for _ in range(50):
         middle = 0.5 * (low + high)
-        low, high = (
-            (low, middle)
-            if (abs(loop(np.array([1j * middle]))[0]) > 1.0) == rising
-            else (middle, high)
-        )
+        if (abs(loop(np.array([1j * middle]))[0]) > 1.0) == rising:
+            high = middle
+        else:
+            low = middle
     return 0.5 * (low + high)
 
 
 def _stable(omega: Array, response: Complex) -> bool:
-    """Apply Nyquist's criterion for a loop without unstable poles: 1 + L turns 90 deg per integrator."""
+    """Apply Nyquist's criterion: without unstable poles 1 + L turns 90 deg per integrator."""
     integrators = round(
         -float(np.diff(np.log(np.abs(response[:2])))[0] / np.diff(np.log(omega[:2]))[0])
     )

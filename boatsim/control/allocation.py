@@ -133,7 +133,11 @@ def within(value: float, low: float, high: float) -> float:
         low: Lower limit.
         high: Upper limit.
     """
-    return low if value < low else high if value > high else value
+    if value < low:
+        return low
+    if value > high:
+        return high
+    return value
 
 
 @lean

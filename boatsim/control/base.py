@@ -123,8 +123,11 @@ class Steered(Controller):
             sense: Sensor readings.
             goal: Not used.
         """
-        self._course = sense.psi if isnan(self._course) else self._course
-        self._helm = self.helm(sense) if sense.t >= self.execute - 1e-9 else 0.0
+        if isnan(self._course):
+            self._course = sense.psi
+        self._helm = 0.0
+        if sense.t >= self.execute - 1e-9:
+            self._helm = self.helm(sense)
         return self.commanded(self._helm)
 
     def helm(self, sense: Sense) -> float:
@@ -141,10 +144,10 @@ class Steered(Controller):
         Args:
             helm: Helm angle [rad].
         """
-        turned = {
-            name: self.ahead.get(name, 0.0) + per_rad * helm for name, per_rad in self.steer.items()
-        }
-        return {**self.ahead, **turned}
+        commands = dict(self.ahead)
+        for name, per_rad in self.steer.items():
+            commands[name] = self.ahead.get(name, 0.0) + per_rad * helm
+        return commands
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the helm angle for the log."""
@@ -159,7 +162,11 @@ def clip(value: float, low: float, high: float) -> float:
         low: Lower limit.
         high: Upper limit.
     """
-    return low if value < low else high if value > high else value
+    if value < low:
+        return low
+    if value > high:
+        return high
+    return value
 
 
 def wrap(angle: float) -> float:

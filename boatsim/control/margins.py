@@ -57,7 +57,10 @@ def table(controller: object) -> list[Row]:
             f"controller {asked!r} describes no loop_channels (these do: "
             f"{', '.join(able) or 'none'})"
         )
-    return [_row(channel, gain) for channel in describe() for gain in channel.input_gain]
+    rows = []
+    for channel in describe():
+        rows += [_row(channel, gain) for gain in channel.input_gain]
+    return rows
 
 
 def _row(channel: LoopChannel | SampledChannel, gain: float) -> Row:

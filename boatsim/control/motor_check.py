@@ -68,7 +68,9 @@ class Train:
 
     def __post_init__(self) -> None:
         still = [0] * self.rest
-        self.senses = still + [s for sense in (1, -1, -1, 1) for s in [sense] * self.pulse + still]
+        self.senses = list(still)
+        for sense in (1, -1, -1, 1):
+            self.senses += [sense] * self.pulse + still
 
     def feel(self, rate: float, felt: float) -> None:
         """Append the readings at the begin of a period, and at the end of the last one.
@@ -213,7 +215,7 @@ class MotorCheck:
         self.astern = exp(self._balanced())
 
     def _balanced(self) -> float:
-        """Return the logarithm of the balanced astern setting, averaged over all pairs but the first."""
+        """Return the logarithm of the balanced astern setting, a mean without the first pair."""
         power = self.power
         if len(self._read) > 1:
             (s0, r0), (s1, r1) = self._read[:2]
