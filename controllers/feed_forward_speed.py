@@ -32,9 +32,9 @@ class FeedForwardSpeed(CompiledController):
     words: ClassVar[str] = "speed of a water-jet craft on its throttle: known drag and a fixed gain"
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
     goals: ClassVar[tuple[str, ...]] = ("u_mps", "jet_rad")
-    unsaid: ClassVar = {"jet_rad": 0.0}
+    default_goals: ClassVar = {"jet_rad": 0.0}
     law: ClassVar = law
-    remembers: ClassVar = record("started", "goal", "model")
+    memory_type: ClassVar = record("started", "goal", "model")
 
     period: float = param(
         0.002, low=0.0001, high=1.0, unit="s", words="time between two control steps"

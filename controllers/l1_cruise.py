@@ -55,9 +55,9 @@ class L1Cruise(CompiledController):
     words: ClassVar[str] = "L1 adaptive speed of a water-jet craft on its throttle"
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
     goals: ClassVar[tuple[str, ...]] = ("u_mps", "jet_rad")
-    unsaid: ClassVar = {"jet_rad": 0.0}
+    default_goals: ClassVar = {"jet_rad": 0.0}
     law: ClassVar = law
-    remembers: ClassVar = record(
+    memory_type: ClassVar = record(
         "started", "goal", "model", "speed", "throttle", loop=loop_memory(1)
     )
 

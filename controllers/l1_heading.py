@@ -79,9 +79,9 @@ class L1Heading(CompiledController):
     words: ClassVar[str] = "L1 adaptive heading of a water-jet craft on its jet"
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
     goals: ClassVar[tuple[str, ...]] = ("psi_rad", "throttle")
-    unsaid: ClassVar = {"throttle": 1.0}
+    default_goals: ClassVar = {"throttle": 1.0}
     law: ClassVar = law
-    remembers: ClassVar = record("started", "goal", "jet", "error", "rate", loop=loop_memory(2))
+    memory_type: ClassVar = record("started", "goal", "jet", "error", "rate", loop=loop_memory(2))
 
     period: float = param(
         0.002, low=0.0001, high=0.1, unit="s", words="time between two control steps"

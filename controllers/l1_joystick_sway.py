@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from boatsim.control.adaptive import LoopChannel
 from boatsim.control.allocation import HEADING, set_outboards, sway_difference, within
-from boatsim.control.axis import AXIS, missing
+from boatsim.control.axis import AXIS, filtered_disturbance
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import merged, record, unlocked
 from boatsim.control.joystick import SERVO_LAG, AdaptiveJoystick, surge_force, yaw_moment
@@ -23,7 +23,7 @@ def sway_spread(q: Any, m: Any, s: Any, wanted: float) -> float:
     opened = sway_difference(q, wanted)
     if isnan(s.v):
         return opened
-    felt = missing(
+    felt = filtered_disturbance(
         m.sway,
         s.v,
         m.Y,
@@ -66,7 +66,7 @@ class L1JoystickSway(AdaptiveJoystick):
         "L1 adaptive joystick with surge, sway and yaw closed, for a measured sway velocity"
     )
     law: ClassVar = law
-    remembers: ClassVar = record(
+    memory_type: ClassVar = record(
         "acted", "X", "Y", "N", yaw=AXIS, surge=AXIS, sway=AXIS, heading=HEADING
     )
 

@@ -97,7 +97,7 @@ class L1Thesis(CompiledController):
     law: ClassVar = law
     # predicted states; both poles of the low-pass [rad/s^2]; angle commanded, and where the servo
     # is taken to be
-    remembers: ClassVar = record(
+    memory_type: ClassVar = record(
         "started", "vh", "rh", "slow", "fast", "angle", "reached", sway=ROW, yaw=ROW
     )
 

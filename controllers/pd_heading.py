@@ -48,9 +48,9 @@ class PdHeading(CompiledController):
     words: ClassVar[str] = "PD heading of a water-jet craft on its jet, with fixed gains"
     commands: ClassVar[tuple[str, ...]] = ("throttle", "jet_rad")
     goals: ClassVar[tuple[str, ...]] = ("psi_rad", "throttle")
-    unsaid: ClassVar = {"throttle": 1.0}
+    default_goals: ClassVar = {"throttle": 1.0}
     law: ClassVar = law
-    remembers: ClassVar = record("started", "goal", "error", "rate")
+    memory_type: ClassVar = record("started", "goal", "error", "rate")
 
     period: float = param(
         0.002, low=0.0001, high=1.0, unit="s", words="time between two control steps"

@@ -86,9 +86,9 @@ class PidAutopilot(Outboards, CompiledController):
         "steer_starboard_rad",
     )
     goals: ClassVar[tuple[str, ...]] = STICK
-    unsaid: ClassVar = dict.fromkeys(STICK, 0.0)
+    default_goals: ClassVar = dict.fromkeys(STICK, 0.0)
     law: ClassVar = law
-    remembers: ClassVar = REMEMBERS
+    memory_type: ClassVar = REMEMBERS
 
     inertia: float = param(
         2.0, low=0.1, high=50.0, unit="kg m^2", words="assumed yaw inertia, added mass included"

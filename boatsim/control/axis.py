@@ -14,7 +14,7 @@ AXIS = record("predicted", "sigma", "filtered", "model")
 
 
 @merged
-def missing(
+def filtered_disturbance(
     a: Any,
     measured: float,
     applied: float,

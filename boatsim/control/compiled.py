@@ -18,7 +18,7 @@ from boatsim.physics.base import Array
 from boatsim.physics.kernel.compiling import lean, merged, unlocked
 
 __all__ = [
-    "FELT",
+    "SENSE_FIELDS",
     "SENSE",
     "CompiledController",
     "Records",
@@ -36,7 +36,7 @@ __all__ = [
 warnings.filterwarnings(
     "ignore", ".*has been considered a subtype of.*", NumbaExperimentalFeatureWarning
 )
-FELT = tuple(f.name for f in fields(Sense) if f.name != "more")
+SENSE_FIELDS = tuple(f.name for f in fields(Sense) if f.name != "more")
 Records = NDArray[np.void]
 ONE = np.zeros(1, dtype=np.int64)  # row of the boat in a single run
 
@@ -68,7 +68,7 @@ def with_parts(records: Records, **parts: Records) -> Records:
     return whole
 
 
-SENSE = record(*FELT)
+SENSE = record(*SENSE_FIELDS)
 
 
 class CompiledController(Controller):
@@ -77,13 +77,13 @@ class CompiledController(Controller):
     Its signature is `law(boats, settings, memory, sense, goal, sent)`.
 
     `boats` are the rows to process. `settings` contains the parameters by name, `memory` is of the
-    type `remembers` and zero at the start; `sense` has the fields of `Sense`, `goal` those of
+    type `memory_type` and zero at the start; `sense` has the fields of `Sense`, `goal` those of
     `goals`, and `sent` those of `commands`, which the law fills in.
     """
 
     law: ClassVar[Callable[[NDArray[np.int64], Records, Records, Records, Records, Records], None]]
-    remembers: ClassVar[np.dtype[np.void]]
-    unsaid: ClassVar[Mapping[str, float]] = {}  # default set points
+    memory_type: ClassVar[np.dtype[np.void]]
+    default_goals: ClassVar[Mapping[str, float]] = {}  # default set points
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -91,9 +91,9 @@ class CompiledController(Controller):
 
     def reset(self) -> None:
         """Reset all states."""
-        self._settings, self._memory = self.settings(), np.zeros(1, type(self).remembers)
+        self._settings, self._memory = self.settings(), np.zeros(1, type(self).memory_type)
         self._sense, self._goal, self._sent = (
-            np.zeros(1, t) for t in (SENSE, *self.asked_and_sent())
+            np.zeros(1, t) for t in (SENSE, *self.record_types())
         )
 
     def settings(self, count: int = 1) -> Records:
@@ -107,12 +107,12 @@ class CompiledController(Controller):
         return np.full(count, np.array([row], record(*names)))
 
     @classmethod
-    def asked_and_sent(cls) -> tuple[np.dtype[np.void], np.dtype[np.void]]:
+    def record_types(cls) -> tuple[np.dtype[np.void], np.dtype[np.void]]:
         """Return the record types of goals and commands."""
         return record(*cls.goals), record(*cls.commands)
 
     @classmethod
-    def asked(cls, goal: Mapping[str, float]) -> tuple[float, ...]:
+    def goal_values(cls, goal: Mapping[str, float]) -> tuple[float, ...]:
         """Return the values of a goal in the order of `goals`.
 
         Args:
@@ -121,7 +121,7 @@ class CompiledController(Controller):
         Raises:
             KeyError: A set point without a default is missing.
         """
-        return tuple([goal[n] if n in goal else cls.unsaid[n] for n in cls.goals])
+        return tuple([goal[n] if n in goal else cls.default_goals[n] for n in cls.goals])
 
     def step(self, sense: Sense, goal: Mapping[str, float]) -> dict[str, float]:
         """Return the commands for the next period.
@@ -130,8 +130,8 @@ class CompiledController(Controller):
             sense: Sensor readings.
             goal: Set points by name.
         """
-        self._sense[0] = tuple([getattr(sense, n) for n in FELT])
-        self._goal[0] = self.asked(goal)
+        self._sense[0] = tuple([getattr(sense, n) for n in SENSE_FIELDS])
+        self._goal[0] = self.goal_values(goal)
         type(self).law(ONE, self._settings, self._memory, self._sense, self._goal, self._sent)
         return dict(zip(type(self).commands, self._sent[0].item(), strict=True))
 
@@ -141,7 +141,7 @@ class CompiledController(Controller):
         return self._memory
 
     @property
-    def is_its_law(self) -> bool:
+    def only_evaluates_law(self) -> bool:
         """Whether the controller only evaluates its law and has no other `step`."""
         return type(self).step is CompiledController.step
 

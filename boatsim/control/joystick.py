@@ -16,7 +16,7 @@ from boatsim.control.allocation import (
     sway_difference,
     within,
 )
-from boatsim.control.axis import AXIS, missing
+from boatsim.control.axis import AXIS, filtered_disturbance
 from boatsim.control.base import Estimate
 from boatsim.control.compiled import CompiledController, merged, record, unlocked
 from boatsim.physics.base import param
@@ -43,7 +43,9 @@ def yaw_moment(q: Any, m: Any, s: Any, wanted: float) -> float:
     bound = q.hold_rate + (q.turn_rate - q.hold_rate) * abs(wanted) / q.rated_yaw
     reference = within(wanted + q.heading_gain * (m.heading.wanted - m.heading.own), -bound, bound)
     acted = m.acted != 0.0
-    felt = missing(m.yaw, s.r, m.N, acted, reference, q.pole, q.inertia, q.yaw_bandwidth, q.period)
+    felt = filtered_disturbance(
+        m.yaw, s.r, m.N, acted, reference, q.pole, q.inertia, q.yaw_bandwidth, q.period
+    )
     return q.inertia * q.pole * reference - felt
 
 
@@ -60,7 +62,9 @@ def surge_force(q: Any, m: Any, s: Any, wanted: float) -> float:
     if isnan(s.u):
         return q.blind_surge * wanted
     acted = m.acted != 0.0
-    felt = missing(m.surge, s.u, m.X, acted, wanted, q.pole, q.mass, q.surge_bandwidth, q.period)
+    felt = filtered_disturbance(
+        m.surge, s.u, m.X, acted, wanted, q.pole, q.mass, q.surge_bandwidth, q.period
+    )
     return q.mass * q.pole * wanted - felt
 
 
@@ -102,9 +106,9 @@ class AdaptiveJoystick(Outboards, CompiledController):
         "steer_starboard_rad",
     )
     goals: ClassVar[tuple[str, ...]] = STICK
-    unsaid: ClassVar = dict.fromkeys(STICK, 0.0)
+    default_goals: ClassVar = dict.fromkeys(STICK, 0.0)
     law: ClassVar = law
-    remembers: ClassVar = REMEMBERS
+    memory_type: ClassVar = REMEMBERS
 
     pole: float = param(1.4, low=0.1, high=10.0, unit="1/s", words="pole of the reference motion")
     inertia: float = param(

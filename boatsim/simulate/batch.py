@@ -230,7 +230,7 @@ class Batch:
             pass
 
     def feel(self, felt: Array) -> None:
-        """What instruments without noise would say, a row (11,) a boat, in the order of `control.compiled.FELT`."""
+        """What instruments without noise would say, a row (11,) a boat, in the order of `control.compiled.SENSE_FIELDS`."""
         self.shared(lambda some: self.code.feel_boats(some, self.fleet, felt))
 
     def _chosen(self, boats: ArrayLike | None) -> Boats:

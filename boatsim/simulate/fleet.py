@@ -145,7 +145,7 @@ class Fleet:
         first = self._each[0]
         if not isinstance(first, Controller):
             return ByFunction(self._aboard, first)
-        laws = [c for c in self._each if isinstance(c, CompiledController) and c.is_its_law]
+        laws = [c for c in self._each if isinstance(c, CompiledController) and c.only_evaluates_law]
         if len(laws) == len(self._each):
             return ByLaw(self._aboard, laws)
         if len(self._each) > 1 or not type(first).passes_on:

@@ -123,9 +123,9 @@ class ByLaw:
         n, boat = len(aboard.batch), aboard.batch.vessels[0]
         rows = np.concatenate([c.settings() for c in controllers])
         self._settings = rows[np.arange(n) % len(rows)]
-        self._memory = np.zeros(n, kind.remembers) if memory is None else memory
+        self._memory = np.zeros(n, kind.memory_type) if memory is None else memory
         self._sense = np.zeros(n, SENSE)
-        self._goal, self._sent = (np.zeros(n, t) for t in kind.asked_and_sent())
+        self._goal, self._sent = (np.zeros(n, t) for t in kind.record_types())
         self._felt, self._wanted, self.orders = (
             as_table(r) for r in (self._sense, self._goal, self._sent)
         )
@@ -135,11 +135,11 @@ class ByLaw:
 
     def reset(self) -> None:
         """Nothing learnt."""
-        self._memory[:] = np.zeros(1, self.kind.remembers)
+        self._memory[:] = np.zeros(1, self.kind.memory_type)
 
     def sail(self, goals: Sequence[Mapping[str, float]], begins: bool = True) -> None:
         """A period for each goal, each boat's on one thread; it begins with the law, or ends with it."""
-        table = np.array([self.kind.asked(goal) for goal in goals], dtype=float)
+        table = np.array([self.kind.goal_values(goal) for goal in goals], dtype=float)
         self.aboard.batch.shared(lambda boats: self._sailed(boats, table, begins))
 
     def _sailed(self, boats: Boats, goals: Array, begins: bool) -> None:

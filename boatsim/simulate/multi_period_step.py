@@ -50,7 +50,7 @@ class Leap:
         law = scenario.controller
         if not isinstance(law, CompiledController) or not isinstance(engine, OpenWater):
             return None
-        if scenario.aboard or scenario.lets_go or not law.is_its_law:
+        if scenario.aboard or scenario.lets_go or not law.only_evaluates_law:
             return None
         kind, each = type(law), law.period / engine.step
         acts_between = kind.early is not Controller.early or kind.done is not Controller.done

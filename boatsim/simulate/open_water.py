@@ -4,7 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
-from boatsim.control.compiled import FELT, ONE
+from boatsim.control.compiled import SENSE_FIELDS, ONE
 from boatsim.physics.signals import Array
 from boatsim.physics.vessel import Vessel
 from boatsim.simulate import world
@@ -26,7 +26,7 @@ class OpenWater(Stepper):
             self.batch._act[0],
         )
         self._y, self._k, self._none = self.batch._y[0], self.batch._k[0], np.zeros(self.code.NQ)
-        self._felt = np.zeros((1, len(FELT)))
+        self._felt = np.zeros((1, len(SENSE_FIELDS)))
         self.reset()
 
     @cached_property
